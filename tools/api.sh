@@ -1,6 +1,6 @@
 #!/bin/sh
 # tools/api.sh: pages of every public procedure and type, from the comments of the sources, in
-# build/api. FORD is installed where it is missing.
+# build/api. FORD is installed if it is missing.
 set -u
 top=$(dirname -- "$(dirname -- "$(readlink -f -- "$0")")")
 . "$top/tools/setup.sh"

@@ -9,7 +9,7 @@ import pathlib
 import sys
 import tempfile
 
-# Before anything loads OpenMP.
+# To be set before a module loads OpenMP.
 os.environ.setdefault("OMP_NUM_THREADS", "1")
 
 import pages  # noqa: E402
@@ -22,13 +22,13 @@ from law_and_curve import draw_law_and_curve  # noqa: E402
 
 EXAMPLES = pages.ROOT / "inputs" / "examples"
 PICTURES = pages.ROOT / "docs" / "forces"
-# Decks that have a picture; those of one force show others beside it.
+# Decks with a picture; the picture of a deck with one force shows other forces beside it.
 NAMES = ("van_der_waals", "lennard_jones_10_4", "morse", "dlvo", "double_layer", "hydration",
          "hydrophobic", "steric", "structural", "depletion", "capillary", "dugdale", "tabulated")
-# A picture whose deck has another name.
+# Pictures whose name differs from that of their deck.
 DECKS = {"double_layer": "dlvo"}
 DPI = 90
-# Where nothing is to be seen of a term beside the whole law: limits of the first panel and, for the
+# If a term is too small to be visible beside the whole law: limits of the first panel and, for the
 # secondary minimum of DLVO forces, of the second.
 VIEWS = {"steric": [{"xlim": (9.3, 12), "ylim": (-5, 12)}],
          "double_layer": [{"xlim": (0, 8), "ylim": (-0.15, 0.45)},
@@ -36,7 +36,7 @@ VIEWS = {"steric": [{"xlim": (9.3, 12), "ylim": (-5, 12)}],
 
 
 def variants(name, keys):
-    """Return what is drawn beside the law of a deck, or None for the deck's own terms."""
+    """Return the curves beside the law of a deck, or None for the deck's own terms."""
     if name == "double_layer":
         return {model: {name: {**keys[name], "model": model}}
                 for model in ("superposition", "linear", "nonlinear")}
@@ -66,7 +66,7 @@ def main():
                 "energy" if name == "dlvo" else "pressure")
             for panel, limits in zip(figure.axes, VIEWS.get(name, [])):
                 panel.set(**limits)
-                # Arrows are not cut off at the frame.
+                # Arrows are not clipped at the frame.
                 for arrow in list(panel.texts):
                     arrow.remove()
             figure.savefig(picture, dpi=DPI)

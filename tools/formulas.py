@@ -28,7 +28,7 @@ NAMES = {"dmt": "DMT", "jkr": "JKR", "maugis": "Maugis-Dugdale", "carpick": "Car
 
 
 class Formula(NamedTuple):
-    """A formula for a quantity; `error(x)` is by how much it is too large, `x` over `grid`."""
+    """A formula for a quantity; `error(x)` is its signed relative error, with `x` on `grid`."""
 
     quantity: str
     name: str
@@ -47,7 +47,7 @@ def _of_pull_off(theory):
 
 @functools.lru_cache(maxsize=None)
 def _wu():
-    """Return the factor of mu^(3/7) that fits far out."""
+    """Return the factor of mu^(3/7) that fits at large mu."""
     return wu_2010.jump(1000.0)[0][0] / 1000.0 ** (3 / 7)
 
 
@@ -103,14 +103,15 @@ def _of_layer(name, chi):
 
 
 def good(errors, grid, symbol, within):
-    """Return in words where errors are within a bound: from the first good value to the last."""
+    """Return in words the range with errors within a bound: from the first good value to the
+    last."""
     fine = abs(errors) <= within
     spans, start = [], None
     for i, each in enumerate([*fine, False]):
         if each and start is None:
             start = i
         elif not each and start is not None:
-            # A curve that only crosses zero is no range.
+            # A curve that only crosses zero has no such range.
             if i - start > 2:
                 spans.append((start, i - 1))
             start = None

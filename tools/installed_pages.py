@@ -1,8 +1,8 @@
-"""Writes what an installed program has beside it: the manual page and the completions of bash and zsh.
+"""Writes the manual page and the completions of bash and zsh for an installed program.
 
     tools/installed_pages.py PROGRAM FOLDER
 
-All are made from what PROGRAM says of itself (--help, --keys, --version), and from nothing else.
+All are made from the output of PROGRAM (--help, --keys, --version) alone.
 """
 
 import re
@@ -10,7 +10,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-# `  --out DIR   write to ...` of --help, and the lines that go on with it.
+# `  --out DIR   write to ...` of --help, and its continuation lines.
 OPTION = re.compile(r"  (--[a-z]+)(?: ([A-Z]+))? +(\S.*)$")
 
 
@@ -19,7 +19,7 @@ def says(program, option):
 
 
 def options_of(help_text):
-    """(option, its argument or None, its short form or None, what it does) of every option."""
+    """(option, its argument or None, its short form or None, its meaning) of every option."""
     found = []
     for line in help_text.splitlines():
         match = OPTION.match(line)
@@ -36,7 +36,7 @@ def options_of(help_text):
 
 
 def roff(text):
-    """Text as troff shows it: a line must not begin with a request, nor a minus become a hyphen."""
+    """Text for troff: a line must not begin with a request, nor a minus become a hyphen."""
     lines = text.replace("\\", "\\e").replace("-", "\\-").replace("'", "\\(aq").splitlines()
     return "\n".join("\\&" + line if line.startswith(".") else line for line in lines)
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Renew the table of docs/forces.md that sets pull-offs under different laws side by side: seconds.
+"""Renew the table of docs/forces.md that compares pull-offs under different laws: seconds.
 
     .venv/bin/python tools/law_independence.py
 """
@@ -9,7 +9,7 @@ import os
 import sys
 import warnings
 
-# Before anything loads OpenMP.
+# To be set before a module loads OpenMP.
 os.environ.setdefault("OMP_NUM_THREADS", "1")
 
 import pages  # noqa: E402
@@ -32,7 +32,7 @@ LAWS = {
 def pull_offs(law, tabor, accuracy=1e-8):
     """Return the largest tension over pi w R, and that of Maugis-Dugdale theory, under a law.
 
-    tabor: Tabor's parameter by the range of the law, surface energy over largest tension.
+    tabor: Tabor's parameter with the law's range, the surface energy over the largest tension.
     """
     edge = snapin.law_numbers(law).edge_gap
     reach = -1 / snapin.force_law(law, [edge]).pressure[0]

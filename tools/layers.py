@@ -13,7 +13,7 @@ import sys
 import tempfile
 import warnings
 
-# Before anything loads OpenMP.
+# To be set before a module loads OpenMP.
 os.environ.setdefault("OMP_NUM_THREADS", "1")
 
 import pages  # noqa: E402
@@ -36,12 +36,12 @@ PICTURE = pages.ROOT / "docs" / "layers.png"
 FILMS = pages.ROOT / "docs" / "layers_films.png"
 PAGE = pages.ROOT / "docs" / "layers.md"
 CHI = [0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.8, 1.0, 1.25, 1.5, 2.0]
-# Films on something rigid by their Poisson's ratio; incompressible films on bases of Poisson's ratio
+# Films on a rigid base by their Poisson's ratio; incompressible films on bases of Poisson's ratio
 # 0.5 by the ratio of moduli, film over base.
 BONDED = [0.3, 0.4, 0.45, 0.49, 0.5]
 ON_ELASTIC = [0.01, 0.1, 0.5, 2.0, 10.0, 100.0]
 SIGMA = 25.0
-# What prices are told of: coats by their modulus over that of the base (0: rigid) and their
+# Cases of the table of prices: coats by their modulus over that of the base (0: rigid) and their
 # Poisson's ratio, their thickness over the radius of the contact without load, sigma; the accuracy.
 COATS = {"film on a rigid base, ν = 0.5": (0, 0.5), "the same, ν = 0.3": (0, 0.3),
          "five times as soft as its base": (0.2, 0.3), "five times as stiff": (5, 0.3),
@@ -53,8 +53,9 @@ warnings.simplefilter("ignore", snapin.SnapinWarning)
 
 
 def film(thickness, nu, ratio, sigma, h0_end, **groups):
-    """The summary of theory for a film under something rigid, in units of z0 and of its modulus;
-    ratio: of the shear moduli, film over base, 0 for a rigid base; groups: what else is asked."""
+    """The summary of theory for a film under a rigid body, in units of z0 and of its modulus;
+    ratio: of the shear moduli, film over base, 0 for a rigid base; groups: further groups of the
+    deck."""
     young = (1 - nu**2) / 2
     bodies = {"radius": 1.0, "rigid": True}
     if ratio:
@@ -67,23 +68,23 @@ def film(thickness, nu, ratio, sigma, h0_end, **groups):
 
 
 def over_hertz(chi, nu, ratio):
-    """Load over Hertz's at the same indentation, chi = sqrt(R delta)/thickness."""
+    """Load over Hertz's load at the same indentation, chi = sqrt(R delta)/thickness."""
     found = film(1 / chi, nu, ratio, 1.0, -1.0)
     return found["effective_modulus"] / found["top_modulus"]
 
 
 def dimitriadis(chi):
-    """Of incompressible films: Dimitriadis et al. (2002), as the formula is quoted."""
+    """For incompressible films: Dimitriadis et al. (2002), as the formula is quoted."""
     return 1 + 1.133 * chi + 1.283 * chi**2 + 0.769 * chi**3 + 0.0975 * chi**4
 
 
 def garcia(chi):
-    """The same of Garcia and Garcia (2018)."""
+    """For incompressible films: Garcia and Garcia (2018), as the formula is quoted."""
     return 1 + 1.133 * chi + 1.497 * chi**2 + 1.469 * chi**3 + 0.755 * chi**4
 
 
 def write_table():
-    """Write the table and return it, a column a film."""
+    """Write the table and return it, one column for each film."""
     columns = {"chi": CHI}
     columns |= {f"rigid_base_nu_{nu:g}": [over_hertz(chi, nu, 0) for chi in CHI] for nu in BONDED}
     columns["dimitriadis_2002_nu_0.5"] = [dimitriadis(chi) for chi in CHI]
@@ -100,7 +101,7 @@ def write_table():
 
 
 def draw(table):
-    """Draw load over Hertz's, and pull-off against thickness."""
+    """Draw load over Hertz's load, and pull-off against thickness."""
     figure, (left, right) = plt.subplots(1, 2, figsize=(10, 4.2), layout="constrained")
     for nu in BONDED:
         left.plot(CHI, table[f"rigid_base_nu_{nu:g}"], label=f"rigid base, ν = {nu:g}")
@@ -154,12 +155,13 @@ def draw_films():
 
 
 def coated(sigma, thin=None, ratio=0, nu=0.0):
-    """The path's deck of a coat, or of a half-space; thin: thickness over radius without load."""
+    """The deck for the path of a coat, or of a half-space; thin: thickness over radius without
+    load."""
     half = problems.lennard_jones(sigma)
     numerics = f"accuracy = {ACCURACY}"
     if thin is None:
         return half.path(numerics)
-    # E* of the half-space's deck is half of the stiffness there: here one body yields.
+    # E* of the half-space's deck is half of the stiffness there: here one body is elastic.
     bodies, force = half.physics.split("\n")
     stiffness = float(bodies.split("=")[-1].strip(" /")) / 2
     radius = float(bodies.split("=")[1].split(",")[0])
@@ -172,8 +174,8 @@ def coated(sigma, thin=None, ratio=0, nu=0.0):
 
 
 def write_prices():
-    """Measure what paths cost, and write the table of it into the page: processor time of a run,
-    that of the start taken off, over the half-space's, and estimates above what was asked for."""
+    """Measure the cost of paths, and write its table into the page: processor time of a run
+    without the start over that of the half-space, and estimates above the requested accuracy."""
     decks = {(sigma, None, None): coated(sigma) for sigma in STRENGTHS}
     decks |= {(sigma, thin, coat): coated(sigma, thin, *COATS[coat])
               for sigma in STRENGTHS for thin in THIN for coat in COATS}

@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""Which numerics the pages with measured figures belong to.
+"""Compare the sources with those with which the figures of pages were measured.
 
-    pages.py              names every page that is older than the sources, with status 1
-    pages.py --mark PAGE  says that all figures of PAGE were measured just now
+    pages.py              lists every page that is older than the sources, with status 1
+    pages.py --mark PAGE  records that all figures of PAGE were measured just now
 
-A page holds the line `<!-- measured at DIGEST -->`. The digest is that of the sources that
-determine numbers. What renews a whole page marks it; whoever writes figures by hand does it after
-measuring them.
+A page has the line `<!-- measured at DIGEST -->`. The digest is that of the sources that
+determine numbers. A command that renews a whole page marks the page; after a measurement by hand use
+--mark.
 """
 
 import argparse
@@ -17,7 +17,7 @@ import sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 
-# Page, and what renews its figures.
+# Page, and the command that renews its figures.
 PAGES = {
     "README.md": "./run inputs/first.nml, compared by hand; then tools/pages.py --mark README.md",
     "docs/accuracy.md": "./bench",
@@ -33,7 +33,8 @@ PAGES = {
     "docs/testing.md": "tools/verify/verify.sh, its tables by hand; then tools/pages.py --mark "
     "docs/testing.md",
 }
-# What reads decks, writes files or talks changes no number. A new file counts until it is here.
+# Files that read decks, write files or print messages change no number. A new file counts until it
+# is listed here.
 _NO_NUMBERS = (
     "namelist_writer", "clock", "command_line", "c_library", "decimal", "deck", "deck_keys",
     "deck_number", "deck_numbers", "deck_scan", "deck_source", "deck_store", "text",
@@ -46,7 +47,8 @@ _MARK = re.compile(r"<!-- measured at (\w+) -->")
 
 
 def digest(folder=ROOT / "src"):
-    """Return twelve digits that change when code that determines numbers does, not its comments."""
+    """Return twelve digits that change with the code that determines numbers, not with its
+    comments."""
     found = hashlib.sha256()
     for path in sorted(folder.rglob("*.f90")):
         if path.stem in _NO_NUMBERS:
@@ -58,7 +60,7 @@ def digest(folder=ROOT / "src"):
 
 
 def mark(page):
-    """Write into a page that it was measured with the sources as they are."""
+    """Write into a page that it was measured with the present sources."""
     text = page.read_text(encoding="utf-8")
     line = f"<!-- measured at {digest()} -->"
     if _MARK.search(text):
@@ -85,13 +87,13 @@ def insert(page, name, lines):
 
 
 def measured_at(page):
-    """Return the digest that a page names, None without one."""
+    """Return the digest in a page, None without one."""
     found = _MARK.search(page.read_text(encoding="utf-8"))
     return found and found[1]
 
 
 def old_pages(root=ROOT):
-    """Return (page, the digest it names or None) for those that are not of the sources here."""
+    """Return (page, its digest or None) of the pages that were not measured with these sources."""
     now = digest(root / "src")
     pairs = [(page, measured_at(root / page)) for page in PAGES]
     return [(page, named) for page, named in pairs if named != now]

@@ -3,7 +3,7 @@
 
     .venv/bin/python tools/rates.py [drainage | prices]
 
-With drainage: those of fluids alone; with prices: what 1,000 steps cost, on a machine without other work.
+With drainage: those of fluids alone; with prices: the cost of 1,000 steps, on an idle machine.
 """
 
 import math
@@ -11,7 +11,7 @@ import os
 import sys
 import warnings
 
-# Before anything loads OpenMP.
+# To be set before a module loads OpenMP.
 os.environ.setdefault("OMP_NUM_THREADS", "1")
 
 import pages  # noqa: E402
@@ -27,7 +27,8 @@ import matplotlib.pyplot as plt  # noqa: E402
 import snapin  # noqa: E402
 
 DOCS = pages.ROOT / "docs"
-# Strength at once, and the velocities of the bell in lengths of the law over the time of retardation.
+# Instantaneous adhesion strength, and the velocities of the bell curve in law's lengths over the
+# time of retardation.
 SIGMA = 0.2
 SPEEDS = [0.002 * 10 ** (k / 3) for k in range(25)]
 RATIOS = [2.0, 5.0, 10.0]
@@ -36,7 +37,8 @@ warnings.simplefilter("ignore", snapin.SnapinWarning)
 
 
 def driven(ratio, velocity, accuracy=1e-3, **drive):
-    """The result of a cycle in units of z0, of the stiffness at once and of the time of retardation."""
+    """The result of a cycle in units of z0, of the instantaneous stiffness and of the time of
+    retardation."""
     deck = {
         "bodies": {"radius": 1.0, "stiffness": 1.0},
         "force": {"law": "lennard_jones", "surface_energy": SIGMA, "z0": 1.0},
@@ -48,7 +50,7 @@ def driven(ratio, velocity, accuracy=1e-3, **drive):
 
 
 def draw_bell():
-    """Pull-off against velocity."""
+    """Draw pull-off against velocity."""
     figure, axes = plt.subplots(figsize=(6.4, 4.2), layout="constrained")
     for ratio in RATIOS:
         tension = [driven(ratio, v).summary["max_tension"] / (1.5 * math.pi * SIGMA) for v in SPEEDS]
@@ -61,7 +63,7 @@ def draw_bell():
 
 
 def draw_cycles():
-    """Load against h0 at several velocities."""
+    """Draw load against h0 at several velocities."""
     figure, axes = plt.subplots(figsize=(6.4, 4.2), layout="constrained")
     for velocity in (0.002, 0.2, 2.0, 20.0, 200.0, 2.0e5):
         curve = driven(10.0, velocity).curve
@@ -73,7 +75,7 @@ def draw_cycles():
 
 
 def print_orders():
-    """How many steps buy how many digits."""
+    """Print the errors for several numbers of steps."""
     exact = driven(4.0, 8.0, 1e-6).summary
     for parts in (50, 100, 200, 400, 800, 1600):
         found = driven(4.0, 8.0, 1e-6, time_step=24 / 8.0 / parts).summary
@@ -83,7 +85,8 @@ def print_orders():
 
 
 def print_prices():
-    """What 1,000 steps of bodies ten times as stiff at once cost, in G: the least of several runs."""
+    """Print the cost of 1,000 steps of bodies with an instantaneous stiffness ten times the
+    relaxed one, in G: the least of several runs."""
     unit = gauge.Gauge(lambda threads: os.environ | {"OMP_NUM_THREADS": str(threads)})
     for sigma, start, step in ((0.2, 20.0, 0.006), (8.7, 40.0, 0.011)):
         deck = {
@@ -119,7 +122,8 @@ def drained(slip, accuracy=1e-3, viscosity=VISCOSITY, **drive):
 
 
 def draw_drainage():
-    """Load against separation with and without slip, and what Reynolds and Vinogradova have."""
+    """Draw load against separation with and without slip, and the results of Reynolds and
+    Vinogradova."""
     figure, panels = plt.subplots(1, 2, figsize=(9.6, 4.2), layout="constrained")
     h = [10 ** (-9.2 + 3.2 * k / 200) for k in range(201)]
     for slip, colour in ((0, "C0"), (5e-9, "C1"), (20e-9, "C2"), (100e-9, "C3")):
@@ -145,7 +149,7 @@ def draw_drainage():
 
 
 def print_drained():
-    """What the accuracy of a drive with a fluid costs."""
+    """Print the cost of the accuracy of a drive with a fluid."""
     exact = drained(0, 1e-5).summary
     for accuracy in (1e-2, 1e-3, 1e-4):
         found = drained(0, accuracy)

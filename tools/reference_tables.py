@@ -2,7 +2,7 @@
 """Bring the tables of docs/decks.md and docs/results.md up to date.
 
 The program prints them: `snapin --keys` every group and key of a deck, `snapin --results` every
-file, column and entry of results. A page holds what is made of them between two marks,
+file, column and entry of results. A page has the tables between two marks,
 `<!-- --keys -->` and `<!-- /--keys -->`.
 """
 
@@ -25,12 +25,12 @@ class Section(NamedTuple):
     name: str
     note: str
     meaning: str
-    # Per item: the line that begins with its name, and its meaning.
+    # For each item: the line that begins with its name, and its meaning.
     items: list
 
 
 def sections_of(output):
-    """Return the sections of what the program has printed."""
+    """Return the sections of the program's output."""
     sections = []
     for block in output.strip("\n").split("\n\n"):
         title, meaning, *lines = block.split("\n")
@@ -46,7 +46,7 @@ def sections_of(output):
 
 
 def keys_as_markdown(sections):
-    """Return every group and key of a deck; what the program writes itself is left out."""
+    """Return every group and key of a deck, without those that the program itself writes."""
     text = ""
     for group in sections:
         if group.note == "skipped":
@@ -88,14 +88,14 @@ def page_with(page, block):
 
 
 def block_of(page, output):
-    """Return what stands between the marks of a page."""
+    """Return the text between the marks of a page."""
     option = PAGES[page]
     make = {"--keys": keys_as_markdown, "--results": results_as_markdown}[option]
     return make(sections_of(output))
 
 
 def _table(head, rows):
-    """Return a Markdown table without the columns that are empty; nothing without rows."""
+    """Return a Markdown table without empty columns; nothing without rows."""
     kept = [i for i in range(len(head)) if any(row[i] for row in rows)]
     if not kept:
         return ""
@@ -105,7 +105,7 @@ def _table(head, rows):
 
 
 def _cell(text):
-    """Return text that Markdown leaves as it is; names of groups are code."""
+    """Return text that Markdown does not change; names of groups are code."""
     if text.startswith("`"):
         return text
     return re.sub(r"(?<!\w)&[a-z_]+", r"`\g<0>`", re.sub(r"([|*])", r"\\\1", text))

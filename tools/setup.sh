@@ -1,7 +1,7 @@
 # Sourced by the commands at the top of the checkout, with `top` set to that folder: `prepare`
-# brings compilers, virtual environment and build up to date, or ends the shell: with status 2 and
-# one line that says what is missing, or with status 1 and the end of the log. What is up to date
-# costs some tens of milliseconds. Nothing is written to standard output.
+# brings compilers, virtual environment and build up to date. If it fails, it ends the shell: with
+# status 2 and one line about the missing part, or with status 1 and the end of the log. A check
+# without changes costs some tens of milliseconds. Nothing is written to standard output.
 
 : "${top:?}"
 venv=$top/.venv
@@ -29,7 +29,7 @@ logged() {
 
 has() { command -v "$1" > /dev/null 2>&1; }
 
-# links SUFFIX SOURCE COMPILER [LIBRARY...]: whether a program can be made of it.
+# links SUFFIX SOURCE COMPILER [LIBRARY...]: whether the source can be linked.
 links() {
   suffix=$1 source=$2 compiler=$3
   shift 3
@@ -41,7 +41,7 @@ links() {
   return $linked
 }
 
-# The libraries that meson.build looks for. Without a compiler the package data base answers.
+# The libraries that meson.build looks for. Without a compiler the package data base is used.
 has_lapack() {
   if has "${FC:-gfortran}"; then
     for libraries in -lopenblas '-llapack -lblas'; do
@@ -55,7 +55,7 @@ has_lapack() {
 
 python_can() { python3 -c "$1" > /dev/null 2>&1; }
 
-# The Debian packages still needed, on one line. Compilers are called like their packages, and only
+# The missing Debian packages, on one line. Compilers have the names of their packages, which only
 # recommend libc6-dev.
 missing_packages() {
   links c '#include <stdio.h>\nint main(void) { return 0; }\n' "${CC:-cc}" ||
@@ -96,7 +96,7 @@ make_environment() {
 }
 
 configure() {
-  # A folder configured elsewhere, or half, cannot be mended by Meson; the log is ours to keep.
+  # Meson cannot repair a folder that was configured elsewhere or incompletely; the log is kept.
   find "$build" -mindepth 1 -maxdepth 1 ! -name "${log##*/}" -exec rm -rf {} +
   logged 'configuring' env NINJA="$venv/bin/ninja" \
     "$venv/bin/meson" setup -Dpython=enabled "$build" "$top"
@@ -109,8 +109,8 @@ compile() {
   esac
 }
 
-# So that `import snapin` finds the package and its compiled half of this checkout in the virtual
-# environment's Python. Paths are those from the folder that the file is in.
+# Makes `import snapin` find the package and its compiled part of this checkout in the virtual
+# environment's Python. Paths are relative to the folder of this file.
 let_python_find_snapin() {
   for site in "$venv"/lib/python3*/site-packages; do
     [ -f "$site/snapin.pth" ] ||
@@ -118,7 +118,7 @@ let_python_find_snapin() {
   done
 }
 
-# builds FOLDER [OPTION...]: another build beside the usual one, by the compilers of FC and CC.
+# builds FOLDER [OPTION...]: another build beside the usual one, with the compilers FC and CC.
 builds() {
   folder=$1
   shift
@@ -127,23 +127,23 @@ builds() {
     { tail -n 25 "$folder/compile.log"; return 1; }
 }
 
-# What environment and build depend on: their place, since both contain absolute paths, the Python
-# they were made with, and the versions asked for.
+# The conditions of environment and build: their place, since both contain absolute paths, the
+# Python version, and the required versions.
 foundation() {
   printf '%s\n' "$top" "$(readlink -f "$venv/bin/python")"
   cat "$requirements"
 }
 
-# Stamps are written last, so that what was interrupted is done again.
+# Stamps are written last, so that an interrupted step is done again.
 is_complete() { [ -f "$1/complete" ] && [ "$(cat "$1/complete")" = "$(foundation)" ]; }
 
 bring_up_to_date() {
   if ! { mkdir -p "$build" 2> /dev/null && [ -w "$build" ]; }; then
-    # Someone else's checkout: use it as it stands.
+    # The checkout of another user: it is used as it is.
     [ -x "$build/snapin" ] && [ -x "$venv/bin/python" ] && return
     give_up "this checkout is not built, and this user may not write to it: $top"
   fi
-  # These would lead the new environment's Python and pip elsewhere.
+  # These variables would redirect the new environment's Python and pip.
   unset PYTHONHOME PYTHONPATH PIP_TARGET PIP_PREFIX PIP_USER
   if ! { [ -x "$venv/bin/python" ] && is_complete "$venv" && is_complete "$build"; }; then
     install_packages
@@ -158,8 +158,8 @@ bring_up_to_date() {
   compile
 }
 
-# What Python's virtual environments, Meson and Ninja cannot have in the path of a folder: what
-# separates folders in lists, and what is special in the files that they write.
+# Characters that Python's virtual environments, Meson and Ninja do not allow in the path of a
+# folder: separators of folders in lists, and special characters in their files.
 refuse_path() {
   newline='
 '
@@ -174,7 +174,8 @@ refuse_path() {
   give_up "move or clone it to a folder whose path has no colon, backslash, equals sign or line end"
 }
 
-# One at a time in a checkout; in a subshell, so that the lock and the environment end with it.
+# One process at a time in a checkout; in a subshell, so that the lock and the environment end with
+# the subshell.
 prepare() {
   refuse_path
   (

@@ -1,10 +1,10 @@
-!> Mixing with Anderson acceleration, the mixing ratio replaced by a matrix: the step is
-!> -B^{-1} G with B one LAPACK factorisation of the Jacobian, frozen, which serves many states, and
-!> the least-squares combination of the last few steps on top of it.
+!> Mixing with Anderson acceleration; a matrix replaces the mixing ratio. The plain step is -B^{-1}
+!> G, where B is one LAPACK factorisation of the Jacobian that is kept for many states. The
+!> accelerated step is the least-squares combination of the last few steps.
 !>
-!> Where B no longer fits (the residual grows, or convergence is slow), it is renewed at the best
-!> state so far and the history dropped. Newton's method is the same iteration with B renewed at
-!> every step and no history.
+!> If B is no longer a good approximation (the residual grows, or convergence is slow), B is renewed
+!> at the best state so far and the history is removed. Newton's method is the same iteration with B
+!> renewed at every step and without a history.
 module anderson
   use kinds, only: wp
   use contact_state, only: state_t
@@ -23,9 +23,9 @@ module anderson
     real(wp), allocatable :: dz(:, :), df(:, :), z_before(:), f_before(:)
   end type history_t
 
-  !> An iteration: the unknowns z, their residual g, minus the plain step f and the step made; the
-  !> unknowns with the shortest plain step and those with the least residual; the lengths of the
-  !> last and of the shortest plain step, and the least residual.
+  !> An iteration: the unknowns z, their residual g, minus the plain step f and the accelerated
+  !> step; the unknowns with the shortest plain step and those with the least residual; the lengths
+  !> of the last and of the shortest plain step, and the least residual.
   type :: iterate_t
     real(wp), allocatable :: z(:), g(:), f(:), step(:), z_best(:), z_least(:)
     real(wp) :: length = huge(1.0_wp), shortest = huge(1.0_wp), least = huge(1.0_wp)
@@ -33,19 +33,19 @@ module anderson
     type(history_t) :: history
   end type iterate_t
 
-  !> Iterations that every state takes. A factorisation is renewed once the iterations beyond these
-  !> have cost as much as a new one: one iteration for each so many unknowns.
+  !> Iterations that every state needs. The factorisation is renewed once the further iterations
+  !> have cost as much as a new one: one iteration for each `unknowns_an_iteration` unknowns.
   integer, parameter :: few_iterations = 2, unknowns_an_iteration = 20
-  !> Steps rejected before a solution is given up.
+  !> Largest number of rejected steps; after more, the iteration stops.
   integer, parameter :: most_rejections = 4
-  !> A plain step of this length, over the tolerance, is the last one.
+  !> A plain step of this length, over the tolerance, is the last step.
   real(wp), parameter :: few_roundings = 10
 
 contains
 
-  !> From `state` (gaps, and H0 or c where the control leaves it open) to the equilibrium at
-  !> `control`. On return state%residual says how well the equations hold; converged is
-  !> state%residual <= tolerance (or the floor that rounding sets).
+  !> Iterates from `state` (gaps, and H0 or c if they are unknowns) to the equilibrium at `control`.
+  !> On return state%residual is the residual of the equations; converged: it is at most the
+  !> tolerance, or the floor due to rounding.
   subroutine solve_anderson(equations, options, frozen, control, state, converged)
     type(equations_t), intent(inout) :: equations
     type(solver_options_t), intent(in) :: options
@@ -83,7 +83,7 @@ contains
     end do
     if (.not. converged .and. now%least < state%residual) &
       call residual(equations, control, now%z_least, now%g, state)
-    ! After slow convergence the next state starts with a new factorisation.
+    ! After slow convergence the next state begins with a new factorisation.
     frozen%excess = frozen%excess + max(0, state%iterations - few_iterations)
     if (unknowns_an_iteration*frozen%excess > size(now%z)) call frozen%forget()
   end subroutine solve_anderson
@@ -101,7 +101,7 @@ contains
     state%residual = min(state%residual, now%length)
   end subroutine finish
 
-  !> Factorises the Jacobian at the present state and forgets the history.
+  !> Factorises the Jacobian at the present state and removes the history.
   subroutine renew(equations, control, state, frozen, now)
     type(equations_t), intent(inout) :: equations
     type(control_t), intent(in) :: control
@@ -116,11 +116,11 @@ contains
     now%since_renewal = 0
   end subroutine renew
 
-  !> now%f: minus the plain step. Where it has become much longer than the one before, the iteration
-  !> goes back to the best unknowns and renews the factorisation, unless it has done so too often.
+  !> Computes now%f, minus the plain step. If it is much longer than the previous one, the iteration
+  !> returns to the best unknowns and renews the factorisation, up to a limited number of times.
   !>
-  !> The length of the plain step measures the distance from equilibrium; the residual does not, for
-  !> in a stiff contact an error in the gap that no longer matters still moves the pressure much.
+  !> The length of the plain step measures the distance from equilibrium. The residual does not: in
+  !> a stiff contact an insignificant error of the gap still changes the pressure much.
   subroutine take_plain_step(equations, control, state, frozen, now)
     type(equations_t), intent(inout) :: equations
     type(control_t), intent(in) :: control
@@ -167,24 +167,24 @@ contains
     now%z = now%z + now%step
     now%since_renewal = now%since_renewal + 1
     if (control%kind /= at_h0_with_edge) return
-    ! Shapes are not linear in the scale. The known remainder of the linear step is added; far out
-    ! it is large.
+    ! The height of the shape is not linear in the scale. The exact nonlinear part of the change,
+    ! which is large far out, is added to the step.
     associate (n => size(now%step) - 1, grid => equations%meshes%grid(control%mesh))
       now%z(:n) = now%z(:n) + equations%problem%shape%bend( &
         (now%z(n + 1) - now%step(n + 1))*grid%x(:n), now%step(n + 1)*grid%x(:n))
     end associate
   end subroutine advance
 
-  !> The largest relative change that the step -f makes.
+  !> The largest relative change of the unknowns in the step -f.
   pure real(wp) function step_length(z, f)
     real(wp), intent(in) :: z(:), f(:)
 
     step_length = maxval(abs(f)/(1 + abs(z)))
   end function step_length
 
-  !> The step of Anderson acceleration from z, where the plain step is -f: the combination of
-  !> the last `depth` steps with the least |f|, by modified Gram-Schmidt, newest first; a
-  !> column that is nearly a combination of newer ones is dropped. Keeps z and f for the next call.
+  !> The step of Anderson acceleration from z with the plain step -f: the combination of the last
+  !> `depth` steps with the least |f|, by modified Gram-Schmidt, newest first; a column that is
+  !> nearly a combination of newer ones is dropped. z and f are stored for the next call.
   subroutine accelerate(history, depth, z, f, step)
     type(history_t), intent(inout) :: history
     integer, intent(in) :: depth
@@ -211,12 +211,12 @@ contains
       call combine(history%dz(:, :history%held), history%df(:, :history%held), f, step)
   end subroutine accelerate
 
-  !> Adds to the step -f the combination of differences with the least |f|.
+  !> Adds to the step -f the combination of differences that minimises |f|.
   pure subroutine combine(dz, df, f, step)
     real(wp), intent(in), contiguous :: dz(:, :), df(:, :)
     real(wp), intent(in) :: f(:)
     real(wp), intent(inout) :: step(:)
-    ! q: orthonormal directions of df; p: the combinations of dz that belong to them.
+    ! q: orthonormal directions of df; p: the same combinations of dz.
     real(wp) :: q(size(f), size(df, 2)), p(size(f), size(df, 2)), r(size(f))
     real(wp) :: norm, norm_before, along
     integer :: j, k, used

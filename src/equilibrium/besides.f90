@@ -1,5 +1,6 @@
-!> What raises the gap beside the pressures of the moment: what earlier pressures have left in
-!> bodies that remember. It belongs to the bodies' material, and is known on a mesh fixed in space.
+!> The rise of the gap that the present pressures do not cause: the deformation due to earlier
+!> pressures in bodies with memory. It is fixed in the bodies' material, and known on a mesh fixed
+!> in space.
 module besides
   use kinds, only: wp
   use discretisation, only: discretisation_t, axis_row, centre_row, first_node
@@ -7,9 +8,9 @@ module besides
   private
   public :: besides_t, rise_at
 
-  !> The rise of the gap on the rows of the kernel (axis, centre, nodes) of the present mesh: at the
-  !> scale that is expected, and its derivatives by the logarithm of that. A scale that is found to
-  !> be another moves the nodes by little, and the rise is linear in it.
+  !> The rise of the gap at the rows of the kernel (axis, centre, nodes) of the present mesh: at the
+  !> expected scale, and its derivatives by the logarithm of the scale. For a slightly different
+  !> scale, the nodes move little and the rise is linear in the logarithm.
   type :: besides_t
     real(wp) :: scale = 1
     real(wp), allocatable :: value(:), growth(:)
@@ -17,13 +18,13 @@ module besides
     procedure :: at_scale
   end type besides_t
 
-  !> Part of the position over which its change is taken: to about as many digits, which is plenty
-  !> for what a scale may be off by.
+  !> Relative difference of positions for the difference quotient; the relative error of the
+  !> quotient is about the same, which is enough for the small changes of the scale.
   real(wp), parameter :: apart = 1.0e-6_wp
 
 contains
 
-  !> The rise at a scale.
+  !> The rise at the rows of the mesh for a scale.
   pure function at_scale(self, scale) result(rise)
     class(besides_t), intent(in) :: self
     real(wp), intent(in) :: scale
@@ -33,8 +34,9 @@ contains
     if (abs(scale - self%scale) > 0) rise = rise + log(scale/self%scale)*self%growth
   end function at_scale
 
-  !> A rise that is known on the rows of a mesh fixed in space (scale 1), for another mesh at about
-  !> a scale. Far out it is that of a load on a point.
+  !> The rise at the rows of another mesh at an expected scale, from the rise at the rows of a mesh
+  !> fixed in space (scale 1). Beyond that mesh the rise decreases as 1/r, like that of a point
+  !> load.
   pure type(besides_t) function rise_at(material, risen, grid, scale) result(besides)
     type(discretisation_t), intent(in) :: material, grid
     real(wp), intent(in) :: risen(:), scale

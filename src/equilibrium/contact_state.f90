@@ -1,4 +1,4 @@
-!> A state of the two bodies on the nodes of a mesh, dimensionless, and searches for the position of
+!> A dimensionless state of the two bodies at the nodes of a mesh, and the search for the radius of
 !> a given gap.
 module contact_state
   use kinds, only: wp, pi
@@ -10,16 +10,16 @@ module contact_state
   private
   public :: state_t, state_from, load_reach, gap_at_end, gap_at, radius_of_gap, felt_load, far_gap
 
-  !> At gaps this large, in the law's lengths, no force depends on the last digits.
+  !> At gaps above this value, in the law's lengths, forces do not depend on the last digits.
   real(wp), parameter :: far_gap = 1000
 
   type :: state_t
     real(wp), allocatable :: gap(:), pressure(:)
     real(wp) :: h0 = 0, scale = 1
     real(wp) :: axis_gap = 0, load = 0
-    !> Largest |G|, in units of the law's length; for gaps beyond `far_gap` relative to these.
+    !> Largest |G|, in the law's lengths; relative to the gap for gaps above `far_gap`.
     real(wp) :: residual = huge(1.0_wp)
-    !> Operator products spent on this state.
+    !> Number of operator products for this state.
     integer :: iterations = 0
   contains
     procedure :: become
@@ -27,8 +27,7 @@ module contact_state
 
 contains
 
-  !> Copies another state into the arrays that are already allocated; an assignment would allocate
-  !> them again.
+  !> Copies another state into the allocated arrays, without a new allocation.
   pure subroutine become(self, other)
     class(state_t), intent(inout) :: self
     type(state_t), intent(in) :: other
@@ -43,14 +42,14 @@ contains
     self%iterations = other%iterations
   end subroutine become
 
-  !> An empty state on so many nodes.
+  !> A state of zeros with the given number of nodes.
   pure type(state_t) function state_from(nodes) result(state)
     integer, intent(in) :: nodes
 
     allocate (state%gap(nodes), state%pressure(nodes), source=0.0_wp)
   end function state_from
 
-  !> Where a bounded mesh ends, lateral units.
+  !> Radius of the end of a bounded mesh, lateral units.
   pure real(wp) function load_reach(grid, state)
     type(discretisation_t), intent(in) :: grid
     type(state_t), intent(in) :: state
@@ -58,8 +57,8 @@ contains
     load_reach = state%scale*grid%end
   end function load_reach
 
-  !> The load that errors of a state are measured against, over 2 pi: its own load or, if that is
-  !> larger, the adhesion, but no more than all pressures of the state together make.
+  !> The load over 2 pi to which errors of a state are relative: its own load or, if larger, the
+  !> adhesion, but at most the load of the absolute pressures.
   pure real(wp) function felt_load(problem, grid, state) result(load)
     type(problem_t), intent(in) :: problem
     type(discretisation_t), intent(in) :: grid
@@ -69,7 +68,7 @@ contains
       state%scale**2*sum(grid%weight*abs(state%pressure))))
   end function felt_load
 
-  !> The gap at the end of a bounded mesh, with the deformation of the last node.
+  !> The gap at the end of a bounded mesh, with the deformation at the last node.
   pure real(wp) function gap_at_end(shape, grid, state) result(gap)
     class(shape_t), intent(in) :: shape
     type(discretisation_t), intent(in) :: grid
@@ -79,8 +78,8 @@ contains
       shape%height(state%scale*grid%x(grid%nodes)))
   end function gap_at_end
 
-  !> The gap of a state at a position on its mesh. On an unbounded mesh, or where bodies may end
-  !> within a panel, the gap minus the shape is interpolated, which is bounded and smooth.
+  !> The gap of a state at a position on its mesh. On an unbounded mesh, and for bodies that may end
+  !> within a panel, the bounded and smooth difference of gap and shape is interpolated.
   pure real(wp) function gap_at(shape, grid, state, x) result(gap)
     class(shape_t), intent(in) :: shape
     type(discretisation_t), intent(in) :: grid

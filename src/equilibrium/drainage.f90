@@ -1,20 +1,20 @@
-!> A fluid between the bodies, which has to flow out where they approach and in where they part. In
+!> A fluid between the bodies, which flows out while they approach and in while they separate. In
 !> the thin gap it is a film of Reynolds (1886): between parabolas, in the units of
 !> `dimensionless_problem`,
 !>
 !>     dH/dt = (1/strength) (1/rho) d/drho [rho m(H) dP_h/drho] ,  strength = 12 eta R/(p0 L) [s],
 !>
-!> so that two integrals give the pressure from the rate at which the gap changes at fixed rho:
+!> so two integrals give the pressure from the rate of change of the gap at fixed rho:
 !>
 !>     P_h(rho) = -strength Int_rho^infinity [1/(rho' m)] Int_0^rho' dH/dt rho'' drho'' drho' .
 !>
-!> The mobility m is that of walls on which the fluid slips with lengths b1 and b2 (Navier):
+!> The mobility m is that between walls with the slip lengths b1 and b2 (Navier):
 !>
 !>     m = H**2 [H**2 + 4 H (b1 + b2) + 12 b1 b2]/(H + b1 + b2) ,
 !>
-!> H**3 without slip, H**3 + 6 b H**2 if both are b, 4 H**3 where one wall holds nothing back. The
-!> rate follows from the present gap and those of the last two instants, to second order in the
-!> step. At fixed rho it is that of the deformation: the shape does not change.
+!> which is H**3 without slip, H**3 + 6 b H**2 if both lengths are b, and 4 H**3 if one wall has
+!> perfect slip. The rate follows from the present gap and the gaps of the last two instants, to
+!> second order in the time step. At fixed rho the rate of the gap is that of the deformation.
 module drainage
   use kinds, only: wp
   use discretisation, only: discretisation_t
@@ -26,23 +26,23 @@ module drainage
   private
   public :: fluid_t, drainage_t, earlier_t, rate_weights, farthest_pole
 
-  !> Of the fluid: strength [s], and slip lengths in the law's.
+  !> The strength of the fluid [s], and its slip lengths in the law's lengths.
   type :: fluid_t
     real(wp) :: strength = 0, slip(2) = 0
   contains
     procedure :: mobility
   end type fluid_t
 
-  !> An earlier state: mesh, scale, what its gaps have beside the shape, and its weight in the rate
-  !> [1/s].
+  !> An earlier state: its mesh, scale, gaps minus the shape, and weight in the rate [1/s].
   type :: earlier_t
     integer :: mesh = 1
     real(wp) :: scale = 1, weight = 0
     real(wp), allocatable :: raised(:)
   end type earlier_t
 
-  !> The fluid over a step: its films on the meshes of a family, the weight [1/s] of the present gap
-  !> in the rate, the earlier states, and what these give on the nodes of the present mesh.
+  !> The fluid in a time step: its films on the meshes of a family, the weight [1/s] of the present
+  !> gap in the rate, the earlier states, and their part of the rate at the nodes of the present
+  !> mesh.
   type, extends(fluid_t) :: drainage_t
     type(running_integrals_t), allocatable :: film(:)
     real(wp) :: weight = 0
@@ -57,7 +57,7 @@ module drainage
     procedure :: derivatives
   end type drainage_t
 
-  !> Part of the position over which its change is taken.
+  !> Relative difference of positions for the difference quotient.
   real(wp), parameter :: apart = 1.0e-5_wp
 
 contains
@@ -76,7 +76,8 @@ contains
     end associate
   end subroutine mobility
 
-  !> How far below zero the mobility has a pole or a zero, law's lengths.
+  !> Largest distance below a gap of zero at which the mobility has a pole or a zero, in the law's
+  !> lengths.
   pure real(wp) function farthest_pole(fluid) result(depth)
     type(fluid_t), intent(in) :: fluid
 
@@ -85,8 +86,8 @@ contains
     end associate
   end function farthest_pole
 
-  !> Weights [1/s] of the present value and of the two before it in the rate at the end of a step:
-  !> of the parabola through them, or of the line where before = 0.
+  !> Weights [1/s] of the present value and of the two earlier values in the rate at the end of a
+  !> step: of the parabola through all three, or of the line through the last two if before = 0.
   pure function rate_weights(seconds, before) result(weights)
     real(wp), intent(in) :: seconds, before
     real(wp) :: weights(3), ratio
@@ -96,7 +97,7 @@ contains
     weights = [(1 + 2*ratio)/(1 + ratio), -(1 + ratio), ratio**2/(1 + ratio)]/seconds
   end function rate_weights
 
-  !> Films on meshes.
+  !> Makes the films on meshes.
   pure subroutine lay_out(self, grids)
     class(drainage_t), intent(inout) :: self
     type(discretisation_t), intent(in) :: grids(:)
@@ -110,7 +111,7 @@ contains
     end do
   end subroutine lay_out
 
-  !> Brings what the earlier states give to the nodes of a mesh at about a scale.
+  !> Computes the earlier states' part of the rate at the nodes of a mesh at an expected scale.
   pure subroutine place(self, grids, mesh, scale)
     class(drainage_t), intent(inout) :: self
     type(discretisation_t), intent(in) :: grids(:)
@@ -138,7 +139,7 @@ contains
     self%known = besides_t(scale, value, growth)
   end subroutine place
 
-  !> The rate [1/s] at which gaps change that are raised beside the shape by so much.
+  !> The rate [1/s] of the gaps; raised: the gaps minus the shape.
   pure function rate(self, scale, raised) result(change)
     class(drainage_t), intent(in) :: self
     real(wp), intent(in) :: scale, raised(:)
@@ -147,7 +148,7 @@ contains
     change = self%weight*raised + self%known%at_scale(scale)
   end function rate
 
-  !> The pressure of the fluid on the nodes of a mesh.
+  !> The pressure of the fluid at the nodes of a mesh.
   function pressure(self, mesh, scale, gap, rate) result(p)
     class(drainage_t), intent(in) :: self
     integer, intent(in) :: mesh

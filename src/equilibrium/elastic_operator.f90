@@ -1,12 +1,12 @@
-!> How much the gap rises under the pressures on a mesh: the product of the bodies' elastic operator
-!> with them, its matrix, and its derivative by the scale c of the mesh. With the matrix W of the
-!> half-space on the mesh and what the bodies yield beside it, L - 1 (`elastic_body`),
+!> The rise of the gap under the pressures on a mesh: the product of the bodies' elastic operator
+!> with the pressures, its matrix, and its derivative by the scale c of the mesh. With the matrix W
+!> of the half-space on the mesh and the additional compliance L - 1 of the bodies (`elastic_body`),
 !>
 !>     A(c)_ij = 2 coupling c [W_ij + Sum_q wave_iq 2 v_q (L(k_q/c) - 1) spectrum_jq] ,
 !>
-!> at nodes c x, with weights v of a rule for wave numbers k and what waves J0(k x) are on the mesh
-!> (`mesh_waves`). They are the same for every c and every body. Rows are those of the kernel: the
-!> axis, the centre, the nodes. Homogeneous bodies have no second part; nothing is made for them.
+!> at nodes c x, with weights v of a quadrature rule for wave numbers k and the waves J0(k x) on the
+!> mesh (`mesh_waves`). The waves are the same for every c and every body. Rows are those of the
+!> kernel: the axis, the centre, the nodes. Homogeneous bodies have no second part and no waves.
 module elastic_operator
   use kinds, only: wp
   use linear_algebra, only: multiply
@@ -17,21 +17,23 @@ module elastic_operator
   private
   public :: elastic_operator_t
 
-  !> Scales for which waves are found, over the present one. For larger ones some are added.
+  !> Range of scales for which waves are made, relative to the present scale. For larger scales
+  !> further waves are added.
   real(wp), parameter :: smaller = 0.5_wp, larger = 1.4_wp
-  !> Meshes whose waves are kept: the path passes from one to the next, and jumps lead back.
+  !> Number of meshes whose waves are kept: the path passes from one mesh to the next, and jumps
+  !> return.
   integer, parameter :: most_meshes = 8
 
   type :: elastic_operator_t
     private
-    !> The waves of the last meshes, and which of them are those of the present one.
+    !> The waves of the last meshes, and the index of those of the present mesh.
     type(mesh_waves_t), allocatable :: waves_of(:)
     integer :: now = 1
-    !> The scale for which what follows was found, with the strengths of the waves, as many as there
-    !> are.
+    !> The scale of the following strengths, and the strengths of the waves, up to the last wave
+    !> that is needed.
     real(wp) :: scale = 0
     real(wp), allocatable :: strength(:)
-    !> The matrix of the second part, where it was needed.
+    !> The matrix of the second part, if it was needed.
     real(wp), allocatable :: remainder(:, :)
   contains
     procedure :: forget
@@ -43,15 +45,15 @@ module elastic_operator
 
 contains
 
-  !> Is to be called when the problem becomes another one.
+  !> Removes the data of the problem; to be called when the problem changes.
   pure subroutine forget(self)
     class(elastic_operator_t), intent(inout) :: self
 
     self%scale = 0
   end subroutine forget
 
-  !> The rise of the gap, (first_node - 1 + nodes), under the pressures on the first `columns`
-  !> nodes; beyond them there is none.
+  !> The rise of the gap, (first_node - 1 + nodes), under the pressures at the first `columns`
+  !> nodes; the other pressures are negligible.
   subroutine deform(self, problem, grid, scale, columns, pressure, rise)
     class(elastic_operator_t), intent(inout) :: self
     type(problem_t), intent(in) :: problem
@@ -101,8 +103,8 @@ contains
     end if
   end subroutine matrix
 
-  !> What the derivative of the rise by the scale, at pressures that stay what they are, has beside
-  !> rise/scale; that of homogeneous bodies has nothing. For rows `first` to first - 1 + size(more).
+  !> The derivative of the rise by the scale at fixed pressures, minus rise/scale; zero for
+  !> homogeneous bodies. For rows `first` to first - 1 + size(more).
   subroutine unlike_scaling(self, problem, grid, scale, pressure, first, more)
     class(elastic_operator_t), intent(inout) :: self
     type(problem_t), intent(in) :: problem
@@ -121,7 +123,7 @@ contains
     more = 2*problem%coupling*rows(first:)
   end subroutine unlike_scaling
 
-  !> Finds the strengths of the waves at this scale, of this body, on this mesh.
+  !> Computes the strengths of the waves for this scale, body and mesh.
   subroutine prepare(self, problem, grid, scale)
     class(elastic_operator_t), intent(inout) :: self
     type(problem_t), intent(in) :: problem
@@ -141,14 +143,15 @@ contains
       if (.not. range(2) <= waves%range(2)) call waves%add(grid, larger*range(2))
       self%scale = scale
       if (allocated(self%remainder)) deallocate (self%remainder)
-      ! Beyond the last wave there is nothing.
+      ! Beyond the last wave the additional compliance is negligible.
       associate (n => count(waves%k <= range(2)))
         self%strength = 2*waves%weight(:n)*problem%body%beside_half_space(waves%k(:n)/scale)
       end associate
     end associate
   end subroutine prepare
 
-  !> Where the waves of a mesh are, or whose place they may take: the next one's, in turn.
+  !> The index of the waves of a mesh; if there are none, the index to be replaced, which is the
+  !> next one in turn.
   pure subroutine find(waves, grid, place, there)
     type(mesh_waves_t), intent(in) :: waves(:)
     type(discretisation_t), intent(in) :: grid

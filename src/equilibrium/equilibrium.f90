@@ -2,12 +2,12 @@
 !>
 !>     G_i = H_i - H0 - f(c x_i) - (A(c) P(H))_i = 0
 !>
-!> for the gaps H at the nodes rho = c x of bodies of the shape f, which yield as their
-!> `elastic_operator` A says. A control says what is prescribed; where that is not H0 at a fixed
-!> scale, one more unknown (H0 or c) and one more equation (the gap on the axis or at the contact
-!> edge) join. Behind a spring H0 follows from the position of its base and the load. Where bodies
-!> remember, what earlier pressures have left (`besides`) raises the gap too, and a fluid between
-!> them adds its pressure to P(H) (`drainage`).
+!> for the gaps H at the nodes rho = c x of bodies of the shape f with the `elastic_operator` A. A
+!> control says which quantity is prescribed. If it is not H0 at a fixed scale, there is one more
+!> unknown (H0 or c) and one more equation (for the gap on the axis or at the contact edge). Behind
+!> a spring H0 follows from the position of its base and the load. In bodies with memory the
+!> deformation due to earlier pressures (`besides`) adds to the gap, and the pressure of a fluid
+!> between the bodies (`drainage`) adds to P(H).
 module equilibrium
   use kinds, only: wp, pi, long
   use dimensionless_problem, only: problem_t, coupling_over
@@ -25,35 +25,36 @@ module equilibrium
     residual_floor
   public :: at_h0, at_axis_gap, at_edge_radius, at_h0_with_edge, h0_is_prescribed
 
-  !> H0 prescribed at a fixed scale; no further unknown.
+  !> H0 is prescribed at a fixed scale; there is no further unknown.
   integer, parameter :: at_h0 = 1
-  !> The gap on the axis prescribed, H0 unknown.
+  !> The gap on the axis is prescribed, H0 is unknown.
   integer, parameter :: at_axis_gap = 2
-  !> The contact radius c prescribed, H0 unknown; the edge has the gap of maximum tension.
+  !> The contact radius c is prescribed, H0 is unknown; the gap at the edge is that of maximum
+  !> tension.
   integer, parameter :: at_edge_radius = 3
-  !> H0 prescribed, the contact radius c unknown.
+  !> H0 is prescribed, the contact radius c is unknown.
   integer, parameter :: at_h0_with_edge = 4
 
-  !> Upper limit of all lengths of an equilibrium, in the law's or in lateral units; its cube is
-  !> still a number.
+  !> Upper limit of all lengths of an equilibrium, in the law's or in lateral units; its cube does
+  !> not overflow.
   real(wp), parameter :: largest_unknown = 1.0e80_wp
 
-  !> The part of a gap's excess over `far_gap` that may close in one step.
+  !> The fraction of a gap's excess over `far_gap` by which the gap may decrease in one step.
   real(wp), parameter :: harmless = 0.3_wp
 
   type :: control_t
     integer :: kind = at_h0
-    !> What is prescribed: H0, the gap on the axis, or the contact radius.
+    !> The prescribed value: H0, the gap on the axis, or the contact radius.
     real(wp) :: value = 0
-    !> Where H0 is prescribed behind a spring: `value` is H0 - compliance*load.
+    !> Behind a spring, `value` is H0 - compliance*load.
     real(wp) :: compliance = 0
-    !> The scale c of the mesh, where it is not an unknown.
+    !> The scale c of the mesh, if c is not an unknown.
     real(wp) :: scale = 1
-    !> The mesh that it is prescribed on.
+    !> The mesh of the control.
     integer :: mesh = 1
   end type control_t
 
-  !> What was spent; counted where it is spent.
+  !> Counts of work.
   type :: cost_t
     integer(long) :: operator_products = 0, operator_columns = 0, pressure_evaluations = 0
     integer(long) :: factorisations = 0, iterations = 0, kernel_entries = 0, states = 0
@@ -61,8 +62,8 @@ module equilibrium
     real(wp) :: kernel_seconds = 0, solve_seconds = 0, estimate_seconds = 0
   end type cost_t
 
-  !> The equations of a problem on its meshes, and what solving them has cost. A mesh fixed in space
-  !> is the first of the family, alone.
+  !> The equations of a problem on its meshes, and the cost of solving them. A mesh fixed in space
+  !> is the only mesh of its family.
   type :: equations_t
     type(problem_t) :: problem
     type(mesh_family_t) :: meshes
@@ -70,7 +71,7 @@ module equilibrium
     type(elastic_operator_t) :: operator
     type(besides_t), allocatable :: besides
     type(drainage_t), allocatable :: drainage
-    !> Work array of `residual`, which is called too often to allocate one: the rise of the gap.
+    !> Work array of `residual` for the rise of the gap, kept to avoid frequent allocations.
     real(wp), allocatable, private :: rise(:)
   contains
     procedure :: become_those_of
@@ -80,7 +81,7 @@ module equilibrium
 
 contains
 
-  !> The gap on the axis and at the nodes minus H0 and shape.
+  !> The gaps at the nodes minus the shape.
   pure function raised(self, mesh, state)
     class(equations_t), intent(in) :: self
     integer, intent(in) :: mesh
@@ -91,7 +92,7 @@ contains
       state%scale*self%meshes%grid(mesh)%x(:size(state%gap)))
   end function raised
 
-  !> The pressure of the fluid in a state. rate: of the gaps, [1/s].
+  !> The pressure of the fluid in a state. rate: the rate of the gaps [1/s].
   function fluid_pressure(self, mesh, state, rate) result(pressure)
     class(equations_t), intent(in) :: self
     integer, intent(in) :: mesh
@@ -113,16 +114,16 @@ contains
     call self%operator%forget()
   end subroutine become_those_of
 
-  !> Whether a control prescribes H0, behind a spring or not.
+  !> Whether a control prescribes H0, directly or behind a spring.
   pure logical function h0_is_prescribed(control)
     type(control_t), intent(in) :: control
 
     h0_is_prescribed = control%kind == at_h0 .or. control%kind == at_h0_with_edge
   end function h0_is_prescribed
 
-  !> g(:nodes) = G and, where the control has its own equation, g(nodes + 1), for the unknowns z =
-  !> (gaps [, H0 or c]). On return `state` holds z, its pressures, load and residual. Outside the
-  !> law's domain there are no pressures and no load, and the residual is huge.
+  !> The residuals for the unknowns z = (gaps [, H0 or c]): g(:nodes) = G and, if the control has
+  !> its own equation, g(nodes + 1). On return `state` holds z, its pressures, load and residual.
+  !> Outside the law's domain pressures and load are zero, and the residual is huge.
   subroutine residual(equations, control, z, g, state)
     type(equations_t), intent(inout) :: equations
     type(control_t), intent(in) :: control
@@ -169,8 +170,8 @@ contains
         g(i) = state%gap(i) - state%h0 - problem%shape%height(state%scale*grid%x(i)) - &
           rise(first_node - 1 + i)
       end do
-      ! The axis is not a node. In a stiff contact its equation magnifies the error of the
-      ! pressure's interpolation; the gaps of the nodes give a better value.
+      ! The axis is not a node. In a stiff contact its equation magnifies the interpolation error of
+      ! the pressure; extrapolation of the gaps at the nodes is more accurate.
       state%axis_gap = state%h0 + rise(axis_row)
       if (grid%centre > 0) state%axis_gap = dot_product(grid%at_axis, state%gap)
       select case (control%kind)
@@ -184,8 +185,8 @@ contains
     end associate
   end subroutine residual
 
-  !> The largest |G|, relative to the gap beyond `far_gap`. NaN and infinity become huge, so that
-  !> they never count as converged.
+  !> The largest |G|, relative to the gap for gaps above `far_gap`. NaN and infinity become huge, so
+  !> that they never count as converged.
   pure real(wp) function largest_error(g, gap) result(largest)
     real(wp), intent(in) :: g(:), gap(:)
     real(wp) :: error
@@ -205,7 +206,7 @@ contains
     end do
   end function largest_error
 
-  !> Whether a state is within the range in which pressures and all derived quantities are numbers.
+  !> Whether a state is within the range in which pressures and all derived quantities are finite.
   pure logical function defined(problem, state)
     type(problem_t), intent(in) :: problem
     type(state_t), intent(in) :: state
@@ -221,8 +222,8 @@ contains
     end do
   end function defined
 
-  !> The fraction (at most 1) of a step dz from z that keeps every gap within the law's closure
-  !> limit and the contact radius within a third.
+  !> The fraction (at most 1) of a step dz from z for which every gap stays within the law's closure
+  !> limit and the contact radius changes by at most the fraction 0.3.
   pure real(wp) function largest_step(problem, control, z, dz) result(fraction)
     type(problem_t), intent(in) :: problem
     type(control_t), intent(in) :: control
@@ -244,15 +245,15 @@ contains
       real(wp), intent(in) :: gap(:), step(:)
       real(wp) :: room(size(gap))
 
-      ! A distant gap may close by many of the law's lengths without any effect.
+      ! A large gap may decrease by many of the law's lengths without any effect.
       room = max(problem%law%closure(gap), harmless*(gap - far_gap))
-      ! The quotient with a step that opens a gap could overflow.
+      ! The quotient could overflow for a step that increases a gap.
       limit = min(1.0_wp, minval(room/max(-step, room, tiny(1.0_wp))))
     end function limit
 
   end function largest_step
 
-  !> The unknowns of a state under a control: its gaps and, where the control has one, H0 or c.
+  !> The unknowns of a state under a control: its gaps and, if it is an unknown, H0 or c.
   pure function unknowns_of(control, state) result(z)
     type(control_t), intent(in) :: control
     type(state_t), intent(in) :: state
@@ -267,7 +268,7 @@ contains
     end if
   end function unknowns_of
 
-  !> Whether a state is an equilibrium: to the tolerance, or as well as rounding allows.
+  !> Whether a state is an equilibrium: to the tolerance, or to rounding.
   pure logical function holds(problem, tolerance, state)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: tolerance
@@ -277,9 +278,10 @@ contains
     if (.not. holds) holds = state%residual <= residual_floor(problem, state)
   end function holds
 
-  !> The residual that rounding alone leaves: a few units in the last place of the gaps and of the
-  !> deformation's parts, which are of opposite signs in an adhesive contact (the operator on a
-  !> uniform pressure gives at most 2). Never more than still is an equilibrium of the law.
+  !> The residual due to rounding alone: a few units in the last place of the gaps and of the parts
+  !> of the deformation, which have opposite signs in an adhesive contact (the operator on a uniform
+  !> pressure gives at most 2). It is at most the residual up to which a state counts as an
+  !> equilibrium of the law.
   pure real(wp) function residual_floor(problem, state)
     type(problem_t), intent(in) :: problem
     type(state_t), intent(in) :: state
@@ -299,7 +301,7 @@ contains
     if (control%kind /= at_h0) node_count = size - 1
   end function node_count
 
-  !> H0 and c behind a control and its unknowns.
+  !> H0 and c of a control and its unknowns.
   pure subroutine unpack(control, z, h0, scale)
     type(control_t), intent(in) :: control
     real(wp), intent(in) :: z(:)
@@ -318,7 +320,7 @@ contains
     end select
   end subroutine unpack
 
-  !> Number of leading columns, beyond which all pressures are below the rounding of the largest.
+  !> Number of leading columns; the pressures after them are below the rounding of the largest.
   pure integer function acting_columns(pressure) result(columns)
     real(wp), intent(in) :: pressure(:)
     real(wp) :: least
@@ -326,7 +328,7 @@ contains
     least = 0
     do columns = 1, size(pressure)
       least = max(least, abs(pressure(columns)))
-      ! An infinite pressure or NaN must enter the residual.
+      ! An infinite pressure or NaN must reach the residual.
       if (.not. abs(pressure(columns)) <= huge(1.0_wp)) exit
     end do
     if (columns <= size(pressure)) then

@@ -1,5 +1,5 @@
-!> A factorised Jacobian that serves many states, and the state at which it was made. The same state
-!> and control give the same factors, bit by bit.
+!> A factorised Jacobian that is used for many states, and the state at which it was made. Equal
+!> states and controls give equal factors, bit by bit.
 module frozen_jacobian
   use contact_state, only: state_t
   use equilibrium, only: control_t, equations_t
@@ -11,12 +11,14 @@ module frozen_jacobian
 
   type :: frozen_jacobian_t
     type(factorisation_t) :: factors
-    !> The control, and the part of the state that the Jacobian depends on: gaps, H0 and scale.
+    !> The control, and the variables of the state on which the Jacobian depends: gaps, H0 and
+    !> scale.
     type(control_t) :: control
     type(state_t) :: state
-    !> Iterations beyond those that every state takes, over all states solved with these factors.
+    !> Iterations in excess of those that every state needs, over all states solved with these
+    !> factors.
     integer :: excess = 0
-    !> Number of Jacobians frozen here, this one included.
+    !> Number of Jacobians that were factorised here, including this one.
     integer :: renewals = 0
   contains
     procedure :: serves
@@ -25,7 +27,7 @@ module frozen_jacobian
 
 contains
 
-  !> Whether the factors are for as many unknowns, of the same kind of control on the same mesh.
+  !> Whether the factors have the same number of unknowns, kind of control and mesh.
   pure logical function serves(self, control, unknowns)
     class(frozen_jacobian_t), intent(in) :: self
     type(control_t), intent(in) :: control
@@ -36,14 +38,15 @@ contains
     if (serves) serves = size(self%factors%lu, 1) == unknowns
   end function serves
 
-  !> Has the next state make factors of its own: those in hand are too far from it.
+  !> Invalidates the factors, so that the next state makes new ones: the old ones are too far from
+  !> it.
   pure subroutine forget(self)
     class(frozen_jacobian_t), intent(inout) :: self
 
     self%factors%valid = .false.
   end subroutine forget
 
-  !> Factorises the Jacobian at a state. frozen%factors%valid: whether it is regular.
+  !> Factorises the Jacobian at a state. frozen%factors%valid: the Jacobian is regular.
   subroutine freeze(equations, control, state, frozen)
     type(equations_t), intent(inout) :: equations
     type(control_t), intent(in) :: control

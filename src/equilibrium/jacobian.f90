@@ -16,8 +16,8 @@ module jacobian
 
 contains
 
-  !> Factors of the Jacobian of `residual` at a state, bordered where the control has an unknown of
-  !> its own: I - A(c) diag(P'), and the derivatives by H0 or c. `shift` is added to the
+  !> Factors of the Jacobian of `residual` at a state: I - A(c) diag(P'), bordered by the
+  !> derivatives by H0 or c if the control has one of these as an unknown. `shift` is added to the
   !> diagonal of the nodes' block.
   subroutine factorise_jacobian(equations, control, state, factors, shift)
     type(equations_t), intent(inout) :: equations
@@ -39,8 +39,8 @@ contains
     equations%cost%factorisations = equations%cost%factorisations + 1
   end subroutine factorise_jacobian
 
-  !> Corrects the derivative by the scale for bodies that remember: their rise is part of the gaps
-  !> that `scale_derivative` uses, but does not change with the scale.
+  !> Corrects the derivative by the scale for bodies with memory: the rise due to earlier pressures
+  !> is part of the gaps in `scale_derivative`, but is not proportional to the scale.
   subroutine add_besides(besides, control, state, lu)
     type(besides_t), intent(in) :: besides
     type(control_t), intent(in) :: control
@@ -56,7 +56,7 @@ contains
     lu(n + 1, n + 1) = lu(n + 1, n + 1) + change(centre_row)
   end subroutine add_besides
 
-  !> Adds the spring: H0 depends on the load, and so on gaps and scale.
+  !> Adds the spring's part: H0 depends on the load, and therefore on gaps and scale.
   subroutine add_spring(equations, control, state, lu)
     type(equations_t), intent(inout) :: equations
     type(control_t), intent(in) :: control
@@ -77,7 +77,7 @@ contains
     end associate
   end subroutine add_spring
 
-  !> Adds the fluid, whose pressure passes through the same elastic operator.
+  !> Adds the part of the fluid, whose pressure is multiplied by the same elastic operator.
   subroutine add_drainage(equations, control, state, lu)
     type(equations_t), intent(inout) :: equations
     type(control_t), intent(in) :: control
@@ -114,7 +114,7 @@ contains
     end associate
   end subroutine add_drainage
 
-  !> Factorises the Jacobian of bodies at rest on any mesh, locked to a given gap.
+  !> Factorises the Jacobian of bodies in static equilibrium on any mesh, locked to a given gap.
   subroutine factorise_on(problem, grid, operator, locked_gap, control, state, factors, cost, shift)
     type(problem_t), intent(in) :: problem
     type(discretisation_t), intent(in) :: grid
@@ -191,7 +191,7 @@ contains
     end associate
   end function jacobian_times
 
-  !> The row of the kernel that belongs to the control's own equation.
+  !> The row of the kernel for the control's own equation.
   pure integer function bordered_row(control)
     type(control_t), intent(in) :: control
 
@@ -217,9 +217,8 @@ contains
   end subroutine border
 
   !> Derivative of `residual` by the scale c: -x f'(c x) - dA/dc P at the nodes; the negative of
-  !> this, with x = 1, in the equation for the edge. For homogeneous bodies dA/dc P is A P/c, which
-  !> is taken from the gaps. That is exact where the residual vanishes and costs no operator
-  !> product.
+  !> this, with x = 1, in the equation of the edge. For homogeneous bodies dA/dc P = A P/c is taken
+  !> from the gaps, which is exact if the residual is zero and needs no operator product.
   subroutine scale_derivative(problem, grid, operator, locked_gap, state, column)
     type(problem_t), intent(in) :: problem
     type(discretisation_t), intent(in) :: grid
@@ -239,7 +238,7 @@ contains
   end subroutine scale_derivative
 
   !> Derivative of `residual` by the control's value at a state. The tangent of the path is minus
-  !> the solution of the Jacobian of the same control for it.
+  !> the solution of the linear system of the same control's Jacobian with this right-hand side.
   function control_derivative(equations, control, state) result(derivative)
     type(equations_t), intent(inout) :: equations
     type(control_t), intent(in) :: control

@@ -1,10 +1,10 @@
 !> The paper's iteration: the new deformation is mixed with the old one. The ratio is lowered when
 !> the central displacement oscillates or its change grows, and otherwise raised to a limit.
 !>
-!> In a stiff contact the ratio must fall to about one over the largest eigenvalue of the operator.
-!> A small *change* of the displacement then says nothing: the iteration may be far from
-!> equilibrium. Convergence is therefore judged on the residual; the paper's own rule is an option,
-!> to reproduce the paper.
+!> In a stiff contact the ratio must fall to about the inverse of the largest eigenvalue of the
+!> operator. A small *change* of the displacement then does not show convergence: the iteration may
+!> be far from equilibrium. Therefore convergence is judged by the residual; the paper's own rule is
+!> an option for the reproduction of the paper.
 module mixing
   use kinds, only: wp
   use contact_state, only: state_t
@@ -24,8 +24,8 @@ module mixing
 
 contains
 
-  !> From `state` to the equilibrium at a prescribed H0 (control kind at_h0). On return
-  !> state%residual says how well the equations hold; converged says that the chosen rule was met.
+  !> Iterates from `state` to the equilibrium at a prescribed H0 (control kind at_h0). On return
+  !> state%residual is the residual of the equations; converged: the chosen stopping rule is met.
   subroutine solve_mixing(equations, options, control, state, converged)
     type(equations_t), intent(inout) :: equations
     type(solver_options_t), intent(in) :: options
@@ -54,7 +54,7 @@ contains
       end if
       if (converged .or. .not. state%residual < huge(1.0_wp)) exit
 
-      ! The first node represents the axis.
+      ! The first node is on the axis.
       change_before = change
       change = -ratio*g(1)
       if (iteration > 1) then

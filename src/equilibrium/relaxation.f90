@@ -1,6 +1,6 @@
-!> Relaxation of bodies out of equilibrium: dh/dtau = -G at fixed h0, by implicit steps that
-!> lengthen as the residual falls and end as Newton's method. It follows a jump to where a
-!> quasi-static experiment would land, and leaves unstable equilibria.
+!> Relaxation of bodies out of equilibrium: dh/dtau = -G at fixed h0, by implicit steps that become
+!> longer as the residual decreases; the last steps are Newton steps. A jump relaxes to the state in
+!> which a quasi-static experiment would land; an unstable equilibrium is left.
 module relaxation
   use kinds, only: wp
   use contact_state, only: state_t
@@ -12,9 +12,9 @@ module relaxation
   private
   public :: relax
 
-  !> Most steps of pseudo-time; factorisations that are always allowed (a contact edge that moves
-  !> across a hundred neck widths takes some 200); and the limit of further ones, in cubes of the
-  !> matrix's order (some ten seconds).
+  !> Largest number of steps of pseudo-time; number of factorisations that is always allowed (a
+  !> contact edge that moves across a hundred neck widths needs about 200); and the limit of further
+  !> ones, in cubes of the matrix's order (about ten seconds).
   integer, parameter :: most_steps = 2000, few_factorisations = 500
   real(wp), parameter :: most_cubes = 1.0e11_wp
   !> First step of pseudo-time (the stiffest modes relax in less than one unit), its largest growth
@@ -32,7 +32,7 @@ module relaxation
 
 contains
 
-  !> From `state` to a stable equilibrium at the prescribed H0 (control kind at_h0), in place.
+  !> Relaxes `state` to a stable equilibrium at the prescribed H0 (control kind at_h0).
   subroutine relax(equations, options, control, state, converged)
     type(equations_t), intent(inout) :: equations
     type(solver_options_t), intent(in) :: options

@@ -1,4 +1,4 @@
-!> A problem on its meshes with the iteration that solves it, state after state.
+!> A problem on its meshes with the iteration that solves its states.
 module solver
   use contact_state, only: state_t
   use equilibrium, only: control_t, equations_t
@@ -12,7 +12,7 @@ module solver
 
   type, extends(equations_t) :: solver_t
     type(solver_options_t) :: options
-    !> The factors that one state leaves for the next.
+    !> Factors of a previous state, used for the next one.
     type(frozen_jacobian_t) :: frozen
   contains
     procedure :: solve
@@ -21,7 +21,7 @@ module solver
 
 contains
 
-  !> From `state` to the equilibrium at `control`. converged: the residual is
+  !> Solves for the equilibrium at `control`, beginning at `state`. converged: the residual is
   !> within options%tolerance, or for mixing the chosen stopping rule is met.
   subroutine solve(self, control, state, converged)
     class(solver_t), intent(inout) :: self
@@ -36,8 +36,8 @@ contains
     end if
   end subroutine solve
 
-  !> From a state nearby to the equilibrium at `control`, by the accelerated iteration whatever the
-  !> method is. options: where they are not its own.
+  !> Solves for the equilibrium at `control` from a nearby state by the accelerated iteration, also
+  !> if the method is mixing. options: replace the solver's own options.
   subroutine correct(self, control, state, converged, options)
     class(solver_t), intent(inout) :: self
     type(control_t), intent(in) :: control

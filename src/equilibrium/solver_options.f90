@@ -5,7 +5,7 @@ module solver_options
   private
   public :: solver_options_t, tightened, newton_of
 
-  !> Well above the rounding of equations with terms of hundreds of the law's lengths.
+  !> A tolerance well above the rounding of equations with terms of hundreds of the law's lengths.
   real(wp), parameter :: tight_tolerance = 1.0e-12_wp
 
   type :: solver_options_t
@@ -14,16 +14,16 @@ module solver_options
     logical :: mixing = .false.
     !> Largest acceptable residual, in the law's lengths.
     real(wp) :: tolerance = 1.0e-8_wp
-    !> Previous steps that Anderson acceleration combines.
+    !> Number of previous steps in the combination of Anderson acceleration.
     integer :: depth = 5
-    !> Accelerated iterations after which the factorisation is renewed.
+    !> Number of accelerated iterations after which the factorisation is renewed.
     integer :: patience = 8
     integer :: most_iterations = 60
-    !> Error of the place of an extremum on the path, in its coordinate, and relative error of
-    !> slopes.
+    !> Error of the place of an extremum on the path, in the path's coordinate, and relative error
+    !> of slopes.
     real(wp) :: place_error = 1.0e-12_wp, slope_error = 1.0e-13_wp
-    !> For mixing: the largest ratio; whether it stops on a small change of the central
-    !> displacement, as in the paper, instead of on the residual; and that change, in the law's
+    !> For mixing: the largest ratio; whether the iteration stops at a small change of the central
+    !> displacement, as in the paper, instead of a small residual; and this change, in the law's
     !> lengths.
     real(wp) :: mixing_limit = 0.2_wp
     logical :: stop_on_change = .false.
@@ -33,7 +33,7 @@ module solver_options
 contains
 
   !> The options with a tolerance near rounding, for states whose place on the path must be exact.
-  !> Where rounding allows no better, its floor counts (`residual_floor`).
+  !> If rounding is larger, its floor counts (`residual_floor`).
   pure type(solver_options_t) function tightened(options) result(tight)
     type(solver_options_t), intent(in) :: options
 

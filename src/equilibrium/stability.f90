@@ -1,5 +1,5 @@
-!> Stability of an equilibrium at fixed h0: the smallest eigenvalue of the operator, which decides,
-!> and the paper's local criteria, which estimate.
+!> Stability of an equilibrium at fixed h0: the smallest eigenvalue of the operator, which is
+!> decisive, and the paper's local criteria, which are estimates.
 module stability
   use kinds, only: wp
   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
@@ -14,33 +14,34 @@ module stability
   private
   public :: smallest_eigenvalue, local_criterion, axis_criterion, unknown
 
-  !> The bound of an error of an eigenvalue lambda, relative to 1 - lambda and to the largest number
-  !> of the operator, 1 or |1 - lambda|, whose rounding no method avoids.
+  !> The bound of the error of an eigenvalue lambda: a part relative to 1 - lambda, and a part
+  !> relative to the largest of 1 and the numbers |1 - lambda| of the operator, for unavoidable
+  !> rounding.
   type :: margin_t
     real(wp) :: relative, rounding
   end type margin_t
 
-  !> Distance of the shift of the inverse iteration below the eigenvalue found, and largest distance
-  !> of its result.
+  !> Distance of the inverse iteration's shift below the computed eigenvalue, and largest distance
+  !> between the result and that eigenvalue.
   type(margin_t), parameter :: close = margin_t(1.0e-6_wp, 1.0e-12_wp)
-  !> The change that ends the inverse iteration, and the largest residual of the pair found.
+  !> The change that ends the inverse iteration, and the largest residual of the eigenpair.
   type(margin_t), parameter :: settled = margin_t(1.0e-12_wp, 1.0e-14_wp), &
     exact = margin_t(1.0e-9_wp, 1.0e-12_wp)
-  !> Bound of the errors of all eigenvalues found.
+  !> Bound of the errors of all computed eigenvalues.
   type(margin_t), parameter :: lower = margin_t(1.0e-2_wp, 1.0e-12_wp)
   integer, parameter :: most_iterations = 50
-  !> Smaller pressures count as zero, and nothing is divided by them.
+  !> Smaller pressures count as zero and are not used as divisors.
   real(wp), parameter :: least_pressure = 1.0e-100_wp
 
 contains
 
-  !> The smallest eigenvalue of I - A(c) diag(P'), above 0 where the state is stable at fixed h0;
-  !> the spectrum is real because A is symmetric under the weights, but for what
-  !> discretisation leaves. LAPACK finds all eigenvalues. The smallest is then made as exact as the
-  !> factors of the operator allow, and three conditions have to hold, each on its own: the pair
-  !> found is one of the operator; the determinant has the sign of an even number of eigenvalues
-  !> below; the errors of all that were found, by Bauer and Fike, leave none much lower. If they do
-  !> not, the eigenvalue is NaN and `certain` .false.
+  !> The smallest eigenvalue of I - A(c) diag(P'), which is positive if the state is stable at fixed
+  !> h0. The spectrum is real because A is symmetric under the weights, except for discretisation
+  !> errors. LAPACK computes all eigenvalues. The smallest is then refined to the accuracy of the
+  !> operator's factors, and three independent conditions are checked: the eigenpair belongs to the
+  !> operator; the sign of the determinant is that of an even number of smaller eigenvalues; the
+  !> errors of all computed eigenvalues, by Bauer and Fike, exclude a much smaller one. If a
+  !> condition fails, the eigenvalue is NaN and `certain` is .false.
   subroutine smallest_eigenvalue(problem, grid, state, eigenvalue, certain, cost)
     type(problem_t), intent(in) :: problem
     type(discretisation_t), intent(in) :: grid
@@ -58,10 +59,10 @@ contains
     certain = .true.
     n = size(state%gap)
     factor = problem%law%slope(state%gap)
-    ! Rigid bodies, or bodies that do not attract each other: repulsion raises eigenvalues, which
-    ! accumulate at 1.
+    ! Rigid bodies, or bodies that do not attract each other: repulsion increases the eigenvalues,
+    ! and these accumulate at 1.
     if (.not. (problem%coupling > 0 .and. maxval(factor) > 0)) return
-    ! If rows and columns share the slope, the eigenvectors are far from parallel.
+    ! If rows and columns share the slope equally, the eigenvectors are far from parallel.
     root = sqrt(abs(factor))
     allocate (matrix(n, n))
     call operator%matrix(problem, grid, state%scale, sign(root, factor), first_node, matrix)
@@ -78,9 +79,9 @@ contains
     if (.not. certain) eigenvalue = unknown()
   end subroutine smallest_eigenvalue
 
-  !> Inverse iteration on the operator itself, from a shift just below the eigenvalue. certain: it
-  !> converged to a pair of the operator near where it began, and by the determinant an even number
-  !> of eigenvalues is below the shift.
+  !> Inverse iteration on the operator itself, with a shift just below the eigenvalue. certain: it
+  !> converged to an eigenpair near its start, and by the determinant an even number of eigenvalues
+  !> is below the shift.
   subroutine refine(problem, grid, operator, state, factor, widest, eigenvalue, certain, cost)
     type(problem_t), intent(in) :: problem
     type(discretisation_t), intent(in) :: grid
@@ -133,15 +134,16 @@ contains
     room = margin%relative*abs(1 - eigenvalue) + margin%rounding*max(1.0_wp, widest)
   end function room
 
-  !> NaN, for a value that does not exist.
+  !> NaN for a value that does not exist.
   pure real(wp) function unknown()
     unknown = ieee_value(unknown, ieee_quiet_nan)
   end function unknown
 
-  !> The left side of (28), |2 u p'/p|, where it is largest; above 1 the criterion calls the state
-  !> unstable. It is derived for surfaces that attract each other, with p < 0 and p' > 0, and is
-  !> taken where this is so: inside the contact edge p passes zero, and the ratio has no bound.
-  !> Contacts with adhesion always violate it just outside that edge. NaN where nothing attracts.
+  !> The maximum of the left side of (28), |2 u p'/p|; above 1 the state is unstable by this
+  !> criterion. The criterion is derived for surfaces that attract each other, with p < 0 and p' >
+  !> 0, and only these places count: inside the contact edge p passes zero, and the ratio is
+  !> unbounded. Adhesive contacts always violate the criterion just outside the edge. NaN if there
+  !> is no attraction.
   pure real(wp) function local_criterion(problem, grid, state) result(value)
     type(problem_t), intent(in) :: problem
     type(discretisation_t), intent(in) :: grid
@@ -160,8 +162,8 @@ contains
     end associate
   end function local_criterion
 
-  !> The left side of (29), 2 p'(h(0)) u(0)/p(h(0)); below -1 the criterion calls the state
-  !> unstable. NaN where the bodies do not attract each other on the axis, as in contact.
+  !> The left side of (29), 2 p'(h(0)) u(0)/p(h(0)); below -1 the state is unstable by this
+  !> criterion. NaN if the bodies do not attract each other on the axis, as in contact.
   pure real(wp) function axis_criterion(problem, state) result(value)
     type(problem_t), intent(in) :: problem
     type(state_t), intent(in) :: state
@@ -173,7 +175,7 @@ contains
     if (all(attracts(pressure, slope))) value = (state%h0 - state%axis_gap)*slope(1)/pressure(1)
   end function axis_criterion
 
-  !> Whether surfaces attract each other, and less the farther they are apart.
+  !> Whether surfaces attract each other, with an attraction that decreases with the gap.
   elemental logical function attracts(pressure, slope)
     real(wp), intent(in) :: pressure, slope
 

@@ -1,6 +1,6 @@
-!> Bodies driven through a spring, or by a dead load, towards each other and apart again: along the
-!> stable pieces of the equilibrium path, with a jump at the end of each to the next stable piece at
-!> the same position of the drive; and the energy that is lost.
+!> Bodies that a spring or a dead load drives towards each other and apart again: along the stable
+!> pieces of the equilibrium path, with a jump from the end of each piece to the next stable piece
+!> at the same position of the drive; and the energy that is dissipated.
 module device
   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
   use kinds, only: wp
@@ -14,7 +14,7 @@ module device
   private
   public :: driven_t, leg_t, states_on, drive_bodies
 
-  !> A way along one stable piece, of this number in `driven_t`; jumps: from its end.
+  !> The motion along one stable piece; piece: its index in `driven_t`; jumps: a jump follows.
   type :: leg_t
     logical :: inward = .true.
     integer :: piece = 0
@@ -22,18 +22,19 @@ module device
     logical :: jumps = .false.
   end type leg_t
 
-  !> What a drive does to the bodies. Lost in all jumps, and over the cycle, the area between the
-  !> ways in and out, by another route; NaN where they do not come back to where they began.
+  !> The motion of bodies under a drive. energy_lost: dissipated in all jumps; cycle_energy: the
+  !> area between loading and unloading, computed independently; NaN if the bodies do not return to
+  !> their start.
   type :: driven_t
     type(drive_t) :: drive
-    !> As the deck has it [N/m]; infinite where h0 is prescribed.
+    !> The stiffness in the deck [N/m]; infinite if h0 is prescribed.
     real(wp) :: stiffness = 0
-    !> All that is stable, from afar inward.
+    !> All stable pieces, from large separations inward.
     type(driven_piece_t), allocatable :: piece(:)
     type(leg_t), allocatable :: leg(:)
     type(jump_t), allocatable :: jump(:)
     real(wp) :: energy_lost = 0, cycle_energy = 0, uncertainty = 0
-    !> Whether every state was solved, and every jump had an end.
+    !> Whether every state was solved, and whether every jump landed.
     logical :: solved = .true., caught = .true.
   contains
     procedure :: area
@@ -41,8 +42,9 @@ module device
 
 contains
 
-  !> Drives the bodies from afar, or from `start`, to `finish` or, where that is absent, to the
-  !> innermost piece at h0_end, and back. Positions are those of the drive (`driven_pieces`).
+  !> Drives the bodies from large separation, or from `start`, to `finish` or, if it is not
+  !> allocated, to the innermost piece at h0_end, and back. Positions are those of the drive
+  !> (`driven_pieces`).
   subroutine drive_bodies(solver, path, drive, h0_end, start, finish, driven)
     class(solver_t), intent(inout) :: solver
     type(traced_path_t), intent(in) :: path
@@ -50,7 +52,7 @@ contains
     real(wp), intent(in) :: h0_end
     real(wp), allocatable, intent(in) :: start, finish
     type(driven_t), intent(out) :: driven
-    !> Where the bodies are: the number of the piece, and the state.
+    !> The present piece of the bodies, and their state.
     integer :: here, outermost
     type(path_state_t) :: state
 
@@ -76,7 +78,7 @@ contains
 
   contains
 
-    !> Goes inward or outward over all jumps.
+    !> Moves inward or outward, with all jumps.
     subroutine go(inward)
       logical, intent(in) :: inward
       type(jump_t) :: jump
@@ -111,7 +113,7 @@ contains
       end do
     end subroutine go
 
-    !> Solves the state at a position on the present piece, and is there.
+    !> Moves to the state at a position on the present piece.
     subroutine move_to(position)
       real(wp), intent(in) :: position
 
@@ -119,7 +121,8 @@ contains
       driven%solved = driven%solved .and. state%converged
     end subroutine move_to
 
-    !> The position at which the way along the present piece ends; stops = .false.: at its end.
+    !> The position at which the motion on the present piece stops; stops = .false.: it continues to
+    !> the end of the piece.
     subroutine find_limit(inward, at, stops)
       logical, intent(in) :: inward
       real(wp), intent(out) :: at
@@ -140,7 +143,7 @@ contains
         else
           stops = here == size(driven%piece)
           if (.not. stops) return
-          ! At h0_end or, where that is farther in, at the end of what is known.
+          ! It stops at h0_end or at the end of the known path, whichever is farther out.
           at = drive%position(piece%last)
           stops = .not. piece%last_turns
           if (h0_end <= piece%first%h0 .and. h0_end >= piece%last%h0) then
@@ -149,14 +152,14 @@ contains
             if (there%converged) at = max(at, drive%position(there))
           end if
         end if
-        ! What lies behind already is here.
+        ! Positions that are already passed mean the present one.
         if (stops) at = min(at, drive%position(state))
       end associate
     end subroutine find_limit
 
   end subroutine drive_bodies
 
-  !> The states of a leg in its order: its ends, and the nodes of the path that it passes.
+  !> The states of a leg in order: its ends, and the points of the path between them.
   pure function states_on(all_nodes, leg) result(states)
     type(path_state_t), intent(in) :: all_nodes(:)
     type(leg_t), intent(in) :: leg
@@ -170,7 +173,8 @@ contains
     states = [leg%from, nodes, leg%to]
   end function states_on
 
-  !> The energy put in along all legs: minus the integral of the conjugate over the position.
+  !> The energy that the drive supplies along all legs: minus the integral of the conjugate over the
+  !> position.
   pure real(wp) function area(self, path)
     class(driven_t), intent(in) :: self
     type(traced_path_t), intent(in) :: path

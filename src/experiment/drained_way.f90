@@ -1,5 +1,5 @@
-!> A way of a drive with a fluid between the bodies. It resists every motion, so that none takes no
-!> time: where bodies jump together or apart steps become as short as that takes.
+!> A part of a drive's motion with a fluid between the bodies. The fluid resists every motion, so no
+!> motion is instantaneous: where bodies jump together or apart, the time steps resolve the jump.
 module drained_way
   use kinds, only: wp, pi
   use edge_locked, only: approach
@@ -12,25 +12,27 @@ module drained_way
   private
   public :: step_drained
 
-  !> What a step may miss on a straight line through the two instants before: of the load over the
-  !> largest or a pull-off, of the gap on the axis over itself, and the way of the edge over what is
-  !> finest there. A step that misses so many times as much is taken again, unless a shorter one
-  !> misses more than half of that: a third as long, it misses a third if loads are continuous.
+  !> Largest deviation in a step from a straight line through the two previous instants: of the
+  !> load, over the largest load or a pull-off; of the gap on the axis, over the gap; and largest
+  !> motion of the edge, over the smallest feature there. A step with `rejected` times these values
+  !> is repeated as a shorter step, unless the deviation of the shorter step is more than `no_less`
+  !> times as large: for continuous loads, a third of the step has a third of the deviation.
   real(wp), parameter :: bend = 2.0e-3_wp, bend_of_gap = 1.0e-2_wp, edge_moves = 1, rejected = 4, &
     no_less = 0.5_wp
-  !> A step is so many times the last at most, and at least.
+  !> Largest and smallest ratio of a step to the previous step.
   real(wp), parameter :: longer = 2, shorter = 0.2_wp
-  !> Steps are no shorter than so many roundings of the time; those may go so far in the path's
-  !> coordinate.
+  !> The shortest step in roundings of the time; largest change of the path's coordinate in such a
+  !> step.
   real(wp), parameter :: roundings = 64, unfollowed = 3
-  !> Part of the radius of a contact that its edge may move whatever is finest.
+  !> Fraction of a contact's radius by which the edge may move, even if the smallest feature is
+  !> smaller.
   real(wp), parameter :: part_of_radius = 0.01_wp
 
 contains
 
-  !> A step from an instant on, or a shorter one to be tried next. Steps follow the motion and are
-  !> `part` of what they might be. If `part` is 0, they are the longest, and a step is shortened
-  !> only if the motion has no end nearby.
+  !> Takes a step from an instant, or chooses a shorter one for the next attempt. Steps follow the
+  !> motion and are `part` of their usual length. If `part` is 0, steps have the length `longest`,
+  !> and a step is shortened only if it does not converge.
   subroutine step_drained(drive, way, longest, part, steps, at, now)
     type(motion_t), intent(in) :: drive
     integer, intent(in) :: way
@@ -47,15 +49,15 @@ contains
     if (when + 0.01_wp*now%step > drive%time(way)) when = drive%time(way)
     taken = when - at%time
     farthest = steps%farthest
-    ! What is over in the rounding of the time is not followed.
+    ! Motion within the rounding of the time is not resolved.
     if (taken <= 2*least) steps%farthest = unfollowed
     call steps%step(at, when, drive%at(way, when), next, done)
     steps%farthest = farthest
     off = 1/longer**2
     if (done .and. part > 0) off = max(off, missed(steps, at, next, now)/part**2)
-    ! A line has no bend yet.
+    ! The deviation from a line is not known yet.
     if (done .and. at%since_turn < 2) off = 1
-    ! What shorter steps do not make less is no motion: the load jumps, as where the drive turns.
+    ! If shorter steps do not reduce the deviation, the load jumps, as where the drive turns.
     jumped = done .and. off >= rejected .and. now%missed > 0 .and. off > no_less*now%missed
     if (jumped) then
       off = 1
@@ -75,7 +77,8 @@ contains
     now%step = max(now%step, least)
   end subroutine step_drained
 
-  !> What a step asks to be: below 1 it may be longer, above 1 it has to be shorter.
+  !> Deviation of a step over the allowed deviation: below 1 the step may be longer, above 1 it must
+  !> be shorter.
   real(wp) function missed(steps, at, next, now)
     type(time_stepper_t), intent(in) :: steps
     type(instant_t), intent(in) :: at, next
@@ -86,7 +89,8 @@ contains
     finest = steps%finest(radius)
     if (at%mesh > approach) finest = max(finest, part_of_radius*radius)
     missed = (moved(steps, at, next)/(edge_moves*finest))**2
-    ! What two meshes differ by in one state is no motion: shorter steps would not make it less.
+    ! The difference between two meshes at one state is not a motion, and shorter steps do not
+    ! reduce it.
     if (at%since_turn < 2 .or. next%mesh /= at%mesh) return
     ahead = (next%time - at%time)/(at%time - steps%before%time)
     unit = max(now%result%largest_load, abs(next%state%load), tiny(1.0_wp), &
@@ -98,8 +102,8 @@ contains
     end associate
   end function missed
 
-  !> How far the edge of a contact about the axis moves. One that begins or ends away from the axis
-  !> has no radius to grow from.
+  !> The distance by which the edge of a contact about the axis moves; 0 for a contact that begins
+  !> or ends away from the axis, since it has no radius from which it grows.
   real(wp) function moved(steps, at, next)
     type(time_stepper_t), intent(in) :: steps
     type(instant_t), intent(in) :: at, next

@@ -1,7 +1,7 @@
-!> The path as exactly as a deck asks for. Where two extrema have just appeared, a small error of
-!> the mesh moves them far. No rule for meshes can know this beforehand: the extrema and the end are
-!> judged on finer meshes, and where one is not exact enough, the finer mesh becomes that of the
-!> path.
+!> The path with the accuracy of the deck. Where two extrema have just appeared, a small error of
+!> the mesh moves them far, and no rule for meshes can predict this. Therefore the extrema and the
+!> end are judged on finer meshes; if one is not accurate enough, the path is traced on the finer
+!> mesh.
 module exact_path
   use kinds, only: wp
   use clock, only: seconds
@@ -23,17 +23,17 @@ module exact_path
   private
   public :: trace_exactly
 
-  !> How often places are judged.
+  !> Largest number of rounds of judging.
   integer, parameter :: most_rounds = 4
-  !> A finer mesh makes errors some ten times smaller. Where no more than this is gained they come
-  !> from something else, such as rounding, and a further one is in vain.
+  !> A finer mesh reduces errors about ten times. If errors remain above this fraction, they have
+  !> another cause, such as rounding, and a further mesh is useless.
   real(wp), parameter :: helped = 0.3_wp
 
 contains
 
-  !> Traces the path on steps%meshes; where it is shown and its folds and extrema, or its end, are
-  !> not as exact as asked for, again over their meshes, if finer ones can help. h0: law's lengths;
-  !> fine: judges what is found along the path; places: those judged; store: of meshes.
+  !> Traces the path on steps%meshes. If the path is an output, and its folds, extrema or end are
+  !> not as accurate as requested, traces it again on finer meshes where these can help. h0: law's
+  !> lengths; fine: judges places of the path; places: the judged places; store: of meshes.
   subroutine trace_exactly(request, steps, h0_high, h0_low, listener, fine, places, store)
     class(request_t), intent(in) :: request
     class(path_stepper_t), intent(inout), target :: steps
@@ -78,9 +78,10 @@ contains
     end associate
   end subroutine trace_exactly
 
-  !> Whether a path may become more exact on finer meshes. One that was lost need not come as far
-  !> again; meshes that leave out too much are not mended by more nodes; about a kink of the law
-  !> errors go up and down with the nodes; and rounding has its digits, too.
+  !> Whether finer meshes may make a path more accurate. They do not help if the path was lost,
+  !> since the finer path may end earlier; if nodes miss too much of the load, since this needs
+  !> other panels; at a kink of the law, where errors do not decrease steadily with the number of
+  !> nodes; or if rounding limits the digits.
   pure logical function finer_helps(steps, accuracy)
     class(path_stepper_t), intent(in) :: steps
     real(wp), intent(in) :: accuracy
@@ -89,15 +90,15 @@ contains
       steps%problem%law%has_kink .or. steps%meshes%digits + more_digits > most_digits)
   end function finer_helps
 
-  !> Whether a path does not come to its end; of bodies that nothing keeps apart that is their fall.
+  !> Whether a path ends early. A collapse of bodies without repulsion is not an early end.
   pure logical function is_lost(known)
     type(known_path_t), intent(in) :: known
 
     is_lost = known%ending%early() .and. .not. known%fallen
   end function is_lost
 
-  !> Makes the extrema of a path the places of a table. Those that it has keep their errors, but for
-  !> those on meshes that were renewed.
+  !> Makes the extrema of a path the places of a table. Known extrema keep their errors, except
+  !> those on renewed meshes.
   subroutine keep_extrema(path, renewed, places)
     type(traced_path_t), intent(in) :: path
     logical, intent(in) :: renewed(:)

@@ -1,5 +1,5 @@
-!> Carries out what is asked of the elastic problem: the equilibrium path, the h0-stepped cycle.
-!> Effects that are not asked for are not set up.
+!> Runs the requested experiments of the elastic problem: the equilibrium path, the cycle stepped in
+!> h0. Effects that are not requested are not set up.
 module experiment
   use kinds, only: wp
   use dimensionless_problem, only: problem_t
@@ -35,15 +35,14 @@ module experiment
   private
   public :: run_experiment, prepare
 
-  !> The coupling of bodies that do not deform visibly under a fluid either, whose pressure may be
-  !> many times that of the law.
+  !> The coupling for rigid bodies: it is so small that the bodies do not deform noticeably, even
+  !> under the pressure of a fluid, which may be much larger than that of the law.
   real(wp), parameter :: unyielding = 1.0e-18_wp
 
 contains
 
-  !> Runs the path and the cycle; neither may be asked for, and then nothing is done.
-  !> With a keeper, the cycle's steps go through it: it keeps them, and has those of an earlier run.
-  !> With a store of meshes, edge-locked ones come from there.
+  !> Runs the path and the cycle; does nothing if neither is requested. keeper: stores the cycle's
+  !> steps, and has the steps of an earlier run. store: a store of edge-locked meshes.
   subroutine run_experiment(request, problem, observer, outcome, keeper, store)
     class(request_t), intent(in) :: request
     type(problem_t), intent(in) :: problem
@@ -74,7 +73,8 @@ contains
       call run_fixed(request, problem, low, observer, outcome, keeper)
   end subroutine run_experiment
 
-  !> The drive in time. Rigid bodies are some that are too stiff for their deformation to show.
+  !> Runs the drive in time. Rigid bodies are replaced by bodies that are too stiff for a noticeable
+  !> deformation.
   subroutine run_driven(request, problem, observer, outcome, keeper)
     class(request_t), intent(in) :: request
     type(problem_t), intent(in) :: problem
@@ -98,8 +98,8 @@ contains
     outcome%error_estimate = outcome%timed%estimate
   end subroutine run_driven
 
-  !> The path, and the cycle if `with_cycle` and the scene has one, in edge-locked coordinates, for
-  !> H0 from high to low (law's lengths).
+  !> Runs the path, and the cycle if `with_cycle` and the scene has one, in edge-locked coordinates,
+  !> for H0 from high to low (law's lengths).
   subroutine run_locked(request, problem, high, low, with_cycle, observer, outcome, &
     keeper, store)
     class(request_t), intent(in) :: request
@@ -123,9 +123,9 @@ contains
       steps => one_by_one
     end if
     call prepare(steps, problem, outcome%chosen, request%numerics%accuracy)
-    ! The path has no use for mixing.
+    ! The path is not solved by mixing.
     steps%options%mixing = .false.
-    ! Kernels are made of small products, and cases of a sweep make them at the same time.
+    ! Kernels are made by small products, and cases of a sweep make them at the same time.
     call use_threads_for(1)
     began = seconds()
     steps%meshes = new_mesh_family(problem, high, low, outcome%chosen%digits, store=store)
@@ -146,7 +146,7 @@ contains
     outcome%nodes = sum(steps%meshes%grid%nodes)
     if (allocated(request%loading) .and. with_cycle) &
       call run_kept_cycle(request, steps, observer, outcome, keeper)
-    ! Folds and extrema may have been judged meanwhile.
+    ! The time for judging folds and extrema is counted separately.
     steps%cost%solve_seconds = steps%cost%solve_seconds + seconds() - began - &
       steps%cost%estimate_seconds
     began = seconds()
@@ -169,7 +169,7 @@ contains
     outcome%cost = steps%cost
   end subroutine run_locked
 
-  !> The cycle on a mesh fixed in space, for H0 down to low.
+  !> Runs the cycle on a mesh fixed in space, for H0 down to low.
   subroutine run_fixed(request, problem, low, observer, outcome, keeper)
     class(request_t), intent(in) :: request
     type(problem_t), intent(in) :: problem
@@ -205,7 +205,7 @@ contains
     outcome%cost = steps%cost
   end subroutine run_fixed
 
-  !> What both kinds of steps are told.
+  !> Sets the parts that both kinds of steppers have.
   subroutine prepare(steps, problem, chosen, accuracy)
     class(stepper_t), intent(inout) :: steps
     type(problem_t), intent(in) :: problem
@@ -214,7 +214,7 @@ contains
 
     steps%problem = problem
     steps%options = chosen%options
-    ! Each halving is a state; a jump is not known better than this on a fixed grid anyway.
+    ! Each halving solves a state, and a fixed grid has a larger error of a jump.
     steps%jump_tolerance = max(accuracy, 1.0e-4_wp)
   end subroutine prepare
 
@@ -232,7 +232,7 @@ contains
       allocate (outcome%path)
       start = law%gap_of(path_start(request, steps%problem))
       if (allocated(request%path%h0_start) .or. request%reads_path()) then
-        ! What is read from the path may need more of it than is shown.
+        ! The path may have been traced farther than the part that is shown.
         if (.not. allocated(request%path%h0_start)) start = max(start, steps%far_away())
         call follow_path(steps, law%gap_of(request%path%h0_end), profiles, observer, &
           outcome%path, start)
@@ -242,7 +242,7 @@ contains
     end associate
   end subroutine run_path
 
-  !> The path of a law that does not attract: one state for every h0, so that stepping h0 gives it.
+  !> The path of a law that does not attract: there is one state for every h0, so h0 is stepped.
   subroutine run_stepped_path(request, steps, observer, outcome)
     class(request_t), intent(in) :: request
     class(unique_stepper_t), intent(inout) :: steps
@@ -256,7 +256,7 @@ contains
       position, observer, nowhere, none, outcome%stepped_path)
   end subroutine run_stepped_path
 
-  !> The cycle, its steps kept where there is a keeper.
+  !> Runs the cycle, with a keeper of its steps if present.
   subroutine run_kept_cycle(request, steps, observer, outcome, keeper)
     class(request_t), intent(in) :: request
     class(stepper_t), intent(inout), target :: steps
@@ -274,7 +274,7 @@ contains
     steps%cost%solve_seconds = steps%cost%solve_seconds + keeper%earlier_seconds
   end subroutine run_kept_cycle
 
-  !> Loading, then an unloading from each turning point.
+  !> Runs the loading, then an unloading from each turning point.
   subroutine run_cycle(request, steps, observer, outcome)
     class(request_t), intent(in) :: request
     class(stepper_t), intent(inout) :: steps

@@ -1,7 +1,7 @@
-!> What is asked of the experiments, one derived type a group of the deck.
+!> The requested experiments, one derived type for each group of the deck.
 !>
-!> A group that is optional is an allocatable component of the request: allocated means asked for.
-!> In the same way a value without a default is allocated only where there is one. All SI.
+!> An optional group is an allocatable component of the request, allocated if the deck has the
+!> group. A key without a default is allocated if the deck has the key. All values are SI.
 module experiment_request
   use kinds, only: wp
   use variation, only: variation_t
@@ -22,19 +22,19 @@ module experiment_request
     real(wp) :: h0_end = 0, h0_step = 0
   end type unloading_t
 
-  !> &equilibrium_path [m]; h0_start unallocated: the program chooses.
+  !> &equilibrium_path [m]; h0_start not allocated: the program chooses it.
   type :: path_range_t
     real(wp), allocatable :: h0_start
     real(wp) :: h0_end = 0
   end type path_range_t
 
-  !> &profiles: the h0 [m] at which they are written.
+  !> &profiles: the h0 [m] of the profiles.
   type :: profiles_t
     real(wp), allocatable :: h0(:)
   end type profiles_t
 
-  !> &device: stiffness of each spring [N/m], 0 for a dead load; none: h0 is prescribed. Where the
-  !> drive starts and turns [m], unallocated: as far as the path is known.
+  !> &device: stiffness of each spring [N/m], 0 for a dead load; an empty list: h0 is prescribed.
+  !> Start and turning position of the drive [m]; not allocated: the ends of the known path.
   type :: device_t
     real(wp), allocatable :: stiffness(:), z_start, z_end
   end type device_t
@@ -44,13 +44,13 @@ module experiment_request
     real(wp), allocatable :: load(:)
   end type fixed_load_t
 
-  !> &sensitivity: the parameters, each with the problem varied by it.
+  !> &sensitivity: the parameters, each with its varied problems.
   type :: sensitivity_t
     type(variation_t), allocatable :: varied(:)
   end type sensitivity_t
 
-  !> &drive: velocity [m/s], positions [m], dwell [s], and where they are given, the stiffness of a
-  !> spring [N/m] and the step [s].
+  !> &drive: velocity [m/s], positions [m], dwell [s]; if given, the stiffness of a spring [N/m] and
+  !> the time step [s].
   type :: drive_request_t
     real(wp) :: velocity = 0, z_start = 0, z_turn = 0, z_end = 0, dwell = 0
     real(wp), allocatable :: stiffness, time_step
@@ -61,7 +61,7 @@ module experiment_request
     real(wp) :: viscosity = 0, slip(2) = 0
   end type fluid_request_t
 
-  !> &numerics; what is unallocated follows from the accuracy.
+  !> &numerics; values that are not allocated follow from the accuracy.
   type :: numerics_t
     character(len=:), allocatable :: method, grid, convergence
     real(wp) :: accuracy = 0, displacement_tolerance = 0, mixing_limit = 0
@@ -79,9 +79,9 @@ module experiment_request
     type(fixed_load_t), allocatable :: fixed_load
     type(sensitivity_t), allocatable :: sensitivity
     type(drive_request_t), allocatable :: drive
-    !> &viscoelastic: how bodies remember; unallocated: they do not.
+    !> &viscoelastic: the bodies' memory; not allocated: they have none.
     type(creep_t), allocatable :: creep
-    !> &fluid; unallocated: none drains.
+    !> &fluid; not allocated: there is no fluid.
     type(fluid_request_t), allocatable :: fluid
     !> &table has no keys.
     logical :: table = .false.
@@ -93,14 +93,14 @@ module experiment_request
 
 contains
 
-  !> Whether equilibria are asked for, and not closed forms alone.
+  !> Whether equilibria are requested, and not only closed forms.
   pure logical function finds_states(self)
     class(request_t), intent(in) :: self
 
     finds_states = allocated(self%loading) .or. allocated(self%path) .or. allocated(self%drive)
   end function finds_states
 
-  !> Whether an experiment is read from the path, beside it.
+  !> Whether a requested experiment is read from the path.
   pure logical function reads_path(self)
     class(request_t), intent(in) :: self
 

@@ -1,4 +1,4 @@
-!> What the experiments of a scene found, in the units of `dimensionless_problem`.
+!> Results of the experiments of a scene, in the units of `dimensionless_problem`.
 module experiment_result
   use kinds, only: wp
   use numerics_choice, only: choice_t
@@ -18,13 +18,13 @@ module experiment_result
     type(path_readings_t), allocatable :: readings
     type(timed_result_t), allocatable :: timed
     type(branch_t), allocatable :: stepped_path, loading, unloading(:)
-    !> The places that numbers are reported of.
+    !> The places at which numbers are reported.
     type(places_t) :: places
-    !> Whether all derivatives exist that were asked for.
+    !> Whether all requested derivatives exist.
     logical :: differentiated = .true.
-    !> Largest estimated relative error of what is reported.
+    !> Largest estimated relative error of the reported numbers.
     real(wp), allocatable :: error_estimate
-    !> Largest part of the load that the nodes of the path's meshes leave out (`mending`).
+    !> Largest part of the load that the nodes of the path's meshes miss (`mending`).
     real(wp) :: left_out = 0
     type(cost_t) :: cost
     integer :: nodes = 0

@@ -1,5 +1,6 @@
-!> What solves on finer meshes, well below the accuracy, to find errors by comparison. What is left
-!> out is the error of the finer mesh, smaller by a factor that the margin covers.
+!> The solver on finer meshes, with errors well below the accuracy, for error estimates by
+!> comparison. The error of the finer mesh itself is neglected; it is smaller by a factor that the
+!> margin covers.
 module finer_solver
   use kinds, only: wp
   use mesh_store, only: mesh_store_t
@@ -12,8 +13,8 @@ module finer_solver
   private
   public :: finer_t, more_digits, rounding, worst_residual, what_residual_leaves
 
-  !> Solves on finer meshes, which get their kernels when they are needed. Differences count
-  !> `margin` times. store: of meshes, if there is one.
+  !> Solves on finer meshes, whose kernels are made when they are needed. Differences are multiplied
+  !> by `margin`. store: of meshes, if there is one.
   type, extends(solver_t) :: finer_t
     real(wp) :: margin = 1
     type(mesh_store_t), pointer :: store => null()
@@ -26,30 +27,30 @@ module finer_solver
     procedure, private :: take_over
   end type finer_t
 
-  !> Digits that edge-locked finer meshes have more.
+  !> Additional digits of finer edge-locked meshes.
   real(wp), parameter :: more_digits = 1.5_wp
-  !> Differences are raised by this much for the error of the finer mesh: a tenth or less for
-  !> panels, a third for a uniform grid, which is of second order and of lower order in places; and
-  !> because other states may be somewhat worse than those compared. Against a grid twice as coarse
+  !> Factors of the differences. They account for the error of the finer mesh, which is a tenth or
+  !> less for panels and a third for a uniform grid, of second order and locally of lower order; and
+  !> for other states, which may have larger errors than those compared. For a grid twice as coarse
   !> the difference itself is two to three times the error.
   real(wp), parameter :: usual = 3, of_fixed = 2.5_wp, of_coarser = 1.2_wp, of_less_gained = 6, &
     of_kinks = 12
-  !> Rounding of a whole calculation, below which no error is claimed.
+  !> Rounding error of a whole calculation; no smaller error is reported.
   real(wp), parameter :: rounding = 1.0e-13_wp
-  !> What an iteration may leave over what is left of an extremum's place; and how often it goes on
-  !> with factors: they were made nearby.
+  !> Largest residual of the iteration over the error of an extremum's place; and number of
+  !> iterations before factors are renewed, small because they were made nearby.
   real(wp), parameter :: residual_over_place = 1.0e-3_wp
   integer, parameter :: patience = 4
-  !> A residual that leaves no doubt which state it is of (law's lengths).
+  !> A residual that identifies the state with certainty (law's lengths).
   real(wp), parameter :: nearly_solved = 1.0e-6_wp
-  !> A residual that differs from node to node may move a state by this many times as much as one
-  !> that is the same everywhere, which acts like a change of h0.
+  !> A residual that differs from node to node may move a state this many times as far as a uniform
+  !> one, which acts like a change of h0.
   real(wp), parameter :: worst_residual = 3
 
 contains
 
-  !> Lays out meshes finer than the edge-locked ones of `steps`, which stay what they are, for H0
-  !> from high to low.
+  !> Lays out meshes finer than the edge-locked ones of `steps`, for H0 from high to low. The meshes
+  !> of `steps` are unchanged.
   subroutine lay_out(self, steps, high, low, store)
     class(finer_t), intent(inout) :: self
     class(solver_t), intent(in) :: steps
@@ -58,8 +59,8 @@ contains
     integer :: k
 
     call self%take_over(steps)
-    ! Without a contact edge nothing locks the mesh to what is sharp in a fall, and short panels may
-    ! hold what is not smooth, a law's or a body's: more nodes gain less.
+    ! Without a contact edge, the mesh is not locked to the sharp features of a collapse, and short
+    ! panels may contain a law or a body that is not smooth: there more nodes reduce the error less.
     self%margin = usual
     if (.not. steps%problem%law%edge_gap > 0 .or. any([(steps%meshes%has_short_panels(k), &
       k=1, size(steps%meshes%grid))])) self%margin = of_less_gained
@@ -69,8 +70,8 @@ contains
     if (present(store)) self%store => store
   end subroutine lay_out
 
-  !> The same for a mesh fixed in space, for H0 down to low: a finer one or, where that would cost
-  !> too much, a coarser one.
+  !> Lays out a mesh for one fixed in space, for H0 down to low: a finer one or, if this would be
+  !> too expensive, a coarser one.
   subroutine lay_out_fixed(self, steps, chosen, low)
     class(finer_t), intent(inout) :: self
     class(solver_t), intent(in) :: steps
@@ -85,7 +86,7 @@ contains
     self%cost%kernel_entries = self%cost%kernel_entries + self%meshes%grid(1)%kernel_entries()
   end subroutine lay_out_fixed
 
-  !> Makes one mesh anew, finer than that of a family that was made anew.
+  !> Replaces one mesh by a mesh finer than a renewed one of another family.
   subroutine refine(self, mesh, coarser)
     class(finer_t), intent(inout) :: self
     integer, intent(in) :: mesh
@@ -96,7 +97,7 @@ contains
     call self%frozen%forget()
   end subroutine refine
 
-  !> Takes over the problem of `steps`.
+  !> Copies the problem, the cost and the tolerances of `steps`.
   subroutine take_over(self, steps)
     class(finer_t), intent(inout) :: self
     class(solver_t), intent(in) :: steps
@@ -110,7 +111,7 @@ contains
     end associate
   end subroutine take_over
 
-  !> Sees that a mesh has its kernel.
+  !> Makes the kernel of a mesh if it has none.
   subroutine prepare(self, mesh)
     class(finer_t), intent(inout) :: self
     integer, intent(in) :: mesh
@@ -125,7 +126,7 @@ contains
       self%meshes%grid(mesh)%kernel_entries()
   end subroutine prepare
 
-  !> Solves as well as an error has to be known. found: it leaves no doubt which state it is.
+  !> Solves with the accuracy that an error estimate needs. found: the state is identified.
   subroutine find(self, control, state, found)
     class(finer_t), intent(inout) :: self
     type(control_t), intent(in) :: control
@@ -136,8 +137,8 @@ contains
     found = found .or. state%residual < nearly_solved
   end subroutine find
 
-  !> What the residual of a state amounts to as a change of its h0, at most. The rounding of the
-  !> gaps far out, which are large, changes nothing else.
+  !> The largest change of h0 to which the residual of a state is equivalent. The rounding of large
+  !> gaps is not included, since it has no other effect.
   pure real(wp) function what_residual_leaves(state) result(left)
     type(state_t), intent(in) :: state
 

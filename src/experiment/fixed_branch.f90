@@ -1,4 +1,4 @@
-!> One branch of equilibria on a mesh fixed in space: the next state on it, and how far it goes.
+!> One branch of equilibria on a mesh fixed in space: the next state of the branch, and its end.
 module fixed_branch
   use kinds, only: wp
   use dimensionless_problem, only: over_neck => spacing_over_neck
@@ -23,9 +23,10 @@ module fixed_branch
     procedure, private :: linearise
   end type fixed_branch_t
 
-  !> What lies ahead on a branch: dH/dH0 and the logarithm of the Jacobian's determinant where it is
-  !> regular, and that before the last step; how far ahead a fold is, huge where none shows, whether
-  !> it is near enough to go for, and whether what was foreseen has been borne out.
+  !> Prediction of the end of a branch: dH/dH0 and the logarithm of the Jacobian's determinant, if
+  !> the Jacobian is regular, and the logarithm before the last step; distance to a fold, huge if
+  !> there is none; whether the fold is near enough for steps towards it; whether earlier
+  !> predictions were confirmed.
   type :: outlook_t
     real(wp), allocatable :: rate(:)
     real(wp) :: determinant = 0, before = 0, distance = huge(1.0_wp)
@@ -35,29 +36,30 @@ module fixed_branch
     procedure :: forget
   end type outlook_t
 
-  !> A state continues the branch that was extrapolated to it if it lies no farther from the
-  !> extrapolation than half the extrapolated change plus this many of the law's lengths. Where even
-  !> the smallest step leads farther the bodies jump.
+  !> A state continues the branch if its distance from the extrapolation is at most half the
+  !> extrapolated change plus this many of the law's lengths. If the smallest step leads farther,
+  !> the bodies jump.
   real(wp), parameter :: jump = 0.05_wp
-  !> Spacing over the width of the neck up to which the edge is not caught; and the change of the
-  !> gaps, in the law's lengths, that asks for a new factorisation.
+  !> Ratio of the spacing to the width of the neck up to which the edge is not pinned between nodes;
+  !> and the change of the gaps, in the law's lengths, after which the factorisation is renewed.
   real(wp), parameter :: resolved = 0.25_wp, large_change = 0.2_wp
-  !> States that the end of a branch is always worth, and cubes of the number of nodes that more of
-  !> them may amount to (some ten seconds): where the edge passes node after node on the way there
-  !> may be hundreds. The end is then only known to lie within the rest of the step.
+  !> Number of states that are always allowed for the end of a branch, and the limit of further
+  !> ones, in cubes of the number of nodes (about ten seconds): where the edge passes node after
+  !> node, there may be hundreds. At the limit the end is known only to lie within the rest of the
+  !> step.
   integer, parameter :: few_states = 40
   real(wp), parameter :: most_cubes = 5.0e10_wp
-  !> Fraction of a step that is tried first after the whole one has failed.
+  !> Fraction of a step that is tried first after the whole step has failed.
   real(wp), parameter :: probe = 0.1_wp
-  !> Distance of a foreseen fold, in tolerances of a jump, at which the branch certainly ends.
+  !> Distance of a predicted fold, in tolerances of a jump, at which the branch certainly ends.
   real(wp), parameter :: near_fold = 10
-  !> Fraction of the distance to a foreseen fold that is left for the next step.
+  !> Fraction of the distance to a predicted fold that is left for the next step.
   real(wp), parameter :: left_over = 0.05_wp
 
 contains
 
-  !> The state at h0 from the expected one (for mixing, as in the paper, from the last state at
-  !> constant separation), and whether it continues the branch of the position.
+  !> Solves the state at h0 from the expected one (for mixing, as in the paper, from the last state
+  !> at constant separation). continues: the state is on the branch of the position.
   subroutine continue_to(self, h0, position, expected, state, event, continues)
     class(fixed_branch_t), intent(inout) :: self
     real(wp), intent(in) :: h0
@@ -68,7 +70,7 @@ contains
     logical, intent(out) :: continues
 
     state = expected
-    ! A single state says too little about where the next is, and mixing starts as in the paper.
+    ! A single state is not enough for an extrapolation, and mixing starts as in the paper.
     if (self%options%mixing .or. position%held == 1) state = position%state
     call self%solve_at(h0, state, event)
     continues = event%converged .and. change(expected, state) <= &
@@ -76,7 +78,7 @@ contains
       position%held == 1)
   end subroutine continue_to
 
-  !> The state that a step to h0 is expected to lead to.
+  !> The predicted state of a step to h0.
   type(state_t) function expected_at(self, h0, position) result(expected)
     class(fixed_branch_t), intent(inout) :: self
     real(wp), intent(in) :: h0
@@ -88,18 +90,18 @@ contains
       return
     end if
     expected = moved_with_edge(self%problem, self%meshes%grid(1), position, h0)
-    ! A factorisation from before the edge moved across a good part of the neck does not serve.
+    ! The factorisation is no longer good after the edge has moved by a good part of the neck.
     if (change(position%state, expected) > large_change) call self%frozen%forget()
   end function expected_at
 
-  !> Takes the position along its branch towards h0, which one step did not reach. arrived: there
-  !> it is after all; otherwise the branch ends between the position and the h0 handed back as
-  !> `beyond`. at_fold: the determinant says so too.
+  !> Moves the position along its branch towards h0 after a single step has failed. arrived: the
+  !> position is at h0. Otherwise the branch ends between the position and `beyond`. at_fold: the
+  !> determinant confirms the end.
   !>
-  !> A branch ends in a fold, where it moves as the square root of the distance to it: the square of
-  !> the Jacobian's determinant falls linearly to zero there, and from two states the fold is known
-  !> well enough to go nearly all the way to it, and then just past it, at once. Where that is not
-  !> borne out the steps are cut to a third, or grow.
+  !> A branch ends at a fold, near which its change is proportional to the square root of the
+  !> distance: the square of the Jacobian's determinant decreases linearly to zero. Two states give
+  !> the position of the fold accurately enough for one step nearly to the fold and one step just
+  !> beyond it. If the prediction is not confirmed, the steps are reduced to a third, or increased.
   subroutine follow(self, h0, position, event, beyond, arrived, at_fold)
     class(fixed_branch_t), intent(inout) :: self
     real(wp), intent(in) :: h0
@@ -135,7 +137,7 @@ contains
       call remember(position, state, 1, .false.)
       arrived = abs(next - h0) <= 0.0_wp
       if (arrived) return
-      ! What failed before may have been too long a step.
+      ! An earlier failure may have been due to a long step.
       if ((beyond - next)*sense <= 0) beyond = h0
       call ahead%foresee(abs(h0 - next), self%jump_tolerance, step)
       at_fold = ahead%distance < near_fold*self%jump_tolerance
@@ -143,7 +145,7 @@ contains
     if (step > self%jump_tolerance) beyond = h0
   end subroutine follow
 
-  !> Takes a step to h0 from a position, towards the fold that is foreseen or as extrapolated.
+  !> Takes a step to h0 from a position, predicted from the fold or by extrapolation.
   subroutine try_step(self, h0, position, ahead, state, event, continues)
     class(fixed_branch_t), intent(inout) :: self
     real(wp), intent(in) :: h0
@@ -165,11 +167,11 @@ contains
     ahead%foreseen = ahead%regular
     call self%linearise(state, ahead)
     ahead%foreseen = ahead%foreseen .and. ahead%regular
-    ! Not beyond the fold, on the unstable branch.
+    ! A state beyond the fold would be on the unstable branch.
     if (ahead%regular) continues = determinant_sign(self%frozen%factors) > 0
   end subroutine try_step
 
-  !> Looks for a fold after a step, and makes it the next one; left: what is left of the way.
+  !> Predicts a fold after a step, and chooses the next step; left: the remaining distance to h0.
   pure subroutine foresee(self, left, tolerance, step)
     class(outlook_t), intent(inout) :: self
     real(wp), intent(in) :: left, tolerance
@@ -180,7 +182,7 @@ contains
     self%foreseen = self%foreseen .and. ratio < 1
     distance = huge(1.0_wp)
     if (self%foreseen) distance = step*ratio/(1 - ratio)
-    ! A fold that recedes is none: the edge only passes a node.
+    ! If the distance does not decrease, there is no fold; the edge passes a node.
     self%trusted = self%trusted .and. distance < 0.5_wp*self%distance
     self%distance = distance
     self%foreseen = self%trusted .and. distance < left
@@ -195,7 +197,7 @@ contains
     end if
   end subroutine foresee
 
-  !> Starts looking anew where a step has failed.
+  !> Removes the prediction after a failed step.
   pure subroutine forget(self)
     class(outlook_t), intent(inout) :: self
 
@@ -204,8 +206,8 @@ contains
     self%distance = huge(1.0_wp)
   end subroutine forget
 
-  !> dH/dH0 along the branch at a state, and the logarithm of the Jacobian's determinant, if it is
-  !> regular. Mixing, the iteration without derivatives, does without. The factorisation is left for
+  !> dH/dH0 along the branch at a state, and the logarithm of the Jacobian's determinant, if the
+  !> Jacobian is regular; not for mixing, which has no derivatives. The factorisation is kept for
   !> the next solution.
   subroutine linearise(self, state, ahead)
     class(fixed_branch_t), intent(inout) :: self

@@ -1,4 +1,4 @@
-!> How a branch on a mesh fixed in space ends, and where the bodies go from there.
+!> The end of a branch on a mesh fixed in space, and the jump of the bodies from there.
 module fixed_jumps
   use kinds, only: wp
   use contact_state, only: state_t, radius_of_gap
@@ -25,9 +25,9 @@ module fixed_jumps
     procedure, private :: goes_on
   end type fixed_jumps_t
 
-  !> Newton's method needs few iterations, or is not going to arrive.
+  !> Newton's method needs few iterations if it converges.
   integer, parameter :: newton_iterations = 12
-  !> How often Newton's method may help the iteration on in a step before that is said to fail.
+  !> Largest number of times that Newton's method helps the iteration in one step.
   integer, parameter :: most_rescues = 5
 
 contains
@@ -43,8 +43,8 @@ contains
     end associate
   end function is_lost
 
-  !> Follows the branch towards h0. stalled: it goes on, but the iteration does not. Neither that
-  !> nor arrived: it ends before `beyond`.
+  !> Follows the branch towards h0. arrived: the branch reaches h0. stalled: the branch continues,
+  !> but the iteration does not converge. Otherwise the branch ends before `beyond`.
   subroutine follow_to_end(self, h0, position, event, beyond, arrived, stalled)
     class(fixed_jumps_t), intent(inout) :: self
     real(wp), intent(in) :: h0
@@ -61,7 +61,7 @@ contains
       stalled = .false.
       if (.not. (arrived .or. at_fold)) stalled = self%goes_on(beyond, position%state, state)
       if (.not. stalled) return
-      ! Near its end a branch turns sharply, and is worth another try.
+      ! Near its end a branch turns sharply, and another attempt may succeed.
       call remember(position, state, 1, .false.)
       event%converged = .true.
       arrived = abs(beyond - h0) <= 0.0_wp
@@ -69,8 +69,8 @@ contains
     end do
   end subroutine follow_to_end
 
-  !> From the end of a branch to where the edge, held by the next nodes, may come to rest before h0,
-  !> and the tension grow again.
+  !> Relaxes from the end of a branch to a state in which the edge, pinned at the next nodes, may
+  !> rest before h0, after which the tension can increase again.
   subroutine slip_to(self, beyond, h0, position, event, slipped)
     class(fixed_jumps_t), intent(inout) :: self
     real(wp), intent(in) :: beyond, h0
@@ -90,8 +90,8 @@ contains
     call remember(position, landed, 1, .true.)
   end subroutine slip_to
 
-  !> From the end of a branch, which is before `beyond`, the bodies go to where they went from
-  !> before it (has_landed: to `landed`).
+  !> From the end of a branch, which is before `beyond`, the bodies jump to the state at h0: to
+  !> `landed` if has_landed, otherwise to the result of a relaxation.
   subroutine jump_to(self, h0, beyond, has_landed, landed, position, event)
     class(fixed_jumps_t), intent(inout) :: self
     real(wp), intent(in) :: h0, beyond
@@ -103,11 +103,11 @@ contains
     event%converged = has_landed
     if (.not. has_landed) call self%land(h0, position%state, landed, event)
     associate (before => position%state, law => self%problem%law)
-      ! From where there was no equilibrium nothing jumps.
+      ! A jump must start from an equilibrium.
       event%jumped = event%converged .and. change(before, landed) > jump .and. &
         holds(self%problem, self%options%tolerance, before)
       if (.not. event%converged .and. law%adhesion > 0 .and. .not. law%edge_gap > 0) then
-        ! Nothing stops the fall of bodies that only attract.
+        ! Bodies without repulsion collapse.
         event%jumped = .true.
         event%ending%cause = no_equilibrium
       end if
@@ -116,7 +116,7 @@ contains
     call remember(position, landed, 1, event%jumped)
   end subroutine jump_to
 
-  !> A jump from the branch of `before`, which ends between its h0 and `beyond`.
+  !> Sets the jump from the branch of `before`, which ends between its h0 and `beyond`.
   pure subroutine locate_jump(event, before, beyond)
     type(step_result_t), intent(inout) :: event
     type(state_t), intent(in) :: before
@@ -127,9 +127,9 @@ contains
     event%jump_uncertainty = 0.5_wp*abs(beyond - before%h0)
   end subroutine locate_jump
 
-  !> Whether the branch of the state `before` goes on to an h0 close by, where the iteration has not
-  !> found it: by Newton's method, whatever the deck says of iterations. Where it does, to `state`,
-  !> the iteration has failed; where not, the bodies jump.
+  !> Whether the branch of the state `before` continues to a near h0 at which the iteration did not
+  !> converge: by Newton's method, for all choices of the deck. If it does, to `state`, the
+  !> iteration has failed; if not, the bodies jump.
   logical function goes_on(self, h0, before, state)
     class(fixed_jumps_t), intent(inout) :: self
     real(wp), intent(in) :: h0
@@ -147,8 +147,8 @@ contains
     goes_on = goes_on .and. change(before, state) <= jump
   end function goes_on
 
-  !> Where the bodies go from the state `before` when h0 is changed to a value at which its branch
-  !> has ended. Mixing relaxes by itself.
+  !> The state to which the bodies relax from `before` at an h0 beyond the end of its branch. Mixing
+  !> is itself a relaxation.
   subroutine land(self, h0, before, state, event)
     class(fixed_jumps_t), intent(inout) :: self
     real(wp), intent(in) :: h0
@@ -165,8 +165,8 @@ contains
     call self%frozen%forget()
   end subroutine land
 
-  !> Whether bodies that came from one state to the other by relaxation stayed in contact:
-  !> whatever jump there was on the way was one of the edge, from node to node.
+  !> Whether bodies stayed in contact during a relaxation from one state to another; then any jump
+  !> was one of the edge from node to node.
   logical function stays(self, before, after, event)
     class(fixed_jumps_t), intent(in) :: self
     type(state_t), intent(in) :: before, after

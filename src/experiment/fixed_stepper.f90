@@ -1,5 +1,6 @@
 !> A quasi-static experiment on a mesh fixed in space: the paper's method. The contact edge moves
-!> across the nodes, and where they are not close against the neck it is pinned between them.
+!> across the nodes; if their spacing is not small relative to the neck, the edge is pinned between
+!> nodes.
 module fixed_stepper
   use kinds, only: wp
   use dimensionless_problem, only: calm_gap, over_neck => spacing_over_neck
@@ -21,20 +22,20 @@ module fixed_stepper
     procedure, private :: paper_step
   end type fixed_stepper_t
 
-  !> Steps of the approach from afar, in the law's lengths, and the most of them: where the way is
-  !> long they are longer.
+  !> Steps of the approach from large separation, in the law's lengths, and their largest number;
+  !> for a long approach the steps are longer.
   real(wp), parameter :: approach_step = 0.5_wp
   integer, parameter :: most_approach = 400
-  !> Steps of the approach in a row that may fail; after them what is left of the way is one step.
+  !> Number of consecutive failed steps of the approach after which the rest is one step.
   integer, parameter :: most_lost = 3
-  !> With the paper's stopping rule states are not exact enough for `jump`; this many times the
-  !> change of h0 then counts as one.
+  !> With the paper's stopping rule states are not accurate enough for `jump`; a change of this many
+  !> times the change of h0 then counts as a jump.
   real(wp), parameter :: paper_jump = 5
-  !> Where the contact edge is caught between nodes it jumps from one to the next many times; in
-  !> steps longer than this (in the law's lengths) these jumps are not located one by one.
+  !> A contact edge that is pinned between nodes jumps many times from one to the next; in steps
+  !> longer than this (in the law's lengths) these jumps are not located individually.
   real(wp), parameter :: short_step = 0.11_wp
-  !> The largest spacing over the width of the neck for that: beyond it each jump tells in the
-  !> load, and there are few.
+  !> The largest ratio of the spacing to the width of the neck for this: with larger spacing each
+  !> jump changes the load noticeably, and the jumps are few.
   real(wp), parameter :: fine_enough = 0.4_wp
 
 contains
@@ -65,8 +66,8 @@ contains
     event%jumped = .false.
   end subroutine approach_to
 
-  !> Goes to h0; of the jumps of a contact edge that is caught between nodes on the way, the one of
-  !> largest tension is reported.
+  !> Moves to h0. If a pinned contact edge jumps several times, the jump of largest tension is
+  !> reported.
   subroutine step_to(self, h0, position, event)
     class(fixed_stepper_t), intent(inout) :: self
     real(wp), intent(in) :: h0
@@ -88,7 +89,7 @@ contains
     event%jump_uncertainty = slip%jump_uncertainty
   end subroutine step_to
 
-  !> Goes to h0 or, slipped = .true., to where the edge comes to rest on the way.
+  !> Moves to h0 or, slipped = .true., to the state in which the edge rests before h0.
   subroutine step_until_slip(self, h0, position, event, slipped)
     class(fixed_stepper_t), intent(inout) :: self
     real(wp), intent(in) :: h0
@@ -126,8 +127,8 @@ contains
     call self%follow_to_end(h0, position, event, beyond, arrived, stalled)
     if (arrived) return
     if (stalled) then
-      ! The iteration does not follow the branch, and no jump has been seen: whether what is found
-      ! at h0 is on this branch is not known.
+      ! The iteration does not follow the branch, and no jump was found: it is not known whether a
+      ! state at h0 is on this branch.
       call self%land(h0, position%state, landed, event)
       event%converged = .false.
       call remember(position, landed, 1, .true.)
@@ -137,7 +138,7 @@ contains
     if (.not. slipped) call self%jump_to(h0, beyond, has_landed, landed, position, event)
   end subroutine step_until_slip
 
-  !> Whether a step to h0 passes many jumps of the edge, which are not located one by one.
+  !> Whether a step to h0 contains many jumps of the edge, which are not located individually.
   pure logical function passes_many(self, h0, before)
     class(fixed_stepper_t), intent(in) :: self
     real(wp), intent(in) :: h0
@@ -148,9 +149,9 @@ contains
       over_neck(self%problem, self%meshes%grid(1)%spacing) < fine_enough
   end function passes_many
 
-  !> A step as the paper takes it: h0 changes at constant separation, and the iteration goes on
-  !> until its own rule is met. A jump is a change of deformation many times that of h0, and is
-  !> known only to have happened within the step.
+  !> A step of the paper: h0 changes at constant separation, and the iteration continues until the
+  !> paper's rule is met. A change of deformation many times that of h0 counts as a jump, which is
+  !> located only to within the step.
   subroutine paper_step(self, h0, position, event)
     class(fixed_stepper_t), intent(inout) :: self
     real(wp), intent(in) :: h0

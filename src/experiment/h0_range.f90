@@ -1,4 +1,4 @@
-!> The h0 that an experiment covers, and where its path begins.
+!> The range of h0 of an experiment, and the start of its path.
 module h0_range
   use kinds, only: wp
   use contact_scales, only: beyond_contact
@@ -11,7 +11,7 @@ module h0_range
 
 contains
 
-  !> The h0 [m] from which a path is shown: beyond any contact, or as the scene says.
+  !> The h0 [m] at which the shown path starts: beyond any contact, or the deck's value.
   real(wp) function path_start(request, problem) result(start)
     class(request_t), intent(in) :: request
     type(problem_t), intent(in) :: problem
@@ -21,7 +21,7 @@ contains
     if (allocated(request%path%h0_start)) start = request%path%h0_start
   end function path_start
 
-  !> The range of H0, in the law's lengths, that the scene covers.
+  !> The range of H0 of a scene, in the law's lengths.
   subroutine range_of(request, problem, low, high)
     class(request_t), intent(in) :: request
     type(problem_t), intent(in) :: problem
@@ -41,7 +41,7 @@ contains
     if (allocated(request%path)) then
       low = min(low, request%path%h0_end)
       high = max(high, request%path%h0_end)
-      ! Where the last jump apart leads belongs to the path too.
+      ! The state after the last jump out of contact also belongs to the path.
       high = max(high, path_start(request, problem), &
         problem%law%separation_of(beyond_contact(problem)))
     end if

@@ -1,4 +1,4 @@
-!> The values of h0 that the branches of a scene go through.
+!> The values of h0 on the branches of a scene.
 module h0_schedule
   use kinds, only: wp
   use experiment_request, only: request_t
@@ -8,12 +8,12 @@ module h0_schedule
   private
   public :: path_plan, loading_plan, unloading_plan, states_planned
 
-  !> States of a path that is stepped.
+  !> Number of states of a path that is stepped in h0.
   integer, parameter :: path_states = 100
 
 contains
 
-  !> Number of equilibria that the cycle asked for will take.
+  !> Number of equilibria of the requested cycle.
   pure integer function states_planned(request)
     class(request_t), intent(in) :: request
     integer :: k
@@ -31,8 +31,7 @@ contains
     end associate
   end function states_planned
 
-  !> The plan of a path on which there is one state for every h0; far: where it may begin, law's
-  !> lengths.
+  !> The plan of a path with one state for every h0; far: where it may begin, law's lengths.
   type(h0_schedule_t) function path_plan(request, law, far) result(plan)
     class(request_t), intent(in) :: request
     class(force_law_t), intent(in) :: law
@@ -50,7 +49,7 @@ contains
     plan%unique = .true.
   end function path_plan
 
-  !> The plan of the loading; also: values that it goes through as well, law's lengths.
+  !> The plan of the loading; also: further values of h0 to be included, law's lengths.
   type(h0_schedule_t) function loading_plan(request, law, also) result(plan)
     class(request_t), intent(in) :: request
     class(force_law_t), intent(in) :: law
@@ -69,7 +68,7 @@ contains
     integer, intent(in) :: k
     character(len=24) :: name
 
-    ! Not by a function of deferred length, which cases of a sweep would share: compiler note 4.
+    ! No function of deferred length, since cases of a sweep would share it: compiler note 4.
     write (name, '(a, i0)') 'unloading_', k
     associate (unloading => request%unloading)
       plan = schedule_of(trim(name), unloading%from(k), unloading%h0_end, unloading%h0_step, &
@@ -77,8 +76,8 @@ contains
     end associate
   end function unloading_plan
 
-  !> Values of h0 [m] from start to finish by step, whichever way that is, both ends included, with
-  !> the profiles asked for and the values `also` (law's lengths) in their places.
+  !> Values of h0 [m] from start to finish by step, in either direction, with both ends, the h0 of
+  !> requested profiles and the values `also` (law's lengths) in order.
   function schedule_of(name, start, finish, step, request, law, also) result(plan)
     character(len=*), intent(in) :: name
     real(wp), intent(in) :: start, finish, step
@@ -91,7 +90,7 @@ contains
     integer :: count, i
 
     sense = sign(1.0_wp, finish - start)
-    ! A last step that rounding leaves a hair short is not a step.
+    ! A remainder due to rounding is not a step.
     same = 1.0e-6_wp*min(step, abs(finish - start))
     count = floor(abs(finish - start)/step + 1.0e-6_wp)
     h0 = [(start + sense*step*i, i=0, count)]

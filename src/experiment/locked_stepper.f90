@@ -1,7 +1,7 @@
-!> What quasi-static experiments in edge-locked coordinates have in common: nothing is pinned
-!> between nodes and nothing is stiff, at any adhesion strength. `path_stepper` goes along the
-!> traced path of a law that attracts; `unique_stepper` is for others, under which there is one
-!> state for every h0.
+!> The common parts of quasi-static experiments in edge-locked coordinates: nothing is pinned
+!> between nodes, and the equations are not stiff at any adhesion strength. `path_stepper` follows
+!> the traced path of a law that attracts; `unique_stepper` is for other laws, under which there is
+!> one state for every h0.
 module locked_stepper
   use kinds, only: wp
   use dimensionless_problem, only: calm_gap
@@ -23,8 +23,8 @@ module locked_stepper
 
 contains
 
-  !> A state at h0 or, if the bodies would be near each other there, so far apart that they hardly
-  !> deform.
+  !> A state at h0 or, if the bodies would be close to each other there, at a separation so large
+  !> that they hardly deform.
   subroutine begin_afar(self, h0, position, event)
     class(locked_stepper_t), intent(inout) :: self
     real(wp), intent(in) :: h0
@@ -49,14 +49,14 @@ contains
     call remember(position, state, mesh, .false.)
   end subroutine begin_afar
 
-  !> An H0 at which the bodies hardly deform, or where repulsion hardly acts.
+  !> An H0 at which the bodies hardly deform, or at which the repulsion is negligible.
   pure real(wp) function far_away(self)
     class(locked_stepper_t), intent(in) :: self
 
     far_away = max(calm_gap(self%problem), self%meshes%level + 3)
   end function far_away
 
-  !> Solves from the guess `state` at h0.
+  !> Solves at h0 from the guess `state`.
   subroutine attempt(self, h0, state, mesh, event)
     class(locked_stepper_t), intent(inout) :: self
     real(wp), intent(in) :: h0

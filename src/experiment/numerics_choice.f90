@@ -1,4 +1,4 @@
-!> Which grid, which iteration and how finely: what follows from the accuracy asked for, and why.
+!> The choice of grid, iteration and fineness from the accuracy, and its reason.
 module numerics_choice
   use kinds, only: wp
   use dimensionless_problem, only: problem_t
@@ -14,21 +14,21 @@ module numerics_choice
   public :: choice_t, choose, fixed_choice, fixed_mesh, companion
   public :: grid_names, unchosen, edge_locked, uniform, panels
 
-  !> Grids: none, since nothing is solved or bodies are rigid; panels locked to the contact edge;
-  !> two that are fixed in space. Their names in results.
+  !> The grids are none, for rigid bodies; panels locked to the contact edge; two that are fixed in
+  !> space. Their names in results.
   integer, parameter :: unchosen = 0, no_grid = 1, edge_locked = 2, uniform = 3, panels = 4
   character(len=*), parameter :: grid_names(*) = [character(len=11) :: 'none', 'edge_locked', &
     'uniform', 'panels']
 
   type :: choice_t
     integer :: grid = unchosen
-    !> What results call the iteration, and why this grid.
+    !> The name of the iteration in results, and the reason for the grid.
     character(len=:), allocatable :: method, because
     type(solver_options_t) :: options
-    !> Digits that edge-locked meshes are to have.
+    !> Digits of edge-locked meshes.
     real(wp) :: digits = 7
-    !> Fixed grids: nodes and extent (lateral units), nodes of a panel, and its size over the
-    !> smallest feature.
+    !> For fixed grids: number of nodes and extent (lateral units), nodes of a panel, and the
+    !> panel's size over the smallest feature.
     integer :: nodes = 0, panel_order = 12
     real(wp) :: extent = 0, panel_over_feature = 0.5_wp
   contains
@@ -36,18 +36,17 @@ module numerics_choice
   end type choice_t
 
   !> Spacing over the smallest feature at which a uniform grid resolves it, and the paper's range of
-  !> nodes, which bounds what is chosen unasked.
+  !> the number of nodes, which limits the automatic choice.
   real(wp), parameter :: comfortable = 0.2_wp
   integer, parameter :: fewest = 200, most = 1500
-  !> Nodes up to which the error of a uniform grid is estimated on a finer one.
+  !> Number of nodes up to which the error of a uniform grid is estimated on a finer one.
   integer, parameter :: largest_doubled = 300
-  !> What may be left of an extremum's place over the accuracy: a load goes with it by some times as
-  !> much.
+  !> Error of an extremum's place over the accuracy: the error of the load is a few times larger.
   real(wp), parameter :: place_over_accuracy = 1.0e-5_wp
 
 contains
 
-  !> For H0 down to h0_low (law's lengths); profiles: whether some are asked for.
+  !> The choice for H0 down to h0_low (law's lengths); profiles: some are requested.
   type(choice_t) function choose(numerics, problem, h0_low, profiles) result(chosen)
     type(numerics_t), intent(in) :: numerics
     type(problem_t), intent(in) :: problem
@@ -67,9 +66,10 @@ contains
     associate (options => chosen%options)
       options%mixing = numerics%method == 'mixing'
       options%tolerance = min(1.0e-8_wp, 0.01_wp*numerics%accuracy)
-      ! Rounding decides where below its tolerance an iteration stops, which shows in the digits of
-      ! a load from a thousandth of it on: beyond those asked for. Less costs some products. Mixing
-      ! would pay more, and on uniform grids the mesh leaves far larger errors.
+      ! The residual at which an iteration stops, below its tolerance, depends on rounding. This
+      ! changes the digits of a load beyond a thousandth of the tolerance; with the lower tolerance
+      ! these are beyond the requested digits, at the cost of a few products. For mixing the cost
+      ! would be larger, and on uniform grids the error of the mesh is far larger.
       if (.not. options%mixing .and. numerics%grid /= 'uniform') &
         options%tolerance = min(options%tolerance, max(1.0e-10_wp, 1.0e-4_wp*numerics%accuracy))
       if (allocated(numerics%residual_tolerance)) options%tolerance = numerics%residual_tolerance
@@ -107,7 +107,7 @@ contains
     if (chosen%is_fixed()) call size_grid(chosen, numerics, problem, h0_low)
   end function choose
 
-  !> A grid that is fixed in space, whatever the iteration.
+  !> The choice of a grid that is fixed in space, for any iteration.
   type(choice_t) function fixed_choice(numerics, problem, h0_low, grid) result(chosen)
     type(numerics_t), intent(in) :: numerics
     type(problem_t), intent(in) :: problem
@@ -118,7 +118,7 @@ contains
     call size_grid(chosen, numerics, problem, h0_low)
   end function fixed_choice
 
-  !> Nodes and extent of a grid that is fixed in space.
+  !> Chooses nodes and extent of a grid that is fixed in space.
   subroutine size_grid(chosen, numerics, problem, h0_low)
     type(choice_t), intent(inout) :: chosen
     type(numerics_t), intent(in) :: numerics
@@ -132,7 +132,8 @@ contains
     feature = smallest_feature(problem, widest)
     chosen%extent = 1.5_wp*widest + 8
     if (allocated(numerics%r_max)) chosen%extent = numerics%r_max/problem%lateral
-    ! The bounds before the whole number: where bodies adhere strongly the quotient is beyond any.
+    ! The bounds are applied before the conversion: under strong adhesion the quotient exceeds any
+    ! integer.
     chosen%nodes = ceiling(min(real(most, wp), max(real(fewest, wp), &
       chosen%extent/(comfortable*feature))))
     if (allocated(numerics%nodes)) chosen%nodes = numerics%nodes
@@ -145,15 +146,15 @@ contains
     is_fixed = self%grid >= uniform
   end function is_fixed
 
-  !> Nodes of panels fixed in space for a relative accuracy of load and displacement.
+  !> Nodes of panels fixed in space, for a relative accuracy of load and displacement.
   pure integer function panel_order_for(accuracy) result(order)
     real(wp), intent(in) :: accuracy
 
     order = min(16, max(6, nint(4.6_wp - 0.8_wp*log10(accuracy))))
   end function panel_order_for
 
-  !> The mesh of a fixed grid: equal spacing, or equal panels as far as the contact reaches and
-  !> doubling ones beyond.
+  !> The mesh of a fixed grid: equal spacing, or equal panels up to the largest contact radius and
+  !> panels of doubling size beyond.
   type(discretisation_t) function fixed_mesh(chosen, problem, h0_low) result(mesh)
     type(choice_t), intent(in) :: chosen
     type(problem_t), intent(in) :: problem
@@ -168,7 +169,7 @@ contains
     end if
     widest = min(largest_radius(problem, h0_low, contact_level(problem)), chosen%extent)
     finest = chosen%panel_over_feature*smallest_feature(problem, widest)
-    ! No more nodes than a uniform grid would have been given.
+    ! At most as many nodes as a uniform grid would have.
     count = ceiling(min(widest/finest, real(max(1, chosen%nodes/chosen%panel_order), wp)))
     finest = widest/count
     outer = widest + graded_ends(0.0_wp, max(chosen%extent, 2*widest) - widest, finest, 1.0_wp, &
@@ -177,9 +178,9 @@ contains
       elastic=.true.)
   end function fixed_mesh
 
-  !> Another choice of a fixed grid, to estimate the error by: panels of two more nodes; twice the
-  !> nodes on the same length and a fifth farther out, or where that would cost more than the run,
-  !> half of them and a fifth less far.
+  !> Another fixed grid for the error estimate: panels with two more nodes; or twice the nodes per
+  !> length and an extent larger by a fifth; or, if this would cost more than the run, half the
+  !> nodes per length and a smaller extent.
   pure type(choice_t) function companion(chosen)
     type(choice_t), intent(in) :: chosen
 

@@ -1,5 +1,5 @@
-!> The one walk through what the experiments found: it enters the places that numbers are reported
-!> of into the table, under the names that `result_rows` has.
+!> Collects the places at which numbers are reported: it goes once through the results of the
+!> experiments and enters the places into the table, under the names in `result_rows`.
 module outcome_places
   use kinds, only: wp
   use path_tangent, only: h0_alone => of_h0, load_alone => of_load
@@ -16,15 +16,15 @@ module outcome_places
   private
   public :: enter_all, enter_cycle, enter_energy
 
-  !> Part of the terms of the slope of a drive's position that cancellation leaves at a turn.
+  !> The slope of a drive's position at a turn, after cancellation, as a fraction of its terms.
   real(wp), parameter :: turning = 1.0e-6_wp
-  !> Numbers that each drive has or not.
+  !> Numbers of each drive that may not exist.
   character(len=*), parameter :: of_each_way(*) = [character(len=18) :: 'device_jump_in', &
     'device_landing_in', 'device_jump_out', 'device_landing_out']
 
 contains
 
-  !> Enters all but energies and tables.
+  !> Enters all places except those of energies and tables.
   subroutine enter_all(outcome, places)
     type(experiment_result_t), intent(in) :: outcome
     type(places_t), intent(inout) :: places
@@ -35,7 +35,7 @@ contains
     if (allocated(outcome%readings)) call enter_readings(outcome%readings, places)
   end subroutine enter_all
 
-  !> Enters a path; its folds are exact.
+  !> Enters the places of a path; its folds are exact.
   subroutine enter_path(path, places)
     type(path_t), intent(in) :: path
     type(places_t), intent(inout) :: places
@@ -47,7 +47,7 @@ contains
     call enter_profiles(path%profile, places)
     n = size(path%fold)
     if (n > 0) then
-      ! What a stretch of the path begins with may be another fold.
+      ! A part of the path may begin with another fold.
       if (path%first_piece == 1) call places%enter('jump_in', 1, path%fold(1))
       if (path%unstable_after(n) == 0) call places%enter('jump_out', 1, path%fold(n))
     end if
@@ -57,7 +57,7 @@ contains
     end if
     if (.not. allocated(path%finish)) return
     if (path%fallen) then
-      ! The end of a fall gets no error: it is on no mesh.
+      ! The end of a collapse has no error, since it is on no mesh.
       fall%at = path%finish%at
       call places%enter('end', 1, fall)
     else
@@ -66,7 +66,7 @@ contains
     end if
   end subroutine enter_path
 
-  !> Enters a cycle; where the path has the jumps, they are exact.
+  !> Enters the places of a cycle; if the path has the jumps, they are exact.
   subroutine enter_cycle(outcome, places)
     type(experiment_result_t), intent(in) :: outcome
     type(places_t), intent(inout) :: places
@@ -81,7 +81,7 @@ contains
     do k = 1, size(outcome%unloading)
       associate (branch => outcome%unloading(k))
         call enter_branch(branch, 'samples', places)
-        ! What is not allocated is absent.
+        ! An argument that is not allocated counts as absent.
         call places%enter('unload_max_tension', k, branch%lowest)
         call places%enter('unload_jump_out', k, branch%jump)
         if (allocated(branch%jump) .and. .not. places%has('jump_out')) &
@@ -90,7 +90,7 @@ contains
     end do
   end subroutine enter_cycle
 
-  !> Enters what every branch has; finish: the name under which its last state is entered.
+  !> Enters the places of a branch; finish: the name of the place of its last state.
   subroutine enter_branch(branch, finish, places)
     type(branch_t), intent(in) :: branch
     character(len=*), intent(in) :: finish
@@ -118,7 +118,7 @@ contains
     end do
   end subroutine enter_profiles
 
-  !> Keeps the largest tension.
+  !> Enters a place of largest tension if its tension exceeds that of the entered one.
   subroutine enter_tension(lowest, places)
     type(place_t), intent(in) :: lowest
     type(places_t), intent(inout) :: places
@@ -130,7 +130,7 @@ contains
     call places%enter('max_tension', 1, lowest)
   end subroutine enter_tension
 
-  !> Enters what was read from the path: jumps and energies of drives, states under given loads.
+  !> Enters the readings of the path: jumps and energies of drives, states under given loads.
   subroutine enter_readings(readings, places)
     type(path_readings_t), intent(in) :: readings
     type(places_t), intent(inout) :: places
@@ -150,7 +150,7 @@ contains
     end do
   end subroutine enter_readings
 
-  !> Enters the jumps of drive i, one by one and the first of each way, and the energy they lose.
+  !> Enters all jumps of drive i, the first jump of each direction, and the energy of the jumps.
   subroutine enter_driven(i, driven, places)
     integer, intent(in) :: i
     type(driven_t), intent(in) :: driven
@@ -163,7 +163,7 @@ contains
     do k = 1, size(driven%jump)
       associate (jump => driven%jump(k), drive => driven%drive%weights)
         before = of_curve(jump%before, drive)
-        ! Before the drive turns round h0 may.
+        ! The turn of the drive, or the fold of h0 before it.
         before%turn_of = merge(drive, h0_alone, abs(dot_product(drive, jump%before%slopes)) <= &
           turning*sum(abs(drive*jump%before%slopes)))
         if (allocated(after)) deallocate (after)
@@ -175,7 +175,7 @@ contains
         else
           call places%enter('device_energy', i)
         end if
-        ! An `after` that is not allocated is absent.
+        ! If `after` is not allocated, it counts as absent.
         call places%enter('jump_before', places%elements('jump_before') + 1, before)
         call places%enter('jump_after', places%elements('jump_after') + 1, after)
         way = merge('in ', 'out', jump%inward)
@@ -189,7 +189,7 @@ contains
     end do
   end subroutine enter_driven
 
-  !> A state of the curve as a place; its D has the given weights.
+  !> A state of the curve as a place whose D has the given weights.
   type(place_t) function of_curve(state, weights) result(place)
     type(path_state_t), intent(in) :: state
     real(wp), intent(in) :: weights(2)
@@ -203,8 +203,9 @@ contains
     place%left(of_energy) = state%uncertainty
   end function of_curve
 
-  !> Enters the energy that a cycle loses: that of a path that goes from afar through all its jumps,
-  !> or of a loading and the first unloading that come back to where they began.
+  !> Enters the energy that a cycle dissipates: for a path from large separation through all its
+  !> jumps, or for a loading and the first unloading that end on the outermost piece, where they
+  !> began.
   subroutine enter_energy(known, outcome, places)
     type(known_path_t), intent(in) :: known
     type(experiment_result_t), intent(in) :: outcome

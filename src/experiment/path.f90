@@ -1,6 +1,6 @@
-!> What the equilibrium path shows from bodies far apart, or a given h0, to a contact at a given h0:
-!> stable and unstable states, every fold in h0, every extremum of the load, and between these
-!> points as many more as make the curve smooth.
+!> The equilibrium path as a result, from large separation, or a given h0, to a contact at a given
+!> h0: stable and unstable states, every fold in h0, every extremum of the load, and enough points
+!> between these for a smooth curve.
 module path
   use kinds, only: wp
   use dimensionless_problem, only: spacing_over_neck
@@ -15,29 +15,29 @@ module path
   private
   public :: path_t, follow_path, find_finish
 
-  !> In the units of `dimensionless_problem`, in the order from afar inward.
+  !> The path in the units of `dimensionless_problem`, in the order from large separations inward.
   type :: path_t
     integer :: states = 0
     !> Folds in h0, and the number of unstable modes after each; extrema of the load.
     type(place_t), allocatable :: fold(:), extremum(:)
     integer, allocatable :: unstable_after(:)
-    !> Largest tension, the pull-off at controlled load; the last state, if it is stable; the states
-    !> whose profiles were asked for, in the order of the path.
+    !> Largest tension, which is the pull-off at controlled load; the last state, if it is stable;
+    !> the states of requested profiles, in the order of the path.
     type(place_t), allocatable :: lowest, finish, profile(:)
-    !> The stable pieces on which it begins and ends; 0 where that is unstable.
+    !> The stable pieces on which the path begins and ends; 0 if it is unstable there.
     integer :: first_piece = 0, last_piece = 0
     real(wp) :: worst_residual = 0, worst_spacing = 0
     type(extent_t) :: extent
-    !> Whether it ends in the fall of bodies that nothing keeps apart.
+    !> Whether the path ends in a collapse of the bodies.
     logical :: fallen = .false.
     type(ending_t) :: ending
   end type path_t
 
 contains
 
-  !> The part of the path that `steps` knows from h0_start, or where that is absent from its
-  !> beginning, to the contact at h0_end. States go to the observer, and profiles where the path
-  !> crosses the values `profiles`.
+  !> The part of the known path from h0_start, or from its beginning if h0_start is absent, to the
+  !> contact at h0_end. The observer receives the states, and profiles where the path crosses the
+  !> values `profiles`.
   subroutine follow_path(steps, h0_end, profiles, observer, path, h0_start)
     class(path_stepper_t), intent(inout) :: steps
     real(wp), intent(in) :: h0_end, profiles(:)
@@ -63,7 +63,7 @@ contains
       if (i == first .and. present(h0_start)) row = row_at_h0(steps, i, h0_start)
       if (i == first) path%first_piece = piece_of(steps%known, i)
       row%profile = any(abs(profiles - row%state%h0) <= 0)
-      ! Where the path passes to another mesh, points are there twice.
+      ! Where the path passes to another mesh, two points exist on both.
       if (i == first .or. steps%known%path%comes_from_before(i)) &
         call take(steps, row, observer, path)
       if (i == last .and. .not. ends_between) exit
@@ -84,7 +84,8 @@ contains
     steps%cost%states = steps%cost%states + path%states
   end subroutine follow_path
 
-  !> The first point after which the path comes to h0; behind the last where it never does.
+  !> The first point after which the path reaches h0; the number after the last point if it never
+  !> does.
   pure integer function first_crossing(path, h0) result(i)
     type(traced_path_t), intent(in) :: path
     real(wp), intent(in) :: h0
@@ -97,7 +98,7 @@ contains
   end function first_crossing
 
   !> The last point before the innermost stable equilibrium at h0_end; ends_between: the end is
-  !> between that and the next.
+  !> between this point and the next one.
   pure subroutine find_end(known, h0_end, last, ends_between)
     type(known_path_t), intent(in) :: known
     real(wp), intent(in) :: h0_end
@@ -116,7 +117,7 @@ contains
     end do
   end subroutine find_end
 
-  !> The innermost stable equilibrium at h0_end as a place; found: the path has it.
+  !> The innermost stable equilibrium at h0_end as a place; found: it is on the path.
   subroutine find_finish(steps, h0_end, finish, found)
     class(path_stepper_t), intent(inout) :: steps
     real(wp), intent(in) :: h0_end
@@ -132,7 +133,7 @@ contains
     if (found) finish = place_of_row(steps, row)
   end subroutine find_finish
 
-  !> The stable piece on which the path goes on from point i; 0 where it is unstable.
+  !> The stable piece on which the path continues from point i; 0 if it is unstable there.
   pure integer function piece_of(known, i) result(k)
     type(known_path_t), intent(in) :: known
     integer, intent(in) :: i
@@ -142,7 +143,7 @@ contains
     end do
   end function piece_of
 
-  !> A row as one that is reported.
+  !> A row as a place.
   type(place_t) function place_of_row(steps, row) result(reported)
     type(path_stepper_t), intent(in) :: steps
     type(row_t), intent(in) :: row
@@ -154,7 +155,7 @@ contains
     end associate
   end function place_of_row
 
-  !> Gives a row to the observer and keeps what is reported of it.
+  !> Gives a row to the observer and stores its reported places.
   subroutine take(steps, row, observer, path)
     type(path_stepper_t), intent(in) :: steps
     type(row_t), intent(in) :: row
@@ -191,8 +192,8 @@ contains
 
   contains
 
-    !> Whether the row's tension is the largest so far. Between an extremum and a point that is
-    !> none, such as where the path passes to another mesh, what meshes err by does not decide.
+    !> Whether the row's tension is the largest so far. Between an extremum and another point, such
+    !> as one where the path passes to the next mesh, the error of the meshes must not decide.
     logical function lowers(lowest)
       type(place_t), allocatable, intent(in) :: lowest
       real(wp) :: handicap

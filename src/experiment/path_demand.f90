@@ -1,5 +1,5 @@
-!> How far the path must be known for what is read from it: a soft spring lets bodies land far
-!> apart, and pulls them far into contact.
+!> The range of the path that is needed for its readings: with a soft spring bodies land far apart,
+!> and are pulled far into contact.
 module path_demand
   use kinds, only: wp, pi
   use dimensionless_problem, only: problem_t, coupling_over, yielding_gap
@@ -11,17 +11,18 @@ module path_demand
   private
   public :: widen_path, farthest_wanted, h0_in_contact
 
-  !> What is left of the bodies' yielding, over what makes them jump, where their deformation no
-  !> longer shows in the load: beyond, closed forms take the place of the path.
+  !> Deformation of the bodies, as a fraction of that at the jump, that no longer affects the load;
+  !> at larger separations closed forms replace the path.
   real(wp), parameter :: no_yielding = 1.0e-9_wp
-  !> A contact radius is tried in steps of this ratio; and what JKR theory may miss of an h0.
+  !> Ratio of successive trial radii of the contact; and margin for the error of an h0 of JKR
+  !> theory.
   real(wp), parameter :: ratio = 1.1_wp, margin = 0.1_wp
-  !> h0 that are tried for the tension of rigid bodies.
+  !> Number of h0 at which the tension of rigid bodies is evaluated.
   integer, parameter :: tried = 100
 
 contains
 
-  !> Widens a range of h0 (law's lengths) to what has to be traced.
+  !> Extends a range of h0 (law's lengths) to the range that must be traced.
   pure subroutine widen_path(request, problem, low, high)
     class(request_t), intent(in) :: request
     type(problem_t), intent(in) :: problem
@@ -43,7 +44,7 @@ contains
         low = min(low, problem%law%gap_of(device%z_end))
       do i = 1, size(device%stiffness)
         if (device%stiffness(i) > 0) then
-          ! The drive comes this close, at least behind the highest barrier.
+          ! The drive comes at least this close, behind the highest barrier.
           b = problem%load/(device%stiffness(i)*problem%length)
           wanted = 1 - b*barrier_load(problem)
           if (allocated(device%z_end)) wanted = min(wanted, problem%law%gap_of(device%z_end))
@@ -55,7 +56,7 @@ contains
     end associate
   end subroutine widen_path
 
-  !> The largest h0 at which a state is wanted (law's lengths); 0: nothing asks for any.
+  !> The largest h0 at which a state is needed (law's lengths); 0: there is no such need.
   pure real(wp) function farthest_wanted(request, problem) result(farthest)
     class(request_t), intent(in) :: request
     type(problem_t), intent(in) :: problem
@@ -93,7 +94,7 @@ contains
     end do
   end function gap_of_load
 
-  !> The largest repulsion between undeformed bodies outside the well of contact; 0 without one.
+  !> The largest repulsion between undeformed bodies outside the contact; 0 if there is none.
   pure real(wp) function barrier_load(problem) result(load)
     type(problem_t), intent(in) :: problem
     integer :: step
@@ -107,9 +108,8 @@ contains
     end do
   end function barrier_load
 
-  !> A tension that no pull-off exceeds: of parabolas that of rigid bodies; of others the larger one
-  !> of rigid bodies and of JKR theory. Thin films hold on for up to
-  !> twice that.
+  !> A tension that no pull-off exceeds: for parabolas that of rigid bodies; for other shapes the
+  !> larger one of rigid bodies and JKR theory. Thin films reach up to twice this tension.
   pure real(wp) function largest_pull(problem) result(tension)
     type(problem_t), intent(in) :: problem
     integer :: step
@@ -126,7 +126,7 @@ contains
     end do
   end function largest_pull
 
-  !> An h0 below that at which a h0 - b load in contact is `wanted`, by JKR theory (10), (11).
+  !> An h0 below the one at which a h0 - b load in contact is `wanted`, by JKR theory (10), (11).
   pure real(wp) function h0_in_contact(problem, a, b, wanted) result(h0)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: a, b, wanted

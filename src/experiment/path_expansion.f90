@@ -1,7 +1,7 @@
-!> The path near a state on a finer mesh: a parabola in its coordinate with exact slopes
-!> (`path_tangent`); how these change, the path itself tells. From it the same place follows, where
-!> D = weights(1) h0 + weights(2) load turns or has a value. That holds beside folds too, where an
-!> h0 that is off by little moves the load by much.
+!> The path near a state on a finer mesh: a parabola in the path's coordinate with exact slopes
+!> (`path_tangent`) and the second derivatives of the traced path. The parabola gives the place at
+!> which D = weights(1) h0 + weights(2) load turns or has a value. It is accurate also near folds,
+!> where a small error of h0 changes the load much.
 module path_expansion
   use kinds, only: wp
   use contact_state, only: state_t
@@ -29,14 +29,14 @@ module path_expansion
     procedure, private :: expand
   end type expansion_t
 
-  !> How far an expansion is believed; its longest move, and how often it may.
+  !> Largest distance at which the expansion is accurate; largest move, and number of moves.
   real(wp), parameter :: believed = 1.0e-3_wp, farthest = 0.1_wp
   integer, parameter :: most_moves = 8
 
 contains
 
-  !> An expansion at the coordinate s, not yet solved: from the guess `state` on the finer mesh, and
-  !> with the curvatures of the path about it.
+  !> An expansion at the coordinate s before its state is solved, with the guess `state` on the
+  !> finer mesh and the second derivatives of the path about it.
   pure type(expansion_t) function expansion_about(about, s, state) result(near)
     type(arc_t), intent(in) :: about
     real(wp), intent(in) :: s
@@ -47,8 +47,8 @@ contains
     near%curvature = [about%curvature(h0_alone, s), about%curvature(load_alone, s), 0.0_wp]
   end function expansion_about
 
-  !> Moves an expansion along the path until the place is near at which D turns or is `wanted`, and
-  !> says how far it is. found = .false.: the finer mesh has no such place.
+  !> Moves an expansion along the path until the place at which D turns, or is `wanted`, is near,
+  !> and returns the distance to this place. found = .false.: the finer mesh has no such place.
   subroutine move_to(near, fine, mesh, weights, turns, wanted, distance, found)
     class(expansion_t), intent(inout) :: near
     type(finer_t), intent(inout) :: fine
@@ -70,8 +70,8 @@ contains
     end do
   end subroutine move_to
 
-  !> Expands the path at near%s, from the guess near%state; found = .false. where the finer mesh has
-  !> no such state.
+  !> Expands the path at near%s from the guess near%state; found = .false.: the finer mesh has no
+  !> such state.
   subroutine expand(near, fine, mesh, found)
     class(expansion_t), intent(inout) :: near
     type(finer_t), intent(inout) :: fine
@@ -88,8 +88,8 @@ contains
     call energy_of(fine%equations_t, mesh, near%state, near%energy, uncertainty)
   end subroutine expand
 
-  !> How far from the middle of an expansion D turns or is `wanted`. Beyond a turn, where it has no
-  !> such value, the turn stands for it.
+  !> Distance from the centre of an expansion to the place at which D turns or is `wanted`. If D has
+  !> no such value, the distance to the turn.
   pure real(wp) function distance_to(near, weights, turns, wanted) result(distance)
     class(expansion_t), intent(in) :: near
     real(wp), intent(in) :: weights(2), wanted
@@ -108,8 +108,8 @@ contains
     end if
   end function distance_to
 
-  !> What is read at a distance from the middle; no contact radius. The energy's derivative by h0 is
-  !> minus the load.
+  !> The quantities at a distance from the centre, without the contact radius. The energy's
+  !> derivative by h0 is minus the load.
   pure function read_at(near, distance) result(read)
     class(expansion_t), intent(in) :: near
     real(wp), intent(in) :: distance

@@ -1,5 +1,5 @@
-!> What the next state along the path is expected to be: what a span of it has there, and by how
-!> much that missed the states before.
+!> The prediction of the next state along the path: the state of the span, plus the extrapolated
+!> errors of the span at previous states.
 module path_prediction
   use kinds, only: wp
   use solver, only: solver_t
@@ -12,10 +12,10 @@ module path_prediction
   private
   public :: missed_t, expect
 
-  !> By how much a span misses the states of an experiment's past: their numbers and h0, by which
-  !> they are known again (numbers alone repeat from branch to branch), their coordinates, and what
-  !> has to be added to H0, scale and gaps (a column a state). It follows from the span and the
-  !> past, and is made anew only where these have changed.
+  !> The errors of a span at the past states of an experiment: number and h0 of each state, which
+  !> identify it (numbers alone repeat from branch to branch), its coordinate, and the corrections
+  !> of H0, scale and gaps (one column for each state). The errors depend on the span and the past
+  !> only, and are computed when these change.
   type :: missed_t
     private
     integer :: held = 0, number(memory) = 0
@@ -27,21 +27,21 @@ module path_prediction
     procedure, private :: first_of_use
   end type missed_t
 
-  !> The largest sum of the weights of states that tell by how much a span misses the next: an
-  !> extrapolation far beyond them tells nothing.
+  !> The largest sum of absolute weights in the extrapolation of a span's errors: an extrapolation
+  !> far beyond the past states is useless.
   real(wp), parameter :: most_weight = 100
 
 contains
 
-  !> Forgets what was found with another span.
+  !> Removes the errors of another span.
   pure subroutine clear(self)
     class(missed_t), intent(inout) :: self
 
     self%held = 0
   end subroutine clear
 
-  !> The state that is expected at h0, where the span has the coordinate s: that of the span, and by
-  !> how much it missed the last states, extrapolated.
+  !> The predicted state at h0, where the span has the coordinate s: the state of the span,
+  !> corrected by the extrapolated errors of the last states.
   subroutine expect(solver, span, missed, h0, s, position, state)
     class(solver_t), intent(in) :: solver
     type(path_span_t), intent(in) :: span
@@ -55,7 +55,7 @@ contains
     call missed%follow(solver, span, position)
     first = missed%first_of_use(span, s)
     place = s
-    ! The correction depends on the place, and the place on the correction: two rounds settle both.
+    ! The correction and the coordinate depend on each other; two rounds are enough for both.
     if (first <= missed%held) then
       do round = 1, 2
         weight(first:missed%held) = polynomial_weights(missed%at(first:missed%held), place)
@@ -70,7 +70,7 @@ contains
     end do
   end subroutine expect
 
-  !> Brings it to the position's past; a state that it has already keeps what was found.
+  !> Computes the errors for the position's past; those of known states are kept.
   subroutine follow(self, solver, span, position)
     class(missed_t), intent(inout) :: self
     class(solver_t), intent(in) :: solver
@@ -80,7 +80,7 @@ contains
     integer :: j, k, n
 
     if (position%mesh /= span%mesh .or. position%held == 0) then
-      ! What another branch has left here no resumed run would know.
+      ! A resumed run would not have the errors from another branch.
       self%held = 0
       return
     end if
@@ -98,7 +98,7 @@ contains
       allocate (self%gap(n, memory))
       self%held = 0
     end if
-    ! The past loses states and gains new ones at its end: none moves to a later place.
+    ! States leave and enter the past in order, so no state moves to a later index.
     do k = 1, position%held
       j = findloc(self%number(:self%held), position%past_number(k), 1)
       if (j > 0) then
@@ -124,8 +124,8 @@ contains
     self%held = position%held
   end subroutine follow
 
-  !> The first of the past states from which it can be extrapolated to the coordinate s by how much
-  !> the span missed them; one more than there are: none.
+  !> The first past state from which the span's errors can be extrapolated to the coordinate s; one
+  !> more than their number: there is none.
   pure integer function first_of_use(self, span, s) result(first)
     class(missed_t), intent(in) :: self
     type(path_span_t), intent(in) :: span
@@ -133,8 +133,8 @@ contains
 
     associate (at => self%at(:self%held), last => self%held)
       do first = 1, last
-        ! A span's polynomial is good for no more than its length; and states whose places differ in
-        ! rounding alone tell nothing of a third.
+        ! A span's polynomial is accurate within its own length only; and states whose coordinates
+        ! differ only by rounding are useless for an extrapolation.
         if (abs(at(first) - s) > abs(span%ends(2) - span%ends(1))) cycle
         if (any(abs(at(first + 1:) - at(first:last - 1)) <= 0)) cycle
         if (sum(abs(polynomial_weights(at(first:), s))) <= most_weight) exit

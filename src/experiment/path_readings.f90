@@ -1,5 +1,5 @@
-!> The experiments that are read from the equilibrium path: springs and dead loads, fixed loads, and
-!> a table of stable states.
+!> The experiments that are evaluated on the equilibrium path: springs and dead loads, fixed loads,
+!> and a table of stable states.
 module path_readings
   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_positive_inf
   use kinds, only: wp
@@ -15,34 +15,35 @@ module path_readings
   private
   public :: path_readings_t, loaded_state_t, read_path
 
-  !> An equilibrium under a load (units of `dimensionless_problem`). It is stable at fixed load
-  !> where no mode is unstable at fixed h0 and dF/dh0 < 0.
+  !> An equilibrium under a load (units of `dimensionless_problem`). It is stable at fixed load if
+  !> no mode is unstable at fixed h0 and dF/dh0 < 0.
   type :: loaded_state_t
     real(wp) :: wanted = 0
     type(path_state_t) :: state
     logical :: stable = .false.
   end type loaded_state_t
 
-  !> In the units of `dimensionless_problem`.
+  !> The readings in the units of `dimensionless_problem`.
   type :: path_readings_t
     !> The points of the path.
     type(path_state_t), allocatable :: node(:)
-    !> A drive for each stiffness; and at prescribed h0, for the table.
+    !> A drive for each stiffness; and one at prescribed h0, for the table.
     type(driven_t), allocatable :: device(:), prescribed
     type(loaded_state_t), allocatable :: loaded(:)
     !> Derivatives at the nodes by each parameter of &sensitivity, (parameters, nodes).
     type(rate_t), allocatable :: rate(:, :)
-    !> h0 from which the path was traced, and from which bodies are taken as undeformed until there.
+    !> The h0 from which the path was traced, and the h0 from which the bodies are undeformed up to
+    !> there.
     real(wp) :: traced_from = 0, undeformed_from = 0
-    !> Of the table, the largest error of a load between rows by cubic polynomials.
+    !> For the table, the largest error of cubic interpolation of the load between rows.
     real(wp) :: table_interpolation_error = 0
-    !> Whether the path has more than a point and everything on it was solved.
+    !> Whether the path has more than one point and all its states were solved.
     logical :: solved = .true.
   end type path_readings_t
 
 contains
 
-  !> Reads what is asked for from the path that `steps` knows.
+  !> Evaluates the requested experiments on the path of `steps`.
   subroutine read_path(request, steps, listener, readings)
     class(request_t), intent(in) :: request
     class(path_stepper_t), intent(inout) :: steps
@@ -71,7 +72,7 @@ contains
       steps%cost%states = steps%cost%states + size(readings%loaded)
   end subroutine read_path
 
-  !> &fixed_load: all equilibria under each load.
+  !> &fixed_load: finds all equilibria under each load.
   subroutine find_loaded(load, steps, readings)
     real(wp), intent(in) :: load(:)
     class(path_stepper_t), intent(inout) :: steps
@@ -86,14 +87,14 @@ contains
       call states_where(steps%solver_t, steps%known%path, of_load, load(i), states, solved)
       readings%solved = readings%solved .and. solved
       do k = 1, size(states)
-        ! Inward h0 falls along what is stable at fixed h0.
+        ! On the path followed inward, h0 decreases where states are stable at fixed h0.
         one = loaded_state_t(load(i), states(k), states(k)%modes == 0 .and. states(k)%slopes(2) > 0)
         readings%loaded = [readings%loaded, one]
       end do
     end do
   end subroutine find_loaded
 
-  !> &device: one drive for each stiffness, or at prescribed h0.
+  !> &device: moves one drive for each stiffness, or one at prescribed h0.
   subroutine run_device(request, steps, readings)
     class(request_t), intent(in) :: request
     class(path_stepper_t), intent(inout) :: steps
@@ -118,7 +119,7 @@ contains
     end associate
   end subroutine run_device
 
-  !> Drives the bodies between positions [m]; a dead load has none.
+  !> Drives the bodies between positions [m]; a dead load has no positions.
   subroutine drive_between(request, steps, drive, driven, z_start, z_end)
     class(request_t), intent(in) :: request
     class(path_stepper_t), intent(inout) :: steps
@@ -134,7 +135,7 @@ contains
       end if
       call drive_bodies(steps%solver_t, steps%known%path, drive, &
         law%gap_of(request%path%h0_end), start, finish, driven)
-      ! The ends of its ways.
+      ! The states at the ends of the legs.
       steps%cost%states = steps%cost%states + 2*size(driven%leg)
     end associate
   end subroutine drive_between

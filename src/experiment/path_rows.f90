@@ -1,6 +1,6 @@
-!> The rows that show the equilibrium path: points of it, states at given h0, and between these as
-!> many more as straight lines through them need to show the curve: load and contact radius against
-!> h0, beside folds and far apart too.
+!> The rows of the equilibrium path: points of the path, states at given h0, and between these the
+!> number of states for which straight lines through the rows show the curve: load and contact
+!> radius against h0, also near folds and at large separations.
 module path_rows
   use kinds, only: wp
   use dimensionless_problem, only: contact_level_of
@@ -14,18 +14,19 @@ module path_rows
   private
   public :: row_t, row_of_point, row_at_h0, rows_between
 
-  !> One row: its state and mesh, the point of the path that it is (0: none), its unstable modes,
-  !> and whether it is solved. profile: it was asked for; for_curve: nothing is read off it.
+  !> One row: its state and mesh, the point of the path (0: it is none), its unstable modes, and
+  !> whether it is solved. profile: its profile is requested; for_curve: the row serves only for the
+  !> curve.
   type :: row_t
     type(state_t) :: state
     integer :: mesh = 1, point = 0, modes = 0
     logical :: converged = .true., profile = .false., for_curve = .false.
   end type row_t
 
-  !> How far the curve may be from a line, in parts of h0 and load at the ends of the span (which
-  !> are small far apart) and of the widest contact.
+  !> Largest distance of the curve from a line, in fractions of h0 and load at the ends of the span
+  !> (which are small at large separations) and of the widest contact.
   real(wp), parameter :: allowed = 0.003_wp
-  !> Parts of a span at whose ends the curve is looked at; most lines of a span.
+  !> Parts of a span at whose ends the curve is evaluated; largest number of lines of a span.
   integer, parameter :: parts = 4, most_lines = 16
 
 contains
@@ -51,9 +52,9 @@ contains
     call steps%state_at_h0(i, h0, row%mesh, row%state, row%converged)
   end function row_at_h0
 
-  !> The rows between point i and the next, inside the range of h0 from one value to another, in
-  !> order: profiles that are asked for, and the rows for the curve; of these such as do not
-  !> converge are left out, for the curve can do without. widest: contact radius, lateral units.
+  !> The rows between point i and the next, within a range of h0, in order: requested profiles, and
+  !> rows for the curve. Rows for the curve that do not converge are omitted. widest: contact
+  !> radius, lateral units.
   subroutine rows_between(steps, i, from, until, widest, profiles, rows)
     class(path_stepper_t), intent(inout) :: steps
     integer, intent(in) :: i
@@ -84,8 +85,8 @@ contains
       rows = pack(rows, rows%converged .or. rows%profile)
   end subroutine rows_between
 
-  !> The row at the coordinate s of the span after point i, as the path predicts it and, where that
-  !> is not an equilibrium to the tolerance, corrected.
+  !> The row at the coordinate s of the span after point i: the predicted state, corrected if it is
+  !> not an equilibrium to the tolerance.
   type(row_t) function row_for_curve(steps, i, span, s) result(row)
     class(path_stepper_t), intent(inout) :: steps
     integer, intent(in) :: i
@@ -99,8 +100,9 @@ contains
     call steps%correct(path_control(steps%problem, span%mesh, s), row%state, row%converged)
   end function row_for_curve
 
-  !> Coordinates of a span between `from` and `to`, in order. Equal parts will do: each is as far
-  !> from its line as the square of its length. widest: contact radius, lateral units.
+  !> Coordinates of a span between `from` and `to`, in order, at equal distances: the distance of
+  !> the curve from a line is proportional to the square of the line's length. widest: contact
+  !> radius, lateral units.
   pure function places_between(solver, span, from, to, widest) result(places)
     class(solver_t), intent(in) :: solver
     type(path_span_t), intent(in) :: span
@@ -128,7 +130,7 @@ contains
 
   contains
 
-    !> H0, load and contact radius that are expected at s.
+    !> H0, load and contact radius that the span predicts at s.
     pure function seen_at(s) result(values)
       real(wp), intent(in) :: s
       real(wp) :: values(3)
@@ -148,7 +150,7 @@ contains
 
   end function places_between
 
-  !> Values by their distance from `start`, all on one side of it.
+  !> Values on one side of `start`, sorted by their distance from it.
   pure function along(values, start) result(sorted)
     real(wp), intent(in) :: values(:), start
     real(wp), allocatable :: sorted(:)

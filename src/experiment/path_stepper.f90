@@ -1,10 +1,10 @@
 !> A quasi-static experiment under a law that attracts. All equilibria lie on one path, which is
-!> traced before the experiment: it says on which stable piece an experiment is, how far that goes
-!> and where a jump leads, and what the largest tension on the way is.
+!> traced before the experiment. The path gives the stable piece on which an experiment is, the ends
+!> of this piece, the landings of jumps, and the largest tension.
 !>
-!> The iteration solves the states; its result counts where it is the one that the path has. Usually
-!> that is one correction of the state that the path lets expect, and a check, with one
-!> factorisation for many steps; beside a fold the state is looked for along the path.
+!> The iteration solves the states; its result is accepted if it is the state on the path. Usually
+!> one correction of the predicted state and a check are enough, with one factorisation for many
+!> steps; near a fold the state is found by a search along the path.
 module path_stepper
   use kinds, only: wp
   use listener, only: listener_t
@@ -26,9 +26,9 @@ module path_stepper
   public :: path_stepper_t
 
   type, extends(locked_stepper_t) :: path_stepper_t
-    !> The path, once `know_path` has traced it.
+    !> The path, after `know_path` has traced it.
     type(known_path_t) :: known
-    !> The part of it that the last step went to, and by how much that missed the states before.
+    !> The span of the path at the last step, and its errors at previous states.
     type(path_span_t), private :: span
     type(missed_t), private :: missed
   contains
@@ -41,19 +41,20 @@ module path_stepper
     procedure, private :: solve_on_piece
   end type path_stepper_t
 
-  !> Beside a fold h0 moves with the square of the coordinate and iterations at fixed h0 do not
-  !> converge: the part of the last piece before one in which a state is looked for along the path.
+  !> Near a fold h0 is proportional to the square of the coordinate, and iterations at fixed h0 do
+  !> not converge: fraction of the interval next to a fold in which a state is found by a search
+  !> along the path.
   real(wp), parameter :: beside_fold = 0.3_wp
-  !> Change of the path's coordinate by which a state may miss its piece: meshes of more or fewer
-  !> nodes differ by their errors.
+  !> Change of the path's coordinate by which a state may lie outside its interval: meshes with
+  !> different numbers of nodes differ by their errors.
   real(wp), parameter :: slack = 1.0e-3_wp
 
 contains
 
   !> Traces the path from h0_high, or from where the bodies hardly deform, until it is stable at
-  !> h0_low; into_contact: until it is also on the mesh for contact; farthest: see `trace`, where
-  !> given, closely, so that the points make a smooth curve; accuracy: see `trace`. To be called
-  !> before the first step. The listener hears how far it is.
+  !> h0_low; into_contact: until it is also on the mesh for contact; farthest, accuracy: see
+  !> `trace`; with `farthest` the points define a smooth curve. To be called before the first step.
+  !> The listener receives messages about the progress.
   subroutine know_path(self, h0_high, h0_low, into_contact, listener, farthest, accuracy)
     class(path_stepper_t), intent(inout) :: self
     real(wp), intent(in) :: h0_high, h0_low
@@ -76,8 +77,8 @@ contains
     self%span%point = 0
   end subroutine know_path
 
-  !> Takes some meshes of other families in the place of its own, and traces the path there again;
-  !> taken: those on which that did not fail.
+  !> Replaces some meshes by those of another family, and traces the path on them again; taken: the
+  !> meshes on which this succeeded.
   subroutine know_path_on(self, others, wanted, taken)
     class(path_stepper_t), intent(inout) :: self
     type(mesh_family_t), intent(in) :: others
@@ -113,14 +114,14 @@ contains
     position%piece = 1
     call self%step_to(h0, position, event)
     if (event%ending%early() .and. self%known%fallen) event%ending%cause = fallen_before
-    ! What the approach passed before the experiment began is not part of it.
+    ! Jumps during the approach, before the experiment begins, are not part of the experiment.
     event%jumped = .false.
     event%fold = 0
     if (allocated(event%lowest)) event%lowest = extreme_t(position%state%load, h0)
   end subroutine approach_to
 
-  !> Goes to h0 along the stable pieces of the path, over the folds that are in the way, and notes
-  !> the first jump and the largest tension of the way.
+  !> Moves to h0 along the stable pieces of the path, with all jumps, and records the first jump and
+  !> the largest tension.
   subroutine step_to(self, h0, position, event)
     class(path_stepper_t), intent(inout) :: self
     real(wp), intent(in) :: h0
@@ -150,8 +151,8 @@ contains
     event%lowest = lowest
   end subroutine step_to
 
-  !> Leaves the position's piece over the fold at its inner or outer end, and lands. from: the h0
-  !> that the piece is left from, then that of the fold.
+  !> Leaves the position's piece over the fold at its inner or outer end, and lands. from: the h0 at
+  !> which the motion on this piece began; on return that of the fold.
   subroutine step_over(self, inward, from, position, lowest, event)
     class(path_stepper_t), intent(in) :: self
     logical, intent(in) :: inward
@@ -190,7 +191,8 @@ contains
     position%held = 0
   end subroutine step_over
 
-  !> Lets a point of the path be the largest tension if it is; 0 is none.
+  !> Replaces the largest tension by that of a point of the path if it is larger; 0: there is no
+  !> point.
   pure subroutine lower_to_point(path, point, lowest)
     type(traced_path_t), intent(in) :: path
     integer, intent(in) :: point
@@ -202,8 +204,8 @@ contains
     end associate
   end subroutine lower_to_point
 
-  !> The state at h0 on the position's piece: iterated at fixed h0 and, where that does not arrive
-  !> at the state that the path has, or beside a fold, looked for along the path.
+  !> Solves the state at h0 on the position's piece: by iteration at fixed h0 or, if this does not
+  !> converge to the state on the path, or near a fold, by a search along the path.
   subroutine solve_on_piece(self, h0, position, event)
     class(path_stepper_t), intent(inout) :: self
     real(wp), intent(in) :: h0
@@ -236,8 +238,8 @@ contains
     call remember(position, state, mesh, jumped, foretold=state%iterations == 1)
   end subroutine solve_on_piece
 
-  !> Whether the coordinate s in the piece after point i, between `ends`, is so near a fold that h0
-  !> hardly moves.
+  !> Whether the coordinate s in the interval after point i, between `ends`, is so near a fold that
+  !> h0 is nearly stationary.
   pure logical function is_beside_fold(self, i, piece, s, ends) result(beside)
     class(path_stepper_t), intent(in) :: self
     integer, intent(in) :: i, piece
@@ -254,7 +256,7 @@ contains
     end associate
   end function is_beside_fold
 
-  !> The state at h0 on the piece of the path after point i, however near a fold.
+  !> The state at h0 in the interval of the path after point i, even near a fold.
   subroutine state_at_h0(self, i, h0, mesh, state, converged)
     class(path_stepper_t), intent(inout) :: self
     integer, intent(in) :: i

@@ -1,7 +1,7 @@
-!> Errors of what is reported: each place is found again on a finer mesh, along the path or, where
-!> there is one state for every h0, at its h0; and the same is read there. What the iteration has
-!> left of the state itself is in the difference; what it has left on the finer mesh is added: a
-!> residual acts like an h0 that is off by as much.
+!> Errors of the reported numbers. Each place is found again on a finer mesh, along the path or, if
+!> there is one state for every h0, at its h0, and the same quantities are read there. The
+!> difference contains the residual error of the state itself. The residual error on the finer mesh
+!> is added: a residual acts like an equal error of h0.
 module place_errors
   use kinds, only: wp
   use regridding, only: regrid
@@ -27,14 +27,14 @@ module place_errors
   private
   public :: judge_places, conclude
 
-  !> What the search for a state along the path leaves of its h0, and a change of h0 small enough
-  !> for a derivative and large against rounding (law's lengths).
+  !> Error of h0 after a search for a state along the path; and a change of h0 for a difference
+  !> quotient, small and yet large against rounding (law's lengths).
   real(wp), parameter :: tight = 3.0e-11_wp, shift = 1.0e-5_wp
 
 contains
 
-  !> Judges all places that are read, or all there are, and were not judged; the steps count what
-  !> that cost. A place is behind the one that its jump began from.
+  !> Judges all places that are read, or all places, unless they are judged already; the steps count
+  !> the cost. A place comes after the place from which its jump started.
   subroutine judge_places(fine, steps, places, all)
     type(finer_t), intent(inout) :: fine
     class(solver_t), intent(inout) :: steps
@@ -76,7 +76,7 @@ contains
     steps%cost = fine%cost
   end subroutine judge_places
 
-  !> The largest relative error of all that is reported, if anything was judged.
+  !> The largest relative error of all reported numbers, if any place was judged.
   pure subroutine conclude(places, estimate)
     type(places_t), intent(in) :: places
     real(wp), allocatable, intent(inout) :: estimate
@@ -85,7 +85,7 @@ contains
     if (any(places%place%judged)) estimate = max(rounding, places%largest_error())
   end subroutine conclude
 
-  !> Finds the equilibria on the path that places are.
+  !> Finds the equilibria of the places on the path.
   subroutine locate(steps, places)
     class(path_stepper_t), intent(in) :: steps
     type(places_t), intent(inout) :: places
@@ -140,7 +140,7 @@ contains
     place%at = here%at
   end subroutine take
 
-  !> Judges a place of a path; wanted: what D is there on the finer mesh, unless it turns.
+  !> Judges a place of a path; wanted: the value of D on the finer mesh, unless D turns.
   subroutine judge_on_path(own, fine, path, wanted, place)
     type(equations_t), intent(in) :: own
     type(finer_t), intent(inout) :: fine
@@ -163,20 +163,20 @@ contains
       there(of_radius) = at(of_radius)
       left = 0
       if (place%turns() .or. place%after > 0) left = tight
-      ! Of its h0 rounding leaves more than the search where bodies yield much.
+      ! Where bodies deform much, rounding of h0 exceeds the error of the search.
       if (place%turns()) left = max(left, residual_floor(fine%problem, place%state))
       place%left(of_load) = (rounding + worst_residual*tight)*abs(at(of_load))
       place%left(of_displacement) = left + rounding*abs(at(of_displacement))
       if (place%turns()) then
         place%left(of_h0) = left
       else
-        ! What the iteration leaves moves a state at a given D as if that were off by as much of h0.
+        ! The residual moves a state at a given D like an equal error of h0 in D.
         left = max(left, what_residual_leaves(near%state))
         moved = near%read_at(near%distance_to(place%drive, .false., wanted + place%drive(1)*left))
         place%left(:of_displacement) = place%left(:of_displacement) + &
           abs(moved(:of_displacement) - there(:of_displacement))
         if (abs(place%drive(1)) <= 0) place%left(of_h0) = place%left(of_h0) + left
-        ! A given value is exact; a landing's is that of the turn.
+        ! A given value is exact; that of a landing has the error of the turn.
         if (abs(place%drive(2)) <= 0) then
           place%left(of_h0) = 0
           there(of_h0) = wanted
@@ -193,7 +193,7 @@ contains
       contact_level_of(own%problem), fine%meshes%grid(place%mesh), right)
   end subroutine judge_on_path
 
-  !> Judges a place without a path, where its h0 tells the state.
+  !> Judges a place without a path, where h0 determines the state.
   subroutine judge_at_h0(own, fine, place)
     type(equations_t), intent(in) :: own
     type(finer_t), intent(inout) :: fine
@@ -203,7 +203,7 @@ contains
     type(control_t) :: control
     real(wp) :: left
 
-    ! What did not converge has no counterpart.
+    ! A state that did not converge cannot be compared.
     place%known = place%state%residual < 1
     if (.not. place%known) return
     call fine%prepare(place%mesh)
@@ -225,7 +225,7 @@ contains
     place%left(of_h0) = 0
   end subroutine judge_at_h0
 
-  !> The state of a place on the finer mesh, to begin with.
+  !> The guess for the state of a place on the finer mesh.
   pure type(state_t) function guess_of(own, fine, place) result(state)
     type(equations_t), intent(in) :: own
     type(finer_t), intent(in) :: fine
@@ -235,9 +235,9 @@ contains
       fine%meshes%grid(place%mesh), place%state%scale)
   end function guess_of
 
-  !> The largest difference of gaps, and of pressures over the largest of them, between a place and
-  !> the same on a finer mesh, on the axis and at its nodes; raised by the margin. Gaps wider than
-  !> the law's length count in units of themselves: far out rounding is a part of the gap.
+  !> The largest difference of gaps, and of pressures over the largest pressure, between a place and
+  !> the same place on a finer mesh, on the axis and at its nodes, times the margin. Differences of
+  !> gaps above the law's length are relative: at large gaps rounding is proportional to the gap.
   pure real(wp) function profile_error(own, fine, place, right) result(largest)
     type(equations_t), intent(in) :: own
     type(finer_t), intent(in) :: fine

@@ -1,5 +1,5 @@
-!> Derivatives of what is reported by the parameters of &sensitivity: of each place that is read,
-!> and of the curve of what is read from the path.
+!> Derivatives of the reported numbers by the parameters of &sensitivity: at each place that is
+!> read, and along the curve of the path.
 module place_rates
   use kinds, only: wp
   use listener, only: listener_t
@@ -17,14 +17,14 @@ module place_rates
   private
   public :: rate_places
 
-  !> Part of the distance of two points of the path over which second derivatives are taken, and
-  !> that distance where it is not known.
+  !> Distance for second derivatives over the distance between two points of the path, and the
+  !> latter distance if it is not known.
   real(wp), parameter :: part = 0.015_wp, usual = 0.1_wp
 
 contains
 
-  !> Differentiates all places that numbers are read at, and the curve. A place is behind the one
-  !> that its jump began from.
+  !> Differentiates all places at which numbers are read, and the curve. A place comes after the
+  !> place from which its jump started.
   subroutine rate_places(sensitivity, steps, listener, outcome)
     type(sensitivity_t), intent(in) :: sensitivity
     class(path_stepper_t), intent(inout) :: steps
@@ -64,7 +64,7 @@ contains
     end associate
   end subroutine rate_places
 
-  !> Differentiates a place whose D changes as `wanted` says, if nothing turns there.
+  !> Differentiates a place; wanted: the derivatives of D, if nothing turns there.
   subroutine rate_place(steps, varied, wanted, place, found)
     class(path_stepper_t), intent(inout) :: steps
     type(variation_t), intent(in) :: varied(:)
@@ -92,8 +92,9 @@ contains
     if (found) place%rate = at_fixed(local, drive_weights(steps%problem, place%drive), wanted)
   end subroutine rate_place
 
-  !> Over which distance of the coordinate second derivatives are taken at s: a part of that between
-  !> the points of the path about it, polished ones aside, which may be as near as they like.
+  !> The distance of the coordinate for second derivatives at s: a fraction of that between the
+  !> neighbouring points of the path. Folds and extrema do not count, since they may be arbitrarily
+  !> near.
   pure real(wp) function apart_at(path, mesh, s) result(apart)
     type(traced_path_t), intent(in) :: path
     integer, intent(in) :: mesh

@@ -1,6 +1,6 @@
-!> The table of places that numbers are reported of (`reported_place`). A number of the summary has
-!> a name, one or more elements, and for each of them one place, or several whose sum it is, such as
-!> the energies before and after jumps.
+!> The table of places at which numbers are reported (`reported_place`). A number of the summary has
+!> a name, one or more elements, and for each element one place, or several places of which it is
+!> the sum, such as the energies before and after jumps.
 module places
   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan, ieee_is_nan
   use kinds, only: wp
@@ -13,8 +13,8 @@ module places
 
   integer, parameter :: name_length = 24
 
-  !> An element of a number is the sum of `factor` times what is read at its places; without a place
-  !> it is `factor` itself: 0, or NaN for what does not exist.
+  !> A term of an element: `factor` times the quantity at the place; without a place the term is
+  !> `factor` itself: 0, or NaN for a number that does not exist.
   type :: entry_t
     character(len=name_length) :: name = ''
     integer :: element = 1, place = 0
@@ -38,21 +38,21 @@ module places
     procedure, private :: parameters
   end type places_t
 
-  !> A number as it is reported, element by element, SI units; what does not exist is NaN. rate:
+  !> The values of a number, element by element, SI units; NaN if it does not exist. rate:
   !> (parameters, elements).
   type :: readings_t
     real(wp), allocatable :: value(:), error(:), rate(:, :)
   end type readings_t
 
-  !> What is not judged place by place.
+  !> Numbers that are not judged place by place.
   character(len=*), parameter :: of_table = 'table', of_energies = 'energy_lost'
-  !> What is asked for no derivatives.
+  !> Numbers without derivatives.
   character(len=*), parameter :: not_differentiated(*) = [character(len=8) :: 'profiles', &
     'samples', of_table]
 
 contains
 
-  !> Finds a place in the table, or adds it, and before it the one that its jump began from.
+  !> Finds a place in the table, or adds it, after the place from which its jump started.
   recursive subroutine keep(self, place, i)
     class(places_t), intent(inout) :: self
     type(place_t), intent(in) :: place
@@ -69,7 +69,8 @@ contains
     self%place(i)%after = after
   end subroutine keep
 
-  !> Whether two places are one: a point of the path, the landing after one, or all numbers agree.
+  !> Whether two places are the same: the same point of the path, or the same landing, or equal
+  !> numbers.
   pure logical function is_same(one, other)
     type(place_t), intent(in) :: one, other
 
@@ -80,8 +81,8 @@ contains
       all(abs([one%at, one%drive, one%turn_of] - [other%at, other%drive, other%turn_of]) <= 0)
   end function is_same
 
-  !> Lets an element of a number be read at a place, or adds `factor` times what is read there.
-  !> Without a place it is `factor` or, without that, does not exist.
+  !> Adds a term to an element of a number: `factor` times the quantity at a place. Without a place
+  !> the term is `factor`, or NaN if factor is absent too.
   subroutine enter(self, name, element, place, factor)
     class(places_t), intent(inout) :: self
     character(len=*), intent(in) :: name
@@ -115,7 +116,7 @@ contains
 
   end subroutine enter
 
-  !> Lets the elements that follow those there are be read at the places of a list.
+  !> Adds elements for the places of a list.
   subroutine enter_list(self, name, list)
     class(places_t), intent(inout) :: self
     character(len=*), intent(in) :: name
@@ -127,7 +128,7 @@ contains
     end do
   end subroutine enter_list
 
-  !> Takes a number back.
+  !> Removes a number.
   subroutine forget(self, name)
     class(places_t), intent(inout) :: self
     character(len=*), intent(in) :: name
@@ -135,7 +136,7 @@ contains
     if (allocated(self%entry)) self%entry = pack(self%entry, self%entry%name /= name)
   end subroutine forget
 
-  !> Whether there is such a number, or this element of it.
+  !> Whether the table has a number, or an element of it.
   pure logical function has(self, name, element)
     class(places_t), intent(in) :: self
     character(len=*), intent(in) :: name
@@ -150,7 +151,7 @@ contains
     end if
   end function has
 
-  !> How many elements a number has.
+  !> Number of elements of a number.
   pure integer function elements(self, name)
     class(places_t), intent(in) :: self
     character(len=*), intent(in) :: name
@@ -159,7 +160,7 @@ contains
     if (self%has(name)) elements = maxval(self%entry%element, self%entry%name == name)
   end function elements
 
-  !> The place at which a number is read; one that no mesh has, if the number does not exist.
+  !> The place of a number; a place without a mesh if the number does not exist.
   pure type(place_t) function place_of(self, name) result(place)
     class(places_t), intent(in) :: self
     character(len=*), intent(in) :: name
@@ -168,8 +169,8 @@ contains
       self%place(self%entry(findloc(self%entry%name == name, .true., 1))%place)
   end function place_of
 
-  !> The largest relative error of all that is reported; 0 if nothing was judged. Loads of a table
-  !> count against the largest of them.
+  !> The largest relative error of all reported numbers; 0 if no place was judged. Errors of a
+  !> table's loads are relative to the largest load.
   pure real(wp) function largest_error(self) result(largest)
     class(places_t), intent(in) :: self
     real(wp) :: load
@@ -190,7 +191,7 @@ contains
     largest = max(largest, self%largest_of(of_table, of_load)/load)
   end function largest_error
 
-  !> The largest error of a quantity at all places of a number, units of `dimensionless_problem`.
+  !> The largest error of a quantity over all places of a number, units of `dimensionless_problem`.
   pure real(wp) function largest_of(self, name, quantity) result(largest)
     class(places_t), intent(in) :: self
     character(len=*), intent(in) :: name
@@ -206,7 +207,7 @@ contains
     end do
   end function largest_of
 
-  !> The elements of a number, with errors and derivatives; none where it does not exist.
+  !> The elements of a number, with errors and derivatives; empty if the number does not exist.
   type(readings_t) function read_numbers(self, problem, name, quantity) result(found)
     class(places_t), intent(in) :: self
     type(problem_t), intent(in) :: problem
@@ -253,7 +254,7 @@ contains
     where (.not. known) found%error = max(abs(found%value), least(quantity)*units(quantity))
   end function read_numbers
 
-  !> By how many parameters the places are differentiated.
+  !> The number of parameters by which places are differentiated.
   pure integer function parameters(self)
     class(places_t), intent(in) :: self
     integer :: i

@@ -1,4 +1,4 @@
-!> What the next state on a mesh fixed in space is expected to be.
+!> The prediction of the next state on a mesh fixed in space.
 module prediction
   use kinds, only: wp
   use dimensionless_problem, only: problem_t
@@ -23,8 +23,9 @@ contains
     expected%h0 = h0
   end function extrapolated
 
-  !> The same with the deformation extrapolated at equal distances over the contact radius, itself
-  !> extrapolated: what is sharp at the edge moves with it. Without contact, node by node.
+  !> The extrapolated state, with the deformation extrapolated at fixed distances relative to the
+  !> contact radius, which is extrapolated too: sharp features at the edge move with it. Without
+  !> contact the extrapolation is node by node.
   type(state_t) function moved_with_edge(problem, mesh, position, h0) result(expected)
     type(problem_t), intent(in) :: problem
     type(discretisation_t), intent(in) :: mesh
@@ -41,7 +42,7 @@ contains
     if (position%held < 2 .or. .not. minval(radius) > 0) return
     weight = polynomial_weights(position%h0(:position%held), h0)
     c = dot_product(weight, radius)
-    ! An edge that is extrapolated to half or twice where it was is worth nothing.
+    ! An edge that is extrapolated to half or twice its earlier radius is useless.
     if (.not. (c > 0.5_wp*minval(radius) .and. c < 2*maxval(radius))) return
     height = problem%shape%height(mesh%x(:mesh%nodes))
     expected%gap = h0 + height
@@ -56,8 +57,8 @@ contains
       expected = extrapolated(position, h0)
   end function moved_with_edge
 
-  !> The state expected at h0 on a branch that changes at the rate dH/dH0 and has a fold at a
-  !> distance: it goes there as the square root of what is left of the way.
+  !> The predicted state at h0 on a branch that changes at the rate dH/dH0 and has a fold at a
+  !> distance: the change is proportional to the square root of the distance from the fold.
   pure type(state_t) function towards_fold(state, rate, h0, distance) result(expected)
     type(state_t), intent(in) :: state
     real(wp), intent(in) :: rate(:), h0, distance

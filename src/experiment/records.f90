@@ -1,4 +1,5 @@
-!> What an experiment hands to whoever keeps its results: one record an equilibrium, in SI units.
+!> The records that an experiment gives to the observer of its results: one for each equilibrium, in
+!> SI units.
 module records
   use kinds, only: wp
   use listener, only: listener_t
@@ -10,46 +11,46 @@ module records
   public :: record_t, observer_t, silent_observer_t, record_of, extent_t
   public :: stable_yes, stable_no, stable_unasked
 
-  !> The column `stable`.
+  !> Values of the column `stable`.
   integer, parameter :: stable_yes = 1, stable_no = 0, stable_unasked = -1
 
   type :: record_t
     character(len=:), allocatable :: branch
     !> [m], [m], [m], [N], [m]; the residual is in units of the law's length.
     real(wp) :: h0 = 0, h_centre = 0, displacement = 0, load = 0, contact_radius = 0
-    !> Of a drive in time: when [s], and the position [m] of a spring's base.
+    !> For a drive in time: the time [s], and the position [m] of a spring's base.
     real(wp), allocatable :: time, z
     integer :: stable = stable_unasked
     real(wp) :: residual = 0
     integer :: iterations = 0
-    !> Whether the equations hold to the tolerance that was asked for.
+    !> Whether the equations hold to the tolerance.
     logical :: converged = .true.
     !> Smallest eigenvalue and the left sides of (28) and (29); only with &stability.
     real(wp), allocatable :: eigenvalue, local_criterion, axis_criterion
   end type record_t
 
-  !> The widest contact of some rows [m], and their largest pressure, either way, in the law's unit.
+  !> The widest contact of some rows [m], and the largest magnitude of their pressure, in the law's
+  !> unit.
   type :: extent_t
     real(wp) :: contact_radius = 0, pressure = 0
   contains
     procedure :: cover
   end type extent_t
 
-  !> Takes records as they are computed.
+  !> Receives records as they are computed.
   type, abstract, extends(listener_t) :: observer_t
   contains
     procedure(take_record), deferred :: take
   end type observer_t
 
-  !> Takes nothing, for runs of which only the summary counts.
+  !> Ignores the records, for runs that need only the summary.
   type, extends(observer_t) :: silent_observer_t
   contains
     procedure :: take => take_nothing
   end type silent_observer_t
 
   abstract interface
-    !> state and grid are given for whoever wants the profile; profile says that the scene asks for
-    !> it.
+    !> Receives a record. state and grid: for the profile; profile: the scene requests the profile.
     subroutine take_record(self, record, problem, grid, state, profile)
       import :: observer_t, record_t, problem_t, discretisation_t, state_t
       class(observer_t), intent(inout) :: self
@@ -63,7 +64,7 @@ module records
 
 contains
 
-  !> Widens the extent to that of one more row.
+  !> Extends the extent by one row.
   pure subroutine cover(self, record, state)
     class(extent_t), intent(inout) :: self
     type(record_t), intent(in) :: record
@@ -100,7 +101,7 @@ contains
     record%contact_radius = problem%lateral*radius_of_gap(problem%shape, &
       contact_level_of(problem), grid, state)
     record%stable = stable
-    ! What is not an equilibrium is neither stable nor unstable.
+    ! A state that is not an equilibrium is neither stable nor unstable.
     if (.not. converged) record%stable = stable_unasked
     record%residual = state%residual
     record%iterations = state%iterations

@@ -1,5 +1,6 @@
-!> Experiments with rigid bodies: at every h0 there is one state, whose gap is that of the shape and
-!> whose load is an integral over it (`undeformed`). Nothing is solved, and there are no meshes.
+!> Experiments with rigid bodies: at every h0 there is one state, with the gap of the shape and a
+!> load that is an integral over the gap (`undeformed`). No equations are solved, and there are no
+!> meshes.
 module rigid_bodies
   use kinds, only: wp
   use root_finding, only: root_search_t, new_root_search
@@ -22,18 +23,18 @@ module rigid_bodies
   private
   public :: run_rigid
 
-  !> Gaps that are looked at lie this part of their distance from the law's pole apart, or of
-  !> `least`; without a pole, which is a smallest gap below `no_pole`, this part of a gap or of one
-  !> length. A period has `of_period` of them or more.
+  !> Distance of successive sampled gaps, as a fraction of the distance from the law's pole, or of
+  !> `least` if that is larger; without a pole (smallest gap below `no_pole`), as a fraction of the
+  !> gap or of the law's length. Least number of sampled gaps in a period.
   real(wp), parameter :: part = 0.02_wp, least = 1.0e-3_wp, of_period = 12, no_pole = -60
-  !> How far out a profile goes, in units of the larger one of its h0 and the law's length.
+  !> Extent of a profile, in units of the larger one of its h0 and the law's length.
   real(wp), parameter :: far_out = 1000
-  !> Part of a bracket over which the curvature of a load is taken.
+  !> Step for the curvature of a load, as a fraction of a bracket.
   real(wp), parameter :: apart = 1.0e-3_wp
 
 contains
 
-  !> The path and the cycle of a scene.
+  !> Runs the path and the cycle of a scene.
   subroutine run_rigid(request, problem, observer, outcome)
     class(request_t), intent(in) :: request
     type(problem_t), intent(in) :: problem
@@ -67,7 +68,7 @@ contains
     outcome%cost%solve_seconds = seconds() - began
   end subroutine run_rigid
 
-  !> One branch, through plan%h0, as far as the law has a pressure.
+  !> Runs one branch through plan%h0, as far as the law has a pressure.
   subroutine run_branch(problem, plan, observer, outcome, branch)
     type(problem_t), intent(in) :: problem
     type(h0_schedule_t), intent(in) :: plan
@@ -96,7 +97,7 @@ contains
     end associate
   end subroutine run_branch
 
-  !> Hands step i of a branch to the observer; with positions only where its profile is asked for.
+  !> Gives step i of a branch to the observer, with positions if its profile is requested.
   subroutine show(problem, plan, i, load, observer)
     type(problem_t), intent(in) :: problem
     type(h0_schedule_t), intent(in) :: plan
@@ -128,8 +129,8 @@ contains
     call observer%take(record, problem, grid, state, plan%profile(i))
   end subroutine show
 
-  !> Positions, lateral units, at which a profile is shown: where the gap passes those that are
-  !> looked at, as far as the body reaches. None if `wanted` is not.
+  !> Positions of a profile, lateral units: those of the sampled gaps, up to the end of the body.
+  !> Empty unless `wanted`.
   pure function positions(problem, h0, wanted) result(r)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: h0
@@ -143,8 +144,8 @@ contains
     r = pack(r, r <= problem%shape%ends)
   end function positions
 
-  !> Gaps between two, which they include, so close that no law is likely to turn twice between
-  !> neighbours.
+  !> Gaps between two gaps, with both ends, so close that a law is unlikely to have two extrema
+  !> between neighbours.
   pure function gaps_between(law, low, high) result(gap)
     class(force_law_t), intent(in) :: law
     real(wp), intent(in) :: low, high
@@ -182,8 +183,8 @@ contains
 
   end function gaps_between
 
-  !> The largest tension over the range of h0, which the branch went through with these loads; none
-  !> where nothing attracts.
+  !> Finds the largest tension over the range of h0; load: at the h0 of the branch. Not allocated if
+  !> there is no attraction.
   pure subroutine find_largest_tension(problem, h0, load, branch)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: h0(:), load(:)
@@ -203,8 +204,8 @@ contains
     if (found%at(of_load) < 0) branch%lowest = found
   end subroutine find_largest_tension
 
-  !> The lowest load about a state, between two values of h0 where it is higher, or one of which is
-  !> the state itself: at a root of its derivative, or else at the end of the range.
+  !> The lowest load near a state, between two values of h0 with higher loads, one of which may be
+  !> that of the state: at a root of the derivative, or at the end of the range.
   pure type(place_t) function lowest_about(problem, h0, before, after) result(found)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: h0, before, after
@@ -217,7 +218,7 @@ contains
     slopes = [load_slope_undeformed(problem, low), load_slope_undeformed(problem, high)]
     found = place_at(problem, h0)
     if (.not. (slopes(1) < 0 .and. slopes(2) > 0)) then
-      ! A turn between neighbours that was not resolved.
+      ! A minimum between neighbours that was not resolved.
       if (low < h0 .and. h0 < high) found%left(of_h0) = high - low
       return
     end if
@@ -235,8 +236,7 @@ contains
       (slope%error + abs(slope%value))/max(curvature, tiny(1.0_wp)))
   end function lowest_about
 
-  !> A state as one that is reported, with its error: that of the integral, and what the rounding of
-  !> h0 makes of it.
+  !> The place of a state, with its error: that of the integral and that due to the rounding of h0.
   pure type(place_t) function place_at(problem, h0) result(reported)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: h0
@@ -252,7 +252,7 @@ contains
     reported%judged = .true.
   end function place_at
 
-  !> What rounding leaves of an h0 that is given in metres.
+  !> Rounding error of an h0 that is given in metres.
   pure real(wp) function given_error(problem, h0)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: h0

@@ -1,7 +1,7 @@
-!> States of an experiment as records of a journal, and back, bit by bit the same.
+!> Packs states of an experiment into records of a journal, and unpacks identical states.
 !>
-!> A step leaves one new state; the others that a position holds it had before, and only their
-!> numbers are packed.
+!> A step makes one new state; the other states of its position are in earlier records, and only
+!> their numbers are packed.
 module state_records
   use kinds, only: long
   use contact_state, only: state_t
@@ -15,8 +15,8 @@ module state_records
 
 contains
 
-  !> The position that a step has led to; before: the one that it began in, of which only the number
-  !> of the state is looked at where the record is written.
+  !> Packs the position after a step; before: the position at its start, of which only the state's
+  !> number is used when the record is written.
   subroutine pass_position(record, before, position)
     type(byte_record_t), intent(inout) :: record
     type(branch_point_t), intent(in) :: before
@@ -43,7 +43,7 @@ contains
 
   contains
 
-    !> A state that is not found where the step began.
+    !> Packs a state, unless it is part of the earlier position.
     subroutine pass_unless_known(number, state)
       integer, intent(in) :: number
       type(state_t), intent(inout) :: state
@@ -65,7 +65,7 @@ contains
 
   end subroutine pass_position
 
-  !> Which state of a position's past has a number; 0: none.
+  !> Index of a past state with the given number; 0: there is none.
   pure integer function past_with(position, number) result(place)
     type(branch_point_t), intent(in) :: position
     integer, intent(in) :: number
@@ -87,7 +87,7 @@ contains
     call record%pass(state%iterations)
   end subroutine pass_state
 
-  !> What happened in a step.
+  !> Packs the result of a step.
   subroutine pass_event(record, event)
     type(byte_record_t), intent(inout) :: record
     type(step_result_t), intent(inout) :: event
@@ -112,8 +112,8 @@ contains
     call record%pass(event%lowest%landing)
   end subroutine pass_event
 
-  !> A frozen Jacobian as where it was made, without the factors: frozen%factors%valid says whether
-  !> there are any. known: earlier records have where it was made.
+  !> Packs the place of a frozen Jacobian without the factors; frozen%factors%valid: there are
+  !> factors. known: an earlier record has the place.
   subroutine pass_frozen(record, known, frozen)
     type(byte_record_t), intent(inout) :: record
     logical, intent(inout) :: known
@@ -132,7 +132,7 @@ contains
     call record%pass(frozen%state%gap)
   end subroutine pass_frozen
 
-  !> What was spent: all its components are numbers of one word.
+  !> Packs the cost: all components are numbers of one word.
   subroutine pass_cost(record, cost)
     type(byte_record_t), intent(inout) :: record
     type(cost_t), intent(inout) :: cost

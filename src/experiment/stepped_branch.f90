@@ -1,5 +1,5 @@
-!> One branch of an h0-stepped experiment: from one h0 to the next, the deformation carried over
-!> from step to step.
+!> One branch of an experiment that is stepped in h0; each step begins with the deformation of the
+!> previous step.
 module stepped_branch
   use kinds, only: wp
   use equilibrium, only: holds
@@ -12,44 +12,45 @@ module stepped_branch
   private
   public :: h0_schedule_t, branch_t, run_branch
 
-  !> The values of h0 to go through, and those whose profile is wanted; in the law's lengths.
+  !> The values of h0 of a branch, and those with a profile; in the law's lengths.
   type :: h0_schedule_t
     character(len=:), allocatable :: name
     real(wp), allocatable :: h0(:)
     logical, allocatable :: profile(:)
-    !> There is one state for every h0, so that each is known to be stable.
+    !> Whether there is one state for every h0, so that each state is known to be stable.
     logical :: unique = .false.
   end type h0_schedule_t
 
-  !> What a branch showed, in the units of `dimensionless_problem`. Unallocated: there was none.
+  !> The results of a branch, in the units of `dimensionless_problem`. A component that is not
+  !> allocated does not exist.
   type :: branch_t
     !> Largest tension (a negative load).
     type(place_t), allocatable :: lowest
-    !> The first jump: h0 and the load just before it; and how well h0 is known where the path is
-    !> not.
+    !> The first jump: h0 and the load just before it; and the uncertainty of h0 if the path is not
+    !> known.
     type(place_t), allocatable :: jump
     real(wp) :: jump_uncertainty = 0
-    !> The last equilibrium; no state that did not converge counts as one.
+    !> The last equilibrium, which is a converged state.
     type(place_t), allocatable :: finish
-    !> States whose profile was asked for; where the path is not known, first and middle state,
-    !> whose errors stand for those of all.
+    !> States with a requested profile; if the path is not known, the first and the middle state,
+    !> whose errors represent those of all states.
     type(place_t), allocatable :: profile(:), sample(:)
-    !> The stable pieces of the path on which it begins and ends; 0 where that is not known.
+    !> The stable pieces of the path on which the branch begins and ends; 0 if they are not known.
     integer :: first_piece = 0, last_piece = 0
     real(wp) :: worst_residual = 0, worst_spacing = 0
     type(extent_t) :: extent
     integer :: states = 0, unconverged = 0
-    !> First h0 that did not converge.
+    !> First h0 at which the iteration did not converge.
     real(wp) :: first_unconverged = 0
     type(ending_t) :: ending
   end type branch_t
 
 contains
 
-  !> Goes through plan%h0. A new experiment (fresh) begins by an approach from afar at the first
-  !> value; otherwise it goes on from `position`. Positions at the steps nearest to the values
-  !> `keep` are handed back in `kept`: a plan takes values that differ by a rounded step for the
-  !> same.
+  !> Steps through plan%h0. A new experiment (fresh) begins with an approach from large separation
+  !> to the first value; otherwise the branch begins at `position`. `kept` returns the positions at
+  !> the steps nearest to the values `keep`: a plan merges values that differ by less than a rounded
+  !> step.
   subroutine run_branch(steps, plan, fresh, position, observer, keep, kept, branch)
     class(stepper_t), intent(inout), target :: steps
     type(h0_schedule_t), intent(in) :: plan
@@ -75,7 +76,7 @@ contains
       branch%first_piece = position%piece
     end if
     do i = 1, size(plan%h0)
-      ! On a known path the steps themselves tell the largest tension, one and all.
+      ! On a known path the steps return the largest tension themselves.
       if (.not. allocated(event%lowest)) previous = position
       if (fresh .and. i == 1) then
         call steps%approach_to(plan%h0(i), position, event)
@@ -117,7 +118,7 @@ contains
     branch%lowest%searched = .not. steps%problem%rigid
   end subroutine run_branch
 
-  !> Keeps the first, the worst and the lowest of what happened.
+  !> Records the first jump, the worst residual and the largest tension.
   subroutine note(branch, steps, position, event, h0)
     type(branch_t), intent(inout) :: branch
     class(stepper_t), intent(in) :: steps
@@ -144,7 +145,7 @@ contains
       branch%worst_spacing = max(branch%worst_spacing, steps%spacing_over_neck(position))
   end subroutine note
 
-  !> Lets the largest tension of a step on a known path be the branch's if it is.
+  !> Replaces the branch's largest tension by that of a step on a known path if it is larger.
   subroutine lower(branch, position, event)
     type(branch_t), intent(inout) :: branch
     type(branch_point_t), intent(in) :: position

@@ -1,5 +1,5 @@
-!> What a quasi-static experiment at controlled h0 asks of whoever solves it: start as the bodies
-!> approach from afar, then go from one h0 to the next, and say when they jumped.
+!> The interface between a quasi-static experiment at controlled h0 and its solver: an approach from
+!> large separation to the start, steps from one h0 to the next, and the jumps in a step.
 module stepper
   use kinds, only: wp
   use dimensionless_problem, only: over_neck => spacing_over_neck
@@ -13,48 +13,48 @@ module stepper
   public :: stepper_t, keeping_stepper_t, branch_point_t, step_result_t, extreme_t, memory, &
     remember, move_to
 
-  !> States kept for extrapolation in h0.
+  !> Number of states for the extrapolation in h0.
   integer, parameter :: memory = 4
 
-  !> Where an experiment is: the present state and as much of its past as the next step can use.
-  !> Copied to come back to it (turning points, refinements), and packed whole by `state_records`.
+  !> The position of an experiment: the present state and the past states that the next step can
+  !> use. Positions are copied for later use (turning points, refinements), and `state_records`
+  !> packs them.
   type :: branch_point_t
     type(state_t) :: state
-    !> Which of the solver's meshes the state lives on, and which stable piece of the path, where
-    !> that is known.
+    !> The solver's mesh of the state, and the stable piece of the path, if it is known.
     integer :: mesh = 1, piece = 0
     integer :: held = 0
     real(wp) :: h0(memory) = 0
-    !> Room for as many states, once there is one: compiler note 11.
+    !> Allocated with `memory` elements: compiler note 11.
     type(state_t), allocatable :: past(:)
-    !> The states that an experiment comes to have numbers, in order: those of `state` and `past`.
+    !> The states of an experiment are numbered in order; the numbers of `state` and `past`.
     integer :: number = 0, past_number(memory) = 0
   end type branch_point_t
 
-  !> The largest tension of a step: the load, where, and the point of the path that it belongs to,
-  !> or whose landing it belongs to; 0 for the state that the step ends in.
+  !> The largest tension in a step: the load, its h0, and the point of the path with this load, or
+  !> from which the jump starts that lands there; 0: the state at the end of the step.
   type :: extreme_t
     real(wp) :: load = 0, h0 = 0
     integer :: point = 0
     logical :: landing = .false.
   end type extreme_t
 
-  !> What happened in a step; packed whole by `state_records`.
+  !> The result of a step; `state_records` packs it.
   type :: step_result_t
     logical :: converged = .false.
-    !> The state jumped; from where (h0, and the load just before), and how well that is known.
+    !> Whether the bodies jumped; h0 and load just before the jump, and the uncertainty of h0.
     logical :: jumped = .false.
     real(wp) :: jump_h0 = 0, jump_load = 0, jump_uncertainty = 0
-    !> The fold that the first jump starts from, as a point of the path; 0 where that is not known.
+    !> The fold from which the first jump starts, as a point of the path; 0 if it is not known.
     integer :: fold = 0
-    !> The largest tension on the way, where the path that the step follows is known.
+    !> The largest tension in the step, if the path is known.
     type(extreme_t), allocatable :: lowest
-    !> Early where there is no state.
+    !> Early if there is no state.
     type(ending_t) :: ending
   end type step_result_t
 
   type, abstract, extends(solver_t) :: stepper_t
-    !> How closely jumps are to be located, in the law's lengths.
+    !> Tolerance of h0 of a jump, in the law's lengths.
     real(wp) :: jump_tolerance = 1.0e-6_wp
   contains
     procedure(begin_at), deferred :: approach_to
@@ -63,19 +63,19 @@ module stepper
     procedure :: spacing_over_neck
   end type stepper_t
 
-  !> A stepper between an experiment and whoever solves, which keeps the steps.
+  !> A stepper between an experiment and its solver that stores the steps.
   type, abstract, extends(stepper_t) :: keeping_stepper_t
     class(stepper_t), pointer :: steps => null()
-    !> Where the steps are kept.
+    !> The journal of the steps.
     type(journal_t), pointer :: journal => null()
-    !> Time [s] that the steps of an earlier run once took.
+    !> Time [s] that the steps of an earlier run took.
     real(wp) :: earlier_seconds = 0
   contains
     procedure :: keep_steps_of
   end type keeping_stepper_t
 
   abstract interface
-    !> The state at h0 that an approach from afar arrives at.
+    !> The state at h0 after an approach from large separation.
     subroutine begin_at(self, h0, position, event)
       import :: stepper_t, branch_point_t, step_result_t, wp
       class(stepper_t), intent(inout) :: self
@@ -84,8 +84,8 @@ module stepper
       type(step_result_t), intent(out) :: event
     end subroutine begin_at
 
-    !> From the position to h0. Not converged: position%state is the best that was found and its
-    !> residual says how good that is.
+    !> Moves from the position to h0. If the step does not converge, position%state is the best
+    !> state, with its residual.
     subroutine go_to(self, h0, position, event)
       import :: stepper_t, branch_point_t, step_result_t, wp
       class(stepper_t), intent(inout) :: self
@@ -97,7 +97,7 @@ module stepper
 
 contains
 
-  !> Makes `steps` those that are kept.
+  !> Sets the stepper whose steps are stored.
   subroutine keep_steps_of(self, steps)
     class(keeping_stepper_t), intent(inout) :: self
     class(stepper_t), intent(in), target :: steps
@@ -108,7 +108,7 @@ contains
     self%jump_tolerance = steps%jump_tolerance
   end subroutine keep_steps_of
 
-  !> The discretisation on which a position's state lives.
+  !> The mesh of a position's state.
   function grid(self, position)
     class(stepper_t), intent(in), target :: self
     type(branch_point_t), intent(in) :: position
@@ -126,9 +126,9 @@ contains
       position%state%scale*self%meshes%grid(position%mesh)%spacing)
   end function spacing_over_neck
 
-  !> Makes `state` the position's present one; on another mesh, or after a jump, the past is
-  !> forgotten. foretold: the state was predicted from the past and needed no correction. Such a
-  !> state is not added to the past.
+  !> Makes `state` the position's present state. The past is removed if the mesh changes or the
+  !> bodies jumped. foretold: the state was predicted from the past and needed no correction; it is
+  !> not added to the past.
   subroutine remember(position, state, mesh, jumped, foretold)
     type(branch_point_t), intent(inout) :: position
     type(state_t), intent(in) :: state
@@ -143,7 +143,7 @@ contains
     if (present(foretold)) then
       if (foretold) return
     end if
-    ! A turn of the experiment comes back over the same values.
+    ! After a turn of the experiment the same values of h0 occur again.
     do j = 1, position%held
       if (abs(position%h0(j) - state%h0) <= 1.0e-12_wp*max(1.0_wp, abs(state%h0))) then
         call forget(position, j)
@@ -158,7 +158,7 @@ contains
     position%past_number(position%held) = position%number
   end subroutine remember
 
-  !> Makes `state` the position's present one, and no part of its past.
+  !> Makes `state` the position's present state without adding it to the past.
   subroutine move_to(position, state)
     type(branch_point_t), intent(inout) :: position
     type(state_t), intent(in) :: state
@@ -167,7 +167,7 @@ contains
     position%number = position%number + 1
   end subroutine move_to
 
-  !> Drops a state of the past.
+  !> Removes a state of the past.
   pure subroutine forget(position, which)
     type(branch_point_t), intent(inout) :: position
     integer, intent(in) :: which

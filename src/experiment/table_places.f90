@@ -1,5 +1,5 @@
-!> Places at which a table of stable states is judged: some of its rows, and between them what cubic
-!> polynomials with their slopes miss.
+!> Places at which a table of stable states is judged: some of its rows; and the error of cubic
+!> interpolation with slopes between rows.
 module table_places
   use kinds, only: wp
   use curve_states, only: path_state_t
@@ -14,7 +14,7 @@ module table_places
   private
   public :: enter_table
 
-  !> How many rows of a leg are judged.
+  !> Number of rows of a leg that are judged.
   integer, parameter :: judged_rows = 16
 
 contains
@@ -44,7 +44,7 @@ contains
 
   contains
 
-    !> Holds a polynomial against the state in the middle between a row and the next.
+    !> Compares the interpolation with the state in the middle between a row and the next.
     subroutine hold(leg, row, next)
       type(leg_t), intent(in) :: leg
       type(path_state_t), intent(in) :: row, next

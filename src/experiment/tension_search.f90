@@ -1,5 +1,5 @@
-!> The largest tension of a branch whose path is not known: between its steps it is searched by
-!> solving more states. (On edge-locked meshes the traced path has it.)
+!> The search for the largest tension on a branch whose path is not known: further states between
+!> its steps are solved. (On edge-locked meshes the traced path has the largest tension.)
 module tension_search
   use kinds, only: wp
   use interpolation, only: interpolated_maximum
@@ -9,19 +9,19 @@ module tension_search
   private
   public :: tension_search_t, load_tolerance
 
-  !> A stretch of a branch without a jump: its state of largest tension so far, the one before it,
-  !> and the values of h0 between which the largest tension of all lies (the neighbours of that
-  !> state, or a jump).
+  !> A part of a branch without a jump: its state of largest tension so far, the state before it,
+  !> and the values of h0 between which the tension is largest (the neighbours of that state, or a
+  !> jump).
   type :: stretch_t
     type(branch_point_t) :: lowest, previous
     real(wp) :: before = 0, after = 0
     logical :: open = .false.
-    !> The contact edge jumped from node to node on the way, or may have.
+    !> Whether the contact edge jumped from node to node, or may have jumped.
     logical :: jagged = .false.
   end type stretch_t
 
   type :: tension_search_t
-    !> The largest tension so far; unallocated where nothing attracted.
+    !> The largest tension so far; not allocated if there is no attraction.
     type(place_t), allocatable :: lowest
     type(stretch_t), private :: stretch, deferred
     integer, private :: ended = 0
@@ -35,23 +35,24 @@ module tension_search
     procedure, private :: search_jump_by_jump
   end type tension_search_t
 
-  !> Stretches of a branch that are searched at once; of what an unresolved contact edge, jumping
-  !> from node to node, adds to them only the one of largest tension is searched, at the end.
+  !> Number of stretches of a branch that are searched immediately. Further stretches, which an
+  !> unresolved contact edge causes by jumps from node to node, are not; only the one of largest
+  !> tension is searched at the end.
   integer, parameter :: searched_at_once = 3
 
-  !> Rounds of refinement of the maximum tension, and the relative change of load that ends them.
-  !> An extremum at an end of the stretch is approached to this fraction of the bracket: it is a
-  !> jump, whose load is known, or an end of the experiment.
+  !> Rounds of refinement of the largest tension, and the relative change of load that ends them. An
+  !> extremum at an end of the stretch is approached to this fraction of the bracket, since the end
+  !> is a jump, whose load is known, or an end of the experiment.
   integer, parameter :: most_rounds = 15
   real(wp), parameter :: load_tolerance = 1.0e-10_wp, enough = 1.0e-3_wp
-  !> Smallest bracket that is searched, relative or in the law's lengths.
+  !> Smallest bracket of a search, relative or in the law's lengths.
   real(wp), parameter :: closest = 1.0e-9_wp
   !> Steps short enough for every jump of the contact edge to be located, in the law's lengths.
   real(wp), parameter :: short_step = 0.1_wp
 
 contains
 
-  !> Lets a load at h0 be the largest tension if it is; position: the state that has it.
+  !> Replaces the largest tension by a load at h0 if its tension is larger; position: of its state.
   subroutine lower(self, load, h0, position)
     class(tension_search_t), intent(inout) :: self
     real(wp), intent(in) :: load, h0
@@ -71,7 +72,7 @@ contains
     end if
   end subroutine lower
 
-  !> The last state before a jump may be the one of largest tension.
+  !> Considers the last state before a jump, which may have the largest tension.
   subroutine note_jump(self, event)
     class(tension_search_t), intent(inout) :: self
     type(step_result_t), intent(in) :: event
@@ -79,7 +80,7 @@ contains
     if (event%jumped) call self%lower(event%jump_load, event%jump_h0)
   end subroutine note_jump
 
-  !> Takes the step from `previous` at last_h0 to `position` at h0.
+  !> Considers the step from `previous` at last_h0 to `position` at h0.
   subroutine note_state(self, steps, last_h0, h0, previous, position, event)
     class(tension_search_t), intent(inout) :: self
     class(stepper_t), intent(inout) :: steps
@@ -90,13 +91,13 @@ contains
 
     associate (stretch => self%stretch)
       if (.not. event%converged) then
-        ! Neither a tension nor a place to search from.
+        ! The state has no reliable tension, and no search can start from it.
         call self%end_stretch(steps, last_h0)
       else if (event%jumped .or. .not. stretch%open) then
         began = last_h0
         if (event%jumped) then
           began = event%jump_h0
-          ! On the way in the tension grows up to the jump itself.
+          ! During loading the tension increases up to the jump itself.
           if (h0 < event%jump_h0 .and. stretch%open) &
             stretch%open = event%jump_load >= stretch%lowest%state%load
         end if
@@ -121,8 +122,8 @@ contains
     if (self%deferred%open) call self%refine(steps, self%deferred)
   end subroutine finish
 
-  !> Refines the largest tension of the stretch, which ends at `finish`, or keeps it for later as
-  !> `deferred`, which is the best of those.
+  !> Refines the largest tension of the stretch, which ends at `finish`, or stores the stretch as
+  !> `deferred` if its tension is larger than that of the stored one.
   subroutine end_stretch(self, steps, finish)
     class(tension_search_t), intent(inout) :: self
     class(stepper_t), intent(inout) :: steps
@@ -150,10 +151,10 @@ contains
     self%deferred%open = .true.
   end subroutine end_stretch
 
-  !> Searches the largest tension between stretch%before and stretch%after: the polynomial through
-  !> the states nearest to the lowest is searched, the state there computed and added, and so on;
-  !> where that leads nowhere the larger side is halved, for on a coarse path the extremum may lie
-  !> on either.
+  !> Searches for the largest tension between stretch%before and stretch%after. The extremum of the
+  !> polynomial through the states nearest to the lowest one is solved and added, repeatedly. If
+  !> this does not help, the larger side is halved, since on a coarse path the extremum may lie on
+  !> either side.
   subroutine refine(self, steps, stretch)
     class(tension_search_t), intent(inout) :: self
     class(stepper_t), intent(inout) :: steps
@@ -170,10 +171,10 @@ contains
     low = min(stretch%before, stretch%after)
     high = max(stretch%before, stretch%after)
     width = high - low
-    ! Between steps as close as this there is nothing to find that rounding would not hide.
+    ! Between such close steps rounding hides any extremum.
     if (.not. width > closest*max(1.0_wp, abs(low), abs(high))) return
-    ! Nor between states that the paper's rule has stopped anywhere: what is computed there is one
-    ! more of them, and not of this experiment.
+    ! The paper's rule stops the iteration at an uncertain point, so a further state would be of no
+    ! use.
     if (steps%options%stop_on_change) return
     if (stretch%jagged) then
       call self%search_jump_by_jump(steps, stretch)
@@ -184,8 +185,8 @@ contains
       right = min(high, minval([high, pack(h0, h0 > best%state%h0)]))
       next = interpolated_maximum(h0, -load, left, right)
       if (size(h0) < 3 .or. minval(abs(h0 - next)) <= 1.0e-3_wp*(right - left)) then
-        ! The polynomial has nothing to add: is the extremum there, or has one side not been looked
-        ! at?
+        ! The polynomial gives no new place: either the extremum is here, or one side was not
+        ! sampled.
         if (any(h0 < best%state%h0) .and. any(h0 > best%state%h0) .and. &
           right - left < enough*width) exit
         next = merge(0.5_wp*(left + best%state%h0), 0.5_wp*(right + best%state%h0), &
@@ -194,7 +195,7 @@ contains
       trial = best
       call steps%step_to(next, trial, event)
       if (event%jumped .or. .not. event%converged) then
-        ! The stretch does not reach there, but to the jump, where its tension may be largest.
+        ! The stretch ends at the jump, before which its tension may be largest.
         if (event%jumped) next = event%jump_h0
         if (next < best%state%h0) low = next
         if (next > best%state%h0) high = next
@@ -212,8 +213,9 @@ contains
     call self%lower(best%state%load, best%state%h0, best)
   end subroutine refine
 
-  !> Goes once more from stretch%before to stretch%after, or from the lowest state where a jump came
-  !> before it, with every jump of the contact edge located: the tension is largest just before one.
+  !> Steps again from stretch%before to stretch%after, or from the lowest state if a jump came
+  !> before it, and locates every jump of the contact edge: the tension is largest just before one
+  !> of them.
   subroutine search_jump_by_jump(self, steps, stretch)
     class(tension_search_t), intent(inout) :: self
     class(stepper_t), intent(inout) :: steps
@@ -239,7 +241,7 @@ contains
     call self%lower(best%state%load, best%state%h0, best)
   end subroutine search_jump_by_jump
 
-  !> Drops values until the five nearest to the lowest load are left.
+  !> Removes values until the five nearest to the lowest load remain.
   pure subroutine keep_nearest(h0, load)
     real(wp), allocatable, intent(inout) :: h0(:), load(:)
     integer :: farthest

@@ -1,6 +1,6 @@
-!> A drive in a journal: now and then, and when a pass has come to its end, all that decides how it
-!> goes on is kept there, with the rows since the last time. A run that goes on has the same bytes,
-!> since factors and waves are made anew after each such record in any case.
+!> A drive in a journal: at intervals, and at the end of a pass, everything that determines the rest
+!> of the pass is stored, with the new rows. A resumed run gives the same bytes, since factors and
+!> waves are made anew after each record in both cases.
 module timed_journal
   use kinds, only: long
   use byte_record, only: byte_record_t
@@ -16,12 +16,12 @@ module timed_journal
   private
   public :: keep, recall
 
-  !> Rows after which they are kept.
+  !> Number of rows after which they are stored.
   integer, parameter :: every = 200
 
 contains
 
-  !> Keeps a pass at an instant if it has ended, or gone on long enough.
+  !> Stores a pass at an instant if it has ended, or has `every` new rows.
   subroutine keep(journal, steps, at, now)
     type(journal_t), pointer, intent(in) :: journal
     type(time_stepper_t), intent(inout) :: steps
@@ -42,7 +42,7 @@ contains
     now%kept = now%held
   end subroutine keep
 
-  !> Takes a pass as far as an earlier run has kept it; `now` has no rows where that has none.
+  !> Restores a pass from an earlier run; `now` has no rows if the run stored none.
   subroutine recall(journal, steps, at, now)
     type(journal_t), pointer, intent(in) :: journal
     type(time_stepper_t), intent(inout) :: steps
@@ -60,7 +60,7 @@ contains
     end do
   end subroutine recall
 
-  !> All that decides how a pass goes on, and its rows since the last record.
+  !> Packs everything that determines the rest of a pass, and its rows since the last record.
   subroutine pass_drive(record, steps, at, now)
     type(byte_record_t), intent(inout) :: record
     type(time_stepper_t), intent(inout) :: steps

@@ -1,6 +1,6 @@
-!> One pass of a drive through its motion: step by step, with what is read on the way. Steps follow
-!> what the load does, how far the contact edge moves, or the deck; a pass after one that came to
-!> its end halves the steps of that.
+!> One pass of a drive through its motion, step by step, with its readings. The steps follow the
+!> change of the load and the motion of the contact edge, or the deck's step; a pass after a
+!> complete one halves the steps of that pass.
 module timed_pass
   use kinds, only: wp, pi
   use dimensionless_problem, only: problem_t
@@ -21,20 +21,22 @@ module timed_pass
   private
   public :: go_through
 
-  !> contact radius over the width of the neck. Longest and first step, parts of a way.
+  !> Largest deviation of the load from a line in a step, over the unit of load; largest motion of
+  !> the contact edge in a step, over the smallest feature there. Longest and first step, as
+  !> fractions of a way.
   real(wp), parameter :: bend = 8.0e-3_wp, edge_moves = 2, longest_part = 0.05_wp, &
     first_part = 1.0e-3_wp
-  !> Steps after one that was too long before longer ones are tried again.
+  !> Number of steps after a rejected one before longer steps are tried again.
   integer, parameter :: patience = 3
-  !> The same with a fluid, whose pressure jumps where the drive turns.
+  !> The first step with a fluid, whose pressure jumps where the drive turns.
   real(wp), parameter :: first_drained = 1.0e-7_wp
-  !> The shortest step over the shortest time of retardation, and way over the law's length.
+  !> The shortest step over the shortest time of retardation, and its motion over the law's length.
   real(wp), parameter :: shortest_part = 1.0e-3_wp, shortest_way = 1.0e-6_wp
 
 contains
 
-  !> One pass. It chooses its steps, or halves those of the one before, if there is one. What an
-  !> earlier run has left of it in the journal is taken from there.
+  !> One pass. It chooses its steps, or halves those of the previous pass if there is one. The part
+  !> of the pass that an earlier run stored in the journal is taken from there.
   subroutine go_through(request, drive, pass, before, steps, journal, listener, now)
     class(request_t), intent(in) :: request
     type(motion_t), intent(in) :: drive
@@ -47,8 +49,8 @@ contains
     type(instant_t) :: at
     integer :: way
 
-    ! A pass that halves steps and needs far more than twice as many, or has many more jumps, goes
-    ! to and fro in what is not resolved.
+    ! A pass that halves steps and needs far more than twice as many, or has many more jumps, moves
+    ! back and forth in details that are not resolved.
     if (before%held > 0 .and. .not. allocated(steps%drainage)) then
       now%most = 6*before%held + 2000
       now%most_jumps = before%result%jumps + 10
@@ -69,7 +71,8 @@ contains
         now%way = way
         now%step = 0
         now%recently = 0
-        ! What moved before does not tell how things move now; rates and loads of a fluid jump.
+        ! The motion before a turn does not predict the motion after it; rates and loads of a fluid
+        ! jump.
         steps%before = at
         at%since_turn = 0
         if (.not. allocated(steps%drainage)) call take_row(at, now)
@@ -97,7 +100,7 @@ contains
     call keep(journal, steps, at, now)
   end subroutine go_through
 
-  !> A step of the first pass through a way.
+  !> A step of the first pass.
   subroutine choose_step(request, drive, way, steps, at, now)
     class(request_t), intent(in) :: request
     type(motion_t), intent(in) :: drive
@@ -122,9 +125,9 @@ contains
     if (now%held > most_steps) call lose(at, now)
   end subroutine choose_step
 
-  !> A step with a fluid. Where bodies jump together their gap closes
-  !> at a moment that differs a little from pass to pass, with ever shorter steps: each pass chooses
-  !> its own, half as long as those of the one before.
+  !> A step with a fluid. Where bodies jump together, the gap closes at a time that differs slightly
+  !> from pass to pass, with ever shorter steps. Therefore each pass chooses its own steps, half as
+  !> long as those of the previous pass.
   subroutine drain(request, drive, way, pass, steps, at, now)
     class(request_t), intent(in) :: request
     type(motion_t), intent(in) :: drive
@@ -143,7 +146,8 @@ contains
       allocated(request%drive%time_step)), steps, at, now)
   end subroutine drain
 
-  !> What a step asks to be: below 1 it may be longer, above 1 it has to be shorter.
+  !> Deviation of a step over the allowed deviation: below 1 the step may be longer, above 1 it must
+  !> be shorter.
   real(wp) function missed(steps, from, at, now)
     type(time_stepper_t), intent(in) :: steps
     type(instant_t), intent(in) :: from, at
@@ -164,7 +168,7 @@ contains
       (edge_moves*steps%finest(from%state%scale)))**2)
   end function missed
 
-  !> The load that others are compared with: a pull-off, or the largest met.
+  !> The unit of load: a pull-off or, without adhesion, the largest load so far.
   real(wp) function load_unit(problem, now)
     type(problem_t), intent(in) :: problem
     type(pass_t), intent(in) :: now
@@ -173,7 +177,7 @@ contains
     if (problem%law%adhesion > 0) load_unit = pi*problem%law%adhesion
   end function load_unit
 
-  !> The halves of a step of the pass before.
+  !> Takes the halves of a step of the previous pass.
   subroutine halve_step(drive, way, before, steps, at, now)
     type(motion_t), intent(in) :: drive
     integer, intent(in) :: way
@@ -191,8 +195,8 @@ contains
     end associate
   end subroutine halve_step
 
-  !> Goes to a time of a way, in shorter steps where bodies move too far in one, and over jumps that
-  !> take no time.
+  !> Moves to a time of a way, in shorter steps where bodies move too far in one step, and over
+  !> instantaneous jumps.
   subroutine go_to(drive, way, time, steps, at, now)
     type(motion_t), intent(in) :: drive
     integer, intent(in) :: way
@@ -209,7 +213,7 @@ contains
     end associate
     least = shortest_part*steps%creep%shortest()
     if (way_speed > 0) least = min(least, shortest_way/way_speed)
-    ! Bodies that do not attract never jump.
+    ! Bodies that do not attract each other never jump.
     if (.not. steps%meshes%traceable) least = shortest_way*least
     do while (at%time < time)
       try = min(now%longest, time - at%time)
@@ -246,7 +250,7 @@ contains
     end do
   end subroutine go_to
 
-  !> Says how far a pass has come, ten times or so in a way.
+  !> Sends messages about the progress of a pass.
   subroutine tell(drive, pass, at, listener)
     type(motion_t), intent(in) :: drive
     integer, intent(in) :: pass

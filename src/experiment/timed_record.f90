@@ -1,4 +1,4 @@
-!> What is read of a drive on its way: its rows, the numbers that are reported, and their quality.
+!> The readings of a drive: its rows, the reported numbers, and their quality.
 module timed_record
   use kinds, only: wp
   use dimensionless_problem, only: spacing_over_neck
@@ -14,23 +14,23 @@ module timed_record
     numbers, of_tension, of_tension_h0, of_end_h0, of_end_load, of_end_displacement, &
     of_dissipation, of_suction
 
-  !> The numbers that are reported.
+  !> The reported numbers.
   integer, parameter :: of_tension = 1, of_tension_h0 = 2, of_end_h0 = 3, of_end_load = 4, &
     of_end_displacement = 5, of_dissipation = 6, of_suction = 7, numbers = 7
 
-  !> Most steps of a pass.
+  !> Largest number of steps of a pass.
   integer, parameter :: most_steps = 40000
 
-  !> What a pass through the motion has shown. Numbers in units of the problem; balance: what is
-  !> dissipated by the work of the drive, less what dashpots and jumps take.
+  !> The results of a pass. Numbers are in units of the problem; balance: the dissipated energy by
+  !> the work of the drive, minus that in dashpots and jumps.
   type :: timed_result_t
     real(wp) :: number(numbers) = 0, error(numbers) = huge(1.0_wp)
-    !> Derivatives by each parameter of &sensitivity, (parameters, numbers), SI units; the parameter
-    !> with another value of which a run did not come to its end.
+    !> Derivatives by each parameter of &sensitivity, (parameters, numbers), SI units; not_rated:
+    !> the parameter with a varied value for which a run failed.
     real(wp), allocatable :: rate(:, :)
     character(len=:), allocatable :: not_rated
     real(wp) :: balance = 0
-    !> By how much the largest tension is above that of any row.
+    !> The difference between the largest tension and the largest one of the rows beside it.
     real(wp) :: lifted = 0
     !> The largest error of a load over the largest load.
     real(wp) :: estimate = 0
@@ -39,45 +39,44 @@ module timed_record
     real(wp) :: suction_at(3) = 0
     type(extent_t) :: extent
     real(wp) :: worst_residual = 0, worst_spacing = 0, memory_tail = 0, largest_load = 0
-    !> The time [s] at which the bodies were lost, if they were; or no start was found.
+    !> Whether a start was found, whether the bodies were lost, and the time [s] of the loss.
     logical :: begun = .false., lost = .false.
     real(wp) :: lost_at = 0
   end type timed_result_t
 
-  !> How far a pass has come, all in words of its own: rows so far, the last three loads, the way
-  !> that it is on, the length of the next step [s], and the row of the pass before that halves are
-  !> taken of.
+  !> The progress of a pass: number of rows, the last three loads, the present way, the length of
+  !> the next step [s], and the row of the previous pass whose step is halved.
   type :: tally_t
     type(timed_result_t) :: result
     integer :: held = 0, way = 0, halved = 1
     real(wp) :: step = 0
-    !> What the step that was tried last missed, if that was too much.
+    !> Deviation of the last attempted step, if it was too large; otherwise 0.
     real(wp) :: missed = 0
     logical :: ended = .false.
-    !> Steps and jumps at which it is given up.
+    !> Numbers of steps and of jumps at which a pass is given up.
     integer :: most = most_steps, most_jumps = 50
     real(wp) :: recent(3, 3) = 0
     integer :: recently = 0
-    !> The longest step [s] to be tried, and how many steps were taken since one was too long.
+    !> The longest step [s] to be tried, and the number of steps since the last rejected one.
     real(wp) :: longest = huge(1.0_wp)
     integer :: since = 0
-    !> Whether the bodies were coming nearer to each other when they last moved.
+    !> Whether the bodies approached each other in their last motion.
     logical :: inwards = .true.
     real(wp) :: work = 0, inside = 0, begun_with = 0
   end type tally_t
 
-  !> A pass and its rows, of which `kept` are in the journal.
+  !> A pass and its rows, of which the first `kept` are in the journal.
   type, extends(tally_t) :: pass_t
     type(record_t), allocatable :: row(:)
     integer :: kept = 0
   end type pass_t
 
-  !> A relative change of gap or radius that is no rounding.
+  !> A relative change of gap or radius that exceeds rounding.
   real(wp), parameter :: moves = 1.0e-6_wp
 
 contains
 
-  !> Gives the pass up.
+  !> Marks the pass as lost.
   subroutine lose(at, now)
     type(instant_t), intent(in) :: at
     type(pass_t), intent(inout) :: now
@@ -86,7 +85,7 @@ contains
     now%result%lost_at = at%time
   end subroutine lose
 
-  !> Notes whether the bodies come nearer to each other, if they move by more than rounding.
+  !> Records whether the bodies approach each other, if they move by more than rounding.
   subroutine note_sense(from, to, inwards)
     type(instant_t), intent(in) :: from, to
     logical, intent(inout) :: inwards
@@ -97,8 +96,8 @@ contains
     if (abs(nearer) > moves) inwards = nearer > 0
   end subroutine note_sense
 
-  !> Makes the next instant the present one. smooth: nothing has jumped; else what the bodies hold
-  !> less, and dashpots have not taken, is lost in the jump.
+  !> Makes the next instant the present one. smooth: there was no jump; otherwise the change of the
+  !> bodies' energy that dashpots have not dissipated is dissipated in the jump.
   subroutine accept(steps, next, smooth, at, now)
     type(time_stepper_t), intent(inout) :: steps
     type(instant_t), intent(in) :: next
@@ -108,7 +107,7 @@ contains
     real(wp) :: work
 
     work = -0.5_wp*(at%state%load + next%state%load)*(next%position - at%position)
-    ! Where a drive turns the load of a fluid jumps.
+    ! Where a drive turns, the load of a fluid jumps.
     if (allocated(steps%drainage) .and. at%since_turn == 0) &
       work = -next%state%load*(next%position - at%position)
     now%work = now%work + work
@@ -124,8 +123,8 @@ contains
     call note(steps, at, now)
   end subroutine accept
 
-  !> Keeps the last three loads, and the largest tension: of the parabola through them where the
-  !> middle one is the largest.
+  !> Stores the last three loads, and the largest tension: that of the parabola through them if the
+  !> load in the middle is the lowest.
   subroutine take_row(at, now)
     type(instant_t), intent(in) :: at
     type(pass_t), intent(inout) :: now
@@ -152,7 +151,7 @@ contains
     now%result%number(of_tension_h0) = h0
   end subroutine take_row
 
-  !> Adds an instant to the rows, and its qualities to those of the pass.
+  !> Adds an instant to the rows, and its quality to that of the pass.
   subroutine note(steps, at, now)
     type(time_stepper_t), intent(in) :: steps
     type(instant_t), intent(in) :: at
@@ -184,7 +183,7 @@ contains
     end associate
   end subroutine note
 
-  !> Makes room for more rows.
+  !> Makes room for further rows.
   subroutine make_room(now, more)
     type(pass_t), intent(inout) :: now
     integer, intent(in) :: more

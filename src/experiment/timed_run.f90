@@ -1,7 +1,7 @@
-!> A drive that moves in time, and what comes of it. The motion is gone through several times, each
-!> time with every step halved and more nodes for the memory: what two of these passes differ by is
-!> the error of the later one, with a margin. Steps of the first follow what the load does, how far
-!> the contact edge moves, or the deck.
+!> A drive that moves in time, and its results. The motion is simulated in several passes, each with
+!> all steps halved and more nodes for the memory; the error is the difference between the last two
+!> passes, times a margin. The steps of the first pass follow the change of the load and the motion
+!> of the contact edge, or the deck's step.
 module timed_run
   use kinds, only: wp
   use clock, only: seconds
@@ -28,32 +28,32 @@ module timed_run
   private
   public :: run_timed
 
-  !> Differences of passes count so many times: steps gain a factor of four from pass to pass,
-  !> meshes may gain less.
+  !> Factor of the differences between passes: halved steps reduce errors by a factor of four, finer
+  !> meshes perhaps by less.
   real(wp), parameter :: margin = 2
-  !> Part of the accuracy that meshes may leave, which are often the same in two passes.
+  !> Error of the meshes, which are often the same in two passes, over the accuracy.
   real(wp), parameter :: of_meshes = 0.05_wp
-  !> Passes, and the largest change of the path's coordinate in a step of the first: what changes by
-  !> more has jumped, or is to be followed in shorter steps.
+  !> Largest number of passes, and the largest change of the path's coordinate in a step of the
+  !> first pass: a larger change is a jump, or needs shorter steps.
   integer, parameter :: most_passes = 9
-  !> Passes in which the bodies may be lost before two are whole, one after the other.
+  !> Number of passes in which the bodies may be lost before two consecutive passes are complete.
   integer, parameter :: most_tries = 3
   real(wp), parameter :: farthest = 0.3_wp
-  !> Panels of the memory's mesh over the neck, with so many nodes more than others have; the most
-  !> nodes: beyond, what is not resolved is told.
+  !> Length of panels of the memory's mesh over the width of the neck, and their additional nodes;
+  !> largest number of nodes, beyond which a warning reports unresolved details.
   real(wp), parameter :: over_neck = 3
   integer, parameter :: over_order = 3, most_nodes = 5000
-  !> What long panels of the memory's mesh may lack of a pressure, over the accuracy.
+  !> Largest quadrature error of a pressure on long panels of the memory's mesh, over the accuracy.
   real(wp), parameter :: left_out = 1.0e-3_wp
-  !> Up to where bodies remember the pressure of a fluid, over the width of the film.
+  !> Extent of the memory of a fluid's pressure, over the width of the film.
   real(wp), parameter :: far_out = 50
-  !> Digits of the meshes that each pass has more.
+  !> Additional digits of the meshes in each pass.
   real(wp), parameter :: more_digits = 0.7_wp
 
 contains
 
-  !> Goes through the motion of request%drive, and shows the rows of the last pass. What it comes
-  !> to goes into the journal, if there is one.
+  !> Simulates the motion of request%drive, and shows the rows of the last pass. The journal, if
+  !> there is one, stores the passes.
   subroutine run_timed(request, problem, chosen, journal, observer, result, cost, nodes)
     class(request_t), intent(in) :: request
     type(problem_t), intent(in) :: problem
@@ -82,7 +82,8 @@ contains
       steps%farthest = farthest/2**(pass - 1)
       call go_through(request, drive, pass, before, steps, journal, observer, now)
       if (now%result%lost) then
-        ! Finer meshes may hold what was lost; what came before has its errors.
+        ! Finer meshes may resolve the loss; otherwise the previous passes have their error
+        ! estimates.
         if (whole > 1) now = before
         if (whole > 1 .or. pass == most_tries .or. .not. now%result%begun .or. &
           now%held > most_steps) exit
@@ -92,7 +93,7 @@ contains
       whole = whole + 1
       if (whole == 1) cycle
       call compare(request%numerics%accuracy, before%result, now%result)
-      ! The first two may agree by chance.
+      ! The first two passes may agree by chance.
       enough = (relative_error(now%result) <= request%numerics%accuracy .and. whole > 2) .or. &
         allocated(request%drive%time_step)
       if (enough .or. 2*now%held > most_steps) exit
@@ -109,7 +110,7 @@ contains
     cost = steps%cost
   end subroutine run_timed
 
-  !> The stepper of the problem, and the motion.
+  !> Sets the stepper of the problem, and the motion.
   subroutine prepare(request, problem, chosen, steps, drive)
     class(request_t), intent(in) :: request
     type(problem_t), intent(in) :: problem
@@ -138,7 +139,7 @@ contains
     end if
   end subroutine prepare
 
-  !> The bodies as they are at rest.
+  !> The problem of the bodies at rest.
   type(problem_t) function relaxed_problem(steps) result(relaxed)
     type(time_stepper_t), intent(in) :: steps
 
@@ -146,8 +147,8 @@ contains
     relaxed%coupling = steps%instant*steps%creep%relaxed()
   end function relaxed_problem
 
-  !> The lowest h0 that the bodies may come to: that of the drive or, through a spring, of the
-  !> contact that carries its load.
+  !> The lowest h0 of the bodies: that of the drive or, with a spring, that of the contact with the
+  !> spring's load.
   real(wp) function deepest(request, drive, steps) result(low)
     class(request_t), intent(in) :: request
     type(motion_t), intent(in) :: drive
@@ -158,8 +159,8 @@ contains
       h0_in_contact(relaxed_problem(steps), 1.0_wp, steps%compliance, low)
   end function deepest
 
-  !> Meshes for relaxed bodies, whose neck is the narrowest, with more digits from pass to pass; for
-  !> the memory panels fixed in space, with a node more on each.
+  !> Lays out meshes for relaxed bodies, whose neck is the narrowest, with more digits in each pass;
+  !> and for the memory panels fixed in space, with one more node each.
   subroutine lay_out(request, drive, low, chosen, pass, steps)
     class(request_t), intent(in) :: request
     type(motion_t), intent(in) :: drive
@@ -175,7 +176,7 @@ contains
     integer :: k
 
     relaxed = relaxed_problem(steps)
-    ! The memory takes the pressure at places, not only its integrals, which have twice its digits.
+    ! The memory uses the pressure at the nodes, which has half as many digits as its integrals.
     digits = chosen%digits
     if (allocated(request%creep) .or. allocated(request%fluid)) digits = 2*digits
     if (allocated(steps%drainage)) relaxed%film_gap = maxval(drive%position) + &
@@ -183,7 +184,7 @@ contains
     associate (meshes => steps%meshes)
       meshes = new_mesh_family(relaxed, maxval(drive%position), low, &
         min(most_digits, digits + more_digits*(pass - 1)))
-      ! No path comes to a mesh that waits for it.
+      ! There is no path during which waiting meshes would be laid out.
       do k = 1, size(meshes%grid)
         if (meshes%waits(k)) call meshes%renew(k, meshes%shape_for(relaxed, k))
       end do
@@ -205,7 +206,7 @@ contains
     end associate
   end subroutine lay_out
 
-  !> Errors of what a pass found: what it differs by from the one before.
+  !> Sets the errors of a pass from its differences to the previous pass.
   subroutine compare(accuracy, before, now)
     real(wp), intent(in) :: accuracy
     type(timed_result_t), intent(in) :: before
@@ -220,8 +221,8 @@ contains
     now%error(of_dissipation) = max(now%error(of_dissipation), abs(now%balance))
   end subroutine compare
 
-  !> The largest error: of loads over the largest, and of what is dissipated over itself or, if that
-  !> is more, the largest load times the law's length.
+  !> The largest relative error: of loads over the largest load, and of the dissipated energy over
+  !> itself or, if larger, over the largest load times the law's length.
   pure real(wp) function relative_error(now) result(largest)
     type(timed_result_t), intent(in) :: now
 

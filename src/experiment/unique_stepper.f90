@@ -1,5 +1,5 @@
-!> A quasi-static experiment in edge-locked coordinates under a law that does not attract: every h0
-!> has one state.
+!> A quasi-static experiment in edge-locked coordinates under a law that does not attract: there is
+!> one state for every h0.
 module unique_stepper
   use kinds, only: wp
   use contact_state, only: state_t
@@ -19,8 +19,8 @@ module unique_stepper
     procedure, private :: step_in_pieces
   end type unique_stepper_t
 
-  !> Smallest step in h0 that is tried, in the law's lengths and as a part of h0: deep in contact
-  !> nothing changes in less, and rounding makes some steps fail and others not.
+  !> Smallest step in h0, in the law's lengths and relative to h0: deep in contact the state is
+  !> nearly constant over smaller steps, and rounding makes some of them fail.
   real(wp), parameter :: smallest_creep = 1.0e-6_wp, smallest_part = 1.0e-4_wp
 
 contains
@@ -52,7 +52,7 @@ contains
     end if
   end subroutine step_to
 
-  !> The state that those behind let expect at h0.
+  !> The extrapolated state at h0.
   pure type(state_t) function guess(self, h0, position)
     class(unique_stepper_t), intent(in) :: self
     real(wp), intent(in) :: h0
@@ -61,7 +61,7 @@ contains
     guess = between(position%h0(:position%held), position%past(:position%held), h0)
   end function guess
 
-  !> Reaches h0 in shorter steps: a step is only ever too long.
+  !> Reaches h0 in shorter steps: a step fails only if it is too long.
   subroutine step_in_pieces(self, h0, position, event)
     class(unique_stepper_t), intent(inout) :: self
     real(wp), intent(in) :: h0

@@ -1,7 +1,8 @@
-!> Values that stay where they are while the mesh moves, step after step. A panel's polynomial knows
-!> nothing of what comes into the panel from the next: taken alone, again and again, it is an
-!> extrapolation, whose errors grow without bound. With the value that the next panel has at the end
-!> where the mesh moves to it is a collocation of the flow through the mesh, which is stable.
+!> Values at fixed positions, carried from one mesh to the next while the mesh moves, step after
+!> step. The polynomial of one panel alone does not use the values that enter the panel from its
+!> neighbour: used repeatedly, it is an extrapolation whose errors grow without bound. With the
+!> neighbour's value at the end towards which the mesh moves, the polynomial is a collocation of the
+!> flow through the mesh, which is stable.
 module carried_values
   use kinds, only: wp
   use discretisation, only: discretisation_t
@@ -12,7 +13,8 @@ module carried_values
   type :: carried_t
     private
     real(wp), allocatable :: value(:)
-    !> Of each panel, what the neighbour has more at the common end, and which end that is.
+    !> For each panel, the neighbour's value at the common end minus the panel's own; whether the
+    !> common end is the outer one.
     real(wp), allocatable :: jump(:)
     logical :: outward = .true.
   contains
@@ -21,7 +23,7 @@ module carried_values
 
 contains
 
-  !> Values on the nodes of a mesh, to be carried to one that has moved outward or inward.
+  !> Values at the nodes of a mesh, for a mesh that has moved outward or inward.
   pure function new_carried(grid, value, outward) result(carried)
     type(discretisation_t), intent(in) :: grid
     real(wp), intent(in) :: value(:)
@@ -52,8 +54,8 @@ contains
 
   end function new_carried
 
-  !> The value at a position: the panel's polynomial, and the one that is zero on its nodes, P_n, to
-  !> meet the neighbour.
+  !> The value at a position: the panel's polynomial plus a multiple of P_n, which is zero at the
+  !> nodes, so that the sum has the neighbour's value at the common end.
   pure real(wp) function at(self, grid, x)
     class(carried_t), intent(in) :: self
     type(discretisation_t), intent(in) :: grid

@@ -1,5 +1,5 @@
-!> Lateral sizes of a contact that meshes and searches have to know beforehand: how wide it gets,
-!> how fine the pressure varies, where it begins.
+!> Lateral lengths of a contact for meshes and searches: the largest radius, the smallest feature of
+!> the pressure, and the H0 at which contact begins.
 module contact_scales
   use kinds, only: wp, pi
   use root_finding, only: bracket_t
@@ -13,21 +13,22 @@ module contact_scales
     smallest_feature, &
     lost_in_rounding, largest_floor
 
-  !> Smallest feature over the contact radius that a mesh follows: where adhesion makes smaller
-  !> ones, rounding hides them, and the mesh would grow for nothing.
+  !> Smallest feature, over the contact radius, that a mesh resolves: smaller features due to
+  !> adhesion are hidden by rounding, and the mesh would have more nodes without benefit.
   real(wp), parameter :: finest = 1.0e-13_wp
 
-  !> Range of the Lennard-Jones law, its adhesion over its largest tension, in its length.
+  !> Range of the Lennard-Jones law (its adhesion over its largest tension) in the law's length.
   real(wp), parameter :: usual_range = 0.97_wp
 
-  !> A residual that rounding excuses, in the law's lengths: beyond it the law is not resolved.
+  !> The residual due to rounding, in the law's lengths, above which the law is not resolved.
   real(wp), parameter :: largest_floor = 1.0e-3_wp
 
 contains
 
-  !> Contact radius that JKR theory, (11), gives at H0, with a margin of a fifth; for a law without
-  !> adhesion that of Hertz, beginning at its level. Of bodies that yield less to long waves than to
-  !> short ones it is larger for its depth, up to twice for a thin film that keeps its volume.
+  !> Contact radius of JKR theory, (11), at H0, with a margin of a fifth; for a law without adhesion
+  !> that of Hertz theory, beginning at the law's level. For bodies that deform less under long
+  !> waves than under short ones, the radius is larger at the same depth, up to twice for a thin
+  !> incompressible film.
   pure real(wp) function largest_radius(problem, h0, level) result(c)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: h0, level
@@ -50,9 +51,9 @@ contains
       c = c*(2 - min(1.0_wp, coupling_over(problem, c)/problem%coupling))
   end function largest_radius
 
-  !> An H0 beyond which no contact reaches: the jump out of contact at fixed displacement of JKR
-  !> theory, with a margin of a fifth, of half-spaces that yield as bodies do under the contact that
-  !> they have without displacement.
+  !> An H0 above which there is no contact: that of the jump out of contact at fixed displacement in
+  !> JKR theory, with a margin of a fifth, for half-spaces with the compliance of the bodies at the
+  !> contact radius of zero displacement.
   pure real(wp) function beyond_contact(problem)
     type(problem_t), intent(in) :: problem
     real(wp) :: strength
@@ -64,7 +65,7 @@ contains
   end function beyond_contact
 
   !> Scale of the mesh for a law without adhesion: about the radius of a Hertz contact that begins
-  !> at the given level, never less than 1.
+  !> at the given level, at least 1.
   pure real(wp) function hertz_scale(shape, level, h0)
     class(shape_t), intent(in) :: shape
     real(wp), intent(in) :: level, h0
@@ -72,8 +73,8 @@ contains
     hertz_scale = shape%contact_radius(1 + max(0.0_wp, level - h0))
   end function hertz_scale
 
-  !> The gap at which the pressure over a unit radius deforms the bodies by one unit, by bisection
-  !> of a law that decreases with the gap.
+  !> The gap at which the pressure over a unit radius deforms the bodies by one unit, found by
+  !> bisection for a law that decreases with the gap.
   pure real(wp) function contact_level(problem) result(level)
     type(problem_t), intent(in) :: problem
     type(bracket_t) :: bracket
@@ -87,9 +88,9 @@ contains
     level = bracket%middle()
   end function contact_level
 
-  !> Width of the zone outside the edge over which the tension decays, lateral units: that of
-  !> `neck_width`, which takes the range of the law to be its length, times the square of the range
-  !> over that of the Lennard-Jones law where it is shorter.
+  !> Width of the zone outside the edge over which the tension decays, lateral units: `neck_width`,
+  !> for which the law's range is its length, times the square of the ratio of the range to that of
+  !> the Lennard-Jones law, if this ratio is below 1.
   pure real(wp) function cohesive_width(problem) result(width)
     type(problem_t), intent(in) :: problem
     real(wp) :: tension(1)
@@ -100,10 +101,10 @@ contains
     width = width*min(1.0_wp, (problem%law%adhesion/(usual_range*tension(1)))**2)
   end function cohesive_width
 
-  !> The smallest lateral feature of the pressure up to the contact radius c: the neck, or where
-  !> that is wide, the half-width of the pressure between bodies near contact and the boundary
-  !> layer of a Hertz contact, whose gap opens as the power 3/2 of the distance from the edge and
-  !> changes the repulsion over one repulsion length.
+  !> The smallest lateral feature of the pressure up to the contact radius c: the width of the neck
+  !> or, where the neck is wide, the smaller of two lengths: the half-width of the pressure between
+  !> bodies near contact, and the boundary layer of a Hertz contact, whose gap increases as the
+  !> power 3/2 of the distance from the edge and changes the repulsion over one repulsion length.
   pure real(wp) function smallest_feature(problem, c)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: c
@@ -112,8 +113,8 @@ contains
       (problem%law%repulsion_length**2/problem%shape%opening(max(c, 1.0_wp)))**(1.0_wp/3)))
   end function smallest_feature
 
-  !> Whether the deformation of a contact of radius c (lateral units) under the law's largest
-  !> tension, about one unit of pressure, is so large that rounding hides the law.
+  !> Whether a contact of radius c (lateral units) is deformed so much under the law's largest
+  !> tension, about one unit of pressure, that rounding hides the law.
   pure logical function lost_in_rounding(problem, c)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: c

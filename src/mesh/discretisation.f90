@@ -1,9 +1,8 @@
 !> The discretised half-space: nodes, quadrature weights and the matrix of the elastic kernel.
-!> Solvers, cycle and path work on this object and do not know how it was built (`linear_mesh`,
-!> `mapped_mesh`).
+!> Solvers, cycle and path do not depend on the way a mesh is made (`linear_mesh`, `mapped_mesh`).
 !>
-!> All lengths are lateral and relative to a scale that the user of the object chooses; because the
-!> kernel is homogeneous, the same matrix serves every scale c (see `elastic_operator`).
+!> All lengths are lateral and relative to a scale c. The kernel is homogeneous, so one matrix is
+!> valid for every scale (see `elastic_operator`).
 module discretisation
   use kinds, only: wp, long
   use panel_map, only: panel_map_t, algebraic_map
@@ -14,7 +13,7 @@ module discretisation
   private
   public :: discretisation_t, local_nodes_t, gauss_nodes, axis_row, centre_row, first_node
 
-  !> Nodes that tell the value on the axis.
+  !> Number of nodes from which the value on the axis is interpolated.
   integer, parameter :: nodes_at_axis = 6
 
   !> Rows of the kernel matrix.
@@ -32,24 +31,25 @@ module discretisation
     integer :: nodes = 0
     !> Position of the mesh's centre: 0 for the axis, 1 for the contact edge.
     real(wp) :: centre = 0
-    !> Position where the mesh ends; huge where it goes on to infinity.
+    !> Position of the mesh's end; huge if the mesh extends to infinity.
     real(wp) :: end = 0
     !> Radial positions of the nodes (ascending), (nodes).
     real(wp), allocatable :: x(:)
     !> integral f x dx = sum(weight*f), (nodes).
     real(wp), allocatable :: weight(:)
-    !> matmul(kernel, p) = integral k(r, t) p(t) t dt, (first_node - 1 + nodes, nodes): row
-    !> axis_row is the axis, row centre_row the mesh's centre, and rows from first_node on are the
-    !> nodes. Not allocated for rigid bodies.
+    !> matmul(kernel, p) = integral k(r, t) p(t) t dt, (first_node - 1 + nodes, nodes): row axis_row
+    !> is for the axis, row centre_row for the mesh's centre, and rows from first_node on are for
+    !> the nodes. Not allocated for rigid bodies.
     real(wp), allocatable :: kernel(:, :)
-    !> Weights of nodal values in the value on the axis, by interpolation, (nodes).
+    !> Weights of nodal values in the interpolated value on the axis, (nodes).
     real(wp), allocatable :: at_axis(:)
-    !> The panels from the axis outward, the first node of each, and which of the local nodes are
-    !> its own.
+    !> The panels from the axis outward, the first node of each, and the index in `local` of its
+    !> nodes.
     type(panel_map_t), allocatable :: panel(:)
     integer, allocatable :: first(:), which(:)
     type(local_nodes_t), allocatable :: local(:)
-    !> Smallest distance between neighbouring nodes of a panel; mean over the finest panel.
+    !> Smallest distance between neighbouring nodes of a panel; the mean distance for the finest
+    !> panel.
     real(wp) :: spacing = 0
     !> Digits of the kernel.
     real(wp) :: digits = 14
@@ -75,12 +75,12 @@ contains
 
     allocate (local%node(order), local%weight(order))
     call gauss_legendre(local%node, local%weight)
-    ! As for any rule of Gauss, the node's weight tells the polynomial's slope there.
+    ! In a Gauss rule the weight of a node determines the slope of the node polynomial there.
     local%barycentric = [((-1)**k*sqrt(local%node(k)*(1 - local%node(k))*local%weight(k)), &
       k=1, order)]
   end function gauss_nodes
 
-  !> The polynomial through values on the nodes at s, by the barycentric formula.
+  !> The polynomial through values at the nodes, evaluated at s by the barycentric formula.
   pure real(wp) function value_at(self, values, s)
     class(local_nodes_t), intent(in) :: self
     real(wp), intent(in) :: values(:), s
@@ -101,9 +101,10 @@ contains
     value_at = value_at/shares
   end function value_at
 
-  !> The larger of the last two Legendre coefficients of a function given on the nodes: small if its
-  !> polynomial is the function. On n nodes, roots of P_n, the node's weight times P_(n-1) is 2/n of
-  !> the barycentric weight but for a sign, and P_(n-2) is (2 n - 1)/(n - 1) times x P_(n-1).
+  !> The larger of the last two Legendre coefficients of a function given at the nodes; small if the
+  !> polynomial represents the function well. On n nodes, roots of P_n, the node's weight times
+  !> P_(n-1) is 2/n of the barycentric weight except for the sign, and P_(n-2) is (2 n - 1)/(n - 1)
+  !> times x P_(n-1).
   pure real(wp) function tail(self, value)
     class(local_nodes_t), intent(in) :: self
     real(wp), intent(in) :: value(:)
@@ -116,8 +117,8 @@ contains
     end associate
   end function tail
 
-  !> The tail of a pressure on each panel, over the largest pressure or its unit, which is the law's
-  !> largest tension or near it; 0 on a panel to infinity.
+  !> The tail of a pressure on each panel, over the largest pressure or the unit of pressure (about
+  !> the law's largest tension) if that is larger; 0 on a panel to infinity.
   pure function panel_tails(self, pressure) result(tails)
     class(discretisation_t), intent(in) :: self
     real(wp), intent(in) :: pressure(:)
@@ -134,9 +135,9 @@ contains
     tails = tails/max(maxval(abs(pressure)), 1.0_wp)
   end function panel_tails
 
-  !> Value at position x of the function with the given nodal values, by the panel's polynomial: of
-  !> the inverse position where the mesh goes on to infinity, so that the function has to be bounded
-  !> there. Outside the mesh the nearest panel extrapolates; callers keep inside.
+  !> Value at position x of the function with the given nodal values, by the panel's polynomial. On
+  !> a panel to infinity the polynomial is in the inverse position, so the function must be bounded.
+  !> Outside the mesh the nearest panel's polynomial extrapolates.
   pure function interpolate(self, values, x) result(value)
     class(discretisation_t), intent(in) :: self
     real(wp), intent(in) :: values(:), x
@@ -150,7 +151,8 @@ contains
     end associate
   end function interpolate
 
-  !> Whether node j and the next are on one panel, and that does not go on to infinity.
+  !> Whether node j and the next one are on the same panel, and this panel does not extend to
+  !> infinity.
   pure logical function on_one_panel(self, j)
     class(discretisation_t), intent(in) :: self
     integer, intent(in) :: j
@@ -161,8 +163,8 @@ contains
       j + 1 < self%first(k) + size(self%local(self%which(k))%node)
   end function on_one_panel
 
-  !> Where between node j and the next, which are on one panel, values given on the nodes reach a
-  !> level that lies between those of the two.
+  !> The position between node j and the next one, on the same panel, at which the polynomial of
+  !> nodal values reaches a level between the two values.
   pure real(wp) function crossing(self, values, level, j) result(x)
     class(discretisation_t), intent(in) :: self
     real(wp), intent(in) :: values(:), level
@@ -184,7 +186,7 @@ contains
     x = self%centre + self%panel(k)%offset(search%root)
   end function crossing
 
-  !> The panel of a position; outside the mesh the nearest.
+  !> The panel that contains a position; outside the mesh the nearest panel.
   pure integer function panel_at(self, x) result(low)
     class(discretisation_t), intent(in) :: self
     real(wp), intent(in) :: x
@@ -202,7 +204,7 @@ contains
     end do
   end function panel_at
 
-  !> Whether a position is on a panel that goes on to infinity.
+  !> Whether a position is on a panel that extends to infinity.
   pure logical function in_tail(self, x)
     class(discretisation_t), intent(in) :: self
     real(wp), intent(in) :: x
@@ -210,8 +212,9 @@ contains
     in_tail = self%panel(self%panel_at(x))%kind == algebraic_map
   end function in_tail
 
-  !> Fills in at_axis, once the nodes are known: what is even in the distance from the axis is a
-  !> polynomial of its square, and through the nearest nodes that converges faster than the panel's.
+  !> Sets at_axis, once the nodes are known. A function that is even in the distance from the axis
+  !> is a polynomial of the squared distance; through the nearest nodes this polynomial converges
+  !> faster than the panel's.
   pure subroutine note_axis(self, even)
     class(discretisation_t), intent(inout) :: self
     logical, intent(in) :: even
@@ -222,14 +225,14 @@ contains
     end associate
   end subroutine note_axis
 
-  !> Whether the mesh ends somewhere.
+  !> Whether the mesh has a finite end.
   elemental logical function is_bounded(self)
     class(discretisation_t), intent(in) :: self
 
     is_bounded = self%end < huge(1.0_wp)
   end function is_bounded
 
-  !> Number of kernel entries that were computed.
+  !> Number of computed kernel entries.
   elemental integer(long) function kernel_entries(self)
     class(discretisation_t), intent(in) :: self
 

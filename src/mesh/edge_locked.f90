@@ -1,11 +1,11 @@
-!> The meshes on which the whole equilibrium path is resolved at any adhesion strength.
+!> The meshes that resolve the whole equilibrium path at any adhesion strength.
 !>
-!> Before contact the mesh is mapped to the axis and the gap there is the coordinate of the path. In
-!> contact meshes are locked to the contact edge: positions are in units of the contact radius c,
-!> the edge stays at 1, and c is the coordinate. Both coordinates are monotone along the path. A
-!> mesh serves a band of contact radii; the path passes from one to the next. Where a step of the
-!> pressure pulls the bodies together, meshes between the two are locked to its front (`step_front`)
-!> in the same way.
+!> Before contact the mesh is mapped to the axis, and the gap on the axis is the coordinate of the
+!> path. In contact meshes are locked to the contact edge: positions are in units of the contact
+!> radius c, the edge stays at 1, and c is the coordinate. Both coordinates are monotonic along the
+!> path. A mesh is for a band of contact radii; the path passes from one mesh to the next. If a step
+!> of the pressure pulls the bodies together, further meshes between the approach and contact are
+!> locked to the front of the step (`step_front`) in the same way.
 module edge_locked
   use kinds, only: wp
   use dimensionless_problem, only: problem_t, calm_gap
@@ -26,34 +26,34 @@ module edge_locked
   !> The mesh before contact, and the first of those in contact or about a front.
   integer, parameter :: approach = 1, contact = 2
 
-  !> Largest ratio of the contact radii that one mesh serves: a mesh for wider bands has more nodes,
-  !> and more bands have more meshes. Under a law that oscillates or has a step, short panels lie
-  !> wherever its gaps are at any radius of the band.
+  !> Largest ratio of the contact radii of one mesh: wider bands need more nodes, narrower bands
+  !> more meshes. Under a law that oscillates or has a step, short panels cover all places that the
+  !> law's special gaps have at any radius of the band.
   real(wp), parameter :: widest_band = 30, narrow_band = 1.5_wp
-  !> Part of the radius at which a front becomes sharp, from which on a mesh is locked to it.
+  !> Fraction of the radius at which a front becomes sharp; above it a mesh is locked to the front.
   real(wp), parameter :: early = 0.25_wp
 
   type :: mesh_family_t
     !> The meshes in the order of the path.
     type(discretisation_t), allocatable :: grid(:)
-    !> The digits that they are good for.
+    !> The number of accurate digits for which the meshes are made.
     real(wp) :: digits = 0
-    !> What these are like.
+    !> The shapes of these meshes.
     type(mapped_shape_t), allocatable :: shape(:)
-    !> Radius of what the next mesh is locked to at which the path passes to it, lateral units; of
-    !> the last it is the largest that is expected.
+    !> Radius, in lateral units, at which the path passes to the next mesh: of the edge or the front
+    !> to which the next mesh is locked; for the last mesh the largest expected radius.
     real(wp), allocatable :: passage(:)
-    !> Whether the path can be traced: the law attracts.
-    !> If not, there is one mesh for contact, and its scale is prescribed by `hertz_scale`.
+    !> Whether the path can be traced: the law attracts. Otherwise there is one mesh for contact,
+    !> and `hertz_scale` prescribes its scale.
     logical :: traceable = .true.
-    !> Least and largest radius that each serves, lateral units; of the approach the highest H0.
+    !> Least and largest radius of each mesh, lateral units; for the approach the largest H0.
     real(wp), allocatable :: reach(:, :)
-    !> Whether each waits for the path to come to it, to be laid out for the gaps that bodies have
-    !> there (`lay_out`): until then it has no kernel.
+    !> Whether a mesh is laid out only when the path reaches it, for the gaps of the bodies there
+    !> (`lay_out`); until then it has no kernel.
     logical, allocatable :: waits(:)
     !> Gap at which a law without a contact edge begins to deform the bodies.
     real(wp) :: level = -huge(1.0_wp)
-    !> How many meshes next to that of the approach are locked to the front of a step.
+    !> Number of meshes, next to that of the approach, that are locked to the front of a step.
     integer :: fronts = 0
   contains
     procedure :: in_contact
@@ -68,12 +68,12 @@ module edge_locked
 
 contains
 
-  !> Meshes for H0 from h0_high down to h0_low, good for so many digits (`mesh_rule`).
-  !> shape_only leaves the kernels out: to learn how large they would be, or until they are needed
-  !> (`complete`). store: meshes made before,
-  !> to which these are added. coarser: meshes of fewer digits for the same problem and range.
-  !> Where these have halved or short panels, or as many nodes as those of more digits, their panels
-  !> are kept and get more nodes. A new layout could have fewer nodes and would then be no better.
+  !> Meshes for H0 from h0_high down to h0_low, accurate to the given number of digits
+  !> (`mesh_rule`). shape_only: the kernels are left out, because only their size is needed or
+  !> because `complete` adds them later. store: earlier meshes, to which these are added. coarser:
+  !> meshes of fewer digits for the same problem and range. Where these have halved or short panels,
+  !> or as many nodes as those of more digits, their panels are kept and get more nodes, since a new
+  !> layout could have fewer nodes and would then not be more accurate.
   function new_mesh_family(problem, h0_high, h0_low, digits, shape_only, store, coarser) &
     result(meshes)
     type(problem_t), intent(in) :: problem
@@ -97,7 +97,7 @@ contains
       call add_bands(1.0_wp, widest, 1, low, high)
     else if (problem%law%edge_gap > 0) then
       associate (first => min(passage_to_contact(problem), widest))
-        ! Where rounding hides the contact the path ends at its first fold.
+        ! Where rounding hides the contact, the path ends at its first fold.
         if (lost_in_rounding(problem, widest)) widest = widest_band*first
         if (front_leads(problem%law)) call add_bands(early*first_front(problem), &
           last_front(problem), bands_for(problem, early*first_front(problem), &
@@ -121,7 +121,7 @@ contains
     end do
   end function new_mesh_family
 
-  !> What a mesh is to be like. seen: gaps that bodies had on it.
+  !> The shape of a mesh. seen: gaps of computed states on it.
   type(mapped_shape_t) function shape_for(self, problem, mesh, seen) result(shape)
     class(mesh_family_t), intent(in) :: self
     type(problem_t), intent(in) :: problem
@@ -137,7 +137,7 @@ contains
     end if
   end function shape_for
 
-  !> Makes a mesh; elastic: with its kernel, from the store if there is one.
+  !> Makes a mesh; elastic: with its kernel, from the store if present.
   subroutine make_mesh(shape, elastic, grid, store)
     type(mapped_shape_t), intent(in) :: shape
     logical, intent(in) :: elastic
@@ -151,7 +151,7 @@ contains
     end if
   end subroutine make_mesh
 
-  !> Gives a mesh that was made for its shape alone a kernel, for bodies that yield.
+  !> Adds the kernel to a mesh that was made without it, for elastic bodies.
   subroutine complete(self, mesh, store)
     class(mesh_family_t), intent(inout) :: self
     integer, intent(in) :: mesh
@@ -160,7 +160,7 @@ contains
     call make_mesh(self%shape(mesh), .true., self%grid(mesh), store)
   end subroutine complete
 
-  !> How many bands of equal ratio there are between two radii.
+  !> Number of bands of equal ratio between two radii.
   pure integer function bands_for(problem, first, last) result(bands)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: first, last
@@ -184,7 +184,7 @@ contains
     high = [high, border(1:)]
   end subroutine add_bands
 
-  !> Makes a mesh anew, for bodies that yield.
+  !> Replaces a mesh by a new one with the given shape, for elastic bodies.
   subroutine renew(self, mesh, shape)
     class(mesh_family_t), intent(inout) :: self
     integer, intent(in) :: mesh
@@ -195,7 +195,7 @@ contains
     self%waits(mesh) = .false.
   end subroutine renew
 
-  !> Takes a mesh of another family in the place of its own.
+  !> Replaces a mesh by that of another family.
   subroutine take_over(self, mesh, other)
     class(mesh_family_t), intent(inout) :: self
     integer, intent(in) :: mesh
@@ -205,7 +205,7 @@ contains
     self%grid(mesh) = other%grid(mesh)
   end subroutine take_over
 
-  !> Makes a mesh, without its kernel, finer than that of a coarser family.
+  !> Makes a mesh, without its kernel, that is finer than that of a coarser family.
   subroutine refine(self, problem, mesh, coarser)
     class(mesh_family_t), intent(inout) :: self
     type(problem_t), intent(in) :: problem
@@ -216,9 +216,9 @@ contains
     call make_mesh(self%shape(mesh), .false., self%grid(mesh))
   end subroutine refine
 
-  !> Lets a mesh, not made yet, be what a coarser one is with more nodes: where that has short
-  !> panels or halves and, under laws that nodes were tried for, where laid out anew it has fewer
-  !> than that and so would be off by the same.
+  !> Chooses the shape of a mesh from a coarser one with more nodes on its panels: if the coarser
+  !> one has short or halved panels, or if a new layout would have fewer nodes than this, as under
+  !> laws for which numbers of nodes were tried, and so would have the same error.
   subroutine follow(self, coarser, mesh, problem)
     class(mesh_family_t), intent(inout) :: self
     type(mesh_family_t), intent(in) :: coarser
@@ -235,7 +235,7 @@ contains
     self%shape(mesh) = richer
   end subroutine follow
 
-  !> Whether a mesh has short panels or halves: more than one on a side of its centre.
+  !> Whether a mesh has short or halved panels: more than one on a side of its centre.
   pure logical function has_short_panels(self, mesh)
     class(mesh_family_t), intent(in) :: self
     integer, intent(in) :: mesh
@@ -255,7 +255,7 @@ contains
     in_contact = mesh >= contact + self%fronts
   end function in_contact
 
-  !> The gap that a mesh in contact, or about a front, is locked to.
+  !> The gap to which a mesh in contact, or about a front, is locked.
   pure real(wp) function locked_gap(self, law, mesh) result(gap)
     class(mesh_family_t), intent(in) :: self
     class(force_law_t), intent(in) :: law
@@ -265,9 +265,10 @@ contains
     if (self%fronts > 0 .and. .not. self%in_contact(mesh)) gap = law%step_at
   end function locked_gap
 
-  !> Contact radius at which the edge becomes too sharp for the mesh of the approach: a part of the
-  !> neck, and of the radius at which the axis of rigid bodies comes from most tension to rest.
-  !> Inside a front nothing is sharp before that; a flat face is to be passed before.
+  !> Contact radius at which the edge becomes too sharp for the mesh of the approach: a fraction of
+  !> the neck, and of the radius over which the gap between rigid bodies increases from the gap at
+  !> rest to that of largest tension. If a front leads, nothing inside it is sharp before its last
+  !> radius; the rim of a flat face is passed before.
   pure real(wp) function passage_to_contact(problem) result(c)
     type(problem_t), intent(in) :: problem
 

@@ -2,26 +2,26 @@
 !>
 !>     k(r, t) = 4/(pi max(r, t)) K(m),  m = (min(r, t)/max(r, t))**2 .
 !>
-!> By Gauss's transformation this is 2/agm(r + t, |r - t|), with agm the arithmetic-geometric
-!> mean: one expression on both sides of t = r, without the cancellation of 1 - m, provided
-!> that the caller forms |r - t| without cancellation too. It is therefore the argument.
+!> By Gauss's transformation this is 2/agm(r + t, |r - t|), with agm the arithmetic-geometric mean:
+!> one expression on both sides of t = r, without the cancellation of 1 - m. The distance |r - t| is
+!> an argument, so that the caller can compute it without cancellation.
 module elastic_kernel
   use kinds, only: wp, pi
   implicit none
   private
   public :: kernel, kernel_log_coefficient
 
-  !> Steps of the mean that reach double precision from the first of these ratios upward, from the
-  !> next with one more, and so on; from 1e-14 with four.
+  !> Steps of the mean that reach double precision from the first of these ratios upward; one more
+  !> step from the next ratio upward, and so on; four more steps are enough from 1e-14.
   integer, parameter :: fewest_steps = 3
   real(wp), parameter :: one_more(4) = [0.45_wp, 0.06_wp, 9.0e-4_wp, 2.0e-7_wp]
-  !> Means that are found at once.
+  !> Number of means that are computed together.
   integer, parameter :: at_once = 16
 
 contains
 
-  !> k as a function of the sums r + t and the distances |r - t|, both positive, in units of
-  !> one over that of the arguments. Integrable (logarithmic) singularity at distance 0.
+  !> The kernel k as a function of the sums r + t and the distances |r - t|, both positive; its unit
+  !> is the inverse of that of the arguments. Integrable (logarithmic) singularity at distance 0.
   pure function kernel(total, distance) result(k)
     real(wp), intent(in) :: total(:), distance(:)
     real(wp) :: k(size(total))
@@ -38,9 +38,9 @@ contains
     a = 4/(pi*total*agm(sqrt((1 - x)*(1 + x))))
   end function kernel_log_coefficient
 
-  !> Arithmetic-geometric means of 1 and x, 0 < x <= 1, to rounding. Steps are taken for a fixed
-  !> number at once, so that the loops vectorise: as many as the smallest of these needs. (Points in
-  !> order have their small ones together.)
+  !> Arithmetic-geometric means of 1 and x, 0 < x <= 1, to rounding. A fixed number of values is
+  !> iterated together, with the number of steps that the smallest of them needs, so that the loops
+  !> vectorise. (Consecutive points usually have similar values.)
   pure function agm(x) result(mean)
     real(wp), intent(in) :: x(:)
     real(wp) :: mean(size(x))

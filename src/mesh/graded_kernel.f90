@@ -1,5 +1,5 @@
-!> Integrals of the elastic kernel over a panel's part about the axis, or over a tail, by points
-!> graded towards the target.
+!> Integrals of the elastic kernel over the part of a panel near the axis, or over a tail, by
+!> quadrature points graded towards the target.
 module graded_kernel
   use kinds, only: wp
   use elastic_kernel, only: kernel
@@ -11,21 +11,22 @@ module graded_kernel
   private
   public :: add_graded
 
-  !> Points of a panel, graded towards a place: distances from it, positions, and weights for
-  !> integrals of f t dt in which f is a tail times a polynomial.
+  !> Quadrature points of a panel, graded towards a place: distances from the place, positions, and
+  !> weights for integrals of f t dt, with f a tail times a polynomial.
   type :: points_t
     real(wp), allocatable :: distance(:), t(:), weight(:)
   end type points_t
 
-  !> Below it the series of sinh is exact, and exponentials cancel.
+  !> Below this argument the series of sinh is exact, and the difference of exponentials cancels.
   real(wp), parameter :: small = 0.5_wp
 
 contains
 
   !> Adds the integrals of the kernel against Legendre polynomials, (degree + 1, target), over the
-  !> rule's part of the panel, for targets at r = centre + target(i). From a target beyond the part
-  !> that is no farther off than it is long points are graded too; on the axis the kernel is 2/t.
-  !> place: local coordinates of the targets, own: the panel's first node among them.
+  !> rule's part of the panel, for targets at r = centre + target(i). Points are graded also towards
+  !> a target outside the part, if its distance is at most the length of the part; on the axis the
+  !> kernel is 2/t. place: local coordinates of the targets; own: index of the panel's first node
+  !> among the targets.
   subroutine add_graded(panel, node, rule, centre, target, place, own, moments)
     type(panel_map_t), intent(in) :: panel
     type(graded_rule_t), intent(in) :: rule
@@ -54,8 +55,8 @@ contains
 
   contains
 
-    !> From points graded towards a place of the panel, over `length` after it or, below zero,
-    !> before it.
+    !> Adds the integrals with points graded towards a place of the panel, over `length` after it
+    !> or, if negative, before it.
     subroutine add_points(from, length, which)
       real(wp), intent(in) :: from, length
       integer, intent(in) :: which(:)
@@ -74,7 +75,7 @@ contains
       call add(legendre_values(from + length*rule%step, size(node)), f, which)
     end subroutine add_points
 
-    !> From the plain points.
+    !> Adds the integrals with plain points.
     subroutine add_plain(which)
       integer, intent(in) :: which(:)
       real(wp) :: f(size(rule%plain), size(which))
@@ -101,7 +102,7 @@ contains
 
   end subroutine add_graded
 
-  !> Points graded towards the place `from`, over `length` of the panel after it or, below zero,
+  !> Points graded towards the place `from`, over `length` of the panel after it or, if negative,
   !> before it.
   pure function points_from(panel, rule, centre, from, length) result(points)
     type(panel_map_t), intent(in) :: panel
@@ -122,7 +123,7 @@ contains
     end if
   end function points_from
 
-  !> exp(x) and 2 sinh(x) of x > 0, without cancellation.
+  !> exp(x) and 2 sinh(x) for x > 0, without cancellation.
   pure subroutine exponentials(x, growth, chord)
     real(wp), intent(in) :: x(:)
     real(wp), intent(out) :: growth(:), chord(:)
@@ -138,9 +139,9 @@ contains
     chord = merge(2*x*chord, growth - 1/growth, x < small)
   end subroutine exponentials
 
-  !> Along offset = d sinh(z) from z0 by delta > 0: distances d (sinh(z0 + delta) - sinh(z0)) and,
-  !> as weights, the map's derivative by z; of exp(z0), exp(delta/2) and 2 sinh(delta/2), so that
-  !> nothing cancels. Positions are left to the caller.
+  !> Points along offset = d sinh(z), from z0 to z0 + delta with delta > 0: distances d (sinh(z0 +
+  !> delta) - sinh(z0)) and, as weights, the derivative of the map by z. The arguments are exp(z0),
+  !> exp(delta/2) and 2 sinh(delta/2), so that there is no cancellation. The positions are not set.
   pure function points_along_sinh(d, grown, growth, chord) result(points)
     real(wp), intent(in) :: d, grown, growth(:), chord(:)
     type(points_t) :: points
@@ -152,7 +153,7 @@ contains
     points%weight = 0.5_wp*d*(middle + 1/middle)
   end function points_along_sinh
 
-  !> In the tail from s by `by` (either sign): position = begin/(1 - s).
+  !> Points in the tail from s to s + by (by of either sign): position = begin/(1 - s).
   pure function points_of_tail(panel, s, by, weight) result(points)
     type(panel_map_t), intent(in) :: panel
     real(wp), intent(in) :: s, by(:), weight(:)

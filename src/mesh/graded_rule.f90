@@ -1,8 +1,9 @@
-!> Quadrature for the elastic kernel on the part of a panel that begins at the axis, or on a tail.
+!> Quadrature for the elastic kernel on the part of a panel next to the axis, or on a tail.
 !>
-!> Towards a logarithm on it or near it points are graded: with distance = length*v**power and Gauss
-!> points in v, a logarithm there is as smooth as v**(power - 1) ln(v), and one a little farther off
-!> stays away from the points in proportion. For targets far off plain Gauss points do.
+!> Points are graded towards a logarithmic singularity on the panel or near it: with distance =
+!> length*v**power and Gauss points in v, a logarithm at distance 0 becomes as smooth as v**(power -
+!> 1) ln(v), and a singularity at a small distance stays away from the points in proportion. Plain
+!> Gauss points are enough for distant targets.
 module graded_rule
   use kinds, only: wp, pi
   use quadrature, only: gauss_legendre
@@ -10,17 +11,17 @@ module graded_rule
   private
   public :: graded_rule_t, new_graded_rule
 
-  !> Exponent of the substitution, and points with which v**(power - 1) ln(v) leaves some parts of
-  !> one: the error falls with twice the exponent.
+  !> Exponent of the substitution, and number of points at which the error for v**(power - 1) ln(v)
+  !> is a few parts of one: the error decreases with twice the exponent.
   integer, parameter :: power = 4
   real(wp), parameter :: least_graded = 1.75_wp
-  !> Points for each degree of the nodes' polynomials, graded and plain; and what plain ones are
-  !> besides, where the polynomials' last digits are of higher degrees.
+  !> Number of points for each degree of the nodes' polynomials, graded and plain; and additional
+  !> plain points, since the last digits of the polynomials are of higher degrees.
   real(wp), parameter :: graded_share = 1.4_wp, plain_share = 0.5_wp
   integer, parameter :: least_plain = 3
 
   type :: graded_rule_t
-    !> The part of the panel, from its left end.
+    !> The end of the part of the panel, which begins at the panel's left end.
     real(wp) :: part = 1
     !> Points and weights of the substitution on [0, 1].
     real(wp), allocatable :: step(:), step_weight(:)
@@ -30,8 +31,8 @@ module graded_rule
 
 contains
 
-  !> Rule for a part of a panel of `order` nodes, for so many digits. z_length: of that part, if it
-  !> is mapped by sinh, otherwise zero.
+  !> Rule for a part of a panel of `order` nodes, with an accuracy of `digits` digits. z_length:
+  !> length of this part in z if it is mapped by sinh, otherwise zero.
   pure function new_graded_rule(order, part, z_length, digits) result(rule)
     integer, intent(in) :: order
     real(wp), intent(in) :: part, z_length, digits
@@ -41,10 +42,10 @@ contains
     integer :: points
 
     rule%part = part
-    ! The part's share of the degrees: polynomials wave alike in this angle.
+    ! The part's share of the degrees: polynomials oscillate uniformly in this angle.
     degrees = order*acos(1 - 2*part)/pi
-    ! The kernel is singular not only at t = r but at t = -r too, which comes as near to the axis as
-    ! ln(2) in z: that end is where the substitution has the fewest points.
+    ! The kernel is singular at t = r and at t = -r. The latter is as near to the axis as ln(2) in
+    ! z, and near the axis the substitution has the fewest points.
     clear = log(2.0_wp)/max(z_length, 1.0_wp)
     points = ceiling(max(least_graded*10.0_wp**(digits/(2*power)), &
       graded_share*degrees + points_against(1 + sqrt(clear), digits)))
@@ -62,7 +63,8 @@ contains
     rule%plain_weight = part*rule%plain_weight
   end function new_graded_rule
 
-  !> Gauss points against a singularity on a Bernstein ellipse of that sum of half axes.
+  !> Number of Gauss points for an integrand with a singularity on the Bernstein ellipse of this sum
+  !> of half axes.
   elemental real(wp) function points_against(ellipse, digits) result(points)
     real(wp), intent(in) :: ellipse, digits
 

@@ -1,10 +1,10 @@
 !> Panels short enough for a force law with lengths of its own: barriers, oscillations and steps lie
-!> somewhere between the edge and infinity, where no general rule can know of them.
+!> between the edge and infinity at positions that a general rule does not know.
 !>
-!> The pressure is tried over gaps as bodies have them: undeformed before contact; in contact the
-!> gap outside a JKR contact. Or, once there is a path, over the gaps seen on it. Panels in z on
-!> which the last Legendre coefficients of that pressure are not small get more nodes or are halved,
-!> whichever takes fewer (`left_out`).
+!> The pressure is evaluated for gaps that bodies are expected to have: undeformed before contact;
+!> in contact the gap outside a JKR contact. Once there is a path, the gaps seen on it are used. A
+!> panel in z on which the last Legendre coefficients of this pressure are not small gets more nodes
+!> or is halved, whichever takes fewer nodes (`left_out`).
 module law_panels
   use kinds, only: wp, pi
   use dimensionless_problem, only: problem_t, calm_gap, adhesion_strength
@@ -17,26 +17,27 @@ module law_panels
   public :: fit_panels, nodes_on, left_out
   public :: about_axis, about_front, about_edge
 
-  !> What a mesh is mapped to: the axis, the front of a step, the contact edge.
+  !> The centre of a mesh: the axis, the front of a step, or the contact edge.
   integer, parameter :: about_axis = 1, about_front = 2, about_edge = 3
 
-  !> Nodes that a panel needs beside those in proportion to its length in z.
+  !> Number of nodes of a panel in addition to the number proportional to its length in z.
   real(wp), parameter :: more_nodes = 3
-  !> No panel shorter than twice this is halved; gaps on the axis, or radii, that are tried, and
-  !> where waves move past them.
+  !> Panels shorter than twice `shortest` are not halved. Number of gaps on the axis, or of radii,
+  !> for which the pressure is evaluated: `tried`, or `often` where waves move with them.
   real(wp), parameter :: shortest = 0.01_wp
   integer, parameter :: tried = 9, often = 33
-  !> How many times the nodes are tried. A panel that needs no more than its halves would is not
-  !> halved: waves want nodes, and steps short panels.
+  !> Factors by which the number of nodes is increased in turn. A panel that needs no more nodes
+  !> than its halves is not halved: waves need more nodes, steps need shorter panels.
   real(wp), parameter :: times(*) = [1.0_wp, 1.3_wp, 1.7_wp, 2.2_wp, 2.8_wp, 3.6_wp]
 
-  !> Of what a panel leaves out about a kink of the law, load and h0 at extrema feel less than a
-  !> third: panels are laid out for so many times the error that they may have there.
+  !> At extrema, load and h0 have less than a third of the quadrature error of a panel about a kink
+  !> of the law; so the tolerance of panels is multiplied by this factor.
   real(wp), parameter :: hardly_felt = 3
 
 contains
 
-  !> Nodes of panels of these lengths in z, at so many a unit of z, and never fewer than `fewest`.
+  !> Number of nodes of panels with the given lengths in z, with `density` nodes per unit of z, and
+  !> at least `fewest`.
   elemental integer function nodes_on(length, density, fewest) result(order)
     real(wp), intent(in) :: length, density
     integer, intent(in) :: fewest
@@ -44,9 +45,10 @@ contains
     order = max(fewest, ceiling(density*length + more_nodes))
   end function nodes_on
 
-  !> Lengths in z and nodes of panels at positions centre + side*d sinh(z): those given, with
-  !> `nodes_on` them or more, or halves of them. Radii go from low to high; `about`:
-  !> what is at the centre. digits: of load and h0. seen: gaps to try instead of those foreseen.
+  !> Lengths in z and numbers of nodes of panels at positions centre + side*d sinh(z): the given
+  !> panels with the number `nodes_on` or more, or their halves. Contact radii are between low and
+  !> high; about: the kind of centre. digits: accuracy of load and h0. seen: gaps that replace the
+  !> predicted ones.
   subroutine fit_panels(problem, about, side, d, low, high, density, fewest, digits, &
     length, order, seen)
     type(problem_t), intent(in) :: problem
@@ -79,8 +81,8 @@ contains
 
   contains
 
-    !> Adds the panel from z on, or its halves where these have fewer nodes; nothing where both have
-    !> more than `allowed`.
+    !> Adds the panel that begins at z, or its halves if these have fewer nodes; adds nothing if
+    !> both need more than `allowed` nodes.
     recursive subroutine add(z, z_length, allowed, length, order)
       real(wp), intent(in) :: z, z_length
       integer, intent(in) :: allowed
@@ -110,7 +112,7 @@ contains
       order = [order, nodes]
     end subroutine add
 
-    !> Nodes that resolve the pressure on a panel; 0 where `allowed` do not.
+    !> Number of nodes that resolve the pressure on a panel; 0 if more than `allowed` are needed.
     integer function order_of(z, z_length, allowed) result(nodes)
       real(wp), intent(in) :: z, z_length
       integer, intent(in) :: allowed
@@ -125,8 +127,8 @@ contains
       nodes = 0
     end function order_of
 
-    !> Whether what the polynomial of the nodes lacks of the pressure on a panel is little, of the
-    !> load and of the gap around. The gap that asked for more before is tried first.
+    !> Whether the nodes of a panel integrate the pressure with a small enough error of the load and
+    !> of the gap nearby. The gap that was worst before is tested first.
     logical function is_resolved(z, z_length, nodes)
       real(wp), intent(in) :: z, z_length
       integer, intent(in) :: nodes
@@ -154,7 +156,7 @@ contains
       is_resolved = .true.
     end function is_resolved
 
-    !> The gap of a try at offsets from the centre.
+    !> The gap number j at offsets from the centre.
     function gap_of(j, offset) result(gap)
       integer, intent(in) :: j
       real(wp), intent(in) :: offset(:)
@@ -167,8 +169,8 @@ contains
       end if
     end function gap_of
 
-    !> What the load that is left out of a try is a part of, but for 2 pi: the adhesion, or before
-    !> contact the load of all of its pressure, however small that is.
+    !> The load, except for a factor of 2 pi, to which the error is relative: the adhesion or,
+    !> before contact, the load of the absolute pressure, if that is smaller.
     real(wp) function load_of(j) result(load)
       integer, intent(in) :: j
       integer, parameter :: points = 64
@@ -188,13 +190,13 @@ contains
 
   end subroutine fit_panels
 
-  !> The part of load and gap that the nodes of a panel leave out. It goes with the square of the
-  !> tail of the pressure, since nodes integrate polynomials of twice the degree; or with the tail
-  !> itself, where coefficients fall slowly: about kinks of the law. Pressures count by their area,
-  !> as far as the panel is long, and by that of all the load, which tells how much the gap feels
-  !> them, within the panel; under waves by the area of the panel. centre: radius of the mesh's;
-  !> ends, r: of the panel and its nodes, where there are the pressures; load: what it is a part of,
-  !> but for 2 pi.
+  !> The relative error of load and gap due to the nodes of a panel. The error is proportional to
+  !> the square of the tail of the pressure, since nodes integrate polynomials of twice the degree,
+  !> or to the tail itself where coefficients decrease slowly, at kinks of the law. Pressures are
+  !> weighted by their area, limited by the length of the panel and by the area of the total load,
+  !> and within the panel by their effect on the gap; under oscillating laws by the area of the
+  !> panel. centre: radius of the mesh's centre; ends, r: radii of the panel's ends and of its
+  !> nodes; pressure: at the nodes; load: the reference load without the factor of 2 pi.
   pure real(wp) function left_out(problem, local, centre, ends, r, pressure, load) result(left)
     type(problem_t), intent(in) :: problem
     type(local_nodes_t), intent(in) :: local
@@ -219,7 +221,7 @@ contains
     left = left*min(1.0_wp, local%tail(weighted)/max(maxval(abs(weighted)), tiny(1.0_wp)))
   end function left_out
 
-  !> Gaps on the axis that bodies have before contact: down to that of most tension, or where a step
+  !> Gaps on the axis before contact: from large gaps down to that of largest tension or, if a step
   !> has a front before that, through the step.
   pure function axis_gaps(problem) result(gap)
     type(problem_t), intent(in) :: problem
@@ -236,14 +238,14 @@ contains
     end associate
   end function axis_gaps
 
-  !> How many gaps or radii are tried: often where waves move past them.
+  !> Number of tried gaps or radii; larger under oscillating laws.
   pure integer function tries(law)
     class(force_law_t), intent(in) :: law
 
     tries = merge(often, tried, law%period > 0)
   end function tries
 
-  !> So many values to try from one to another, in equal ratios.
+  !> Values from one to another in equal ratios.
   pure function between(from, to, tried) result(values)
     real(wp), intent(in) :: from, to
     integer, intent(in) :: tried
@@ -253,9 +255,11 @@ contains
     values = from*(to/from)**[(real(k, wp)/(tried - 1), k=0, tried - 1)]
   end function between
 
-  !> The gap at an offset from the centre: before contact with the gap h on the axis; outside a JKR
-  !> contact of radius h, at whose edge is the gap of largest tension.
-  !> JKR theory opens that gap as the root of the distance; cohesion rounds the root over d.
+  !> The gap at an offset from the centre: before contact with the gap h on the axis; otherwise
+  !> outside a JKR contact of radius h, with the gap of largest tension at its edge.
+  !>
+  !> The JKR gap increases as the square root of the distance from the edge; cohesion rounds the
+  !> square root over the distance d.
   pure function gap_at(problem, about, h, offset, d) result(gap)
     type(problem_t), intent(in) :: problem
     integer, intent(in) :: about

@@ -1,5 +1,4 @@
-!> Meshes of many equal-order panels whose nodes are not mapped: the paper's grid, and panels that
-!> are fixed in space.
+!> Meshes of many panels of equal order without a map: the paper's grid, and panels fixed in space.
 module linear_mesh
   use kinds, only: wp
   use discretisation, only: discretisation_t, axis_row, centre_row, first_node
@@ -11,9 +10,9 @@ module linear_mesh
 
 contains
 
-  !> The mesh on the panels [end(k), end(k+1)] (offsets from the centre), each with the
-  !> nodes `local_node` of [0, 1]; a node at 1 is shared with the next panel's node at 0.
-  !> elastic = .false. leaves the kernel out.
+  !> The mesh of the panels [end(k), end(k+1)] (offsets from the centre), each with the nodes
+  !> `local_node` on [0, 1]; a node at 1 is shared with the next panel's node at 0. elastic =
+  !> .false.: without the kernel.
   function new_linear_mesh(centre, panel_end, local_node, elastic) result(grid)
     real(wp), intent(in) :: centre, panel_end(:), local_node(:)
     logical, intent(in) :: elastic
@@ -50,7 +49,8 @@ contains
       if (order > 2) then
         grid%weight(first:last) = length*rule%weight*(centre + x(first:last))
       else
-        ! The exact integral of hat function times x: end values a, b weigh (2a + b)/6, (a + 2b)/6.
+        ! The exact integral of a hat function times x: end values a, b have the weights (2a + b)/6,
+        ! (a + 2b)/6.
         grid%weight(first:last) = grid%weight(first:last) + length/6* &
           (centre + x(first:last) + (2*centre + x(first) + x(last)))
       end if
@@ -63,7 +63,7 @@ contains
     target(centre_row) = 0
     target(first_node:) = x
     allocate (grid%kernel(size(target), grid%nodes))
-    ! Panels that share a node meet in one column, so each thread owns rows, not panels.
+    ! Panels that share a node add to the same column, so the threads divide rows, not panels.
     !$omp parallel do schedule(dynamic, 8) private(panel, first, last, weights)
     do i = 1, size(target)
       allocate (weights(order))

@@ -1,13 +1,13 @@
-!> What Gauss's rule misses of a logarithm.
+!> The error of the Gauss rule for a logarithm.
 !>
 !> A kernel k = -a ln|u - v| + b with a and b smooth in u is integrated on Gauss-Legendre nodes u_j
-!> of [0, 1], as exactly as polynomials through the nodes stand for a f and b f, by
+!> of [0, 1], as exactly as polynomials through the nodes represent a f and b f, by
 !>
 !>     integral k(u) f(u) du = sum_j (w_j k(u_j) + a(u_j) c_j) f(u_j),
 !>
-!> c_j being the integral of -ln|u - v| L_j(u), with L_j the Lagrange polynomials, less what the
-!> rule has for it, -w_j ln|u_j - v|. It depends on nothing but the nodes and v, and far from the
-!> panel it vanishes.
+!> Here c_j is the integral of -ln|u - v| L_j(u), with L_j the Lagrange polynomials, minus the
+!> rule's value of it, -w_j ln|u_j - v|. The defect c_j depends only on the nodes and v, and
+!> decreases to zero far from the panel.
 module logarithm_defect
   use kinds, only: wp
   use linear_algebra, only: multiply_transposed
@@ -16,15 +16,15 @@ module logarithm_defect
   private
   public :: logarithm_defects, feels_logarithm
 
-  !> Legendre functions of the second kind fall with their degree beyond the ends. They are found
-  !> from the lowest as long as errors grow by less than this, otherwise from one so much higher
-  !> that nothing is left of it.
+  !> Beyond the ends, Legendre functions of the second kind decrease with their degree. The
+  !> recurrence runs upward from the lowest degree if errors grow by less than `tolerable`;
+  !> otherwise it runs downward from a degree at which the function is below `nothing`.
   real(wp), parameter :: tolerable = 1.0e3_wp, nothing = 1.0e-16_wp
 
 contains
 
-  !> c(j, i) for the node j and the place at(i), inside the panel or out. Where they are the same
-  !> the integral itself, without the logarithm that the rule cannot have.
+  !> The defect c(j, i) for node j and the position at(i), inside or outside the panel. If at(i) is
+  !> the node itself, c is the integral, without the logarithm, which the rule cannot evaluate.
   function logarithm_defects(node, weight, at) result(c)
     real(wp), intent(in) :: node(:), weight(:), at(:)
     real(wp) :: c(size(node), size(at))
@@ -42,8 +42,8 @@ contains
     end do
   end function logarithm_defects
 
-  !> Whether the defect matters of a place at a distance from the panel, in its lengths, if so many
-  !> digits are wanted on so many nodes: Gauss's rule has twice as many degrees as they have.
+  !> Whether the defect matters at a distance from the panel, in units of its length, for an
+  !> accuracy of `digits` digits: the Gauss rule is exact for twice as many degrees as it has nodes.
   elemental logical function feels_logarithm(distance, nodes, digits)
     real(wp), intent(in) :: distance, digits
     integer, intent(in) :: nodes
@@ -52,7 +52,7 @@ contains
   end function feels_logarithm
 
   !> Coefficients of -ln|s - x|, with s from -1 to 1, in Legendre polynomials of s, on the interval
-  !> of length 1: (place, degree + 1). That of degree l > 0 is Q_(l-1)(x) - Q_(l+1)(x).
+  !> of length 1: (place, degree + 1). The coefficient of degree l > 0 is Q_(l-1)(x) - Q_(l+1)(x).
   pure function logarithm_series(x, terms) result(series)
     real(wp), intent(in) :: x(:)
     integer, intent(in) :: terms
@@ -81,7 +81,7 @@ contains
     difference(:, 2:) = q(:, :ubound(q, 2) - 2) - q(:, 2:)
   end function differences
 
-  !> Q of degrees 0 to `top` by the recurrence in rising degrees: exact between the ends.
+  !> Q of degrees 0 to `top` by the upward recurrence; exact between the ends.
   pure function upward(x, top) result(q)
     real(wp), intent(in) :: x(:)
     integer, intent(in) :: top
@@ -96,7 +96,8 @@ contains
     end do
   end function upward
 
-  !> The same beyond the ends, in falling degrees from two arbitrary values (Miller).
+  !> Q of degrees 0 to `top` beyond the ends, by the downward recurrence from two arbitrary values
+  !> (Miller).
   pure function downward(x, top) result(q)
     real(wp), intent(in) :: x(:)
     integer, intent(in) :: top
@@ -130,7 +131,7 @@ contains
     x_log_x = x*log(max(abs(x), tiny(x)))
   end function x_log_x
 
-  !> Sum of the half axes of the ellipse about [-1, 1] that goes through x; 1 on it.
+  !> Sum of the half axes of the ellipse with foci -1 and 1 through x; 1 between the foci.
   elemental real(wp) function ellipse(x)
     real(wp), intent(in) :: x
 

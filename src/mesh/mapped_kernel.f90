@@ -1,9 +1,10 @@
 !> The matrix of the elastic kernel on mapped panels.
 !>
-!> Away from the axis the kernel's logarithm has a coefficient as smooth as the map is, and the
-!> nodes' own rule with what it misses of the logarithm (`logarithm_defect`) integrates kernel and
-!> pressure as exactly as the nodes resolve the pressure. At the axis the coefficient is singular
-!> itself, and in a tail positions are: there points are graded towards the target (`graded_rule`).
+!> Away from the axis the coefficient of the kernel's logarithm is as smooth as the map. The nodes'
+!> own rule with its defect for a logarithm (`logarithm_defect`) then integrates kernel times
+!> pressure as accurately as the nodes resolve the pressure. At the axis this coefficient is
+!> singular, and in a tail the map is; there the quadrature points are graded towards the target
+!> (`graded_rule`).
 module mapped_kernel
   use kinds, only: wp, pi
   use elastic_kernel, only: kernel, kernel_log_coefficient
@@ -17,15 +18,16 @@ module mapped_kernel
   private
   public :: add_panel
 
-  !> How far from the axis, in z, points are graded, and the part of a panel that stands for all.
+  !> Distance from the axis, in z, up to which points are graded; and fraction of a panel above
+  !> which the whole panel gets graded points.
   real(wp), parameter :: about_axis = 1.8_wp, nearly_all = 0.8_wp
 
 contains
 
-  !> matrix(i, j) f(j) summed over j is the integral of k(r, t) f(t) t dt over the panel, for
-  !> r = centre + target(i) and f a polynomial of the panel's local coordinate, times the tail where
-  !> it has one, that the nodes resolve. node, weight: of Gauss's rule on [0, 1]. own: the place of
-  !> the panel's first node among the targets.
+  !> The sum of matrix(i, j) f(j) over j is the integral of k(r, t) f(t) t dt over the panel, for r
+  !> = centre + target(i) and f a polynomial of the panel's local coordinate (times the tail, if the
+  !> panel has one) that the nodes resolve. node, weight: the Gauss rule on [0, 1]. own: the index
+  !> of the panel's first node among the targets.
   subroutine add_panel(panel, node, weight, digits, centre, target, own, matrix)
     type(panel_map_t), intent(in) :: panel
     real(wp), intent(in) :: node(:), weight(:), digits, centre, target(:)
@@ -57,8 +59,8 @@ contains
     end do
   end subroutine add_panel
 
-  !> The part of a panel, from its left end, on which the axis is felt: where the logarithm's
-  !> coefficient has one itself.
+  !> The part of a panel, from its left end, that needs graded points because of the axis, where the
+  !> logarithm's coefficient has a logarithm of its own.
   pure real(wp) function part_about_axis(panel, centre, nodes, digits) result(part)
     type(panel_map_t), intent(in) :: panel
     real(wp), intent(in) :: centre, digits
@@ -69,12 +71,12 @@ contains
     part = 0
     if (from_axis < about_axis .and. feels_logarithm(from_axis/panel%z_length, nodes, digits)) &
       part = (about_axis - from_axis)/panel%z_length
-    ! What little is left of a panel is not worth a rule of its own.
+    ! A rule for a very small remaining part would cost more than it saves.
     if (part > nearly_all) part = 1
   end function part_about_axis
 
-  !> Weights times kernel, (points, targets), for Gauss points s of the panel beyond the part.
-  !> place: local coordinates of the targets.
+  !> Weights times kernel, (points, targets), for Gauss points s of the panel outside the part near
+  !> the axis. place: local coordinates of the targets.
   function values_on(panel, s, weight, part, digits, centre, target, place) result(f)
     type(panel_map_t), intent(in) :: panel
     real(wp), intent(in) :: s(:), weight(:), part, digits, centre, target(:), place(:)
@@ -97,7 +99,7 @@ contains
       if (near(i)) then
         j = j + 1
         a = kernel_log_coefficient(total, distance)
-        ! Of a point itself what is left of the kernel without its logarithm.
+        ! At the target itself: the rest of the kernel without its logarithm.
         k = minloc(abs(s - place(i)), 1)
         if (.not. abs(s(k) - place(i)) > 0) distance(k) = total(k)
         f(:, i) = measure*(weight*kernel(total, distance) + a*defect(:, j))
@@ -109,7 +111,7 @@ contains
     end do
   end function values_on
 
-  !> Adds the moments of the panel beyond the part about the axis.
+  !> Adds the moments of the panel outside the part near the axis.
   subroutine add_rest(panel, part, digits, centre, target, place, moments)
     type(panel_map_t), intent(in) :: panel
     real(wp), intent(in) :: part, digits, centre, target(:), place(:)
@@ -118,8 +120,8 @@ contains
     real(wp) :: of_these(size(moments, 1), size(moments, 2))
     integer :: points
 
-    ! Polynomials wave alike in this angle; the kernel and what they pass on to their neighbours
-    ! need a few points more.
+    ! Polynomials oscillate uniformly in this angle; the kernel and the coupling to neighbouring
+    ! panels need a few points more.
     points = ceiling(size(moments, 1)*(1 - acos(1 - 2*part)/pi) + 4 + 2*digits)
     allocate (s(points), weight(points))
     call gauss_legendre(s, weight)
@@ -129,8 +131,8 @@ contains
     moments = moments + of_these
   end subroutine add_rest
 
-  !> (m, j): part of the Legendre polynomial of degree m - 1 in the Lagrange polynomial of node j.
-  !> The nodes' own rule is exact for products of two polynomials of theirs.
+  !> The element (m, j): coefficient of the Legendre polynomial of degree m - 1 in the Lagrange
+  !> polynomial of node j. The nodes' rule is exact for the product of two such polynomials.
   pure function lagrange(node, weight)
     real(wp), intent(in) :: node(:), weight(:)
     real(wp) :: lagrange(size(node), size(node))

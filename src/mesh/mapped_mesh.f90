@@ -1,6 +1,7 @@
 !> Meshes mapped to the contact edge or the axis: distance = d sinh(z) from it, Gauss-Legendre
-!> panels in z, and from some position on an algebraic panel to infinity on which pressures are a
-!> power tail. Every scale from d up to the mesh's length has the same number of nodes to a factor.
+!> panels in z, and beyond some position an algebraic panel to infinity, on which pressures are a
+!> power tail. Distances from d to the mesh's length have equal numbers of nodes per factor in
+!> distance.
 module mapped_mesh
   use kinds, only: wp
   use discretisation, only: discretisation_t, gauss_nodes, axis_row, centre_row, first_node
@@ -10,19 +11,20 @@ module mapped_mesh
   private
   public :: mapped_shape_t, same_shape, new_mapped_mesh
 
-  !> A panel of more nodes is a long one.
+  !> Number of nodes above which a panel counts as long.
   integer, parameter :: long = 16
 
-  !> What a mapped mesh is like.
+  !> The parameters of a mapped mesh.
   type :: mapped_shape_t
     !> Position of the centre (0: the axis, 1: the contact edge), and d.
     real(wp) :: centre = 0, d = 1
     !> Nodes of the sinh panels and their lengths in z, from the innermost outward; the first
-    !> `inner` of them lie inside the centre and reach the axis.
+    !> `inner` panels lie inside the centre and extend to the axis.
     integer :: inner = 0
     integer, allocatable :: order(:)
     real(wp), allocatable :: z_length(:)
-    !> Nodes of the panel beyond (0: the mesh ends) and the exponent of the pressure's tail there.
+    !> Nodes of the algebraic panel (0: the mesh has a finite end) and the exponent of the
+    !> pressure's tail on it.
     integer :: tail_order = 0
     real(wp) :: decay = 0
     !> Digits of the kernel matrix.
@@ -36,8 +38,8 @@ module mapped_mesh
 
 contains
 
-  !> The shape with some of its sinh panels halved: half of a long one has fewer nodes, though more
-  !> for its length.
+  !> The shape with some of its sinh panels halved. Half of a long panel has fewer nodes than the
+  !> whole, but more per length.
   pure type(mapped_shape_t) function halved(self, which) result(shape)
     class(mapped_shape_t), intent(in) :: self
     logical, intent(in) :: which(:)
@@ -56,7 +58,8 @@ contains
     shape%inner = self%inner + count(which(:self%inner))
   end function halved
 
-  !> The shape with so many times the nodes on each panel, and digits more of the kernel.
+  !> The shape with the number of nodes of each panel multiplied by `times`, and with additional
+  !> digits of the kernel.
   pure type(mapped_shape_t) function enriched(self, times, digits) result(shape)
     class(mapped_shape_t), intent(in) :: self
     real(wp), intent(in) :: times, digits
@@ -67,7 +70,7 @@ contains
     shape%digits = self%digits + digits
   end function enriched
 
-  !> Whether two meshes are the same to the last digit.
+  !> Whether two shapes are equal to the last digit.
   pure logical function same_shape(a, b) result(same)
     type(mapped_shape_t), intent(in) :: a, b
 
@@ -77,7 +80,7 @@ contains
       all(abs([a%centre, a%d, a%decay, a%digits] - [b%centre, b%d, b%decay, b%digits]) <= 0)
   end function same_shape
 
-  !> The mesh of a shape; elastic = .false. leaves the kernel out.
+  !> The mesh of a shape; elastic = .false.: without the kernel.
   function new_mapped_mesh(shape, elastic) result(grid)
     type(mapped_shape_t), intent(in) :: shape
     logical, intent(in) :: elastic
@@ -103,8 +106,8 @@ contains
     end do
   end function new_mapped_mesh
 
-  !> The panels, and where the mesh ends. Neighbours meet to the last digit, and so do the innermost
-  !> panel and the axis.
+  !> The panels and the end of the mesh. Neighbouring panels have exactly equal ends, and the
+  !> innermost panel ends exactly at the axis.
   subroutine place_panels(shape, grid)
     type(mapped_shape_t), intent(in) :: shape
     type(discretisation_t), intent(inout) :: grid
@@ -128,7 +131,7 @@ contains
     grid%end = huge(1.0_wp)
   end subroutine place_panels
 
-  !> Nodes and weights, and the nodes' offsets from the centre.
+  !> Sets nodes and weights, and returns the nodes' offsets from the centre.
   subroutine place_nodes(shape, grid, offset)
     type(mapped_shape_t), intent(in) :: shape
     type(discretisation_t), intent(inout) :: grid

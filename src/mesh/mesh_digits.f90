@@ -1,7 +1,7 @@
-!> How many digits a mesh must give load and h0, at a fixed contact radius or axis gap, for what is
-!> reported to have the accuracy asked for. Fitted so that error estimates of loads, h0 and
-!> displacements, at folds and extrema too, are within the accuracy, from 1e-2 to 1e-10 and sigma
-!> 1e-4 to 1e4.
+!> The number of digits of load and h0, at a fixed contact radius or axis gap, that a mesh needs for
+!> a given accuracy of the results. It is fitted so that the error estimates of loads, h0 and
+!> displacements, also at folds and extrema, are within the accuracy, for accuracies from 1e-2 to
+!> 1e-10 and sigma from 1e-4 to 1e4.
 module mesh_digits
   use kinds, only: wp
   use dimensionless_problem, only: problem_t, adhesion_strength, coupling_over
@@ -9,31 +9,32 @@ module mesh_digits
   private
   public :: digits_for, most_digits
 
-  !> No path is traced with fewer; no more can be told from rounding.
+  !> Least number of digits for a path; largest number of digits that rounding allows.
   real(wp), parameter :: fewest = 4.25_wp, most_digits = 13
-  !> With fewer than these for each decade of sigma the folds are not those that the path has: they
-  !> come the nearer to one another the stronger adhesion is. Laws that have a step, a kink or a
-  !> period: on top of the fewest. And as long as there is a contact at all these are enough to tell
-  !> folds apart.
+  !> Least number of digits for each decade of sigma: with fewer digits, folds would be missing or
+  !> wrong, since folds are closer together for stronger adhesion. For laws with a step, a kink or a
+  !> period: the number to be added to `fewest`. The last number is enough to separate folds as long
+  !> as there is a contact.
   real(wp), parameter :: for_folds = 1.5_wp, for_folds_of_lengths = 0.5_wp, enough_for_folds = 9
-  !> More or less than for a path of the Lennard-Jones law: bodies that do not jump; laws that have
-  !> a step or a kink, and those that oscillate; profiles, which feel every error of the edge's
-  !> place, the more the narrower the neck, for each decade of sigma; bodies with a kink, where the
-  !> edge passes it.
+  !> Digits to be added, relative to a path under the Lennard-Jones law: for bodies without jumps;
+  !> for laws with a step or a kink; for oscillating laws; for profiles, which are sensitive to the
+  !> position of the edge; for profiles, for each decade of sigma, since the neck is narrower; for
+  !> bodies with a kink, which the edge passes.
   real(wp), parameter :: without_jumps = -0.5_wp, for_steps = 0.6_wp, for_waves = 1.1_wp, &
     for_profiles = 2, for_narrow_necks = 0.3_wp, for_kinks = 1.5_wp
-  !> For each decade of what a contact yields more than on a half-space, times the square of the
-  !> decades by which it is wider than layers that yield unlike a half-space to waves of this many
-  !> or fewer over the radius.
+  !> Digits for each decade of the ratio of the contact's compliance to that on a half-space, times
+  !> the square of the decades by which the contact is wider than the layer: such a layer differs
+  !> from a half-space for waves of at most `waves_in_layer` over the radius.
   real(wp), parameter :: for_softer = 0.3_wp, waves_in_layer = 32
-  !> sigma at which jumps begin under the Lennard-Jones law, about that of others; what is more
-  !> there, the factor in sigma up to which that is felt, and the part of it, logarithmically, in
-  !> which the two folds are so near each other that coarse meshes lose them.
+  !> The sigma at which jumps begin under the Lennard-Jones law (for other laws approximately);
+  !> digits to be added there; the factor in sigma within which they are added; and the part of this
+  !> range, logarithmically, in which the two folds are so close that coarse meshes miss them.
   real(wp), parameter :: onset = 0.29_wp, at_onset = 2, about_onset = 1.5_wp, near_onset = 0.35_wp
 
 contains
 
-  !> profiles: whether some are asked for. widest: the largest contact radius.
+  !> Digits for a mesh. profiles: whether profiles are requested. widest: the largest contact
+  !> radius.
   pure real(wp) function digits_for(problem, widest, accuracy, profiles) result(digits)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: widest, accuracy
@@ -43,7 +44,7 @@ contains
     sigma = adhesion_strength(problem)
     decades = log10(1 + sigma)
     digits = of_load(-log10(accuracy))
-    ! Nothing is as sensitive as jumps are.
+    ! Jumps are more sensitive to errors than all other results.
     if (sigma < onset) digits = digits + without_jumps
     lengths = 0
     if (problem%law%step_width > 0 .or. problem%law%has_kink) lengths = for_steps
@@ -68,7 +69,7 @@ contains
     if (left > fewest) digits = max(digits, min(enough_for_folds, least))
   end function digits_for
 
-  !> Where nothing else matters, for so many decimal places of accuracy.
+  !> Digits for the load alone, for a number of decimal places of accuracy.
   pure real(wp) function of_load(places) result(digits)
     real(wp), intent(in) :: places
 

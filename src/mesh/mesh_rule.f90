@@ -1,6 +1,6 @@
-!> How many nodes, and where: the shape of a mapped mesh that gives load and h0 so many digits along
-!> its stretch of the equilibrium path. Fitted to the errors of whole bands of states, at
-!> adhesion strengths from 1e-4 to 1e5 (tools/bench/mesh_study.py).
+!> The shape of a mapped mesh: number and position of the nodes for a given number of digits of load
+!> and h0 along a part of the equilibrium path. The rule is fitted to the errors of whole bands of
+!> states, at adhesion strengths from 1e-4 to 1e5 (tools/bench/mesh_study.py).
 module mesh_rule
   use kinds, only: wp, pi
   use root_finding, only: bracket_t
@@ -15,54 +15,58 @@ module mesh_rule
   private
   public :: approach_shape, contact_shape, is_narrow, rim_passed_at, is_even
 
-  !> d over the smallest feature: errors change little from half of it to twice.
+  !> The length d over the smallest feature: errors change little between half this value and twice.
   real(wp), parameter :: finer = 0.5_wp
-  !> Where the tail begins, as a multiple of where the bodies are H0 high: for a parabola the poles
-  !> of the pressure, at rho**2 = -2 H0, are as far from there as the axis; never nearer than the
-  !> next two, in lateral units and in units of the contact radius from the edge.
+  !> Beginning of the tail, as a multiple of the radius at which the height of the bodies is H0: for
+  !> a parabola the poles of the pressure, at rho**2 = -2 H0, are as far from there as the axis.
+  !> Least positions: in lateral units, and in units of the contact radius from the edge.
   real(wp), parameter :: beyond_poles = 1.3_wp, nearest_tail = 5, tail_of_contact = 3
-  !> A pressure that falls faster than any power ends where this part of the accuracy is left of it;
-  !> up to there it needs so many times the nodes.
+  !> A pressure that decreases faster than any power ends where it is this fraction of the accuracy;
+  !> the number of nodes up to this end is multiplied by `crowding`.
   real(wp), parameter :: negligible = 1.0e-2_wp, crowding = 1.7_wp
-  !> Power of the position with which the pressure of a fluid between parabolas falls.
+  !> The pressure of a fluid between parabolas decreases as this power of the position.
   real(wp), parameter :: film_decay = 4
-  !> Length of its panels at most: on longer ones, over which a mobility changes by many orders,
-  !> matrices of film and bodies are no longer positive together, and short waves grow in time.
+  !> Largest length in z of the panels of a fluid: on longer panels, over which a mobility changes
+  !> by many orders of magnitude, the combined matrices of film and bodies are not positive
+  !> definite, and short waves grow in time.
   real(wp), parameter :: longest_film = 3
-  !> No such pressure goes on beyond the law's range or so many of its lengths.
+  !> Such a pressure ends at the law's range or at this many of its lengths.
   real(wp), parameter :: farthest = 60
-  !> Short panels: their length in z, so many nodes, and more for each digit.
+  !> Short panels: their length in z, their number of nodes, and nodes per digit.
   real(wp), parameter :: short = 0.7_wp, short_order = 4, short_orders = 0.9_wp
-  !> Widths of the cohesive zone that a flat face has at most for its rim to be passed on a mesh
-  !> that stays where it is, and how far beyond the rim that goes (`rim_passed_at`).
+  !> Largest radius of a flat face, in widths of the cohesive zone, for which the edge passes the
+  !> rim on the fixed mesh of the approach, and the radius up to which the edge stays on this mesh,
+  !> over that of the rim (`rim_passed_at`).
   real(wp), parameter :: widths_to_pass = 10, beyond_rim = 1.3_wp
-  !> Length there of panels in widths of the cohesive zone at most.
+  !> Largest length of panels near the rim, in widths of the cohesive zone.
   real(wp), parameter :: short_at_rim = 0.7_wp
-  !> Kinks of a shape between which panels end; more, as a table has, lie everywhere.
+  !> Largest number of kinks of a shape at which panels end; a table has more kinks, which are
+  !> everywhere.
   integer, parameter :: few = 4
-  !> The tail begins beyond the end of a body that is nearer than so many times where it would else.
+  !> The tail begins beyond the end of a body if the end is nearer than this multiple of the usual
+  !> beginning of the tail.
   real(wp), parameter :: near_end = 100
-  !> Lengths in z and d go up in steps of this much, d of its logarithm, so that problems that are
-  !> near one another have the same meshes: at the cost of a fraction of a node.
+  !> Lengths in z, and the logarithm of d, are multiples of this step, so that similar problems have
+  !> the same meshes, at the cost of a fraction of a node.
   real(wp), parameter :: rung = 0.25_wp
-  !> More digits of kernels at most where what the half-space yields and what layers yield beside it
-  !> are much more than both together.
+  !> Largest number of additional digits of kernels for layered bodies, where the compliance of the
+  !> half-space and the layers' correction to it are both much larger than their sum.
   real(wp), parameter :: for_layers = 2
-  !> Digits more for pressures of foreseen gaps, which are only nearly those of the bodies; and
-  !> digits that a shape with kinks allows.
+  !> Additional digits for pressures of predicted gaps, which are only approximately those of the
+  !> bodies; and digits that a shape with kinks allows.
   real(wp), parameter :: of_foreseen = 1.5_wp, digits_of_broken = 4
 
 contains
 
-  !> Whether short panels lie wherever bodies have the gaps that the law marks, so that meshes serve
-  !> narrow bands of radii and wait for gaps that are seen.
+  !> Whether short panels cover all places with the law's special gaps, so that each mesh is for a
+  !> narrow band of radii and is laid out for seen gaps.
   pure logical function is_narrow(problem)
     type(problem_t), intent(in) :: problem
 
     is_narrow = problem%law%period > 0 .or. problem%law%step_width > 0
   end function is_narrow
 
-  !> Before contact, about the axis, for H0 up to h0_high. seen: gaps that bodies had.
+  !> The mesh before contact, about the axis, for H0 up to h0_high. seen: gaps of computed states.
   type(mapped_shape_t) function approach_shape(problem, h0_high, digits, seen) result(shape)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: h0_high, digits
@@ -83,9 +87,9 @@ contains
     shape%digits = kernel_digits(problem, digits, 1.0_wp)
   end function approach_shape
 
-  !> In contact, about the edge, for contact radii from `low` to `high` (lateral units); or before,
-  !> about the front of a step. level: the gap at which a law without adhesion begins to deform the
-  !> bodies. seen: gaps that bodies had.
+  !> The mesh in contact, about the edge, for contact radii from `low` to `high` (lateral units), or
+  !> before contact, about the front of a step. level: the gap at which a law without adhesion
+  !> begins to deform the bodies. seen: gaps of computed states.
   type(mapped_shape_t) function contact_shape(problem, about, low, high, level, digits, seen) &
     result(shape)
     type(problem_t), intent(in) :: problem
@@ -96,8 +100,8 @@ contains
 
     inner = 0.15_wp + digits*(0.24_wp + 0.0105_wp*digits)
     if (problem%law%adhesion > 0) then
-      ! Where adhesion is strong a small contact is drawn out far, and where the repulsion is it
-      ! begins inside the edge: that needs more nodes, there most of all.
+      ! Under strong adhesion a small contact is elongated; under strong repulsion the repulsion
+      ! begins inside the edge. Both need more nodes, mainly there.
       inner = inner*(1 + 0.03_wp*log(1 + adhesion_strength(problem)/(1 + high)**2))
       repulsion = log(1 + high/(pi*adhesion_strength(problem)))
       outer = inner*(1 + 0.5_wp*log(1 + 0.75_wp*repulsion))
@@ -107,8 +111,8 @@ contains
       outer = inner
     end if
     reach = max(nearest_tail, beyond_poles*problem%shape%position_of(0.5_wp*calm_gap(problem)))
-    ! As long as a contact is smaller than its neck, the pressure around it is that before contact;
-    ! where the neck is wider than the force reaches, this is smooth enough.
+    ! The pressure around a contact smaller than its neck is that before contact. If the neck is
+    ! wider than the range of the force, this pressure is smooth enough.
     if (problem%law%adhesion > 0 .and. cohesive_width(problem) < 1) &
       outer = outer*(1 + 0.5_wp/(1 + 3*(low/cohesive_width(problem))**2))
     call give_tail(problem, max(level, problem%law%edge_gap), digits, reach, outer, shape)
@@ -121,15 +125,16 @@ contains
       seen)
     call refine_axis(problem, digits, 1.0_wp, shape)
     shape%inner = size(shape%order)
-    ! Panels of a whole number of nodes are a little longer, and end on the axis.
+    ! Panels with an integer number of nodes are slightly longer; d is chosen so that they end on
+    ! the axis.
     shape%d = 1/sinh(sum(shape%z_length))
     call add_panels(problem, shape, about, 1, asinh(reach/shape%d), outer, digits, low, high, seen)
     shape%digits = kernel_digits(problem, digits, high)
   end function contact_shape
 
-  !> The tail of the pressure: an algebraic panel where it falls as a power; otherwise the mesh ends
-  !> where nothing is left, which sets `reach` (lateral units), and nodes are denser up to there.
-  !> from: a gap at which the pressure is as large as it matters.
+  !> The tail of the pressure: an algebraic panel if the pressure decreases as a power. Otherwise
+  !> the mesh ends where the pressure is negligible; this sets `reach` (lateral units) and increases
+  !> the density of nodes. from: a gap with a pressure of typical magnitude.
   pure subroutine give_tail(problem, from, digits, reach, density, shape)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: from, digits
@@ -139,7 +144,8 @@ contains
     if (problem%law%tail_power < huge(1.0_wp)) then
       shape%tail_order = ceiling(1.5_wp + 0.6_wp*digits)
       shape%decay = problem%shape%growth*problem%law%tail_power
-      ! Of other shapes what is left of the power need not be a polynomial in the inverse position.
+      ! For other shapes the pressure over its power need not be a polynomial in the inverse
+      ! position.
       if (.not. is_even(problem%shape) .or. problem%shape%ends < huge(1.0_wp)) &
         shape%tail_order = 2*shape%tail_order
       reach = max(reach, problem%shape%position_of(problem%law%power_from), &
@@ -156,7 +162,7 @@ contains
     reach = max(reach, beyond_poles*problem%shape%position_of(problem%film_gap))
   end subroutine give_tail
 
-  !> The gap beyond `from` at which `part` is left of the pressure there.
+  !> The gap beyond `from` at which the pressure is the fraction `part` of its value at `from`.
   pure real(wp) function fading_gap(problem, from, part) result(gap)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: from, part
@@ -173,10 +179,10 @@ contains
     gap = bracket%middle()
   end function fading_gap
 
-  !> Adds sinh panels over z_length: one, which gets more nodes or is halved where the pressure
-  !> shows that it needs this, as under laws with lengths of their own. Laws that have a kink, and
-  !> shapes that are not parabolas near the axis, have short panels from the beginning. about, side,
-  !> low, high, seen: see `fit_panels`.
+  !> Adds sinh panels over z_length: one panel, which gets more nodes or is halved where the
+  !> pressure needs this, as under laws with lengths of their own. Laws with a kink, and shapes that
+  !> are not parabolas near the axis, have short panels from the beginning. about, side, low, high,
+  !> seen: see `fit_panels`.
   subroutine add_panels(problem, shape, about, side, z_length, density, digits, low, high, seen)
     type(problem_t), intent(in) :: problem
     type(mapped_shape_t), intent(inout) :: shape
@@ -189,7 +195,7 @@ contains
     integer :: panels, fewest
     logical :: broken
 
-    ! Around a contact that is wider than where its shape has kinks there are none.
+    ! Around a contact wider than the radius of the shape's kinks there are no kinks.
     broken = problem%shape%smooth_from() > merge(low, 0.0_wp, side > 0 .and. about == about_edge)
     if (side > 0) broken = broken .or. end_matters(problem, digits, &
       (shape%centre + shape%d*sinh(z_length))*merge(high, 1.0_wp, shape%centre > 0), high)
@@ -209,8 +215,8 @@ contains
       if (present(seen)) digits_to_fit = -log10(seen%most)
       if (broken .or. problem%shape%smooth_from() > 0) &
         digits_to_fit = min(digits_to_fit, digits_of_broken)
-      ! Inside the edge the bodies are at rest, but for the repulsion, whose length is known; and in
-      ! contact under a law that marks gaps meshes wait for those that are seen.
+      ! Inside the edge the bodies are at the gap of rest except for the repulsion, whose length is
+      ! known. In contact under a law with special gaps, meshes are laid out for seen gaps only.
       if (law%edge_gap > 0 .and. (present(seen) .or. about == about_axis .or. &
         .not. (side < 0 .or. is_narrow(problem)))) then
         call fit_panels(problem, about, side, shape%d, low, high, density, fewest, &
@@ -229,9 +235,9 @@ contains
     shape%z_length = [shape%z_length, lengths]
   end subroutine add_panels
 
-  !> The radius up to which the contact edge is followed on a mesh that stays where it is, and so
-  !> has the kink at the rim of a flat face between its panels: somewhat beyond that, where the
-  !> cohesive zone is not so narrow that this would be dear. 0: none.
+  !> The radius up to which the contact edge is followed on the mesh of the approach, which has the
+  !> kink at the rim of a flat face at a panel's end: somewhat beyond the rim, unless the cohesive
+  !> zone is so narrow that this would need many nodes. 0: there is no such radius.
   pure real(wp) function rim_passed_at(problem) result(radius)
     type(problem_t), intent(in) :: problem
 
@@ -251,8 +257,8 @@ contains
     end associate
   end function short_panels
 
-  !> Short panels that end where a derivative of the shape jumps; where that is at many places, as
-  !> of a table, they need not. Where the edge passes they are short.
+  !> Short panels that end where a derivative of the shape jumps, unless there are many such places,
+  !> as in a table. The panels are shorter where the edge passes.
   pure function ending_at_breaks(problem, d, z_length) result(lengths)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: d, z_length
@@ -284,8 +290,9 @@ contains
     end do
   end function ending_at_breaks
 
-  !> Whether a mesh up to a radius holds the end of the bodies, and forces act there. contact: the
-  !> radius of a contact, 0 before; without adhesion the gap around it is the smallest.
+  !> Whether a mesh up to a radius contains the end of the bodies and the force there matters.
+  !> contact: the radius of a contact, 0 before contact; without adhesion the gap around the contact
+  !> is the smallest.
   pure logical function end_matters(problem, digits, radius, contact) result(matters)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: digits, radius, contact
@@ -301,11 +308,12 @@ contains
     end associate
   end function end_matters
 
-  !> Halves the panel on the axis of shapes that are not smooth there. The pressure of a contact is
-  !> there r^(n-1), with a logarithm if n is odd, and what the panel cannot resolve is a part
-  !> r^(n+1) of the load: `beyond` n is 1. Before contact it is two powers more. On a panel as long
-  !> as it is far from the axis a node makes that smaller by 3 + sqrt(8), so that every halving
-  !> needs so many nodes `fewer`. The one on the axis tells the gap there.
+  !> Halves the panel on the axis repeatedly for shapes that are not smooth there. The pressure of a
+  !> contact near the axis contains r^(n-1), with a logarithm if n is odd, and the error of the
+  !> panel is a part r^(n+1) of the load: `beyond` n is 1. Before contact the power is higher by
+  !> two. On a panel as long as its distance from the axis, each node reduces the error by 3 +
+  !> sqrt(8), so each halving needs `fewer` nodes less. The panel on the axis determines the gap
+  !> there.
   pure subroutine refine_axis(problem, digits, beyond, shape)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: digits, beyond
@@ -329,15 +337,16 @@ contains
     end do
   end subroutine refine_axis
 
-  !> Whether a body is even in r, so that nothing on its axis is sharp.
+  !> Whether a shape is even in r, so that it is smooth on its axis.
   pure logical function is_even(shape)
     class(shape_t), intent(in) :: shape
 
     is_even = .not. abs(shape%exponent - 2*nint(0.5_wp*shape%exponent)) > 0
   end function is_even
 
-  !> Digits of the kernel: its errors matter less than those of the pressure's polynomials, and
-  !> more where bodies yield more, or yield less to contacts of this radius than their half-spaces.
+  !> Digits of the kernel: its errors matter less than those of the pressure's polynomials. They
+  !> matter more for more compliant bodies, and for bodies that are stiffer at this contact radius
+  !> than their half-spaces.
   pure real(wp) function kernel_digits(problem, digits, radius)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: digits, radius

@@ -1,5 +1,6 @@
-!> Meshes kept for use again: most of what a mesh takes is its kernel, and the problems of a sweep
-!> often need the same (`mesh_rule` gives their numbers few values).
+!> A store of meshes for repeated use: the kernel is the most expensive part of a mesh, and the
+!> problems of a sweep often need equal meshes, since the rule's numbers have few values
+!> (`mesh_rule`).
 module mesh_store
   use kinds, only: long
   use discretisation, only: discretisation_t
@@ -13,7 +14,8 @@ module mesh_store
     type(discretisation_t) :: grid
   end type kept_t
 
-  !> The newest meshes, in a ring. Threads may use one at a time: they come one by one.
+  !> The newest meshes, in a ring. Several threads may use the store; access is in critical
+  !> sections.
   type :: mesh_store_t
     private
     type(kept_t), allocatable :: kept(:)
@@ -25,13 +27,13 @@ module mesh_store
     procedure, private :: keep
   end type mesh_store_t
 
-  !> Meshes that are kept at most, and entries of their kernels (64 MB).
+  !> Largest number of stored meshes, and of entries of their kernels (64 MB).
   integer, parameter :: most_meshes = 1000
   integer(long), parameter :: most_entries = 8000000
 
 contains
 
-  !> The mesh of a shape, with its kernel: the one that is kept, or a new one, which then is.
+  !> The mesh of a shape, with its kernel: the stored one, or a new one, which is then stored.
   subroutine obtain(self, shape, grid)
     class(mesh_store_t), intent(inout) :: self
     type(mapped_shape_t), intent(in) :: shape
@@ -45,12 +47,13 @@ contains
     if (place > 0) return
     grid = new_mapped_mesh(shape, .true.)
     !$omp critical (kept_meshes)
-    ! Another thread may have been at the same.
+    ! Another thread may have stored this mesh in the meantime.
     if (self%find(shape) == 0) call self%keep(shape, grid)
     !$omp end critical (kept_meshes)
   end subroutine obtain
 
-  !> Where the mesh of a shape is kept; 0: nowhere. The newest are the likeliest.
+  !> The index of the stored mesh of a shape; 0: there is none. The newest meshes are searched
+  !> first.
   pure integer function find(self, shape) result(place)
     class(mesh_store_t), intent(in) :: self
     type(mapped_shape_t), intent(in) :: shape
@@ -66,7 +69,7 @@ contains
     place = 0
   end function find
 
-  !> Keeps a mesh; the oldest make room.
+  !> Stores a mesh; the oldest ones are removed for it.
   subroutine keep(self, shape, grid)
     class(mesh_store_t), intent(inout) :: self
     type(mapped_shape_t), intent(in) :: shape

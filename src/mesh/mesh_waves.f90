@@ -1,12 +1,13 @@
-!> Waves J0(k x) on a mesh: what each is at the mesh's positions, and what the polynomials that
-!> stand for pressures have of it. With weights v of a rule for wave numbers k,
-!>
+!> Waves J0(k x) on a mesh: the value of each wave at the mesh's positions, and the Hankel
+!> transforms of the polynomials that represent pressures. With weights v of a quadrature rule for
+!> the wave number k,
 !>     Int (Int p(t) J0(k t) t dt) S(k) J0(k x_i) dk = 
 !>       Sum_q wave(i, q) v_q S(k_q) Sum_j spectrum(j, q) p_j ,
 !>
-!> for any smooth function S of the wave number. Waves that pass between the nodes of a mesh are no
-!> part of pressures that it resolves, but the nodes alone cannot tell them from long ones; so the
-!> polynomials are integrated with as many nodes as the waves need.
+!> for any smooth function S of the wave number. Waves shorter than the distance of nodes are not
+!> contained in pressures that the mesh resolves, but at the nodes alone they cannot be
+!> distinguished from long waves. Therefore the polynomials are integrated with as many nodes as the
+!> waves need.
 module mesh_waves
   use kinds, only: wp
   use quadrature, only: lagrange_basis
@@ -20,46 +21,55 @@ module mesh_waves
   private
   public :: mesh_waves_t, new_mesh_waves
 
-  !> Outside the mesh's centre waves are left out of pressures that turn by more than `passing` from
-  !> node to node, smoothly from the part `from` of that on. Between there and here a product with a
-  !> pressure is one with a window that moves with the wave, which must be wide enough for the
-  !> product to have none of the wave. Inside, where bodies are in contact, nothing is left out: of
-  !> thin films the second part of the operator is nearly the negative of the first, which has all.
+  !> Outside the mesh's centre, waves whose phase changes by more than `passing` from node to node
+  !> are omitted from the transform of pressures, with a smooth transition that begins at the
+  !> fraction `from` of this value. In the transition the product with a pressure is multiplied by a
+  !> window that moves with the wave; the window must be wide enough for the product to contain
+  !> nothing of the wave. Inside the centre, where bodies are in contact, no wave is omitted: for
+  !> thin films the second part of the operator is nearly the negative of the first part, which has
+  !> all waves.
   real(wp), parameter :: passing = 20, from = 0.6_wp
-  !> To infinity that does for pressures that fall as this power of the position. Of what falls less
-  !> steeply more lies where waves are left out, and they are so farther out.
+  !> On a panel to infinity this is valid for pressures that decrease as this power of the position.
+  !> Pressures that decrease more slowly are larger where waves are omitted; for these, waves are
+  !> omitted only farther out.
   real(wp), parameter :: steep = 6
-  !> Places there are moved by waves that turn by less than this from node to node, and by all that
-  !> turn less than this between the axis and them, each for a digit; smoothly from that part on.
+  !> The displacement of a position outside the centre includes waves whose phase changes by less
+  !> than `passing_place` from node to node, and all waves whose phase changes by less than
+  !> `crossing` between the axis and the position, both per digit; the smooth transition begins at
+  !> this fraction.
   real(wp), parameter :: passing_place = 1.4_wp, crossing = 2.4_wp, from_of_place = 0.25_wp
-  !> How far a wave turns over a panel of waves at most, and how many nodes one has over which none
-  !> turns, and one over which a wave turns by that (`wave_rule`), at first and for each digit. They
-  !> need not do for a product of two waves that end in one place, which is far out and has little
-  !> pressure: of a coat a hundred times as stiff as its base and thirty times thinner than the
-  !> contact is wide three nodes fewer leave a part 1e-7 of the load at accuracy 1e-6, these 1e-9.
+  !> Largest change of phase over one panel of wave numbers; number of nodes of a panel over which
+  !> the phase does not change, and of a panel over which it changes by `swing` (`wave_rule`), as a
+  !> constant and per digit. The number is too small for a product of two waves at one position far
+  !> out, where the pressure is small. For a coat a hundred times as stiff as its base and thirty
+  !> times thinner than the contact radius, these numbers leave an error of 1e-9 of the load at
+  !> accuracy 1e-6; with three nodes fewer the error is 1e-7.
   real(wp), parameter :: swing = 60, nodes_at_first(2) = [5.0_wp, 17.0_wp], &
     nodes_a_digit(2) = [0.8_wp, 1.5_wp]
-  !> A panel of n nodes integrates polynomials of degree 2 n - 1. A wave that turns by some angle
-  !> over it is one of so many times the angle, to this and a few degrees more.
+  !> A panel of n nodes integrates polynomials of degree 2 n - 1. A wave whose phase changes by an
+  !> angle over the panel is a polynomial of degree `degrees` times the angle, plus `more_degrees`.
   real(wp), parameter :: degrees = 0.55_wp, more_degrees = 8
-  !> The nodes at the ends of a hat function; by how much rules have more nodes for shorter waves.
+  !> Number of nodes of a hat function; ratio of the numbers of nodes for successive groups of
+  !> shorter waves.
   integer, parameter :: hat = 2
   real(wp), parameter :: rung = 1.5_wp
 
-  !> Waves that were added at once; `before` were there. wave: (rows, waves) in rows as those of the
-  !> mesh's kernel, up to the last that any of them moves; spectrum: (nodes, waves).
+  !> Waves that were added together; `before` is the number of earlier waves. wave: (rows, waves),
+  !> with the rows of the mesh's kernel up to the last row that is not zero; spectrum: (nodes,
+  !> waves).
   type :: wave_block_t
     integer :: before = 0
     real(wp), allocatable :: wave(:, :), spectrum(:, :)
   end type wave_block_t
 
   type :: mesh_waves_t
-    !> Wave numbers in one over the mesh's scale, in order, and weights, (waves).
+    !> Wave numbers in the inverse of the mesh's scale, ascending, and their weights, (waves).
     real(wp), allocatable :: k(:), weight(:)
     type(wave_block_t), allocatable, private :: block(:)
-    !> Up to the first wave number functions are of low degree; up to the last there are waves.
+    !> Functions of the wave number are of low degree below range(1); there are waves up to
+    !> range(2).
     real(wp) :: range(2) = 0
-    !> The mesh's positions.
+    !> The mesh's nodes.
     real(wp), allocatable, private :: x(:)
     type(bessel_t), private :: bessel
   contains
@@ -71,7 +81,7 @@ module mesh_waves
 
 contains
 
-  !> No waves yet.
+  !> An empty set of waves.
   pure type(mesh_waves_t) function new_mesh_waves(grid, first) result(waves)
     type(discretisation_t), intent(in) :: grid
     real(wp), intent(in) :: first
@@ -82,7 +92,7 @@ contains
     waves%bessel = new_bessel()
   end function new_mesh_waves
 
-  !> Whether they are those of a mesh.
+  !> Whether the waves are those of a mesh.
   pure logical function belong_to(self, grid)
     class(mesh_waves_t), intent(in) :: self
     type(discretisation_t), intent(in) :: grid
@@ -92,7 +102,7 @@ contains
     if (belong_to) belong_to = all(abs(self%x - grid%x) <= 0)
   end function belong_to
 
-  !> Adds waves to those there are, up to the wave number `last`.
+  !> Adds waves up to the wave number `last`.
   subroutine add(self, grid, last)
     class(mesh_waves_t), intent(inout) :: self
     type(discretisation_t), intent(in) :: grid
@@ -143,8 +153,8 @@ contains
     call move_alloc(blocks, self%block)
   end subroutine add
 
-  !> Sum_q wave(i, q) strength(q) Sum_j spectrum(j, q) pressure(j), of as many waves as there are
-  !> strengths and for as many rows as there are of `sums`.
+  !> Sum_q wave(i, q) strength(q) Sum_j spectrum(j, q) pressure(j), over the first size(strength)
+  !> waves, for the first size(sums) rows.
   subroutine times(self, strength, pressure, sums)
     class(mesh_waves_t), intent(in) :: self
     real(wp), intent(in) :: strength(:), pressure(:)
@@ -188,10 +198,10 @@ contains
     end do
   end subroutine matrix
 
-  !> What the polynomials of a panel have of the waves, in order. Its own nodes do for the longest,
-  !> of which `whole` are at the nodes what `wave`, (waves, nodes), says; for others it is cut into
-  !> pieces, each about as wide as it is far from the mesh's centre, and these are given the more
-  !> nodes the shorter the waves are.
+  !> Adds the transforms of the polynomials of a panel, in ascending order of the waves. For the
+  !> longest waves the panel's own nodes are a sufficient rule; the first `whole` waves have at the
+  !> nodes the values `wave`, (waves, nodes). For the other waves the panel is divided into pieces,
+  !> each about as wide as its distance from the mesh's centre, with more nodes for shorter waves.
   subroutine add_spectrum(bessel, grid, p, k, whole, wave, spectrum)
     type(bessel_t), intent(in) :: bessel
     type(discretisation_t), intent(in) :: grid
@@ -217,7 +227,7 @@ contains
     end associate
   end subroutine add_spectrum
 
-  !> Adds what comes of the piece of a panel between two places s.
+  !> Adds the contribution of a piece of a panel between two local coordinates.
   subroutine add_piece(bessel, grid, p, ends, k, spectrum)
     type(bessel_t), intent(in) :: bessel
     type(discretisation_t), intent(in) :: grid
@@ -252,7 +262,7 @@ contains
           call find_wave(bessel, x(i), last_of(i), from, k(before + 1:now), rows(:, i))
         end do
         call add_by_transposed(basis, rows, part)
-        ! Neighbours that are hat functions share a node.
+        ! Neighbouring hat functions share a node.
         spectrum(first:last, before + 1:now) = spectrum(first:last, before + 1:now) + part
         deallocate (basis, rows, part)
         before = now
@@ -261,7 +271,7 @@ contains
     end associate
   end subroutine add_piece
 
-  !> Nodes of a piece of a panel that integrate its polynomials times waves, in order.
+  !> Number of nodes of a piece of a panel that integrate its polynomials times waves, ascending.
   pure function nodes_for(grid, p, ends, k) result(nodes)
     type(discretisation_t), intent(in) :: grid
     integer, intent(in) :: p
@@ -271,9 +281,9 @@ contains
 
     associate (panel => grid%panel(p), local => grid%local(grid%which(p)), &
       length => ends(2) - ends(1))
-      ! At an end of the panel polynomials go to and fro the fastest.
+      ! Polynomials oscillate fastest at an end of the panel.
       of_pressure = min(1.0_wp*size(local%node), sqrt(length)*size(local%node) + more_degrees)
-      ! To infinity the last waves turn by as much anywhere.
+      ! On a panel to infinity the phase of the last included wave changes equally at all places.
       associate (places => merge(min(ends, 0.95_wp), ends, panel%kind == algebraic_map))
         last = last_on(grid, p, places, passing)
         speed = panel%speed(places)
@@ -283,7 +293,7 @@ contains
     end associate
   end function nodes_for
 
-  !> The last wave number that counts at places s of a panel.
+  !> The largest wave number that is included at places s of a panel.
   pure function last_on(grid, p, s, passing) result(last)
     type(discretisation_t), intent(in) :: grid
     integer, intent(in) :: p
@@ -295,8 +305,8 @@ contains
     if (grid%panel(p)%kind == algebraic_map) last = last*max(1.0_wp, steep/grid%panel(p)%decay)**2
   end function last_on
 
-  !> The distance between nodes at places s of a panel. On one that goes on to infinity it begins as
-  !> it ends on the one before.
+  !> The distance between nodes at places s of a panel. A panel to infinity begins with the distance
+  !> at the end of the previous panel.
   pure function step_on(grid, p, s)
     type(discretisation_t), intent(in) :: grid
     integer, intent(in) :: p
@@ -310,7 +320,7 @@ contains
     end if
   end function step_on
 
-  !> J0(k x), left out smoothly from a part of `last` up to it; k ascending.
+  !> J0(k x) with a smooth transition to zero between a fraction of `last` and `last`; k ascending.
   subroutine find_wave(bessel, x, last, from, k, wave)
     type(bessel_t), intent(in) :: bessel
     real(wp), intent(in) :: x, last, from, k(:)

@@ -5,9 +5,9 @@
 !>     sinh       offset = d sinh(z), z = z_left + z_length s
 !>     algebraic  position = begin/(1 - s), out to infinity
 !>
-!> The second resolves every scale from d up to the panel's length with the same number of nodes to
-!> a factor in the distance from the centre. On the third a pressure is (1 - s)**decay times a
-!> polynomial, which is a power tail position**(-decay) times one in the inverse position.
+!> The sinh map has equal numbers of nodes for each factor in the distance from the centre, from d
+!> to the panel's length. On an algebraic panel a pressure is (1 - s)**decay times a polynomial: a
+!> power tail position**(-decay) times a polynomial in the inverse position.
 module panel_map
   use kinds, only: wp
   implicit none
@@ -19,11 +19,11 @@ module panel_map
 
   type :: panel_map_t
     integer :: kind = linear_map
-    !> Offsets of its ends; the right one of an algebraic panel is huge.
+    !> Offsets of the panel's ends; the right one of an algebraic panel is huge.
     real(wp) :: left = 0, right = 0
-    !> sinh: d, z at the left end, and the length in z.
+    !> Parameters of a sinh panel: d, z at the left end, and the length in z.
     real(wp) :: d = 0, z_left = 0, z_length = 0
-    !> algebraic: position of the left end, and the exponent of the pressure's tail.
+    !> Parameters of an algebraic panel: position of its left end, and exponent of the tail.
     real(wp) :: begin = 0, decay = 0
   contains
     procedure :: offset
@@ -41,7 +41,7 @@ contains
     panel%right = right
   end function linear_panel
 
-  !> From z_left over z_length, in units of d.
+  !> A sinh panel with parameter d, from z_left over z_length.
   pure type(panel_map_t) function sinh_panel(d, z_left, z_length) result(panel)
     real(wp), intent(in) :: d, z_left, z_length
 
@@ -53,7 +53,7 @@ contains
     panel%right = d*sinh(z_left + z_length)
   end function sinh_panel
 
-  !> From the position `begin` (offset `left`) to infinity.
+  !> An algebraic panel from the position `begin` (offset `left`) to infinity.
   pure type(panel_map_t) function algebraic_panel(begin, left, decay) result(panel)
     real(wp), intent(in) :: begin, left, decay
 

@@ -23,9 +23,9 @@ contains
     grid = new_linear_mesh(centre, panel_end, node, elastic)
   end function new_panel_grid
 
-  !> Offsets of panel ends about a centre: size `finest` next to it, growing in proportion to the
-  !> distance (`growth` times it), never above `coarsest`, down to the axis and out to `extent`
-  !> (both as positions).
+  !> Offsets of panel ends about a centre: the panel size is `finest` next to the centre and grows
+  !> in proportion to the distance (`growth` times it) up to `coarsest`, inward to the axis and
+  !> outward to the position `extent`.
   pure function graded_ends(centre, extent, finest, growth, coarsest) result(ends)
     real(wp), intent(in) :: centre, extent, finest, growth, coarsest
     real(wp), allocatable :: ends(:)
@@ -50,7 +50,7 @@ contains
       d = 0
       do while (d < length)
         size_here = min(max(finest, growth*d), coarsest)
-        ! A remainder of less than half a panel joins the last one.
+        ! A remainder of less than half a panel is added to the last panel.
         if (d + 1.5_wp*size_here >= length) size_here = length - d
         d = d + size_here
         if (d >= length*(1 - 4*epsilon(d))) d = length

@@ -1,5 +1,5 @@
-!> Integrals of the elastic kernel times Lagrange polynomials over one panel, the logarithmic
-!> singularity integrated, not skipped or smeared.
+!> Integrals of the elastic kernel times Lagrange polynomials over one panel; the logarithmic
+!> singularity is integrated exactly.
 !>
 !> Positions are given as offsets from a common centre, position = centre + offset, so that the
 !> distance between two points close to the centre keeps its full relative precision.
@@ -11,23 +11,24 @@ module product_integration
   private
   public :: panel_rule_t, new_panel_rule, panel_weights
 
-  !> Points of the inner rule, which is exact for a logarithm times a polynomial of degree 39: up to
-  !> 23 for the Lagrange polynomial (order 24), and 16 for the logarithm's coefficient, whose
-  !> nearest singularity lies as far from the piece as the piece is long (rho = 5.8, and 5.8**(-16)
-  !> is 6e-13, times a small factor). 24 points were exact enough up to order 14 only.
+  !> Number of points of the inner rule, which is exact for a logarithm times a polynomial of degree
+  !> 39: up to 23 for the Lagrange polynomial (order 24), and 16 for the logarithm's coefficient,
+  !> whose nearest singularity is at a distance equal to the length of the piece (rho = 5.8, and
+  !> 5.8**(-16) is 6e-13, times a small factor). 24 points were exact enough only up to order 14.
   integer, parameter :: inner_points = 40
-  !> Points of the rules for panels at a distance, cheapest first; the first is replaced by the
-  !> panel's own nodes where those are a Gauss rule.
+  !> Number of points of the rules for distant panels, cheapest first; the first rule is replaced by
+  !> the panel's own nodes if these are a Gauss rule.
   integer, parameter :: points(3) = [6, 12, inner_points]
-  !> A piece may reach this many times as far from the target as it begins: its Bernstein ellipse
-  !> then has rho = 3.7, far more than 2*40 - 24 degrees need.
+  !> Largest ratio of the distances of a piece's far and near ends from the target: its Bernstein
+  !> ellipse then has rho = 3.7, which is ample for 2*40 - 24 degrees.
   real(wp), parameter :: reach = 3
 
-  !> A distance in panels that stands for none; any that a rule is good at is far below it.
+  !> A distance, in panel lengths, that marks a rule as useless; all real distances are far below
+  !> it.
   real(wp), parameter :: never = 1.0e30_wp
 
-  !> A Gauss rule for targets at a distance from the panel of at least `far` of its lengths, where
-  !> it integrates the kernel times a Lagrange polynomial to rounding.
+  !> A Gauss rule for targets whose distance from the panel is at least `far` times its length;
+  !> there the rule integrates the kernel times a Lagrange polynomial to rounding.
   type :: distant_rule_t
     real(wp) :: far
     real(wp), allocatable :: node(:), weight(:)
@@ -35,7 +36,7 @@ module product_integration
     real(wp), allocatable :: basis(:, :)
   end type distant_rule_t
 
-  !> What does not depend on where the panel lies: its nodes on [0, 1] and the rules.
+  !> The data that do not depend on the position of a panel: its nodes on [0, 1] and the rules.
   type :: panel_rule_t
     !> Nodes on [0, 1], the interpolatory weights of these nodes, and their barycentric weights.
     real(wp), allocatable :: node(:), weight(:), barycentric(:)
@@ -69,7 +70,7 @@ contains
     do k = 1, size(points)
       rule%distant(k) = new_distant_rule(node, rule%barycentric, points(k))
     end do
-    ! Nodes that are a Gauss rule themselves need no interpolation.
+    ! Nodes of a Gauss rule need no interpolation.
     if (size(node) > 2) then
       associate (own => rule%distant(1))
         own%node = node
@@ -80,8 +81,8 @@ contains
     end if
   end function new_panel_rule
 
-  !> weights(j) = integral of k(r, t) L_j(t) t dt over the panel of offsets [left, right], for the
-  !> target at the offset `target`, which may lie anywhere (inside, at an end, outside).
+  !> The element weights(j) is the integral of k(r, t) L_j(t) t dt over the panel of offsets [left,
+  !> right], for a target at any offset `target` (inside, at an end, outside).
   pure subroutine panel_weights(rule, centre, target, left, right, weights)
     type(panel_rule_t), intent(in) :: rule
     real(wp), intent(in) :: centre, target, left, right
@@ -92,11 +93,11 @@ contains
     length = right - left
     gap = max(left - target, target - right)
     if (centre + target <= 0) then
-      ! On the axis the kernel is 2/t: nothing is singular once multiplied by t.
+      ! On the axis the kernel is 2/t, and its product with t is not singular.
       weights = 2*length*rule%weight
     else
       do k = 1, size(rule%distant)
-        ! Too few points for this order at any distance.
+        ! The rule has too few points for this order at any distance.
         if (rule%distant(k)%far >= never) cycle
         if (gap >= rule%distant(k)%far*length) then
           weights = undivided(rule%distant(k), centre, target, left, length, size(weights))
@@ -111,7 +112,7 @@ contains
     end if
   end subroutine panel_weights
 
-  !> Rule of n points for Lagrange polynomials through `node`.
+  !> The rule of n points for Lagrange polynomials through `node`.
   pure function new_distant_rule(node, barycentric, n) result(rule)
     real(wp), intent(in) :: node(:), barycentric(:)
     integer, intent(in) :: n
@@ -126,8 +127,8 @@ contains
     rule%far = distance_for(2*n - size(node))
   end function new_distant_rule
 
-  !> Distance, in panel lengths, at which a polynomial of the given degree approximates the kernel
-  !> to 1e-14: the singularity then lies on the Bernstein ellipse with rho**(-degree) = 1e-14.
+  !> The distance, in panel lengths, at which a polynomial of the given degree approximates the
+  !> kernel to 1e-14: the singularity is then on the Bernstein ellipse with rho**(-degree) = 1e-14.
   pure real(wp) function distance_for(degree)
     integer, intent(in) :: degree
     real(wp) :: rho
@@ -138,7 +139,7 @@ contains
     distance_for = (0.5_wp*(rho + 1/rho) - 1)/2
   end function distance_for
 
-  !> The whole panel by one rule.
+  !> The integrals over the whole panel by one rule.
   pure function undivided(rule, centre, target, left, length, nodes) result(weights)
     type(distant_rule_t), intent(in) :: rule
     real(wp), intent(in) :: centre, target, left, length
@@ -156,8 +157,8 @@ contains
     end if
   end function undivided
 
-  !> The part of the panel on one side of the target, from distance `near` to `finish`, in pieces
-  !> that grow away from the target.
+  !> The integrals over the part of the panel on one side of the target, from distance `near` to
+  !> `finish`, in pieces that grow away from the target.
   pure function one_side(rule, centre, target, left, right, side, near, finish) result(weights)
     type(panel_rule_t), intent(in) :: rule
     real(wp), intent(in) :: centre, target, left, right, near, finish
@@ -174,7 +175,7 @@ contains
     do while (from < finish)
       singular = from <= 0
       if (singular) then
-        ! Short enough for the coefficient of the logarithm to be analytic well beyond it.
+        ! The piece is so short that the coefficient of the logarithm is analytic well beyond it.
         to = min(finish, merge(r, r/2, side > 0))
       else
         to = min(finish, reach*from)

@@ -1,7 +1,7 @@
-!> Integrals over a mesh from the axis up to each node, and from each node on to infinity, of
-!> functions given on the nodes: matrices from the integrals of the panels' polynomials. On a panel
-!> to infinity, where u = begin/position, functions to be gathered are bounded, polynomials in u,
-!> and those to be taken beyond fall as position**(-6) times one.
+!> Integrals of functions given at the nodes, over a mesh from the axis to each node, and from each
+!> node to infinity: matrices from the integrals of the panels' polynomials. On a panel to infinity,
+!> with u = begin/position, the functions of the first integral are bounded polynomials in u, and
+!> those of the second are position**(-6) times a polynomial in u.
 module running_integrals
   use kinds, only: wp
   use discretisation, only: discretisation_t, local_nodes_t
@@ -17,14 +17,14 @@ module running_integrals
     real(wp), allocatable :: gathered(:, :), beyond(:, :)
   end type running_integrals_t
 
-  !> What is taken beyond falls as this power.
+  !> The functions of the integral to infinity decrease as this power.
   integer, parameter :: power = 6
-  !> Points over the logarithm of a panel to infinity.
+  !> Number of quadrature points in the logarithm of the position on a panel to infinity.
   integer, parameter :: points = 48
 
 contains
 
-  !> Those of a mesh.
+  !> The integrals of a mesh.
   pure function new_running_integrals(grid) result(integrals)
     type(discretisation_t), intent(in) :: grid
     type(running_integrals_t) :: integrals
@@ -72,7 +72,7 @@ contains
     end associate
   end function new_running_integrals
 
-  !> up(:, i): weights of the integral of the polynomial through the nodes from 0 to node i.
+  !> The column up(:, i) has the weights of the integral of the nodes' polynomial from 0 to node i.
   pure function cumulative(local) result(up)
     type(local_nodes_t), intent(in) :: local
     real(wp) :: up(size(local%node), size(local%node))
@@ -88,7 +88,7 @@ contains
     end do
   end function cumulative
 
-  !> The polynomials that are 1 on one node each, at s.
+  !> The Lagrange polynomials of the nodes at s.
   pure function basis(local, s) result(values)
     type(local_nodes_t), intent(in) :: local
     real(wp), intent(in) :: s
@@ -105,8 +105,9 @@ contains
     end associate
   end function basis
 
-  !> Of a panel from `begin` to infinity, what it adds to Int f x dx at each node: with
-  !> x = begin exp(y) an integral over y of a smooth function. whole: not finite, and 0.
+  !> For a panel from `begin` to infinity, its part of Int f x dx up to each node: with x = begin
+  !> exp(y), an integral over y of a smooth function. whole: the integral over the whole panel is
+  !> infinite; set to 0.
   pure subroutine to_infinity(local, begin, up, whole)
     type(local_nodes_t), intent(in) :: local
     real(wp), intent(in) :: begin
@@ -125,8 +126,8 @@ contains
     end do
   end subroutine to_infinity
 
-  !> Of such a panel, Int g x dx from each node on, and of the whole panel: g = u**6 times a
-  !> polynomial, and x dx = -begin**2 u**(-3) du.
+  !> For such a panel, Int g x dx from each node to infinity, and over the whole panel: g = u**6
+  !> times a polynomial, and x dx = -begin**2 u**(-3) du.
   pure subroutine from_infinity(local, begin, x, up, whole)
     type(local_nodes_t), intent(in) :: local
     real(wp), intent(in) :: begin, x(:)

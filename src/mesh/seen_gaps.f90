@@ -1,6 +1,6 @@
-!> Gaps that bodies were seen to have on one mesh, to lay out another by. About the contact edge, or
-!> the front of a step, bodies look much the same while it grows: moved to other radii, the gaps of
-!> a state tell about states that were not seen.
+!> Gaps of computed states on one mesh, used to lay out another mesh. About the contact edge, or the
+!> front of a step, the gap changes little in shape while the contact grows: the gaps of a state,
+!> moved to other radii, approximate those of other states.
 module seen_gaps
   use kinds, only: wp
   use shape, only: shape_t
@@ -10,15 +10,15 @@ module seen_gaps
   public :: seen_gaps_t
 
   type :: seen_gaps_t
-    !> Where they were seen, how many states there are, what their gaps are beside the shape,
-    !> (nodes, states), and their scales.
+    !> The mesh of the states, the number of states, their gaps minus the heights of the shape,
+    !> (nodes, states), their scales, and their loads.
     type(discretisation_t), pointer, private :: grid => null()
     integer, private :: held = 0
     real(wp), allocatable, private :: beside(:, :), scale(:), on(:)
-    !> The part of the load that panels for these gaps may leave out (`law_panels`).
+    !> The part of the load that panels for these gaps may miss (`law_panels`).
     real(wp) :: most = 0
-    !> What is tried: a state, the radius at which it has what the mesh to be laid out is locked to,
-    !> and the radius at which that is taken to be (lateral units).
+    !> For each tried gap: a state, the radius at which this state has the gap to which the new mesh
+    !> is locked, and the radius to which this gap is moved (lateral units).
     integer, allocatable, private :: state(:)
     real(wp), allocatable, private :: from(:)
     real(wp), allocatable :: radius(:)
@@ -31,13 +31,14 @@ module seen_gaps
     procedure :: load
   end type seen_gaps_t
 
-  !> Ratio of the radii tried: a step of the pressure moves by less than its width from one to the
-  !> next.
+  !> Ratio of successive tried radii: a step of the pressure moves by less than its width between
+  !> them.
   real(wp), parameter :: ratio = 1.02_wp
 
 contains
 
-  !> Begins with none of so many states on a mesh, which must outlive this. most: see the type.
+  !> Makes room for states on a mesh; the mesh must exist as long as this object. most: see the
+  !> type.
   subroutine begin_on(self, grid, states, most)
     class(seen_gaps_t), intent(out) :: self
     type(discretisation_t), intent(in), target :: grid
@@ -50,7 +51,7 @@ contains
     allocate (self%state(0), self%from(0), self%radius(0))
   end subroutine begin_on
 
-  !> Adds a state: gaps, scale, and the load of which its errors are parts.
+  !> Adds a state: its gaps, scale, and the load to which its errors are relative.
   pure subroutine add(self, shape, gap, scale, load)
     class(seen_gaps_t), intent(inout) :: self
     class(shape_t), intent(in) :: shape
@@ -62,8 +63,7 @@ contains
     self%on(self%held) = load
   end subroutine add
 
-  !> Adds the newest state once more, moved outwards or inwards: the gap that it has at the radius
-  !> `from` is placed at `radius`.
+  !> Adds a tried gap: the newest state, moved so that its gap at the radius `from` is at `radius`.
   pure subroutine try(self, from, radius)
     class(seen_gaps_t), intent(inout) :: self
     real(wp), intent(in) :: from, radius
@@ -73,7 +73,7 @@ contains
     self%radius = [self%radius, radius]
   end subroutine try
 
-  !> The same at radii between two.
+  !> Adds tried gaps at radii between two radii.
   pure subroutine try_between(self, from, least, most)
     class(seen_gaps_t), intent(inout) :: self
     real(wp), intent(in) :: from, least, most
@@ -86,7 +86,7 @@ contains
     end do
   end subroutine try_between
 
-  !> The gap of a try at offsets from the centre of a mesh at its radius, or from the axis.
+  !> The tried gap number j at offsets from the centre of a mesh at its radius, or from the axis.
   pure function gap(self, shape, j, offset)
     class(seen_gaps_t), intent(in) :: self
     class(shape_t), intent(in) :: shape
@@ -101,7 +101,7 @@ contains
     end associate
   end function gap
 
-  !> The load of a try's state.
+  !> The load of the state of a tried gap.
   pure real(wp) function load(self, j)
     class(seen_gaps_t), intent(in) :: self
     integer, intent(in) :: j

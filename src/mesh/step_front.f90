@@ -1,7 +1,8 @@
-!> The front of a step of the pressure. Where an attraction ends suddenly (`step_attraction`),
-!> bodies that come together are pulled first where their gap has just passed the step: a disk about
-!> the axis under nearly uniform tension, outside which there is none. Its rim is the front. It is
-!> sharp before there is a contact edge, and meshes are locked to it until there is one.
+!> The front of a step of the pressure. If an attraction ends suddenly (`step_attraction`), the
+!> first attraction between approaching bodies acts where their gap has just passed the step: on a
+!> disk about the axis with nearly uniform tension and no tension outside. The rim of this disk is
+!> the front. The front is sharp before there is a contact edge, and meshes are locked to it until
+!> there is one.
 module step_front
   use kinds, only: wp, pi
   use force_law, only: force_law_t
@@ -10,14 +11,15 @@ module step_front
   private
   public :: front_leads, first_front, last_front, front_width
 
-  !> Inside the step, so many of its widths from the middle, its tension is complete; and the least
-  !> part of the largest tension that makes bodies follow the step before what is nearer. Under
-  !> less, the front recedes while the axis is drawn into contact.
+  !> Distance from the middle of the step, in its widths, at which the tension inside the step is
+  !> complete; least ratio of this tension to the largest tension for which the bodies follow the
+  !> step before the attraction at smaller gaps. With less tension the front recedes while the axis
+  !> is drawn into contact.
   real(wp), parameter :: complete = 2, leading = 0.5_wp
 
 contains
 
-  !> Whether bodies under a law are pulled together by a step of it.
+  !> Whether a step of a law pulls the bodies together.
   pure logical function front_leads(law)
     class(force_law_t), intent(in) :: law
     real(wp) :: pressure(2)
@@ -28,8 +30,8 @@ contains
     front_leads = pressure(2) < leading*pressure(1)
   end function front_leads
 
-  !> Coupling times the tension inside the step: its disk of radius c is deformed by 4 c of it on
-  !> the axis and by 8/pi c at the rim.
+  !> Coupling times the tension inside the step: a disk of radius c under this tension is deformed
+  !> by 4 c times this product on the axis and by 8/pi c times it at the rim.
   pure real(wp) function pull(problem)
     type(problem_t), intent(in) :: problem
     real(wp) :: pressure(1)
@@ -38,22 +40,22 @@ contains
     pull = -problem%coupling*pressure(1)
   end function pull
 
-  !> Radius, lateral units, from which on there is a front: that of a disk over which the gap
-  !> changes by the width of the step.
+  !> The smallest radius of a front, in lateral units: that of a disk over which the gap changes by
+  !> the width of the step.
   pure real(wp) function first_front(problem)
     type(problem_t), intent(in) :: problem
 
     first_front = radius_spanning(problem, problem%law%step_width)
   end function first_front
 
-  !> Radius at which bodies within the front are at rest on the axis.
+  !> The radius of the front at which the axis comes to rest.
   pure real(wp) function last_front(problem)
     type(problem_t), intent(in) :: problem
 
     last_front = radius_spanning(problem, problem%law%step_at - problem%law%rest_gap)
   end function last_front
 
-  !> Radius of the disk over which the gap changes by `height`, but for a factor of two.
+  !> Radius of the disk over which the gap changes by `height`, to a factor of two.
   pure real(wp) function radius_spanning(problem, height) result(c)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: height
@@ -61,8 +63,8 @@ contains
     c = min(problem%shape%position_of(height), height/((4 - 8/pi)*pull(problem)))
   end function radius_spanning
 
-  !> Width of the front of radius c in units of it: that of the step over the slope of the gap,
-  !> which is logarithmic in the width.
+  !> Width of the front of radius c, in units of c: the width of the step over the slope of the gap,
+  !> which depends logarithmically on the width.
   pure real(wp) function front_width(problem, c) result(width)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: c

@@ -1,4 +1,4 @@
-!> The paper's grid: equal spacing from the axis, pressure linear between the nodes.
+!> The paper's grid: equal spacing from the axis, pressure linear between nodes.
 module uniform_grid
   use kinds, only: wp
   use discretisation, only: discretisation_t
@@ -9,7 +9,8 @@ module uniform_grid
 
 contains
 
-  !> `nodes` (2 or more) equally spaced on [0, extent]; error of second order in the spacing.
+  !> A mesh of `nodes` (2 or more) equally spaced nodes on [0, extent]; its error is of second order
+  !> in the spacing.
   function new_uniform_grid(nodes, extent, elastic) result(grid)
     integer, intent(in) :: nodes
     real(wp), intent(in) :: extent

@@ -1,5 +1,5 @@
-!> Neighbouring states of the equilibrium path, and what they tell of others: with their tangents
-!> they make a state a Hermite polynomial of the path's coordinate, node by node.
+!> Neighbouring states of the equilibrium path and their tangents. Between and beyond them the gap
+!> at each node is a Hermite polynomial of the path's coordinate.
 module arc
   use kinds, only: wp
   use interpolation, only: polynomial_weights, hermite_weights, hermite_t, hermite_through, &
@@ -17,15 +17,15 @@ module arc
   public :: arc_t, between, most_states
 
   integer, parameter :: most_states = 8
-  !> States that a state beyond an end is extrapolated from.
+  !> Number of states from which a state beyond an end is extrapolated.
   integer, parameter :: extrapolated_from = 4
 
-  !> Some states of the path on one mesh with their coordinates and tangents (by the coordinate), in
-  !> order along it.
+  !> Some states of the path on one mesh with their coordinates s and their tangents (derivatives by
+  !> s), in the order of s.
   type :: arc_t
     integer :: mesh = approach, held = 0
     real(wp) :: coordinate(most_states) = 0
-    !> Room for most_states, once there is one: compiler note 11.
+    !> Allocated with most_states elements: compiler note 11.
     type(state_t), allocatable :: state(:)
     type(tangent_t), allocatable :: tangent(:)
   contains
@@ -40,16 +40,16 @@ module arc
     procedure :: support
   end type arc_t
 
-  !> Difference of s for a second derivative.
+  !> Step of s for a difference quotient that gives a second derivative.
   real(wp), parameter :: nearby = 1.0e-5_wp
 
 contains
 
-  !> The state at the coordinate s, with its tangent: guessed from those of the arc and corrected,
-  !> to rounding or, where that is not reached, to the tolerance of the options, so that not only
-  !> its load but its place on the path is exact. slope_error: where neither that nor the tangent
-  !> need be. miss: the largest change of a gap that corrected the guess, relative or in the law's
-  !> lengths.
+  !> The state at the coordinate s, with its tangent. The guess from the arc is corrected to
+  !> rounding or, where rounding is not reached, to the tolerance of the options, so that load and
+  !> position on the path are both exact. slope_error: if present, the options' tolerance is enough,
+  !> and the tangent may have this relative error. miss: the largest change of a gap by the
+  !> correction, relative or in the law's lengths.
   subroutine state_at(self, solver, s, state, tangent, converged, slope_error, miss)
     class(arc_t), intent(in) :: self
     class(solver_t), intent(inout) :: solver
@@ -75,8 +75,7 @@ contains
     if (converged) call tangent_along(solver, self%mesh, s, state, tangent, converged, slope_error)
   end subroutine state_at
 
-  !> Puts a state in its place, in the order of the arc; where there is no room, or it is one of the
-  !> arc already, nothing is done.
+  !> Inserts a state in the order of s. The arc stays as it is if it is full or has a state at s.
   pure subroutine add(self, s, state, tangent)
     class(arc_t), intent(inout) :: self
     real(wp), intent(in) :: s
@@ -99,7 +98,7 @@ contains
     self%tangent(place) = tangent
   end subroutine add
 
-  !> Makes room by dropping the first state.
+  !> Removes the first state.
   pure subroutine drop_first(self)
     class(arc_t), intent(inout) :: self
     integer :: j
@@ -112,8 +111,8 @@ contains
     end do
   end subroutine drop_first
 
-  !> The states whose polynomial tells about s: the ends of the interval that it is in, with the
-  !> nearest on either side that is well apart; beyond an end, the nearest few.
+  !> The states of the polynomial about s: the ends of the interval that contains s, with the
+  !> nearest state on either side at a sufficient distance; beyond an end, the nearest few.
   pure subroutine support(self, s, nodes, n)
     class(arc_t), intent(in) :: self
     real(wp), intent(in) :: s
@@ -135,7 +134,7 @@ contains
     end associate
   end subroutine support
 
-  !> The state that the arc lets expect at s; grid: its mesh.
+  !> The state at s by the polynomial of the arc; grid: the arc's mesh.
   pure type(state_t) function guess(self, shape, grid, s) result(expected)
     class(arc_t), intent(in) :: self
     class(shape_t), intent(in) :: shape
@@ -147,11 +146,12 @@ contains
     call self%guess_from(shape, grid, nodes(:n), s, expected)
   end function guess
 
-  !> The state that some of the arc's states let expect at s, in the arrays that `expected` has.
-  !> Gaps are interpolated, and so are the heights of the shape beneath them, which are known: the
-  !> guess is rid of what the polynomial misses of these. About an end of the bodies or a break of
-  !> their slope that is most of it. A parabola's heights go with the square of the scale and need
-  !> no such care.
+  !> The state at s by the polynomial through the states `nodes` of the arc, in the arrays that
+  !> `expected` has. The gaps are interpolated and so are the heights of the shape at the nodes;
+  !> since the exact heights are known, the error of the polynomial in the heights is subtracted
+  !> from the guess. Near an end of the bodies or a kink of their profile this error is most of the
+  !> error of the guess. A parabola's heights are proportional to the square of the scale and need
+  !> no such correction.
   pure subroutine guess_from(self, shape, grid, nodes, s, expected)
     class(arc_t), intent(in) :: self
     class(shape_t), intent(in) :: shape
@@ -185,7 +185,7 @@ contains
     call take_if_sound(h0, scale, expected)
   end subroutine guess_from
 
-  !> The polynomial through states at the given values of some coordinate, evaluated at s.
+  !> The polynomial through states at the given values of a coordinate, evaluated at s.
   pure type(state_t) function between(coordinate, states, s) result(expected)
     real(wp), intent(in) :: coordinate(:), s
     type(state_t), intent(in) :: states(:)
@@ -205,9 +205,9 @@ contains
     call take_if_sound(h0, scale, expected)
   end function between
 
-  !> Gives an expected state, now the nearest one that is known, gaps, H0 and scale that were
-  !> extrapolated, unless these leave the law's domain: then they are worth less. The gaps are where
-  !> its pressures will be, which are made anew from them.
+  !> Replaces gaps, H0 and scale of an expected state, which are those of the nearest known state,
+  !> by extrapolated values, unless these leave the law's domain. The extrapolated gaps are in the
+  !> array of pressures, since the pressures are computed anew from the gaps.
   pure subroutine take_if_sound(h0, scale, expected)
     real(wp), intent(in) :: h0, scale
     type(state_t), intent(inout) :: expected
@@ -222,7 +222,7 @@ contains
     expected%pressure = 0
   end subroutine take_if_sound
 
-  !> The polynomial that weights(1) h0 + weights(2) load is about s.
+  !> The polynomial for weights(1) h0 + weights(2) load about s.
   pure type(hermite_t) function curve(self, weights, s)
     class(arc_t), intent(in) :: self
     real(wp), intent(in) :: weights(2), s
@@ -240,7 +240,7 @@ contains
     curve = hermite_through(at(:n), value(:n), slope(:n))
   end function curve
 
-  !> Its derivative by s.
+  !> The derivative of weights(1) h0 + weights(2) load by s.
   pure real(wp) function slope(self, weights, s)
     class(arc_t), intent(in) :: self
     real(wp), intent(in) :: weights(2), s
@@ -250,7 +250,8 @@ contains
     slope = about%slope(s)
   end function slope
 
-  !> Its second derivative by s; where a state is in the way, the mean of those on either side.
+  !> The second derivative of weights(1) h0 + weights(2) load by s, from slopes on either side of s;
+  !> at a state, where the polynomial changes, this is the mean of both sides.
   pure real(wp) function curvature(self, weights, s)
     class(arc_t), intent(in) :: self
     real(wp), intent(in) :: weights(2), s

@@ -1,7 +1,7 @@
-!> Follows the equilibrium path from afar into contact, stable and unstable, in the coordinate in
-!> which it has no folds (`path_coordinate`). Each step is extrapolated from the last states and
-!> their tangents, and corrected by the accelerated iteration; how far the correction goes decides
-!> how long the next step is.
+!> Numerical continuation of the equilibrium path from large separations into contact, through
+!> stable and unstable states, in a coordinate in which the path has no folds (`path_coordinate`).
+!> Each step is a prediction, extrapolated from the last states and their tangents, and a correction
+!> by the accelerated iteration. The size of the correction determines the length of the next step.
 module continuation
   use kinds, only: wp
   use dimensionless_problem, only: problem_t
@@ -19,26 +19,28 @@ module continuation
   private
   public :: continuation_t, radius_for
 
-  !> States kept for the extrapolation; the first step, the shortest and the longest (changes of the
+  !> States kept for the extrapolation; the first, the shortest and the longest step (changes of the
   !> coordinate).
   integer, parameter :: memory = 4
   real(wp), parameter :: first_step = 0.04_wp, shortest_step = 1.0e-6_wp, longest_step = 0.5_wp
-  !> How far a guess may be from the state, relative or in the law's lengths, for two or three
-  !> iterations to correct it; the power of the step that an extrapolation from four states with
-  !> tangents misses by; limits of the change of a step, and its ladder.
+  !> Largest distance between the guess and the state, relative or in the law's lengths, that two or
+  !> three iterations correct; order of the error of an extrapolation from four states with
+  !> tangents; limits of the ratio of successive steps, and the factor of which this ratio is a
+  !> power.
   real(wp), parameter :: wanted_miss = 3.0e-4_wp, growth = 2.5_wp, shrinkage = 0.3_wp, &
     rung = 1.2_wp
   integer, parameter :: order = 8
-  !> Relative error of slopes that are only to guess states from.
+  !> Relative error of slopes that serve only for predictions.
   real(wp), parameter :: slope_error = 1.0e-7_wp
-  !> The same of a path whose points are to make a smooth curve, and its longest step.
+  !> Distance between guess and state, and longest step, on a path whose points define a smooth
+  !> curve.
   real(wp), parameter :: miss_of_curve = 1.0e-7_wp, step_of_curve = 0.12_wp
-  !> The least contact radius over that of a passage for a state to be taken to the next mesh; the
-  !> largest that a step may lead to on a mesh, which is no good beyond, and how short it is made
-  !> for that.
+  !> Least contact radius, over that of a passage, at which a state is transferred to the next mesh;
+  !> the largest radius that a step may reach on a mesh, which is not accurate beyond; and the least
+  !> step for which steps are shortened because of this limit.
   real(wp), parameter :: nearly_passed = 0.8_wp, beyond_passage = 1.1_wp, shortest_passage = 0.05_wp
 
-  !> The last states on the mesh in use, newest last.
+  !> The last states on the current mesh, newest last.
   type, extends(arc_t) :: continuation_t
     real(wp) :: step = first_step, longest_step = longest_step, wanted_miss = wanted_miss, &
       slope_error = slope_error
@@ -55,7 +57,7 @@ module continuation
 
 contains
 
-  !> Lets the points of the path make a curve that is exact between them to many digits.
+  !> Selects steps so short that the curve between the points of the path is exact to many digits.
   pure subroutine follow_closely(self)
     class(continuation_t), intent(inout) :: self
 
@@ -64,7 +66,7 @@ contains
     self%slope_error = 0
   end subroutine follow_closely
 
-  !> Takes an equilibrium on a mesh for its newest state. lost: it has no tangent.
+  !> Takes an equilibrium on a mesh as the newest state. lost: the state has no tangent.
   subroutine take(self, solver, state, mesh, lost)
     class(continuation_t), intent(inout) :: self
     class(solver_t), intent(inout) :: solver
@@ -77,7 +79,7 @@ contains
     call add_with_tangent(solver, self%slope_error, state, self%arc_t, lost)
   end subroutine take
 
-  !> Forgets its states and how long steps were.
+  !> Removes all states and sets the step to the first one.
   pure subroutine forget(self)
     class(continuation_t), intent(inout) :: self
     type(arc_t) :: nothing
@@ -86,7 +88,7 @@ contains
     self%step = first_step
   end subroutine forget
 
-  !> Adds a state to an arc of its mesh. lost: it has no tangent.
+  !> Adds a state on the arc's mesh to an arc. lost: the state has no tangent.
   subroutine add_with_tangent(solver, slope_error, state, arc, lost)
     class(solver_t), intent(inout) :: solver
     real(wp), intent(in) :: slope_error
@@ -103,7 +105,7 @@ contains
     if (found) call arc%add(s, state, tangent)
   end subroutine add_with_tangent
 
-  !> The next state of the path, on the same mesh. lost: no step, however small, converged.
+  !> Computes the next state of the path on the same mesh. lost: no step, however small, converged.
   subroutine advance(self, solver, lost)
     class(continuation_t), intent(inout) :: self
     class(solver_t), intent(inout) :: solver
@@ -116,7 +118,7 @@ contains
     lost = .false.
     do
       s = self%coordinate(self%held) + self%next_step(solver%equations_t)
-      ! A step is so long that factors made before it are of no use.
+      ! After a step of this length the earlier factors are no longer a good approximation.
       call solver%frozen%forget()
       call self%state_at(solver, s, state, tangent, converged, self%slope_error, miss)
       if (converged) exit
@@ -131,8 +133,9 @@ contains
     call self%add(s, state, tangent)
   end subroutine advance
 
-  !> By how much the next step is longer, where the miss may be so many times what it was: in steps
-  !> of a ladder, so that rounding does not show in where the path has its points.
+  !> The ratio of the next step to this one; ratio: the miss that is allowed over the miss of this
+  !> step. The result is a power of `rung`, so that rounding does not change the positions of
+  !> points.
   pure real(wp) function factor_for(ratio) result(factor)
     real(wp), intent(in) :: ratio
 
@@ -140,7 +143,7 @@ contains
     factor = min(growth, max(shrinkage, factor))
   end function factor_for
 
-  !> The step that is due, or the longest that the mesh in use is good for.
+  !> The length of the next step, limited by the range in which the mesh is accurate.
   pure real(wp) function next_step(self, equations) result(step)
     class(continuation_t), intent(in) :: self
     type(equations_t), intent(in) :: equations
@@ -164,12 +167,13 @@ contains
     end associate
   end function next_step
 
-  !> The longest step where the axis passes a step of the pressure: all changes over the width of
-  !> that, and h0 may turn several times.
+  !> The longest step where the gap on the axis passes a step of the pressure. All quantities change
+  !> over the width of that step, and h0 may turn several times.
   pure real(wp) function step_past_step(self, problem) result(longest)
     class(continuation_t), intent(in) :: self
     type(problem_t), intent(in) :: problem
-    !> Parts of the step's width that are passed at once, and reach of the step in its widths.
+    !> Fraction of the step's width that one step of the path may pass; range about the step, in its
+    !> widths.
     real(wp), parameter :: at_once = 0.25_wp, reach = 4
 
     longest = huge(longest)
@@ -180,8 +184,8 @@ contains
     end associate
   end function step_past_step
 
-  !> Whether the contact radius has crossed the passage to the next mesh, and the last state but one
-  !> is near that too.
+  !> Whether the contact radius has crossed the passage to the next mesh, and the previous state is
+  !> near the passage or beyond it.
   pure logical function has_come_to_next(self, equations) result(come)
     class(continuation_t), intent(in) :: self
     type(equations_t), intent(in) :: equations
@@ -196,10 +200,11 @@ contains
     end associate
   end function has_come_to_next
 
-  !> Passes to the next mesh once the contact radius has crossed the passage to it (to be called
-  !> after each `advance`), taking the last two states along: what is between them is known on the
-  !> next mesh too. That mesh must not be too coarse for the first of the two, and both meshes must
-  !> agree there on which way h0 and load go, or an extremum would be seen twice or not at all.
+  !> Passes to the next mesh once the contact radius has crossed the passage to that mesh (to be
+  !> called after each `advance`). The last two states are transferred, so that the next mesh has
+  !> the interval between them too. The next mesh must be fine enough for the first of the two
+  !> states, and h0 and load must change in the same sense on both meshes there; otherwise an
+  !> extremum would be found twice or not at all.
   subroutine change_mesh(self, solver, lost)
     class(continuation_t), intent(inout) :: self
     class(solver_t), intent(inout) :: solver
@@ -216,7 +221,7 @@ contains
       self%state(self%held))
     do j = self%held - 1, self%held
       state = self%state(j)
-      ! The two are a step apart.
+      ! The two states are a step of the path apart.
       call solver%frozen%forget()
       call move_to_mesh(solver, self%mesh, next%mesh, state, done)
       lost = .not. done
@@ -230,7 +235,7 @@ contains
     self%step = 0.5_wp*self%step
   end subroutine change_mesh
 
-  !> Lays out the mesh that the path comes to, by the gaps of the state that it comes with.
+  !> Lays out the next mesh for the gaps of the state at which the path enters it.
   subroutine lay_out(equations, from, to, state)
     type(equations_t), intent(inout), target :: equations
     integer, intent(in) :: from, to
@@ -248,8 +253,8 @@ contains
     end associate
   end subroutine lay_out
 
-  !> Solves a state of one mesh again on the other, at the same contact radius or axis gap.
-  !> done = .false. where it has no contact edge to lock to, or did not converge.
+  !> Solves a state of one mesh on another mesh, at the same contact radius or axis gap. done =
+  !> .false.: the state has no contact edge for the locked mesh, or the iteration did not converge.
   subroutine move_to_mesh(solver, from, to, state, done)
     class(solver_t), intent(inout) :: solver
     integer, intent(in) :: from, to
@@ -266,8 +271,8 @@ contains
     end associate
   end subroutine move_to_mesh
 
-  !> Radius, lateral units, of what one mesh is locked to for a state on another; 0 where the state
-  !> has none.
+  !> Radius, in lateral units, to which mesh `to` would be locked for a state on mesh `from`; 0 if
+  !> the state has no such radius.
   pure real(wp) function radius_for(equations, from, to, state) result(c)
     type(equations_t), intent(in) :: equations
     integer, intent(in) :: from, to
@@ -280,7 +285,8 @@ contains
     end associate
   end function radius_for
 
-  !> Whether two meshes are locked to the same: both to the contact edge, or to the front of a step.
+  !> Whether two meshes are locked to the same radius: both to the contact edge, or both to the
+  !> front of a step.
   pure logical function locked_alike(equations, from, to)
     type(equations_t), intent(in) :: equations
     integer, intent(in) :: from, to

@@ -1,5 +1,5 @@
 !> Single equilibria of the path: at a place, or where Q = weights(1) h0 + weights(2) load has a
-!> value or turns round; on the path's meshes or, farther out, of bodies that do not deform.
+!> value or an extremum; on the path's meshes or, farther out, of undeformed bodies.
 module curve_states
   use kinds, only: wp
   use dimensionless_problem, only: problem_t, contact_level_of
@@ -25,27 +25,28 @@ module curve_states
   end type path_place_t
 
   !> A solved equilibrium at a place: h0, load, gap on the axis, energy in the units of
-  !> `dimensionless_problem`, derivatives of h0 and load by x, modes unstable at fixed h0.
-  !> radius: of the contact, lateral units; what rounding leaves of the energy.
+  !> `dimensionless_problem`, derivatives of h0 and load by x, modes unstable at fixed h0. radius:
+  !> of the contact, lateral units; uncertainty: error of the energy due to rounding and the
+  !> residual.
   type, extends(path_place_t) :: path_state_t
     real(wp) :: h0 = 0, load = 0, axis_gap = 0, radius = 0, energy = 0, uncertainty = 0
     real(wp) :: slopes(2) = 0, residual = 0
     integer :: modes = 0
     logical :: converged = .false.
-    !> Of a point of the path: whether it is there again on the next mesh.
+    !> Whether this state is a point of the path that exists also on the next mesh.
     logical :: again = .false.
-    !> The equilibrium itself and its mesh; `no_mesh` has none.
+    !> The equilibrium and its mesh; with `no_mesh` there is no state.
     type(state_t) :: state
     integer :: mesh = no_mesh
   end type path_state_t
 
-  !> Parts of an interval of undeformed bodies at whose ends the slope is looked at.
+  !> Parts of an interval of undeformed bodies at whose ends the slope is evaluated.
   integer, parameter :: looks = 8
 
 contains
 
-  !> What is reported of the points of a path, up to the end of its last stable piece. Modes are
-  !> those on the more unstable side.
+  !> The reported values at the points of a path, up to the end of its last stable piece. At a fold
+  !> the number of modes is that of the more unstable side.
   function states_of_points(solver, path) result(states)
     class(solver_t), intent(inout) :: solver
     type(traced_path_t), intent(in) :: path
@@ -60,7 +61,7 @@ contains
     end do
   end function states_of_points
 
-  !> The equilibrium at a place that is on a mesh, with its tangent by the path's coordinate.
+  !> The equilibrium at a place on a mesh, with its tangent by the path's coordinate.
   subroutine equilibrium_at(solver, path, place, state, tangent, converged)
     class(solver_t), intent(inout) :: solver
     type(traced_path_t), intent(in) :: path
@@ -84,7 +85,7 @@ contains
     call span%state_at(solver, place%x, state, tangent, converged)
   end subroutine equilibrium_at
 
-  !> What is reported of the equilibrium at a place.
+  !> The reported values of the equilibrium at a place.
   subroutine state_of(solver, path, place, found)
     class(solver_t), intent(inout) :: solver
     type(traced_path_t), intent(in) :: path
@@ -102,7 +103,7 @@ contains
     end if
   end subroutine state_of
 
-  !> Bodies that do not deform, at a place.
+  !> The reported values of undeformed bodies at a place.
   pure type(path_state_t) function undeformed_at(problem, place) result(state)
     type(problem_t), intent(in) :: problem
     type(path_place_t), intent(in) :: place
@@ -117,7 +118,7 @@ contains
     state%converged = .true.
   end function undeformed_at
 
-  !> What is reported of a state that is on a mesh.
+  !> The reported values of a state on a mesh.
   type(path_state_t) function told(solver, path, place, state, tangent, converged) result(found)
     class(solver_t), intent(in) :: solver
     type(traced_path_t), intent(in) :: path
@@ -143,8 +144,8 @@ contains
     call energy_of(solver%equations_t, found%mesh, state, found%energy, found%uncertainty)
   end function told
 
-  !> The equilibrium in interval i between x = from and x = to, where Q goes one way, at which Q is
-  !> `wanted`.
+  !> The equilibrium with Q = `wanted` in interval i between x = from and x = to, where Q is
+  !> monotonic.
   subroutine state_where(solver, path, i, weights, wanted, from, to, state)
     class(solver_t), intent(inout) :: solver
     type(traced_path_t), intent(in) :: path
@@ -172,7 +173,7 @@ contains
 
   contains
 
-    !> By how much Q of undeformed bodies is beyond what is wanted.
+    !> Q of undeformed bodies minus the given value.
     real(wp) function beyond(at)
       real(wp), intent(in) :: at
 
@@ -181,8 +182,8 @@ contains
 
   end subroutine state_where
 
-  !> All equilibria at which Q is `wanted`, stable or not, from afar inward. solved = .false.: one
-  !> was not found.
+  !> All equilibria with Q = `wanted`, stable and unstable, from large separations inward. solved =
+  !> .false.: a state was not solved.
   subroutine states_where(solver, path, weights, wanted, states, solved)
     class(solver_t), intent(inout) :: solver
     type(traced_path_t), intent(in) :: path
@@ -215,8 +216,7 @@ contains
     end do
   end subroutine states_where
 
-  !> The equilibria inside interval i at which Q turns round, in order. solved = .false.: not all
-  !> were solved.
+  !> The extrema of Q inside interval i, in order. solved = .false.: a state was not solved.
   subroutine find_turns(solver, path, i, weights, turns, solved)
     class(solver_t), intent(inout) :: solver
     type(traced_path_t), intent(in) :: path
@@ -250,7 +250,7 @@ contains
     end do
   end subroutine find_turns
 
-  !> The same of bodies that do not deform, between two places.
+  !> The extrema of Q for undeformed bodies between the coordinates `ends`.
   function undeformed_turns(problem, i, ends, weights) result(turns)
     type(problem_t), intent(in) :: problem
     integer, intent(in) :: i

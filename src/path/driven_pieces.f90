@@ -1,9 +1,9 @@
 !> The pieces of the path that are stable when the bodies are driven through a spring.
 !>
-!> What is driven is D = a h0 - b F: the drive's position Z = h0 - F/k behind a spring of stiffness
-!> k (a = 1, b = 1/k), h0 itself (a = 1, b = 0), or under a dead load -F (a = 0, b = 1). A state is
-!> stable at fixed D where no mode of the bodies is unstable at fixed h0 and k - dF/dh0 > 0, the
-!> Schur complement of bodies and spring: where D falls as the path is followed inward.
+!> The drive is D = a h0 - b F: the position Z = h0 - F/k of the base of a spring of stiffness k (a
+!> = 1, b = 1/k), h0 itself (a = 1, b = 0), or a dead load -F (a = 0, b = 1). A state is stable at
+!> fixed D if no mode of the bodies is unstable at fixed h0 and k - dF/dh0 > 0, the Schur complement
+!> of bodies and spring. On the path followed inward D decreases there.
 module driven_pieces
   use kinds, only: wp
   use quadrature, only: gauss_legendre
@@ -26,33 +26,33 @@ module driven_pieces
     procedure :: work_between
   end type drive_t
 
-  !> A stable piece, from afar inward; its ends are turning points of D, or the ends of what is
-  !> known of the path.
+  !> A stable piece, from large separations inward; its ends are turning points of D, or the ends of
+  !> the known path.
   type :: driven_piece_t
     type(path_state_t) :: first, last
     logical :: first_turns = .false., last_turns = .false.
   end type driven_piece_t
 
-  !> A jump from the end of a piece, and the energy that it loses, in units of load times length;
-  !> landed = .false.: nothing that is known of the path catches the bodies.
+  !> A jump from the end of a piece, and the energy that the jump dissipates, in units of load times
+  !> length; landed = .false.: no piece of the known path has the drive's position.
   type :: jump_t
     logical :: inward = .true., landed = .false.
     type(path_state_t) :: before, after
-    !> The piece that it leads to; 0: there is none.
+    !> The piece in which the jump ends; 0: there is none.
     integer :: piece = 0
     real(wp) :: energy = 0, uncertainty = 0
   end type jump_t
 
-  !> The part of itself by which D falls at least over a piece: where a turn is a state of the path
-  !> on two meshes, rounding leaves pieces over which it hardly does.
+  !> Least relative decrease of D over a piece: where a turn is a state of the path on two meshes,
+  !> rounding leaves pieces over which D hardly decreases.
   real(wp), parameter :: least_fall = 1.0e-9_wp
-  !> Nodes of the rule that integrates over an interval.
+  !> Nodes of the quadrature rule for an interval.
   integer, parameter :: rule = 8
 
 contains
 
-  !> The drive of a spring of stiffness k in units of load over length; 0 is a dead load. Absent: h0
-  !> is prescribed.
+  !> The drive through a spring of stiffness k in units of load over length; k = 0 is a dead load.
+  !> If k is absent, h0 is prescribed.
   pure type(drive_t) function through_spring(k) result(drive)
     real(wp), intent(in), optional :: k
 
@@ -72,8 +72,9 @@ contains
     position = self%weights(1)*state%h0 + self%weights(2)*state%load
   end function position
 
-  !> Energy of bodies and spring, or dead load; at fixed D the states of equilibrium are where it is
-  !> stationary, and a jump loses the difference. Its derivative by D is minus the conjugate.
+  !> Energy of bodies and spring, or of bodies and dead load. At fixed D equilibria are stationary
+  !> points of this energy; a jump dissipates the difference. The derivative by D is minus the
+  !> conjugate of D.
   elemental real(wp) function energy(self, state)
     class(drive_t), intent(in) :: self
     class(path_state_t), intent(in) :: state
@@ -85,8 +86,8 @@ contains
     end if
   end function energy
 
-  !> The integral of the conjugate (the load; for a dead load h0) over D from one place to another
-  !> farther in.
+  !> The integral of the conjugate of D (the load; for a dead load h0) over D from one place to
+  !> another place farther in.
   pure real(wp) function work_between(self, path, from, to) result(work)
     class(drive_t), intent(in) :: self
     type(traced_path_t), intent(in) :: path
@@ -110,7 +111,7 @@ contains
     end do
   end function work_between
 
-  !> The part of interval i, from ends(1) to ends(2), that is between two places.
+  !> The ends of the part of interval i, from ends(1) to ends(2), that is between two places.
   pure function part_of(ends, i, from, to) result(part)
     real(wp), intent(in) :: ends(2)
     integer, intent(in) :: i
@@ -122,8 +123,9 @@ contains
     if (i == to%interval) part(2) = to%x
   end function part_of
 
-  !> The stable pieces of a path under a drive, from afar inward, which end where stability does, or
-  !> what is known of the path; whole = .false.: a state was not solved, and a piece is left out.
+  !> The stable pieces of a path under a drive, from large separations inward. A piece ends where
+  !> stability is lost or the known path ends. whole = .false.: a state was not solved, and its
+  !> piece is missing.
   subroutine find_pieces(solver, path, drive, pieces, whole)
     class(solver_t), intent(inout) :: solver
     type(traced_path_t), intent(in) :: path
@@ -145,13 +147,13 @@ contains
     open = .false.
     do i = 1, path%last - 1
       if (.not. path%point(i)%leads_on) cycle
-      ! Where a mode is unstable at fixed h0, the path is not stable however stiff the spring is.
+      ! Where a mode is unstable at fixed h0, no spring makes the path stable.
       stable = path%point(i)%modes == 0
       if (.not. (stable .or. open)) cycle
       call path%curve_between(i, drive%weights, curve, ends)
       if (allocated(turns)) deallocate (turns)
       allocate (turns(0))
-      ! Those of h0 are points of the path.
+      ! The extrema of h0 are points of the path.
       if (stable .and. abs(drive%weights(2)) > 0) then
         call find_turns(solver, path, i, drive%weights, turns, solved)
         whole = whole .and. solved
@@ -182,7 +184,7 @@ contains
 
   contains
 
-    !> Ends the piece in the state.
+    !> Ends the piece at `state`.
     subroutine close_piece(turns)
       logical, intent(in) :: turns
 
@@ -198,8 +200,8 @@ contains
 
   end subroutine find_pieces
 
-  !> The piece nearest to `from`, inward or outward, with a state at a position of the drive; 0:
-  !> there is none.
+  !> The piece nearest to `from`, in the given direction, that has a state at a position of the
+  !> drive; 0: there is none.
   pure integer function piece_with(pieces, drive, position, from, inward) result(found)
     type(driven_piece_t), intent(in) :: pieces(:)
     type(drive_t), intent(in) :: drive
@@ -218,8 +220,9 @@ contains
     found = 0
   end function piece_with
 
-  !> The interval of a piece in which weights(1) h0 + weights(2) load comes to a value. (Where the
-  !> path changes its mesh, it differs by the meshes' errors, and a value may lie between.)
+  !> The interval of a piece in which weights(1) h0 + weights(2) load reaches a value. (Where the
+  !> path changes its mesh, the combination has a small jump, the difference of the meshes' errors,
+  !> and the value may be inside that jump.)
   pure integer function interval_with(path, piece, weights, wanted) result(i)
     type(traced_path_t), intent(in) :: path
     type(driven_piece_t), intent(in) :: piece
@@ -233,7 +236,7 @@ contains
     end do
   end function interval_with
 
-  !> The state of a piece at which D has a value between those at its ends.
+  !> The state of a piece at a value of D between those at the ends of the piece.
   subroutine state_driven(solver, path, drive, piece, wanted, state)
     class(solver_t), intent(inout) :: solver
     type(traced_path_t), intent(in) :: path
@@ -249,8 +252,8 @@ contains
     call state_where(solver, path, i, drive%weights, wanted, ends(1), ends(2), state)
   end subroutine state_driven
 
-  !> Where the bodies land that leave a piece over the turn at its inner or outer end: on the
-  !> nearest stable piece with the same position of the drive.
+  !> The jump from the turn at the inner or outer end of a piece: the bodies land on the nearest
+  !> stable piece with the same position of the drive.
   subroutine find_jump(solver, path, drive, pieces, from, inward, jump)
     class(solver_t), intent(inout) :: solver
     type(traced_path_t), intent(in) :: path

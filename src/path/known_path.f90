@@ -1,6 +1,6 @@
-!> The equilibrium path as an experiment needs it: traced as far as the experiment goes, with its
-!> stable pieces, on which a quasi-static experiment at controlled h0 moves, and where the bodies
-!> land when it leaves one over a fold.
+!> The equilibrium path for an experiment: traced through the experiment's range, with its stable
+!> pieces, along which a quasi-static experiment at controlled h0 moves, and the states in which the
+!> bodies land after a jump from a fold.
 module known_path
   use kinds, only: wp
   use contact_state, only: state_t
@@ -13,14 +13,14 @@ module known_path
   public :: known_path_t, landing_t, know_pieces, interval_at, lowest_point, landing_over, &
     folds_of_cycle
 
-  !> A jump at prescribed h0: the fold that it starts from, a point of the path (0: there is no
+  !> A jump at prescribed h0; fold: the point of the path from which the jump starts (0: there is no
   !> jump).
   type, extends(jump_t) :: landing_t
     integer :: fold = 0
   end type landing_t
 
-  !> The pieces that are stable at prescribed h0, and the landings from each over the fold at its
-  !> inner and outer end.
+  !> The pieces that are stable at prescribed h0, and the landings after jumps from the fold at the
+  !> inner and at the outer end of each piece.
   type, extends(tracing_t) :: known_path_t
     type(driven_piece_t), allocatable :: piece(:)
     type(landing_t), allocatable :: inward(:), outward(:)
@@ -28,7 +28,7 @@ module known_path
 
 contains
 
-  !> Finds the pieces of a path that was traced, and where jumps from them land.
+  !> Finds the pieces of a traced path and the landings of jumps from them.
   subroutine know_pieces(solver, known)
     class(solver_t), intent(inout) :: solver
     type(known_path_t), intent(inout) :: known
@@ -36,7 +36,7 @@ contains
     integer :: k
 
     call find_pieces(solver, known%path, drive_t(of_h0), known%piece, whole)
-    ! What is behind the last stable piece was traced only to find its end.
+    ! The part beyond the last stable piece was traced only to find the end of this piece.
     if (size(known%piece) > 0) &
       known%path%last = known%piece(size(known%piece))%last%interval + 1
     if (allocated(known%inward)) deallocate (known%inward, known%outward)
@@ -47,7 +47,7 @@ contains
     end do
   end subroutine know_pieces
 
-  !> The point of a piece after which h0 lies, on a mesh.
+  !> The point of a piece, on a mesh, after which the path reaches h0.
   pure integer function interval_at(known, piece, h0) result(i)
     type(known_path_t), intent(in) :: known
     integer, intent(in) :: piece
@@ -56,7 +56,7 @@ contains
     i = max(interval_with(known%path, known%piece(piece), of_h0, h0), known%path%undeformed + 1)
   end function interval_at
 
-  !> Where the bodies land that leave a piece over the fold at its inner or outer end.
+  !> The landing of bodies that leave a piece over the fold at its inner or outer end.
   subroutine land(solver, known, from, inward, landing)
     class(solver_t), intent(inout) :: solver
     type(known_path_t), intent(in) :: known
@@ -71,9 +71,9 @@ contains
     call find_jump(solver, known%path, drive_t(of_h0), known%piece, from, inward, landing%jump_t)
   end subroutine land
 
-  !> The folds that jumps start from in a cycle at controlled h0, from the outermost stable piece to
-  !> the piece `turned` and back, h0 going no lower than `lowest`; none where no jumps lead there.
-  !> What they lose is, over a closed cycle, the area between the ways out and back.
+  !> The folds from which jumps start in a cycle at controlled h0, from the outermost stable piece
+  !> to the piece `turned` and back, with h0 >= `lowest`; empty if jumps do not lead there. The
+  !> energy dissipated in these jumps is the area of a closed cycle.
   function folds_of_cycle(known, turned, lowest) result(fold)
     type(known_path_t), intent(in) :: known
     integer, intent(in) :: turned
@@ -99,7 +99,7 @@ contains
       type(landing_t), intent(in) :: landing
       integer, intent(in) :: to
 
-      ! Not beyond where it was to lead: that is another way.
+      ! A jump that ends beyond the piece `to` belongs to another cycle.
       whole = landing%landed .and. (landing%piece - to)*(k - to) >= 0
       if (whole) whole = known%path%point(landing%fold)%state%h0 >= lowest
       if (.not. whole) return
@@ -109,8 +109,8 @@ contains
 
   end function folds_of_cycle
 
-  !> The landing over a fold: inward(k) or outward(k), with inside telling which; k = 0 where the
-  !> fold is no end of a stable piece.
+  !> The landing after the jump from a fold: inward(k) if `inside`, else outward(k); k = 0 if no
+  !> stable piece ends at the fold.
   pure subroutine landing_over(known, fold, k, inside)
     type(known_path_t), intent(in) :: known
     integer, intent(in) :: fold
@@ -122,8 +122,8 @@ contains
     if (.not. inside) k = findloc(known%outward%fold, fold, 1)
   end subroutine landing_over
 
-  !> The point of largest tension among the extrema of the load and the folds of a piece, h0 being
-  !> between two values; 0 if there is none.
+  !> The point of largest tension among the load extrema and folds of a piece with h0 between two
+  !> values; 0 if there is none.
   pure integer function lowest_point(known, piece, from, to) result(lowest)
     type(known_path_t), intent(in) :: known
     integer, intent(in) :: piece

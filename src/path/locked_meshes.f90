@@ -1,4 +1,4 @@
-!> How h0 is prescribed in edge-locked coordinates.
+!> Prescribed h0 in edge-locked coordinates.
 module locked_meshes
   use kinds, only: wp
   use shape, only: shape_t
@@ -24,7 +24,7 @@ contains
     if (mesh >= contact .and. meshes%traceable) control%kind = at_h0_with_edge
   end function h0_control
 
-  !> The scale of the mesh at h0 where it is not an unknown.
+  !> The scale of the mesh at h0, for meshes whose scale is not an unknown.
   pure real(wp) function scale_at(shape, meshes, h0)
     class(shape_t), intent(in) :: shape
     type(mesh_family_t), intent(in) :: meshes

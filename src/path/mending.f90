@@ -1,8 +1,8 @@
-!> The guard over meshes under laws and shapes with lengths of their own. Meshes are laid out for
-!> gaps that are foreseen; those that bodies have are known once the path has come to the end of a
-!> mesh. Where nodes leave out too much of the pressure there, the mesh is laid out anew for the
-!> gaps that were seen, and the path goes on from where it came to that mesh. Gaps are smoother than
-!> pressures, so that those on a mesh that is too coarse tell what a finer one needs.
+!> Refinement of meshes under laws and shapes with lengths of their own. A mesh is laid out for
+!> predicted gaps; the computed gaps are known once the path has reached the end of the mesh. If the
+!> nodes miss too much of the pressure of these gaps, the mesh is laid out anew for the seen gaps,
+!> and the path is traced again from its entry into that mesh. Gaps are smoother than pressures, so
+!> the gaps on a mesh that is too coarse are accurate enough to lay out a finer one.
 module mending
   use kinds, only: wp
   use force_law, only: force_law_t
@@ -22,42 +22,46 @@ module mending
   private
   public :: mender_t, new_mender, left_on_path, too_much
 
-  !> What may be left out, over the accuracy, where no mesh can be mended any more: at a fold the
-  !> load feels 7 % of the tail at a kink, and of smooth pressures a thousandth of the square of
-  !> that, to some times it.
+  !> Tolerated quadrature error, over the accuracy, where meshes cannot be refined: `left_out` is an
+  !> upper bound under laws with kinks or waves. At a fold the error of the load is 7 % of the tail
+  !> at a kink, and for smooth pressures between a thousandth of the square of the tail and a few
+  !> times this square.
   real(wp), parameter :: too_much = 30
 
   type :: mender_t
-    !> Part of the load that may be left out.
+    !> Part of the load that the nodes may miss.
     real(wp) :: most = 0
-    !> The path and its walker before they came to the mesh in use; how often each mesh was mended.
+    !> The path and its continuation before they entered the current mesh; number of refinements of
+    !> each mesh.
     type(traced_path_t) :: path
     type(continuation_t) :: walker
     integer, allocatable :: rounds(:)
-    !> What each left out, the last time.
+    !> Part of the load that each mesh missed at its last check.
     real(wp), allocatable :: left(:)
   contains
     procedure :: note
     procedure :: mend
   end type mender_t
 
-  !> What is left out about kinks of the law counts so many times: extrema feel it most.
+  !> Factor of the quadrature error at kinks of the law, to which extrema are most sensitive.
   real(wp), parameter :: of_kinks = 3
-  !> What the panels of a new mesh may leave out, over what is left out at most: the path goes a
-  !> little elsewhere on it.
+  !> Part of the load that the panels of a new mesh may miss, over `most`; it is less than 1, since
+  !> the path on the new mesh differs slightly.
   real(wp), parameter :: most_of_fit = 0.3_wp
-  !> How often a mesh is mended, and a panel halved at once.
+  !> Largest number of refinements of a mesh, and of successive halvings of a panel in one
+  !> refinement.
   integer, parameter :: most_rounds = 6, most_halvings = 3
-  !> With so many times the nodes no panel is halved any more until the path has come again: what a
-  !> path that is lost leaves may ask for any number.
+  !> Growth of the number of nodes at which halving stops until the path has been traced again: the
+  !> estimated errors of a path that is lost may require any number of nodes.
   real(wp), parameter :: most_growth = 1.5_wp
-  !> A mesh on which the path is lost is not mended again where no more than this was gained.
+  !> A mesh on which the path is lost is refined again only if the quadrature error fell below this
+  !> fraction of the earlier one.
   real(wp), parameter :: helped = 0.9_wp
 
 contains
 
-  !> For a path that is to be traced on such meshes. Kinks and waves count in full, see `left_out`:
-  !> what is left out of them is felt but in part.
+  !> The refinement of meshes for a path with a given accuracy. `left_out` counts kinks and waves in
+  !> full, while only a part of their error affects the load.
   pure type(mender_t) function new_mender(accuracy, law, meshes) result(mender)
     real(wp), intent(in) :: accuracy
     class(force_law_t), intent(in) :: law
@@ -68,7 +72,7 @@ contains
     allocate (mender%left(size(meshes%grid)), source=huge(1.0_wp))
   end function new_mender
 
-  !> Keeps the path before it comes to another mesh.
+  !> Saves the path before it enters another mesh.
   subroutine note(self, path, walker)
     class(mender_t), intent(inout) :: self
     type(traced_path_t), intent(in) :: path
@@ -78,8 +82,8 @@ contains
     self%walker = walker
   end subroutine note
 
-  !> Makes a mesh that the path has come to the end of, or is lost on, anew where it leaves too much
-  !> out; mended: the path is to go on from what was noted.
+  !> Refines a mesh whose end the path has reached, or on which the path is lost, if the nodes miss
+  !> too much. mended: the path is to be continued from the saved one.
   subroutine mend(self, equations, path, mesh, lost, mended)
     class(mender_t), intent(inout) :: self
     type(equations_t), intent(inout) :: equations
@@ -107,7 +111,7 @@ contains
       equations%meshes%grid(mesh)%kernel_entries()
   end subroutine mend
 
-  !> The largest part of the load that nodes leave out anywhere on a path.
+  !> The largest part of the load that the nodes miss in any state of a path.
   real(wp) function left_on_path(equations, path) result(largest)
     type(equations_t), intent(in) :: equations
     type(traced_path_t), intent(in) :: path
@@ -120,8 +124,8 @@ contains
     end do
   end function left_on_path
 
-  !> What a mesh is to be like for the gaps of all states of the path on it; and for those that may
-  !> be over the rest of the radii that it serves: another time the path may come to it elsewhere.
+  !> The shape of a mesh for the gaps of all its states on the path, and for gaps extrapolated to
+  !> the other radii of the mesh, since the next path may enter the mesh at another radius.
   function shape_for_seen(equations, path, mesh, most) result(shape)
     type(equations_t), intent(in), target :: equations
     type(traced_path_t), intent(in) :: path
@@ -151,7 +155,7 @@ contains
     end associate
   end function shape_for_seen
 
-  !> What a mesh is like, with panels halved, and halves of them, that leave out too much.
+  !> The shape of a mesh whose panels are halved, repeatedly, where the nodes miss too much.
   function with_short_panels(equations, path, mesh, most) result(shape)
     type(equations_t), intent(in) :: equations
     type(traced_path_t), intent(in) :: path
@@ -173,8 +177,8 @@ contains
     end do
   end function with_short_panels
 
-  !> The largest part of the load that is left out over all states of a mesh, on its panels, or on
-  !> those of a finer one by the gaps there.
+  !> The largest part of the load that the nodes of each panel miss over all states of a mesh; grid:
+  !> the mesh itself or a finer one, at whose nodes the gaps are interpolated.
   pure function left_on_mesh(equations, path, mesh, grid) result(left)
     type(equations_t), intent(in) :: equations
     type(traced_path_t), intent(in) :: path
@@ -200,7 +204,7 @@ contains
     end associate
   end function left_on_mesh
 
-  !> The part of the load that nodes leave out of the pressure of gaps on each panel.
+  !> The part of the load that the nodes of each panel miss for the pressure of the given gaps.
   pure function left_of(problem, grid, gap, scale, load) result(left)
     type(problem_t), intent(in) :: problem
     type(discretisation_t), intent(in) :: grid
@@ -216,7 +220,7 @@ contains
       associate (panel => grid%panel(k), first => grid%first(k), &
         last => grid%first(k) + size(grid%local(k)%node) - 1)
         if (panel%kind == algebraic_map) cycle
-        ! What is in a contact of a shape with kinks, `mesh_rule` knows by itself.
+        ! `mesh_rule` chooses the panels inside the contact of a shape with kinks.
         if (panel%right <= 0 .and. .not. smooth) cycle
         left(k) = left_out(problem, grid%local(k), &
           scale*grid%centre, scale*(grid%centre + [panel%left, panel%right]), &

@@ -1,6 +1,6 @@
-!> The coordinate s of the equilibrium path, in which it has no folds and which grows from afar
-!> inward: before contact minus the logarithm of the gap on the axis, above nine tenths of the gap
-!> at rest, in contact the logarithm of the contact radius (`edge_locked`).
+!> The coordinate s of the equilibrium path, in which the path has no folds and which increases
+!> inward. Before contact s is minus the logarithm of the gap on the axis, less nine tenths of the
+!> gap at rest; in contact s is the logarithm of the contact radius (`edge_locked`).
 module path_coordinate
   use kinds, only: wp
   use dimensionless_problem, only: problem_t
@@ -29,14 +29,14 @@ contains
     end if
   end function path_control
 
-  !> Inverse of `path_control` for a state.
+  !> The coordinate of a state; the inverse of `path_control`.
   pure real(wp) function coordinate_of(problem, mesh, state) result(s)
     type(problem_t), intent(in) :: problem
     integer, intent(in) :: mesh
     type(state_t), intent(in) :: state
 
     if (mesh == approach) then
-      ! Nearer than nine tenths no state is on this mesh, but one may be asked about.
+      ! The coordinate of a nearer state, which is not on this mesh, may also be requested.
       s = -log(max(state%axis_gap - 0.9_wp*problem%law%rest_gap, tiny(1.0_wp)))
     else
       s = log(state%scale)

@@ -1,11 +1,11 @@
-!> How a traced path grows: states of an arc become its points, and the extrema that they pass are
-!> put between them.
+!> Growth of a traced path: the states of an arc become points of the path, and the extrema between
+!> these states are inserted.
 !>
-!> A fold is an extremum of h0 along the path. Whether stability is lost or gained there follows
-!> from the sense of turning in the plane of h0 and load (Maddocks, Arch. Rational Mech. Anal. 99,
-!> 1987): with primes for derivatives along the path, an eigenvalue of the operator passes zero
-!> upward where h0'' F' > 0. Far apart there are none below zero. Alternating signs would not do:
-!> of the two folds that follow the jump into contact at large sigma, the first makes a second mode
+!> A fold is an extremum of h0 along the path. The change of stability at a fold follows from the
+!> sense of turning in the plane of h0 and load (Maddocks, Arch. Rational Mech. Anal. 99, 1987):
+!> with primes for derivatives along the path, an eigenvalue of the operator increases through zero
+!> where h0'' F' > 0. At large separations no eigenvalue is negative. Alternating signs would be
+!> wrong: of the two folds after the jump into contact at large sigma, the first makes a second mode
 !> unstable.
 module path_growth
   use kinds, only: wp
@@ -18,12 +18,12 @@ module path_growth
   private
   public :: append, add_extrema
 
-  !> A load over the law's adhesion below which it is none: its extrema are of no consequence.
+  !> The load over the law's adhesion below which extrema of the load are neglected.
   real(wp), parameter :: no_load = 1.0e-16_wp
 
 contains
 
-  !> Makes a state of an arc, the newest but for `before`, the last point.
+  !> Appends a state of an arc, the newest or the one `before` states earlier, as the last point.
   subroutine append(path, arc, before)
     type(traced_path_t), intent(inout) :: path
     type(arc_t), intent(in) :: arc
@@ -46,8 +46,8 @@ contains
     call path%insert(path%held + 1, point)
   end subroutine append
 
-  !> Puts the extrema between the last two states of an arc among the last points. lost: a solve
-  !> failed.
+  !> Inserts the extrema between the last two states of an arc among the last points of the path.
+  !> lost: a solve failed.
   subroutine add_extrema(path, arc, solver, lost)
     type(traced_path_t), intent(inout) :: path
     type(arc_t), intent(in) :: arc
@@ -73,7 +73,7 @@ contains
     end do
   end subroutine add_extrema
 
-  !> Puts an extremum, of h0 (a fold) or of the load, among the last points, by its coordinate on
+  !> Inserts an extremum of h0 (a fold) or of the load among the last points, by its coordinate on
   !> the arc's mesh.
   subroutine put(path, arc, fold, found)
     type(traced_path_t), intent(inout) :: path
@@ -90,7 +90,7 @@ contains
       end associate
       place = place - 1
     end do
-    ! Before the first point of all nothing is known.
+    ! The path before its first point is not known.
     if (place < 2) return
     point%state = found%state
     point%tangent = found%tangent

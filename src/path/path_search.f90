@@ -1,11 +1,11 @@
-!> Finds equilibria between two places of an arc of the path: where Q = weights(1) h0 + weights(2)
-!> load turns round, and where it has a value. The states of the arc have exact slopes, and the
-!> curve through them says where to look; the state there is solved and tells how far it is from
-!> what is looked for. In the path's coordinate there is no fold, and every state converges.
+!> Searches for equilibria between two states of an arc of the path: extrema of Q = weights(1) h0 +
+!> weights(2) load, and given values of Q. The states of the arc have exact slopes, and a polynomial
+!> through them gives an estimate of the place. The state at this place is solved, and its residual
+!> gives the next estimate. The path's coordinate has no folds, so every solve converges.
 !>
-!> Extrema show where the slopes have opposite signs and, perhaps two, where they have the same.
-!> Near the adhesion strength at which jumps begin two folds are so close that steps pass over both;
-!> wherever the curve leaves a doubt, a state is solved and joins the arc.
+!> An extremum lies between slopes of opposite signs; two extrema may lie between slopes of equal
+!> signs. Near the adhesion strength at which jumps begin, two folds are so close that a step passes
+!> over both. Where the polynomial cannot decide, a state is solved and added to the arc.
 module path_search
   use kinds, only: wp
   use contact_state, only: state_t
@@ -18,26 +18,27 @@ module path_search
   private
   public :: found_t, find_extrema, may_turn, find_place, place_on
 
-  !> Places of an interval at which the curve's slope is looked at; part of the mean slope to which
-  !> it has to fall somewhere for two extrema to be looked for; of the slope's own error, how much
-  !> leaves a doubt.
+  !> Places of an interval at which the slope of the curve is evaluated; fraction of the mean slope
+  !> below which the least slope suggests two extrema; multiple of the slope's error within which
+  !> the sign of the least slope is doubtful.
   integer, parameter :: places = 16
   real(wp), parameter :: suspicious = 0.15_wp, doubtful = 2
-  !> Steps of the search for the least slope; part of an interval that is its end.
+  !> Steps of the search for the least slope; fraction of an interval that counts as its end.
   integer, parameter :: golden_steps = 30
   real(wp), parameter :: at_end = 1.0e-5_wp
-  !> States that a search solves at most; the change of place below which rounding may keep the miss
-  !> from falling; and the part of the interval over which the curve tells how its slope changes.
+  !> Largest number of states solved in one search; change of place below which rounding may keep
+  !> the residual from falling; and fraction of the interval for the difference quotient of the
+  !> curve's slope.
   integer, parameter :: most_rounds = 60
   real(wp), parameter :: rounding_rules = 1.0e-6_wp, a_little = 1.0e-4_wp
-  !> How near to a wanted value a state has to be, relative or in the law's lengths: rounding
-  !> leaves no more. The correction of the coordinate that is left under a load, which rounding
-  !> shows in; and the one that may be left where a round was lost.
+  !> Relative distance from the wanted value of Q, or distance in the law's lengths, that rounding
+  !> allows; correction of the coordinate that rounding of the load causes; and the largest
+  !> correction that may remain after the last round.
   real(wp), parameter :: near_enough = 2.0e-13_wp, found_at = 1.0e-12_wp, left_over = 1.0e-5_wp
 
-  !> What was found on one of the meshes: its place on the path, its state and tangent; by how much
-  !> Q is beyond the value, or its slope beyond zero; of an extremum, 1 for a maximum along the way
-  !> inward, -1 for a minimum.
+  !> A solution on one of the meshes: its coordinate, state and tangent; miss: Q minus the wanted
+  !> value, or the slope of Q at an extremum; sense: 1 for a maximum along the path inward, -1 for a
+  !> minimum.
   type :: found_t
     real(wp) :: coordinate = 0
     type(state_t) :: state
@@ -66,7 +67,7 @@ contains
     lost = .false.
     error = huge(1.0_wp)
     i = findloc(arc%coordinate(:arc%held), ends(1), 1)
-    ! Of most intervals nothing is to be told, and no copy is made.
+    ! Most intervals have no extremum; the arc is copied only for the others.
     call look_at(arc)
     if (.not. (turns .or. doubt)) return
     near = arc
@@ -104,8 +105,8 @@ contains
 
   end subroutine find_extrema
 
-  !> Whether there may be extrema between two neighbouring states, at the places x; curve: the
-  !> polynomial between.
+  !> Whether there may be extrema between two neighbouring states at the coordinates x; curve: the
+  !> polynomial between them.
   pure logical function may_turn(curve, x)
     type(hermite_t), intent(in) :: curve
     real(wp), intent(in) :: x(2)
@@ -116,9 +117,9 @@ contains
     may_turn = turns .or. doubt
   end function may_turn
 
-  !> What is between two neighbouring states at the places x, where a curve has slopes that are
-  !> exact at these: `turns`, an extremum; `doubt`, perhaps two more, which a state at s would show.
-  !> error: of the curve's slope; huge where it is not known.
+  !> Whether extrema lie between two neighbouring states at the coordinates x. The slopes `ends` at
+  !> the states are exact. turns: one extremum; doubt: perhaps two more extrema, to be decided by a
+  !> state at s. The argument `error` is the error of the curve's slope, huge if unknown.
   pure subroutine look(curve, x, ends, error, turns, doubt, s)
     type(hermite_t), intent(in) :: curve
     real(wp), intent(in) :: x(2), ends(2), error
@@ -127,11 +128,12 @@ contains
     real(wp) :: course, mean, least, slope, step
     integer :: k
 
-    ! A slope of zero counts as one above: an extremum that is a state is in one interval of two.
+    ! A zero slope counts as positive, so that an extremum at a state is in one of two intervals
+    ! only.
     turns = (ends(1) < 0) .neqv. (ends(2) < 0)
     doubt = .false.
-    ! In the sense of its course the slope is above zero but between two extrema; where the ends
-    ! differ, up to the first and, turned round, beyond it.
+    ! Multiplied by the sign `course`, the slope is positive except between two extrema. If the ends
+    ! differ in sign, `course` changes its sign at the first extremum.
     course = merge(-1.0_wp, 1.0_wp, ends(1) < 0)
     step = (x(2) - x(1))/places
     mean = abs(curve%value(x(2)) - curve%value(x(1)))/(x(2) - x(1))
@@ -157,7 +159,7 @@ contains
       (least/doubtful < error .or. .not. error < huge(1.0_wp))
   end subroutine look
 
-  !> The least slope of the curve in the sense of its course, and its place, between two places.
+  !> The least of `course` times the slope of the curve between two places, and the place.
   pure subroutine descend(curve, course, ends, s, least)
     type(hermite_t), intent(in) :: curve
     real(wp), intent(in) :: course, ends(2)
@@ -175,12 +177,12 @@ contains
     least = course*curve%slope(s)
   end subroutine descend
 
-  !> The state between two places at which Q, which goes one way there, has the value `wanted` or,
-  !> where none is wanted, its one extremum. Newton's steps lead there: the slope of Q is exact at a
-  !> state, and how it changes is told by the last two states. Steps that lead nowhere, as under a
-  !> force that changes by orders of magnitude, are halvings. A value outside, which is what
-  !> rounding may ask for, is at the nearer end. done = .false.: there is no such state, or a solve
-  !> failed.
+  !> The state between two places at which Q, monotonic there, has the value `wanted` or, if
+  !> `wanted` is absent, the one extremum of Q there. The iteration is Newton's: the slope of Q is
+  !> exact at a state, and the derivative of the slope is taken from the last two states. Where
+  !> Newton steps do not reduce the miss, for example under a force that changes by orders of
+  !> magnitude, the bracket is halved. A value outside the bracket, which rounding may cause, is
+  !> found at the nearer end. done = .false.: there is no such state, or a solve failed.
   subroutine find_place(solver, arc, ends, weights, found, done, wanted)
     class(solver_t), intent(inout) :: solver
     type(arc_t), intent(in) :: arc
@@ -216,7 +218,7 @@ contains
     end if
     s = place_on(curve, ends, wanted)
     solved = .true.
-    ! Factors made where the curve has what is looked for serve all corrections.
+    ! The factors made at the first estimate serve for all corrections.
     call solver%frozen%forget()
     do round = 1, most_rounds
       if (is_there(found)) exit
@@ -261,8 +263,8 @@ contains
       end if
     end function miss_of
 
-    !> Whether Q of a state is what is wanted, but for what rounding leaves or, where that is given,
-    !> a change of the coordinate.
+    !> Whether Q of a state has the wanted value, within rounding or, if given, within a change of
+    !> the coordinate.
     pure logical function is_there(near, change) result(there)
       type(found_t), intent(in) :: near
       real(wp), intent(in), optional :: change
@@ -280,8 +282,8 @@ contains
 
   end subroutine find_place
 
-  !> Where between two places a curve has the value `wanted` or, where none is wanted, turns round;
-  !> if it does neither, the end that is nearer to that.
+  !> The place between two places at which a curve has the value `wanted` or, if `wanted` is absent,
+  !> an extremum; if there is none, the end with the smaller miss.
   pure real(wp) function place_on(curve, ends, wanted) result(s)
     type(hermite_t), intent(in) :: curve
     real(wp), intent(in) :: ends(2)
@@ -309,7 +311,7 @@ contains
 
   end function place_on
 
-  !> Adds a state to an arc. The farthest makes room.
+  !> Adds a state to an arc; a full arc loses the state farthest from s.
   subroutine join(near, s, state, tangent)
     type(arc_t), intent(inout) :: near
     real(wp), intent(in) :: s

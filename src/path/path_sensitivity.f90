@@ -1,6 +1,6 @@
-!> How the curve of all equilibria changes with parameters of the problem: derivatives of h0 and
-!> load at every point of the path at a fixed place x on it, in SI units. At a fixed
-!> h0, or position of a drive, the place moves; `held` takes that into account.
+!> Derivatives of the curve of all equilibria by parameters of the problem: of h0 and load at every
+!> point of the path, at a fixed place x, in SI units. At a fixed h0, or position of a drive, the
+!> place changes too; `held` includes this change.
 module path_sensitivity
   use kinds, only: wp
   use dimensionless_problem, only: problem_t
@@ -15,16 +15,17 @@ module path_sensitivity
   private
   public :: rate_t, rates_along, held
 
-  !> Derivatives of h0 [m] and load [N] by a parameter; what is left of the equations' derivative
-  !> (`state_sensitivity`); by how much a coarser rule changes that of the load.
+  !> Derivatives of h0 [m] and load [N] by a parameter; left: the remaining derivative of the
+  !> equations (`state_sensitivity`); uncertainty: the change of the load's derivative with a
+  !> coarser difference rule.
   type :: rate_t
     real(wp) :: h0 = 0, load = 0, left = 0, uncertainty = 0
   end type rate_t
 
 contains
 
-  !> rate(i, j): by parameter i at point j of the path, at fixed x. found = .false.: at some point
-  !> they do not exist.
+  !> The element rate(i, j) is the derivative by parameter i at point j of the path, at fixed x.
+  !> found = .false.: at some point the derivatives do not exist.
   subroutine rates_along(equations, path, varied, rate, found)
     type(equations_t), intent(inout) :: equations
     type(traced_path_t), intent(in) :: path
@@ -57,7 +58,7 @@ contains
     end do
   end subroutine rates_along
 
-  !> Of bodies that do not deform, at a fixed h0.
+  !> The derivatives for undeformed bodies at a fixed h0.
   type(rate_t) function rate_undeformed(equations, varied, h0) result(rate)
     type(equations_t), intent(in) :: equations
     type(variation_t), intent(in) :: varied
@@ -75,10 +76,9 @@ contains
     rate%uncertainty = abs(rate%load - sum(varied%coarser*load))
   end function rate_undeformed
 
-  !> The rate at a fixed value of weights(1) h0 + weights(2) load, SI units, in place of a fixed x:
-  !> at h0 with 1, 0; at the position of a drive of stiffness k with 1, -1/k; under a load with
-  !> 0, 1.
-  !> Infinite where that value turns round along the path.
+  !> The derivatives at a fixed value of weights(1) h0 + weights(2) load, SI units, instead of a
+  !> fixed x: at fixed h0 with weights 1, 0; at a fixed position of a drive of stiffness k with 1,
+  !> -1/k; under a fixed load with 0, 1. They are infinite where this value turns along the path.
   pure type(rate_t) function held(problem, node, rate, weights)
     type(problem_t), intent(in) :: problem
     type(path_state_t), intent(in) :: node

@@ -1,6 +1,6 @@
 !> The equilibria between two neighbouring points of the path as one polynomial of the path's
-!> coordinate, made once for many of them: gaps, H0 and scale with the values and tangents that up
-!> to four points have.
+!> coordinate, computed once for many of these equilibria: gaps, H0 and scale, fitted to values and
+!> tangents of up to four points.
 module path_span
   use kinds, only: wp
   use interpolation, only: hermite_t, most_hermite_nodes
@@ -17,13 +17,13 @@ module path_span
   private
   public :: path_span_t, new_path_span
 
-  !> The arc of the points about it; its own are this and the next, 0 before there are any, at the
-  !> coordinates `ends`.
+  !> The arc of the points about the span. The span lies between the point `point` and the next one,
+  !> at the coordinates `ends`; point = 0: there is no span yet.
   type, extends(arc_t) :: path_span_t
     integer :: point = 0
     real(wp) :: ends(2) = 0
     type(hermite_t), private :: h0_curve, load_curve
-    !> The states of the arc that the polynomial fits.
+    !> The states of the arc through which the polynomial passes.
     integer, private :: nodes(most_hermite_nodes) = 0, fitted = 0
   contains
     procedure :: at_h0
@@ -32,7 +32,7 @@ module path_span
     procedure :: solve_at_h0
   end type path_span_t
 
-  !> Change of the coordinate over which a state is the same one but for rounding.
+  !> Difference of the coordinate within which two states are the same except for rounding.
   real(wp), parameter :: same_place = 1.0e-8_wp
 
 contains
@@ -52,7 +52,7 @@ contains
     span%load_curve = span%curve(of_load, middle)
   end function new_path_span
 
-  !> Where between the ends H0 is expected to have a value.
+  !> The coordinate between the ends at which the polynomial has the value H0.
   pure real(wp) function at_h0(self, h0) result(s)
     class(path_span_t), intent(in) :: self
     real(wp), intent(in) :: h0
@@ -60,7 +60,7 @@ contains
     s = place_on(self%h0_curve, self%ends, h0)
   end function at_h0
 
-  !> The state that is expected at the coordinate s, beyond the ends too.
+  !> The state at the coordinate s by the polynomial, also beyond the ends.
   pure subroutine expected(self, solver, s, state)
     class(path_span_t), intent(in) :: self
     class(solver_t), intent(in) :: solver
@@ -71,7 +71,7 @@ contains
       self%nodes(:self%fitted), s, state)
   end subroutine expected
 
-  !> H0 and load that are expected at s.
+  !> H0 and load at s by the polynomials.
   pure function h0_and_load(self, s) result(values)
     class(path_span_t), intent(in) :: self
     real(wp), intent(in) :: s
@@ -80,7 +80,7 @@ contains
     values = [self%h0_curve%value(s), self%load_curve%value(s)]
   end function h0_and_load
 
-  !> The state at h0, however near a fold, and its coordinate s.
+  !> The state at h0, even near a fold, and its coordinate s.
   subroutine solve_at_h0(self, solver, h0, s, state, converged)
     class(path_span_t), intent(in) :: self
     class(solver_t), intent(inout) :: solver
@@ -95,14 +95,14 @@ contains
     state = found%state
     if (abs(state%h0 - h0) > max(solver%options%tolerance, residual_floor(solver%problem, state))) &
       call finish_at_h0(solver, self%mesh, h0, s, state)
-    ! What is left of the way is rounding; the equations at h0 itself are off by it.
+    ! The remaining difference of h0 is rounding; it is also the residual of the equations at h0.
     state%residual = max(state%residual, abs(state%h0 - h0))
     converged = holds(solver%problem, solver%options%tolerance, state)
     state%h0 = h0
   end subroutine solve_at_h0
 
-  !> Where the contact is wide and far from a fold, h0 changes by more than the tolerance with the
-  !> last digit of the coordinate; there it can be prescribed.
+  !> Solves with h0 prescribed where the contact is wide and far from a fold: there the last digit
+  !> of the coordinate changes h0 by more than the tolerance.
   subroutine finish_at_h0(solver, mesh, h0, s, state)
     class(solver_t), intent(inout) :: solver
     integer, intent(in) :: mesh

@@ -1,6 +1,6 @@
-!> The tangent of the equilibrium path: derivatives of a state by the value of its control, as exact
-!> as is wanted. The factors that corrected the state serve: refinement brings their solution to the
-!> tangent's own equations.
+!> The tangent of the equilibrium path: derivatives of a state by the value of its control, to a
+!> given relative error. The factors that corrected the state are used again; iterative refinement
+!> corrects their solution to that of the tangent's equations.
 module path_tangent
   use kinds, only: wp, pi
   use beyond_mesh, only: load_slope_beyond
@@ -16,11 +16,11 @@ module path_tangent
   private
   public :: tangent_t, tangent_along, of_h0, of_load
 
-  !> Weights of h0 and the load in what the path is asked about: D = weights(1) h0 + weights(2)
-  !> load, which is h0 itself, the load, or what drives bodies through a spring (`driven_pieces`).
+  !> Weights of h0 and load in a combination D = weights(1) h0 + weights(2) load: h0 itself, the
+  !> load, or the position of a spring's base (`driven_pieces`).
   real(wp), parameter :: of_h0(2) = [1, 0], of_load(2) = [0, 1]
 
-  !> Derivatives of a state: of its gaps (nodes), H0, scale, the gap on the axis and the load.
+  !> Derivatives of a state: of its gaps (at the nodes), H0, scale, gap on the axis, and load.
   type :: tangent_t
     real(wp), allocatable :: gap(:)
     real(wp) :: h0 = 0, scale = 0, axis_gap = 0, load = 0
@@ -28,9 +28,9 @@ module path_tangent
     procedure :: of
   end type tangent_t
 
-  !> The last correction of a tangent over the error that is left, at most: the next would be
-  !> smaller by more. How much smaller than the one before it each has to be, and how many there may
-  !> be, for factors to be worth keeping.
+  !> Largest last correction of a tangent, over the permitted error, since the next correction would
+  !> be smaller by a larger factor. Largest ratio of successive corrections, and largest number of
+  !> corrections, for which factors are kept.
   real(wp), parameter :: last_over_error = 100, shrinking = 0.3_wp
   integer, parameter :: most_corrections = 12
 
@@ -44,8 +44,8 @@ contains
     of = dot_product(weights, [self%h0, self%load])
   end function of
 
-  !> The derivatives by the coordinate s at the equilibrium there, with a relative error that may be
-  !> larger than that of the options; found = .false. where the Jacobian is singular.
+  !> The derivatives by the coordinate s at an equilibrium. error: permitted relative error, if
+  !> larger than that of the options. found = .false.: the Jacobian is singular.
   subroutine tangent_along(solver, mesh, s, state, tangent, found, error)
     class(solver_t), intent(inout) :: solver
     integer, intent(in) :: mesh
@@ -60,12 +60,12 @@ contains
     if (present(error)) allowed = max(allowed, error)
     call tangent_at(solver%equations_t, path_control(solver%problem, mesh, s), state, allowed, &
       solver%frozen, tangent, found)
-    ! The control's value is exp(-s) and a constant on the approach, else exp(s).
+    ! On the mesh of the approach the control's value is exp(-s) plus a constant, on others exp(s).
     if (found) call scale(tangent, merge(-exp(-s), exp(s), mesh == approach))
   end subroutine tangent_along
 
-  !> The derivatives by the value of the control. Factors that are too far from those of the state
-  !> are renewed.
+  !> The derivatives by the value of the control. Factors of a state too far from this one are
+  !> renewed.
   subroutine tangent_at(equations, control, state, error, frozen, tangent, found)
     type(equations_t), intent(inout) :: equations
     type(control_t), intent(in) :: control
@@ -101,8 +101,8 @@ contains
     tangent%load = load_slope(equations, control, state, tangent)
   end subroutine tangent_at
 
-  !> Solves J dz = right, but for a relative error, with factors of a neighbouring J;
-  !> done = .false. where these do not bring it near fast.
+  !> Solves J dz = right to a relative error, with factors of a neighbouring J; done = .false.: the
+  !> refinement does not converge fast.
   subroutine refine(equations, error, control, state, frozen, right, dz, done)
     type(equations_t), intent(inout) :: equations
     real(wp), intent(in) :: error
@@ -131,7 +131,7 @@ contains
 
   contains
 
-    !> The largest change, relative to the gaps: far out they are large, and so are their changes.
+    !> The largest change relative to the gaps; at large separations both are large.
     pure real(wp) function relative(change)
       real(wp), intent(in) :: change(:)
 
@@ -141,7 +141,7 @@ contains
 
   end subroutine refine
 
-  !> The derivative of the load that follows from those of gaps and scale.
+  !> The derivative of the load, from the derivatives of gaps and scale.
   function load_slope(equations, control, state, tangent) result(slope)
     type(equations_t), intent(inout) :: equations
     type(control_t), intent(in) :: control
@@ -156,8 +156,8 @@ contains
       equations%cost%pressure_evaluations = equations%cost%pressure_evaluations + &
         n*law%terms
       if (.not. grid%is_bounded()) return
-      ! What is beyond a bounded mesh depends on the position of its end and on the gap there; this
-      ! moves with the last node's and with the end itself.
+      ! The load beyond a bounded mesh depends on the position of the mesh's end and on the gap
+      ! there; this gap changes with the gap at the last node and with the position of the end.
       reach = load_reach(grid, state)
       last = state%scale*grid%x(n)
       of_end = load_slope_beyond(equations%problem, gap_at_end(shape, grid, state), reach)
@@ -167,8 +167,8 @@ contains
     end associate
   end function load_slope
 
-  !> Makes a tangent one by another measure of the way: times the derivative of the control's value
-  !> by it.
+  !> Converts a tangent to derivatives by another variable; rate: the derivative of the control's
+  !> value by this variable.
   pure subroutine scale(tangent, rate)
     type(tangent_t), intent(inout) :: tangent
     real(wp), intent(in) :: rate

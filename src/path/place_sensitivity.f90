@@ -1,10 +1,10 @@
-!> How what is reported of an equilibrium changes with the parameters: where it stays at its place
-!> on the path, and where it is defined by an h0, a position of a drive or a load, or as an extremum
-!> of one of these. SI units throughout.
+!> Derivatives of the reported values of an equilibrium by the parameters: at a fixed place on the
+!> path, at a fixed h0, position of a drive or load, or at an extremum of one of these. SI units
+!> throughout.
 !>
-!> With s the path's coordinate and p a parameter, dQ/dp = Q_p + Q_s s_p. A given value of
-!> D = a h0 + b F asks for s_p = (dD/dp - D_p)/D_s, an extremum of D for s_p = -D_sp/D_ss; D itself
-!> then changes by D_p alone.
+!> With s the path's coordinate and p a parameter, dQ/dp = Q_p + Q_s s_p. At a given value of D = a
+!> h0 + b F, s_p = (dD/dp - D_p)/D_s; at an extremum of D, s_p = -D_sp/D_ss, and the derivative of D
+!> itself is D_p.
 module place_sensitivity
   use kinds, only: wp
   use dimensionless_problem, only: problem_t, contact_level_of
@@ -24,22 +24,24 @@ module place_sensitivity
   private
   public :: local_t, find_local, local_undeformed, at_fixed, at_extremum
 
-  !> Of a state: h0 [m], load [N], displacement [m], potential energy [J], contact radius [m].
+  !> The quantities of a state: h0 [m], load [N], displacement [m], potential energy [J], contact
+  !> radius [m].
   integer, parameter :: quantities = of_radius
 
-  !> rate(:, i): derivatives of the quantities by parameter i at a fixed place; slope: by s; along:
-  !> of the separations at the nodes and of h0 by s.
+  !> The column rate(:, i) has the derivatives of the quantities by parameter i at a fixed place;
+  !> slope: their derivatives by s; along: the derivatives by s of the separations at the nodes and
+  !> of h0.
   type :: local_t
     real(wp) :: slope(quantities) = 0
     real(wp), allocatable :: along(:), rate(:, :)
   end type local_t
 
-  !> Difference of positions, relative, over which the gap's slope is taken.
+  !> Relative difference of positions for the difference quotient of the gap.
   real(wp), parameter :: close = 1.0e-6_wp
 
 contains
 
-  !> The derivatives at a place. The first of the varied is the path's coordinate.
+  !> The derivatives at a place. The first element of `varied` is the path's coordinate.
   subroutine find_local(equations, place, frozen, varied, local, found)
     type(equations_t), intent(inout) :: equations
     type(place_on_path_t), intent(in) :: place
@@ -63,7 +65,8 @@ contains
     end do
   end subroutine find_local
 
-  !> The same of bodies that do not deform, at the gap h0; their place is -log(h0) (`traced_path`).
+  !> The derivatives for undeformed bodies at the gap h0; their coordinate is -log(h0)
+  !> (`traced_path`).
   type(local_t) function local_undeformed(problem, h0, varied) result(local)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: h0
@@ -113,7 +116,7 @@ contains
         value(of_load) = moved%load*problem%load
         value(of_displacement) = (moved%axis_gap - moved%h0)*problem%length
         value(of_energy) = energy*problem%load*problem%length
-        ! How far the separation at the contact's end is from its level.
+        ! The separation at the edge of the contact, less the level that defines the edge.
         if (radius > 0) value(of_radius) = (gap_at(problem%shape, grid, moved, x) - &
           contact_level_of(problem))*problem%length
       end associate
@@ -123,7 +126,7 @@ contains
     rate(of_h0) = line%separation(size(left))
     if (.not. radius > 0) return
     rate(of_radius) = -rate(of_radius)/steepness(equations, place, x)
-    ! With the path's coordinate the mesh grows.
+    ! The mesh scales with the path's coordinate.
     if (place%mesh /= approach) rate(of_radius) = rate(of_radius) + &
       radius*own%lateral*sum(varied%weight*varied%shift)
   end subroutine measure
@@ -141,7 +144,8 @@ contains
     end associate
   end function steepness
 
-  !> Derivatives of the quantities where weights(1) h0 + weights(2) load changes as `wanted` says.
+  !> Derivatives of the quantities for given derivatives `wanted` of weights(1) h0 + weights(2)
+  !> load.
   pure function at_fixed(local, weights, wanted) result(rate)
     type(local_t), intent(in) :: local
     real(wp), intent(in) :: weights(2), wanted(:)
@@ -155,8 +159,8 @@ contains
   end function at_fixed
 
   !> Derivatives of the quantities at an extremum of weights(1) h0 + weights(2) load. The second
-  !> derivatives are differences over places that are `apart` in s. found = .false.: a state there
-  !> was not solved.
+  !> derivatives are differences over places at distances of `apart` in s. found = .false.: a state
+  !> at one of these places was not solved.
   subroutine at_extremum(equations, options, place, weights, apart, varied, rate, found)
     type(equations_t), intent(inout) :: equations
     type(solver_options_t), intent(in) :: options
@@ -170,7 +174,7 @@ contains
     type(frozen_jacobian_t) :: frozen
     type(place_on_path_t) :: near
     type(local_t) :: local, there
-    ! Second derivatives of D, by s and by s and each parameter.
+    ! Second derivatives of D: by s twice, and by s and each parameter.
     real(wp) :: bend, cross(size(varied) - 1)
     integer :: k, i, n
 

@@ -1,7 +1,7 @@
-!> The energy of the two bodies at controlled h0: that of the surface forces and that of the elastic
-!> deformation. At fixed h0 an equilibrium is a stationary state of it, and along equilibria its
-!> derivative by h0 is minus the load. What a jump loses is the difference between its ends, and no
-!> integral along the path is needed.
+!> The energy of the two bodies at controlled h0: the energy of the surface forces plus that of the
+!> elastic deformation. At fixed h0 an equilibrium is a stationary point of this energy, and along
+!> equilibria the derivative by h0 is minus the load. The energy that a jump dissipates is the
+!> difference between its ends, so no integral along the path is needed.
 module potential_energy
   use kinds, only: wp, pi
   use beyond_mesh, only: energy_beyond, energy_density
@@ -14,8 +14,8 @@ module potential_energy
 contains
 
   !> 2 pi Int [e(H) + P (H - H0 - f)/2] rho drho in units of load times length: e is the
-  !> `energy_density` of the surface force, and the bodies have yielded by H - H0 - f.
-  !> uncertainty: what rounding, and a residual of the equations, leave of it.
+  !> `energy_density` of the surface force, and H - H0 - f is the deformation of the bodies.
+  !> uncertainty: error of the energy due to rounding and the residual of the equations.
   subroutine energy_of(equations, mesh, state, energy, uncertainty)
     type(equations_t), intent(in) :: equations
     integer, intent(in) :: mesh

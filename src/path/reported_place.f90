@@ -1,7 +1,7 @@
-!> Places that numbers are reported of, and what is read there. A place is an equilibrium and what
-!> defines it: D = drive(1) h0 + drive(2) load turns there along the path, or has a value. Its
-!> value, its error and its derivatives are questions asked of the same place: by whoever finds it,
-!> by `place_errors` and by `place_rates`.
+!> Places at which numbers are reported, and the quantities there. A place is an equilibrium and its
+!> definition: D = drive(1) h0 + drive(2) load turns there along the path, or has a given value. The
+!> module that finds the place sets the values, `place_errors` the errors, and `place_rates` the
+!> derivatives.
 module reported_place
   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
   use kinds, only: wp
@@ -16,43 +16,46 @@ module reported_place
   public :: read_of_states, quantities, nowhere
   public :: least
 
-  !> What is read of a state: h0, load, displacement, energy of the bodies, contact radius, radius
-  !> that the mesh is locked to; and what follows from these: position of the drive, tension, error
-  !> of the profile. Of a place `of_energy` is the energy of bodies and drive.
+  !> Quantities that are read at a state: h0, load, displacement, energy of the bodies, contact
+  !> radius, radius to which the mesh is locked; and quantities that follow from these: position of
+  !> the drive, tension, error of the profile. At a place, `of_energy` is the energy of bodies and
+  !> drive.
   integer, parameter :: read_of_states = 6, of_h0 = 1, of_load = 2, of_displacement = 3, &
     of_energy = 4, of_radius = 5, of_edge = 6, of_position = 7, of_tension = 8, of_profile = 9, &
     quantities = 9
-  !> The mesh of a place that no mesh has.
+  !> The value of `mesh` at a place without a mesh.
   integer, parameter :: nowhere = -1
 
   !> A place, in the units of `dimensionless_problem`.
   type :: place_t
-    !> The point of the traced path that it is (0: none), or over which the jump leads that lands
-    !> here.
+    !> The point of the traced path at the place, or from which the jump starts that lands here; 0:
+    !> there is none.
     integer :: point = 0
     logical :: landing = .false.
-    !> The equilibrium, its mesh and its coordinate there; mesh 0 has undeformed bodies.
+    !> The equilibrium, its mesh and its coordinate on this mesh; mesh 0: undeformed bodies.
     integer :: mesh = nowhere
     real(wp) :: s = 0
     type(state_t) :: state
-    !> The weights of h0 and load in D; of what turns here along the path, if anything does: D or,
-    !> before it, h0; and the place in the table where the jump began that ended here, at the same
-    !> D.
+    !> The weights of h0 and load in D; turn_of: the weights in the combination that turns here
+    !> along the path, which is D or h0, or zeros; after: the place in the table at which the jump
+    !> started that ended here at the same D.
     real(wp) :: drive(2) = [1.0_wp, 0.0_wp], turn_of(2) = 0
     integer :: after = 0
-    !> Whether profile and contact radius are asked for; whether h0 was found by a search between
-    !> steps, and no error of that is known.
+    !> Whether profile and contact radius are requested; searched: h0 was found by a search between
+    !> steps, and its error is not known.
     logical :: with_profile = .false., with_radius = .false., searched = .false.
-    !> What is read: here; at the same place of a finer mesh; what solving has left of it.
+    !> Values at the place; values at the same place of a finer mesh; error of the values due to the
+    !> iteration and rounding.
     real(wp), dimension(read_of_states) :: at = 0, fine = 0, left = 0
     !> Error of gaps, and of pressures over the largest of them.
     real(wp) :: profile = 0
-    !> Whether it is read for a number, and for derivatives.
+    !> Whether the place is read for a number, and whether for derivatives.
     logical :: read = .false., differentiated = .false.
-    !> Whether the finer mesh was asked, and had the place; differences count `margin` times.
+    !> Whether the place was compared with a finer mesh, and whether the finer mesh has the place;
+    !> margin: factor of the differences.
     logical :: judged = .false., known = .true.
     real(wp) :: margin = 1
-    !> Derivatives of what is read by each parameter of &sensitivity, SI units.
+    !> Derivatives of the quantities by each parameter of &sensitivity, SI units.
     real(wp), allocatable :: rate(:, :)
   contains
     procedure :: has_state
@@ -63,9 +66,9 @@ module reported_place
     procedure :: relative_error
   end type place_t
 
-  !> An error that says that nothing is known.
+  !> The relative error that stands for an unknown value.
   real(wp), parameter :: most = 1.0e6_wp
-  !> Errors count against a quantity itself or, if this is larger, against so much.
+  !> Errors are relative to the larger of a quantity's magnitude and this value.
   real(wp), parameter :: least(quantities) = [1.0_wp, 0.0_wp, 1.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, &
     1.0_wp, 0.0_wp, 0.0_wp]
 
@@ -84,7 +87,8 @@ contains
     place%at(of_edge) = state%scale
   end function place_of_state
 
-  !> The place of a point of the traced path; landing: of the state where the jump from it lands.
+  !> The place of a point of the traced path; landing: the place is the state in which the jump from
+  !> this point lands.
   pure type(place_t) function point_of_path(point, landing) result(place)
     integer, intent(in) :: point
     logical, intent(in), optional :: landing
@@ -93,7 +97,7 @@ contains
     if (present(landing)) place%landing = landing
   end function point_of_path
 
-  !> Adds to a list. An argument may be a function's result: compiler note 1.
+  !> Adds a place to a list. The argument may be a function's result: compiler note 1.
   subroutine add_place(list, place)
     type(place_t), allocatable, intent(inout) :: list(:)
     type(place_t), intent(in) :: place
@@ -116,14 +120,14 @@ contains
     turns = any(abs(self%turn_of) > 0)
   end function turns
 
-  !> All quantities, of values read at the place.
+  !> All quantities, from the values read at the place.
   pure function measures(self, value) result(all)
     class(place_t), intent(in) :: self
     real(wp), intent(in) :: value(:)
     real(wp) :: all(quantities)
 
     all(:read_of_states) = value
-    ! At fixed D equilibria are where the energy of bodies and spring, or dead load, is stationary.
+    ! At fixed D equilibria are stationary points of the energy of bodies and spring, or dead load.
     if (self%drive(1) > 0) then
       all(of_energy) = value(of_energy) - 0.5_wp*self%drive(2)*value(of_load)**2
     else
@@ -134,7 +138,7 @@ contains
     all(of_profile) = self%profile
   end function measures
 
-  !> What solving has left of all quantities, rounding included.
+  !> The error of all quantities due to the iteration and rounding.
   pure function leftovers(self) result(all)
     class(place_t), intent(in) :: self
     real(wp) :: all(quantities)
@@ -145,7 +149,7 @@ contains
     all(of_profile) = 0
   end function leftovers
 
-  !> The errors of all quantities; as large as themselves where the finer mesh has no such place.
+  !> The errors of all quantities; equal to their magnitudes if the finer mesh has no such place.
   pure function errors(self) result(all)
     class(place_t), intent(in) :: self
     real(wp) :: all(quantities)
@@ -157,7 +161,8 @@ contains
     end associate
   end function errors
 
-  !> The largest error of what is reported of a place, relative; 0 if it was not judged.
+  !> The largest relative error of the quantities reported at a place; 0 if the place was not
+  !> judged.
   pure real(wp) function relative_error(self) result(largest)
     class(place_t), intent(in) :: self
     real(wp) :: part(quantities)
@@ -171,8 +176,8 @@ contains
     if (self%after > 0) return
     if (.not. self%searched) &
       largest = max(largest, part(merge(of_position, of_h0, product(self%drive) < 0)))
-    ! At an extremum h0 or the load stands still while the displacement runs on: where on the flat
-    ! top it is found does not move the curve, and no displacement is reported of it.
+    ! At an extremum h0 or the load is stationary and the displacement is not: the position on the
+    ! flat top does not change the curve, and no displacement is reported there.
     if (.not. self%turns()) largest = max(largest, part(of_displacement))
     if (self%with_radius .and. self%at(of_radius) > 0) largest = max(largest, part(of_radius))
   end function relative_error

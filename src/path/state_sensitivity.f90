@@ -1,11 +1,12 @@
-!> How an equilibrium changes with a parameter of the problem, in SI units, at a fixed place on the
+!> Derivatives of an equilibrium by a parameter of the problem, in SI units, at a fixed place on the
 !> path: at a fixed separation on the axis before contact, at a fixed contact radius in contact,
-!> where the separation at the edge is kept too. The place can be what is varied.
+!> where the separation at the edge is kept too. The place itself can be the varied parameter.
 !>
-!> The equations of the varied problems are evaluated at states that move with the parameter along a
-!> straight line, positions and separations being those of space. Along the right line the
-!> derivative of the equations vanishes; the Jacobian's factors correct the line until it does. So
-!> nothing is solved again but linear equations, and what is left is known.
+!> The equations of the varied problems are evaluated at states that change linearly with the
+!> parameter; positions and separations are in SI units. Along the correct line the derivative of
+!> the equations is zero; corrections with the Jacobian's factors change the line until the
+!> derivative is zero to rounding. Only linear equations are solved, and the remaining derivative is
+!> known.
 module state_sensitivity
   use kinds, only: wp
   use dimensionless_problem, only: problem_t
@@ -19,34 +20,34 @@ module state_sensitivity
   private
   public :: change_t, place_on_path_t, differentiate, move
 
-  !> An equilibrium of the path, its mesh and its coordinate there (`continuation`).
+  !> An equilibrium of the path, its mesh and its coordinate on this mesh (`continuation`).
   type :: place_on_path_t
     integer :: mesh = 1
     real(wp) :: s = 0
     type(state_t) :: state
   end type place_on_path_t
 
-  !> Derivatives by a parameter in SI units: of the separations at the mesh's nodes and of h0 behind
-  !> them, and of the load.
+  !> Derivatives by a parameter in SI units: of the separations at the mesh's nodes, followed by h0,
+  !> and of the load.
   type :: change_t
     real(wp), allocatable :: separation(:)
     real(wp) :: load = 0
-    !> What is left of the derivative of the equations, in the law's lengths for a change of the
-    !> parameter as large as itself.
+    !> The remaining derivative of the equations, in the law's lengths for a change of the parameter
+    !> by its own scale.
     real(wp) :: left = 0
-    !> By how much differences of lower order change the load's derivative.
+    !> The change of the load's derivative with a difference rule of lower order.
     real(wp) :: uncertainty = 0
   end type change_t
 
-  !> Corrections. They end when they gain less than this factor: rounding rules then.
+  !> Largest number of corrections. They end when the remaining derivative falls by less than this
+  !> factor, since rounding dominates then.
   integer, parameter :: most_corrections = 5
   real(wp), parameter :: gain = 0.1_wp
 
 contains
 
   !> The derivatives of the equilibrium at a place by each varied parameter. found = .false.: the
-  !> Jacobian is singular, or a varied problem is not defined at the state. Renews the
-  !> factorisation.
+  !> Jacobian is singular, or a varied problem is not defined at the state. The factors are renewed.
   subroutine differentiate(equations, place, frozen, varied, change, found)
     type(equations_t), intent(inout) :: equations
     type(place_on_path_t), intent(in) :: place
@@ -65,7 +66,7 @@ contains
     end do
   end subroutine differentiate
 
-  !> The line of states along which the equations go on to hold.
+  !> The line of states along which the equations remain satisfied.
   subroutine find_line(equations, place, frozen, varied, change, found)
     type(equations_t), intent(inout) :: equations
     type(place_on_path_t), intent(in) :: place
@@ -93,8 +94,8 @@ contains
     end do
   end subroutine find_line
 
-  !> The largest derivative of an equation; where gaps are far, as a part of them, since there is
-  !> rounding and no force.
+  !> The largest derivative of an equation; for large gaps, relative to the gap, since rounding is
+  !> proportional to the gap.
   pure real(wp) function largest(defect, state)
     real(wp), intent(in) :: defect(:)
     type(state_t), intent(in) :: state
@@ -102,7 +103,7 @@ contains
     largest = maxval(abs(defect)/max(1.0_wp, [state%gap, state%axis_gap]/far_gap))
   end function largest
 
-  !> Derivatives, along a line of states, of the equations (lengths) and of the load.
+  !> Derivatives of the equations (lengths) and of the load along a line of states.
   subroutine follow_line(equations, place, varied, line, defect, found)
     type(equations_t), intent(inout) :: equations
     type(place_on_path_t), intent(in) :: place
@@ -135,8 +136,8 @@ contains
     call equations%become_those_of(own)
   end subroutine follow_line
 
-  !> The state on a line that belongs to the k-th varied problem, which becomes that of the
-  !> equations, and what is left of these [m]. own: the problem of the place.
+  !> The state on a line for the k-th varied problem, and the residuals of its equations [m]. The
+  !> equations take over the varied problem. own: the problem of the place.
   subroutine move(equations, own, place, varied, k, line, moved, left)
     type(equations_t), intent(inout) :: equations
     type(problem_t), intent(in) :: own
@@ -156,7 +157,7 @@ contains
       call residual(equations, control, law%gap_of(own%law%separation_of([place%state%gap, &
         place%state%h0]) + varied%offset(k)*line%separation), left, moved)
       if (control%kind == at_edge_radius) then
-        ! In the equation of the edge the separation there stays.
+        ! The equation of the edge keeps the separation, not the gap in the law's lengths.
         left(n + 1) = left(n + 1) + law%edge_gap - law%gap_of(own%law%separation_of( &
           own%law%edge_gap))
       end if
@@ -164,7 +165,8 @@ contains
     end associate
   end subroutine move
 
-  !> The control that prescribes a coordinate of the path of a problem, in the units of another.
+  !> The control that prescribes a coordinate of the path of problem `own`, in the units of problem
+  !> `other`.
   pure type(control_t) function control_of(own, other, mesh, s) result(control)
     type(problem_t), intent(in) :: own, other
     integer, intent(in) :: mesh

@@ -1,7 +1,7 @@
-!> The equilibrium path: its points in order from afar inward, among them every fold in h0 and every
-!> extremum of the load, and how many modes of the bodies are unstable between one point and the
-!> next. Points are known on one mesh; where the path passes to the next mesh, two of them are
-!> there again. Farther out than it was traced, points are of undeformed bodies.
+!> The equilibrium path: its points in order from large separations inward, among them every fold in
+!> h0 and every extremum of the load, and the number of unstable modes between one point and the
+!> next. Each point is on one mesh; where the path passes to the next mesh, two points exist on
+!> both. Beyond the first traced point the points are of undeformed bodies.
 module traced_path
   use kinds, only: wp
   use dimensionless_problem, only: problem_t
@@ -18,23 +18,24 @@ module traced_path
   !> One equilibrium of the path.
   type :: path_point_t
     type(state_t) :: state
-    !> Its derivatives by the path's coordinate.
+    !> Derivatives of the state by the path's coordinate.
     type(tangent_t) :: tangent
-    !> The mesh that it was solved on and its coordinate there (`path_coordinate`).
+    !> The mesh of the state, and the coordinate on this mesh (`path_coordinate`).
     integer :: mesh = approach
     real(wp) :: coordinate = 0
-    !> Whether the path leads on from here to the next point, and unstable modes on the way.
+    !> Whether the path continues from this point to the next one, and the number of unstable modes
+    !> between them.
     logical :: leads_on = .false.
     integer :: modes = 0
-    !> Whether it is an extremum, of h0 or of the load.
+    !> Whether the point is an extremum of h0, and whether one of the load.
     logical :: fold = .false., load_extremum = .false.
   end type path_point_t
 
   type :: traced_path_t
     integer :: held = 0
     type(path_point_t), allocatable :: point(:)
-    !> How many points, the first ones, are of undeformed bodies; and the last before which the path
-    !> is of use: the end of the last stable piece.
+    !> The number of leading points that are of undeformed bodies; and the last point in use: the
+    !> end of the last stable piece.
     integer :: undeformed = 0, last = 0
   contains
     procedure :: insert
@@ -47,17 +48,17 @@ module traced_path
     procedure, private :: find_nearby
   end type traced_path_t
 
-  !> What undeformed bodies are on in place of a mesh; their coordinate is -log(h0). Ratio of h0
-  !> between such points.
+  !> The mesh number of undeformed bodies; their coordinate is -log(h0). Ratio of h0 between such
+  !> points.
   integer, parameter :: no_mesh = 0
   real(wp), parameter :: outer_ratio = 1.12_wp
-  !> Points on either side of a piece of the path that tell about it: of folds and extrema one may
-  !> be too near to tell anything.
+  !> Number of points on either side of an interval for the polynomial in the interval: a fold or an
+  !> extremum may be too close to its neighbour to add information.
   integer, parameter :: either_side = 2
 
 contains
 
-  !> Puts a point in the given place, later ones move up.
+  !> Inserts a point at the given place; later points move up.
   pure subroutine insert(path, place, point)
     class(traced_path_t), intent(inout) :: path
     integer, intent(in) :: place
@@ -78,7 +79,8 @@ contains
     path%point(place) = point
   end subroutine insert
 
-  !> Puts undeformed bodies from h0 = `farthest` inward before the first point, if that is nearer.
+  !> Inserts undeformed bodies from h0 = `farthest` inward before the first point, if that point is
+  !> nearer.
   subroutine begin_undeformed(self, problem, farthest)
     class(traced_path_t), intent(inout) :: self
     type(problem_t), intent(in) :: problem
@@ -110,7 +112,7 @@ contains
     self%held = self%held + self%undeformed
   end subroutine begin_undeformed
 
-  !> Unstable modes of the i-th point; a fold has those of its more unstable side.
+  !> Number of unstable modes of the i-th point; at a fold, of its more unstable side.
   pure integer function modes_at(self, i)
     class(traced_path_t), intent(in) :: self
     integer, intent(in) :: i
@@ -119,7 +121,7 @@ contains
     if (self%point(i)%fold .and. i > 1) modes_at = max(modes_at, self%point(i - 1)%modes)
   end function modes_at
 
-  !> Whether the path leads to point i from the one before.
+  !> Whether the path continues from the previous point to point i.
   pure logical function comes_from_before(self, i)
     class(traced_path_t), intent(in) :: self
     integer, intent(in) :: i
@@ -128,7 +130,7 @@ contains
     if (comes_from_before) comes_from_before = self%point(i - 1)%leads_on
   end function comes_from_before
 
-  !> The points, from one number to another, that tell about what is between point i and the next.
+  !> The points `from` to `to` for the polynomial between point i and the next.
   pure subroutine find_nearby(self, i, from, to)
     class(traced_path_t), intent(in) :: self
     integer, intent(in) :: i
@@ -142,7 +144,7 @@ contains
     end do
   end subroutine find_nearby
 
-  !> Adds the points that tell about what is between point i and the next to an arc.
+  !> Adds to an arc the points for the polynomial between point i and the next.
   pure subroutine add_to(self, i, arc)
     class(traced_path_t), intent(in) :: self
     integer, intent(in) :: i
@@ -169,8 +171,8 @@ contains
     call self%add_to(i, arc)
   end function arc_about
 
-  !> The polynomial that weights(1) h0 + weights(2) load is between point i and the next, the
-  !> coordinates of these, and the points that it fits.
+  !> The polynomial for weights(1) h0 + weights(2) load between point i and the next, the
+  !> coordinates of these two, and the points through which it passes.
   pure subroutine curve_between(self, i, weights, curve, ends, fitted)
     class(traced_path_t), intent(in) :: self
     integer, intent(in) :: i

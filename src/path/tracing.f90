@@ -1,5 +1,5 @@
-!> Traces the equilibrium path: a tracer goes on step by step, from mesh to mesh, and what it passes
-!> becomes points of the path.
+!> Traces the equilibrium path: a continuation advances step by step and from mesh to mesh, and its
+!> states become points of the path.
 module tracing
   use kinds, only: wp
   use listener, only: listener_t
@@ -22,8 +22,8 @@ module tracing
   private
   public :: tracing_t, trace, trace_again
 
-  !> What was traced: how it ends, and whether in the fall of bodies that nothing keeps apart; the
-  !> largest part of the load that nodes leave out of its pressures, but of a fall.
+  !> A traced path, its ending, and whether it ends in a collapse of the bodies; left_out: the
+  !> largest part of the load that the nodes miss, except in a collapse.
   type :: tracing_t
     type(traced_path_t) :: path
     type(ending_t) :: ending
@@ -31,27 +31,29 @@ module tracing
     real(wp) :: left_out = 0
   end type tracing_t
 
-  !> Most points of a path before it is given up as going nowhere.
+  !> Number of points beyond which a path is given up.
   integer, parameter :: longest = 5000
-  !> Contact radii over the largest expected that no path has.
+  !> Contact radius, over the largest expected, that no path reaches.
   real(wp), parameter :: too_large = 5
-  !> Steps after which the listener hears of them: to write a message takes a tenth of a step.
+  !> Number of steps between messages to the listener: a message takes a tenth of the time of a
+  !> step.
   integer, parameter :: steps_a_message = 8
-  !> Residual, in the law's lengths, that the points of the path have at most, whatever the deck
-  !> allows the experiment's states.
+  !> Largest residual of the path's points, in the law's lengths, even if the deck allows larger
+  !> ones for the experiment's states.
   real(wp), parameter :: path_tolerance = 1.0e-8_wp
 
-  !> Without repulsion the bodies fall onto each other once they have jumped, and the path goes on
-  !> to no gap at all. What is left of the gap at the first fold when it is followed no farther,
-  !> and if there is no fold, how many of the law's lengths.
+  !> Without repulsion the bodies collapse after their jump, and the path continues to a gap of
+  !> zero. The path ends when the gap is this fraction of the gap at the first fold or, if there is
+  !> no fold, of the law's length.
   real(wp), parameter :: collapse = 0.3_wp
 
 contains
 
-  !> Traces the path from a state far from contact, on the mesh for the approach, until it is stable
-  !> at h0_low; into_contact: until it is also on the mesh for contact. farthest: where given, there
-  !> are points enough for a smooth curve, and from there to the start bodies are undeformed.
-  !> accuracy: where given, meshes that leave out too much of the load for it are mended.
+  !> Traces the path from a state at large separation, on the mesh for the approach, until it is
+  !> stable at h0_low; into_contact: until it is also on the mesh for contact. farthest: if present,
+  !> the points are close enough for a smooth curve, and undeformed bodies fill the range from
+  !> `farthest` to the start. accuracy: if present, meshes that miss too much of the load for this
+  !> accuracy are refined.
   subroutine trace(solver, start, h0_low, into_contact, listener, known, farthest, accuracy)
     class(solver_t), intent(inout) :: solver
     type(state_t), intent(in) :: start
@@ -69,7 +71,7 @@ contains
     logical :: guarded
     integer :: steps
 
-    ! Where rounding hides the contact the path is of use up to its first fold.
+    ! Where rounding hides the contact, the path is useful up to its first fold only.
     blind = lost_in_rounding(solver%problem, &
       largest_radius(solver%problem, h0_low, solver%meshes%level))
     tolerance = solver%options%tolerance
@@ -125,7 +127,7 @@ contains
     known%path%last = known%path%held
   end subroutine trace
 
-  !> Goes back to where the path came to a mesh that was made anew since, or to its beginning afar.
+  !> Returns to the entry of the path into a refined mesh, or to the start of the path.
   subroutine go_back(mender, solver, start, path, walker, lost)
     type(mender_t), intent(in) :: mender
     class(solver_t), intent(inout) :: solver
@@ -150,15 +152,15 @@ contains
       state%axis_gap = start%axis_gap
       state%scale = start%scale
       state%gap = start%h0 + problem%shape%height(start%scale*grid%x)
-      ! At its h0, where an experiment may begin.
+      ! With the h0 of the start, at which an experiment may begin.
       call solver%correct(h0_control(problem%shape, solver%meshes, approach, start%h0), state, done)
     end associate
     lost = .not. done
     if (done) call walker%take(solver, state, approach, lost)
   end subroutine go_back
 
-  !> Whether the contact is much larger than any that is expected: on a mesh that is too coarse
-  !> folds were lost, and no state is taken for stable any more.
+  !> Whether the contact is much larger than expected: on a mesh that is too coarse folds can be
+  !> lost, and then no later state counts as stable.
   pure logical function astray(equations, path)
     type(equations_t), intent(in) :: equations
     type(traced_path_t), intent(in) :: path
@@ -169,7 +171,7 @@ contains
     end associate
   end function astray
 
-  !> Whether the newest state of a path is one of collapse.
+  !> Whether the newest state of a path belongs to a collapse.
   pure logical function collapsed(problem, path)
     type(problem_t), intent(in) :: problem
     type(traced_path_t), intent(in) :: path
@@ -184,8 +186,8 @@ contains
     collapsed = path%point(path%held)%state%axis_gap < collapse*scale
   end function collapsed
 
-  !> Advances the tracer by a step and appends the new point. A new path begins with the tracer's
-  !> own newest state. lost: no step, however small, converged.
+  !> Advances the continuation by a step and appends the new point. A new path begins with the
+  !> newest state of the continuation. lost: no step, however small, converged.
   subroutine extend(path, walker, solver, lost)
     type(traced_path_t), intent(inout) :: path
     type(continuation_t), intent(inout) :: walker
@@ -197,8 +199,8 @@ contains
     if (.not. lost) call append(path, walker%arc_t)
   end subroutine extend
 
-  !> Lets the tracer pass to the next mesh if it has come there, and adds the extrema that have been
-  !> passed. lost: a solve failed.
+  !> Lets the continuation pass to the next mesh if it has reached it, and adds the extrema that it
+  !> has passed. lost: a solve failed.
   subroutine pass_on(path, walker, solver, lost)
     type(traced_path_t), intent(inout) :: path
     type(continuation_t), intent(inout) :: walker
@@ -209,8 +211,8 @@ contains
     if (.not. lost) call add_extrema(path, walker%arc_t, solver, lost)
   end subroutine pass_on
 
-  !> Lets the tracer change its mesh. The last two points, which it takes along, are there again on
-  !> the next mesh, and between these the path goes on.
+  !> Lets the continuation change its mesh. The last two points are appended again on the next mesh,
+  !> and the path continues between them.
   subroutine change_mesh(path, walker, solver, lost)
     type(traced_path_t), intent(inout) :: path
     type(continuation_t), intent(inout) :: walker
@@ -226,9 +228,9 @@ contains
     call append(path, walker%arc_t)
   end subroutine change_mesh
 
-  !> Traces a path again over one of its meshes, at the same coordinates, from the states that it
-  !> has there. before: what that mesh was then. lost: a solve failed, or the folds that were found
-  !> do not lead to the stability of the next mesh; the path is as it was.
+  !> Traces a path again over one mesh, at the same coordinates, from its states on this mesh.
+  !> before: the earlier version of the mesh. lost: a solve failed, or the new folds disagree with
+  !> the stability on the next mesh; in both cases the path is unchanged.
   subroutine trace_again(solver, before, mesh, path, lost)
     class(solver_t), intent(inout) :: solver
     type(discretisation_t), intent(in) :: before

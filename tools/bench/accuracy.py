@@ -1,4 +1,4 @@
-"""What each accuracy costs, how errors fall, and how honest the error estimate is."""
+"""The cost of each accuracy, the decrease of errors, and the reliability of the error estimate."""
 
 import math
 
@@ -8,7 +8,7 @@ import problems
 import tables as tables_module
 
 ACCURACIES = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10)
-# Below this the reference itself is not known.
+# Below this value the error of the reference matters.
 _KNOWN = 1e-10
 # In units of sqrt(R z0).
 _REACHES = (16, 23, 32, 45, 64, 90)
@@ -47,7 +47,7 @@ def _row(problem, kind, value, run, reference, length):
 
 
 def draw(rows, folder):
-    """Draw error and estimate against the accuracy asked for, and the price of each."""
+    """Draw error and estimate against the requested accuracy, and the cost of each."""
     page, panels = pictures.figure(1, 2, (9.0, 4.6))
     pictures.dress(panels[0, 0], "what is asked and what is got", "accuracy asked for",
                    "relative error")
@@ -77,7 +77,8 @@ def draw(rows, folder):
 
 
 def tables(rows, before):
-    """Return the price list: the path at each accuracy, and what it cost in the last version."""
+    """Return the table of costs: the path at each accuracy, and its cost in the previous
+    version."""
     lines = []
     earlier = {(row["problem"], row["deck"], row["accuracy"]): row.get("price", math.nan)
                for row in before}
@@ -106,7 +107,7 @@ def measure_law(program, quick, say):
         if problem.adhesive and problem is not problems.ADHESIVE[3]:
             rows += _reach_rows(program, problem, _REACHES[::3] if quick else _REACHES)
         if problem is not problems.ADHESIVE[3]:
-            # Where the neck is far from resolved there is no law, and a run takes minutes.
+            # If the neck is far from resolved, there is no law, and a run takes minutes.
             for count in nodes if problem is not problems.ADHESIVE[2] else nodes[:6]:
                 run = program.run(problem.cycle(
                     f"grid = 'uniform', nodes = {count}, accuracy = 1e-4", 4 * problem.step))
@@ -116,7 +117,7 @@ def measure_law(program, quick, say):
 
 
 def _reach_rows(program, problem, reaches):
-    """Return rows for the same state before contact on fixed panels that reach so far."""
+    """Return rows for the same state before contact on fixed panels with the given reaches."""
     near = 1.5 * program.reference(problem).values["jump_in"]
     lateral = math.sqrt(1.5e-2 * problem.length)
 
@@ -166,7 +167,7 @@ def draw_law(rows, folder):
 
 
 def tables_law(rows, before):
-    """Return the guide's table: the laws fitted to what is above rounding and without a warning."""
+    """Return the guide's table: laws fitted to errors above rounding of runs without a warning."""
     lines = []
     for knob, name in (("locked", "edge-locked: factor for each ten nodes"),
                        ("reach", "fixed panels: power of the reach"),
@@ -191,14 +192,14 @@ def tables_law(rows, before):
 
 
 def _key(knob, problem):
-    """Return the error that shows a law: others are limited by reach, or by bracketed jumps."""
+    """Return the error that follows a law: others are limited by reach, or by bracketed jumps."""
     if knob != "nodes":
         return "error"
     return "error_pull_off" if problem.adhesive else "error_load"
 
 
 def honesty(folder):
-    """Draw the estimate against the true error over all that was measured; return the ratios."""
+    """Draw the estimate against the true error for all measurements; return the ratios."""
     measured = {}
     for name in ("accuracy", "error_law", "work_precision"):
         for row in tables_module.read(folder / f"{name}.csv"):

@@ -4,12 +4,12 @@
     ./bench                          everything, five minutes
     ./bench --quick                  everything, coarser, in two minutes, into results/bench/
     ./bench --only work_precision    one part
-    ./bench --resume                 what an interrupted run left undone
-    ./bench --draw                   pictures and tables once more, from the measurements at hand
+    ./bench --resume                 the rest of an interrupted run
+    ./bench --draw                   pictures and tables again, from the present measurements
 
-Times are in G, one DGESV of 400 unknowns on one core in the same run, and beside them is the least
-that the same linear algebra and rows take by themselves. Measurements of earlier sources are kept
-as NAME_before.csv, and the price list compares with them.
+Times are in G, one DGESV of 400 unknowns on one core in the same run. Beside them is the time of the
+same linear algebra and rows alone. Measurements of earlier sources are kept as NAME_before.csv, for
+the comparison in the table of costs.
 """
 
 import argparse
@@ -34,7 +34,7 @@ import pages  # noqa: E402 (found through the line above)
 
 _GUIDE = program.ROOT / "docs" / "accuracy.md"
 
-# What measures, what draws, what makes the guide's tables.
+# Functions that measure, that draw, and that make the guide's tables.
 _PARTS = {
     "accuracy": (accuracy.measure, accuracy.draw, accuracy.tables),
     "laws": (laws.measure, laws.draw, laws.tables),
@@ -48,12 +48,12 @@ _PARTS = {
     "work_precision": (work_precision.measure, work_precision.draw, work_precision.tables),
 }
 
-# Those whose tables compare with the sources before.
+# Parts whose tables compare with earlier sources.
 _COMPARED = ("accuracy", "laws", "experiments", "ratios")
 
 
 def main():
-    """Run the parts that are asked for."""
+    """Run the requested parts."""
     options = _options()
     build = options.build.resolve()
     quick = options.quick
@@ -83,12 +83,12 @@ def main():
 
 
 def _present(folder, in_guide):
-    """Draw what there are measurements for; with `in_guide`, renew the guide's tables."""
+    """Draw the available measurements; with `in_guide`, renew the guide's tables."""
     found = {}
     for name, (_, draw, make_tables) in _PARTS.items():
         rows = tables.read(folder / f"{name}.csv")
         if not _sources(folder / f"{name}.csv"):
-            # Measured in seconds, by a bench before this one.
+            # Measured in seconds, by an earlier version of the bench.
             continue
         if rows and draw:
             draw(rows, folder)
@@ -106,7 +106,7 @@ def _present(folder, in_guide):
 
 
 def _versions(folder):
-    """Return which sources the measurements at hand belong to, as a sentence for each."""
+    """Return the sources of the measurements, as a sentence for each."""
     by_sources = {}
     for name in _PARTS:
         path = folder / f"{name}.csv"
@@ -118,17 +118,17 @@ def _versions(folder):
 
 
 def _sources(path):
-    """Return the note of a table that says which sources were measured; empty without one."""
+    """Return the note of a table about its sources; empty without one."""
     return next((note for note in tables.notes(path) if note.startswith("sources ")), "")
 
 
 def _digest(build):
-    """Return the digest of the sources that a build folder is of."""
+    """Return the digest of the sources of a build folder."""
     return pages.digest(build.parent / "src")
 
 
 def _before(path):
-    """Return where the measurements of earlier sources are kept."""
+    """Return the file of the measurements of earlier sources."""
     return path.with_name(f"{path.stem}_before.csv")
 
 

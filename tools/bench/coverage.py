@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""How often the intervals of a fit hold the truth: curves of an independent solution, each fitted.
+"""Count how often the intervals of a fit contain the truth, for curves of an independent solution.
 
     .venv/bin/python tools/bench/coverage.py [--curves 40] [--first 0] [--wrong]
 
 Strength of adhesion, spring, noise, number of samples, outliers and where the search starts are
 drawn for each curve by its number. A fit arrives if no estimate is 6 standard errors off.
---wrong fits with z0 held at twice the truth, which is to be found. Rows go to standard output, the
-table after them.
+--wrong fits with z0 fixed at twice the truth, which the fit must detect. Rows go to standard output,
+followed by the table.
 """
 
 import argparse
@@ -32,7 +32,7 @@ WRONG = "does not describe"
 
 
 class Case:
-    """A curve, by its number, and the deck that is to fit it."""
+    """A curve, by its number, and the deck that fits it."""
 
     def __init__(self, number, wrong=False):
         rng = np.random.default_rng(number)
@@ -69,7 +69,7 @@ class Case:
 
 
 class Outcome:
-    """What a fit made of a case."""
+    """The result of a fit."""
 
     def __init__(self, case):
         began = time.perf_counter()

@@ -1,4 +1,4 @@
-!> Cases that are nothing, and a worker that sleeps.
+!> Empty cases, and a worker that sleeps.
 module empty_cases
   use, intrinsic :: iso_c_binding, only: c_int
   use kinds, only: wp
@@ -11,7 +11,7 @@ module empty_cases
   private
   public :: counter_t, sleeper_t
 
-  !> Cases without anything.
+  !> Cases without content.
   type, extends(foreman_t) :: counter_t
     integer :: left = 0
   contains
@@ -19,7 +19,7 @@ module empty_cases
     procedure :: take_answer
   end type counter_t
 
-  !> Sleeps for every case; answers with `case` where there is one.
+  !> Sleeps for every case; answers with `case` if there is one.
   type, extends(worker_t) :: sleeper_t
     real(wp) :: milliseconds = 0
     type(case_t), allocatable :: case
@@ -80,10 +80,11 @@ contains
 
 end module empty_cases
 
-!> mpirun -n RANKS dispatcher CASES MILLISECONDS [FOLDER]: what handing out cases takes. A case is a
-!> sleep of so long, or nothing; below zero: nothing, which is said to take so long. With a folder the cases are those of a sweep over two keys, whose
-!> rows and journal are written there as the program does; the numbers are those of one scene. One
-!> line: processes that work, cases, milliseconds, seconds that all took, messages (0: not counted).
+!> mpirun -n RANKS dispatcher CASES MILLISECONDS [FOLDER]: measures the time for handing out cases.
+!> A case is a sleep of MILLISECONDS, or empty; a negative value means an empty case that is
+!> reported to take that long. With a folder the cases are those of a sweep over two keys, whose
+!> rows and journal are written there as by the program; the numbers are those of one scene. Output,
+!> one line: processes that work, cases, milliseconds, total seconds, messages (0: not counted).
 program dispatcher
   use kinds, only: wp
   use failure, only: failure_t
@@ -102,7 +103,7 @@ program dispatcher
   use sweeps, only: run_sweep
   implicit none
 
-  !> A million cases at most; so many are handed out as are asked for.
+  !> A million cases at most, of which the requested number is handed out.
   character(len=*), parameter :: deck = '&bodies radius = 1e-6, stiffness = 1e10 / ' // &
     '&force law = ''lennard_jones'', hamaker = 1e-19, z0 = 3e-10 / ' // &
     '&equilibrium_path h0_end = -1e-9 / &sweep scale = ''log'', ' // &
@@ -144,7 +145,7 @@ program dispatcher
       if (allocated(error)) error stop 'cannot write there'
     end if
   end if
-  ! All have come so far.
+  ! All processes have reached this point.
   if (crew%first_of(.true.) < crew%rank) then
     call work_through(crew, sleeper)
   else

@@ -1,7 +1,7 @@
-"""The unit of time, and the least time that a task can take.
+"""The unit of time, and the least time of a task.
 
-G is one DGESV of 400 unknowns on one core, measured between the runs that are counted in it: it
-goes up and down with the load and the machine, and so do they.
+G is one DGESV of 400 unknowns on one core, measured between the runs that are counted in G: both
+vary with the load of the machine.
 """
 
 import bisect
@@ -14,17 +14,17 @@ import time
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 
-# Unknowns whose linear algebra is timed; between them times are powers of the number.
+# Numbers of unknowns whose linear algebra is timed; between them times are powers of the number.
 _SIZES = (16, 32, 64, 128, 256, 512)
 _UNIT = 400
 # Seconds after which G is measured again.
 _STALE = 5.0
-# Bytes of a row of the curve and of the journal, about.
+# Approximate number of bytes of a row of the curve and of the journal.
 _ROW = (230, 900)
 
 
 class Gauge:
-    """Times of the linear algebra, whatever build is measured: by the one of this checkout."""
+    """Times of the linear algebra of this checkout, for all measured builds."""
 
     def __init__(self, environment):
         self.build, self.environment = ROOT / "build", environment
@@ -40,7 +40,7 @@ class Gauge:
         return self._unit
 
     def pieces(self, nodes, names=(), threads=1):
-        """Return a dict of seconds for each number of nodes, of all pieces or of those named."""
+        """Return a dict of seconds for each number of nodes, of all pieces or of the given ones."""
         output = subprocess.run(
             [str(self.build / "linear_limits"), *names, *map(str, nodes)],
             env=self.environment(threads), check=True, capture_output=True, text=True).stdout
@@ -51,8 +51,8 @@ class Gauge:
     def limit(self, run):
         """Return the seconds of a run's products, solutions, factorisations and rows alone.
 
-        Each is timed by itself on matrices of the run's mean size. Every state but for its last
-        product solves with factors.
+        Each is timed separately on matrices of the run's mean size. Every product of a state except
+        the last one is followed by a solution with factors.
         """
         if not run.products:
             return float("nan")
@@ -65,7 +65,7 @@ class Gauge:
                 + run.factorisations * (dgesv - dgetrs) + run.states * self._row)
 
     def _at(self, size, name):
-        """Return the seconds of a piece at a size, a power of it between those measured."""
+        """Return the seconds of a piece at a size, by a power law between measured sizes."""
         i = min(max(bisect.bisect(_SIZES, size) - 1, 0), len(_SIZES) - 2)
         low, high = (self._pieces[j][name] for j in (i, i + 1))
         return low * (high / low) ** (math.log(max(size, 1) / _SIZES[i])
@@ -73,7 +73,7 @@ class Gauge:
 
 
 def _seconds_of_row():
-    """Return the time of handing a row and its record to the system."""
+    """Return the time for writing a row and its record."""
     blocks = [bytes(size) for size in _ROW]
     with open(os.devnull, "wb", buffering=0) as file:
         began = time.perf_counter()

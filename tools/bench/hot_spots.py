@@ -1,4 +1,4 @@
-"""Where the time goes: the program's own timers, and instructions counted by callgrind."""
+"""The distribution of time: the program's own timers, and instructions counted by callgrind."""
 
 import re
 import shutil
@@ -6,7 +6,7 @@ import subprocess
 
 import problems
 
-# Functions none of which calls another of them, so that their shares add up.
+# Functions that do not call each other, so that their shares add up.
 _PIECES = (
     ("matrix-vector products (DGEMV)", r"dgemv_"),
     ("factorisations", r"__linear_algebra_MOD_factorise"),
@@ -20,7 +20,7 @@ _PIECES = (
 
 
 def measure(program, quick, say):
-    """Return rows of case, what, seconds or share of instructions."""
+    """Return rows of case, quantity, and seconds or share of instructions."""
     cases = {
         "Fig. 10(c) cycle": problems.FIGURE_10C + "&numerics accuracy = 1e-6 /\n",
         "σ = 8.7 path": problems.ADHESIVE[2].path("accuracy = 1e-6")}
@@ -52,7 +52,7 @@ def measure(program, quick, say):
 
 
 def _shares(text):
-    """Return instructions of each piece, all it calls included, from callgrind_annotate's table."""
+    """Return instructions of each piece, with all its calls, from callgrind_annotate's table."""
     total = _count(re.search(r"^ *([\d,]+) .*PROGRAM TOTALS", text, re.MULTILINE)[1])
     shares = {}
     for what, function in _PIECES:

@@ -1,6 +1,6 @@
-"""The price of other laws and shapes than the paper's, and of what is done along a path.
+"""The cost of laws and shapes other than the paper's, and of experiments along a path.
 
-Of laws and shapes it is that of paths of examples, of experiments that of whole examples;
+For laws and shapes it is the cost of the paths of examples, for experiments that of whole examples;
 calculation alone.
 """
 
@@ -11,14 +11,14 @@ import pictures
 import problems
 
 ACCURACIES = (1e-3, 1e-6, 1e-9)
-# Runs are judged against this accuracy; none may take more than so many seconds.
+# Accuracy of the reference of all runs; largest number of seconds of a run.
 _REFERENCE, _PATIENCE = 1e-10, 60
 _EXAMPLES = ("van_der_waals", "lennard_jones_10_4", "morse", "hydration", "hydrophobic", "dlvo",
              "depletion", "dugdale", "capillary", "steric", "structural", "tabulated", "sphere",
              "cone", "punch", "profile")
 # The first is a cycle.
 _EXPERIMENTS = ("van_der_waals", "table", "fixed_load", "device", "regime", "sensitivity", "fit")
-# A number tells nothing of its estimate if the reference is hardly better.
+# A number does not test its estimate if the reference is hardly better.
 _BETTER = 10
 
 
@@ -53,7 +53,7 @@ def measure_experiments(program, quick, say):
 
 
 def draw(rows, folder):
-    """Draw what each law and shape costs at each accuracy, the cheapest at the top."""
+    """Draw the cost of each law and shape at each accuracy, the cheapest at the top."""
     names = sorted({row["problem"] for row in rows}, reverse=True, key=lambda name: [
         row["price"] for row in rows if row["problem"] == name and row["accuracy"] == 1e-6])
     page, panels = pictures.figure(1, 1, (8.0, 0.28 * len(names) + 1.4))
@@ -75,12 +75,12 @@ def draw(rows, folder):
 
 
 def tables(rows, before):
-    """Return the price list of laws and shapes."""
+    """Return the table of costs of laws and shapes."""
     return {"laws": _price_list(rows, before, "error", "true error")}
 
 
 def tables_experiments(rows, before):
-    """Return the price list of experiments."""
+    """Return the table of costs of experiments."""
     return {"experiments": _price_list(rows, before, "ratio", "true error / estimate, largest")}
 
 
@@ -101,7 +101,7 @@ def _runs(program, quick, decks):
 
 
 def _row(name, accuracy, run):
-    # A fit, whose paths are many, does not tell its parts.
+    # A fit, which has many paths, does not report its parts.
     return {"problem": name, "accuracy": accuracy,
             "price": run.calculation / run.unit if run.calculation else run.price,
             "nodes": run.nodes, "states": run.states, "factorisations": run.factorisations,
@@ -109,14 +109,14 @@ def _row(name, accuracy, run):
 
 
 def _lay_out_data(program):
-    """Put what decks read where they are run."""
+    """Put the data files of decks into the folder of the runs."""
     for path in problems.EXAMPLES.iterdir():
         if path.suffix in (".csv", ".txt"):
             shutil.copy(path, program.scratch)
 
 
 def _error_over_estimate(run, reference):
-    """Return the largest error of a number over its estimate, where the reference can tell."""
+    """Return the largest error of a number over its estimate, if the reference is good enough."""
     ratios = []
     for key in reference.summary:
         if f"{key}_error" not in reference.summary or f"{key}_error" not in run.summary:

@@ -1,7 +1,7 @@
-!> linear_limits [PIECE ...] NODES [NODES ...]: times the library's pieces, or those that are named,
-!> beside the linear algebra that bounds them from below, on a uniform grid of each number of nodes.
-!> One line of comma-separated seconds of the processor each; every time is the least of several
-!> rounds, and each round has all pieces, so that ratios mean something on a busy machine.
+!> linear_limits [PIECE ...] NODES [NODES ...]: times the library's pieces, or the given ones, and
+!> the linear algebra that bounds them from below, on a uniform grid of each number of nodes.
+!> Output: one line of comma-separated processor seconds for each; every time is the least of
+!> several rounds, and each round has all pieces, so that ratios are meaningful on a busy machine.
 program linear_limits
   use, intrinsic :: iso_fortran_env, only: output_unit
   use kinds, only: wp
@@ -30,9 +30,10 @@ program linear_limits
     '&force law = ''lennard_jones'', hamaker = 1e-20, z0 = 0.5e-9 / ' // &
     '&equilibrium_path h0_end = 0 /'
   integer, parameter :: rounds = 7, most_repeats = 200, iterations = 5
-  !> Seconds that a piece may take in one round, and those above which three rounds must do.
+  !> Largest number of seconds of a piece in one round, and seconds above which three rounds are
+  !> enough.
   real(wp), parameter :: slice = 0.02_wp, long = 1
-  !> Before contact every node acts.
+  !> Before contact every node has a pressure.
   real(wp), parameter :: h0 = 4, extent = 12
 
   type(equations_t) :: equations
@@ -110,7 +111,7 @@ contains
     start%gap = h0 + 0.5_wp*equations%meshes%grid(1)%x**2
     g = start%gap
     call residual(equations, control, start%gap, g, start)
-    ! Factors that do not fit: the iteration then goes on.
+    ! Inaccurate factors, so that the iteration continues.
     state = start
     state%gap = 0.5_wp*state%gap
     call freeze(equations, control, state, kept)
@@ -166,12 +167,12 @@ contains
     duration = (seconds() - began - rest)/steps
   end function duration
 
-  !> Time of the processor [s], which other work on the machine does not change.
+  !> Processor time [s], which other work on the machine does not change.
   real(wp) function seconds()
     call cpu_time(seconds)
   end function seconds
 
-  !> A matrix like the Jacobian.
+  !> A matrix similar to the Jacobian.
   subroutine some_matrix(matrix)
     type(factorisation_t), intent(inout) :: matrix
     integer :: i

@@ -1,7 +1,7 @@
-"""What the mesh rule of src/mesh/mesh_rule.f90 was fitted to, measured.
+"""Measure the data to which the mesh rule of src/mesh/mesh_rule.f90 was fitted.
 
 For a strength of adhesion sigma and a band of contact radii, states are solved at given radii on
-mapped meshes and compared with those on a much finer one. Errors are of load and h0: relative to
+mapped meshes and compared with states on a much finer mesh. Errors are of load and h0, relative to
 the pull-off or the load, and to h0 or the law's length, whichever is larger.
 
     PYTHONPATH=build/pywrap .venv/bin/python tools/bench/mesh_study.py [--sigma 8.7 ...]
@@ -28,7 +28,7 @@ class Mesh:
     """A contact mesh: sinh panels inside and outside the edge, then the tail."""
 
     def __init__(self, d, reach, density, tail, digits):
-        """Choose whole numbers of nodes; d and reach, in contact radii, follow."""
+        """Choose integer numbers of nodes; d and reach, in contact radii, are adjusted."""
         inside = math.asinh(1 / d)
         inner = math.ceil(density * inside + MORE_NODES)
         inside = (inner - MORE_NODES) / density
@@ -46,7 +46,7 @@ class Mesh:
 
 
 class State(NamedTuple):
-    """A state at a contact radius, and what its gaps add to the parabola."""
+    """A state at a contact radius, with its gaps minus the parabola."""
 
     mesh: Mesh
     radius: float
@@ -98,7 +98,7 @@ def guess(state, mesh, radius):
 
 
 def jkr_gaps(mesh, sigma, radius):
-    """Return gaps and h0 of JKR theory, with the gap at rest inside."""
+    """Return gaps and h0 of JKR theory, with the gap of rest inside the contact."""
     x = np.maximum(mesh.x, 1)
     hertz = radius**2 / math.pi * (np.sqrt(x**2 - 1) + (x**2 - 2) * np.arccos(1 / x))
     drop = math.sqrt(4 * math.pi * radius * sigma)
@@ -128,7 +128,7 @@ def tail_begins(sigma):
 
 
 def density(sigma, high, digits):
-    """Return nodes a unit of z for a band up to the radius `high`."""
+    """Return nodes per unit of z for a band up to the radius `high`."""
     return (
         (0.15 + digits * (0.24 + 0.0105 * digits))
         * (1 + 0.25 * math.log(1 + high / (math.pi * sigma)))
@@ -146,7 +146,8 @@ def rule_mesh(sigma, low, high, digits):
 
 
 def reference(sigma, h0_end):
-    """Return states from the widest radius down to the first, on meshes far finer than needed."""
+    """Return states from the widest radius down to the first, on meshes much finer than
+    necessary."""
     radius, least = widest_radius(sigma, h0_end), first_radius(sigma)
     band, mesh, states, step = math.inf, None, [], 0.05
     while radius > least:
@@ -182,7 +183,7 @@ def reference(sigma, h0_end):
 
 
 def error(mesh, sigma, states, pull_off):
-    """Return the largest error of the states on a mesh; infinite where one is not found."""
+    """Return the largest error of the states on a mesh; infinite if one is not found."""
     worst = 0.0
     for state in states:
         found = solve(mesh, sigma, state.radius, guess(state, mesh, state.radius), state.h0)
@@ -194,7 +195,7 @@ def error(mesh, sigma, states, pull_off):
 
 
 def bands(sigma, h0_end):
-    """Return the bands of contact radii, as new_mesh_pair makes them, widest first."""
+    """Return the bands of contact radii of new_mesh_family, widest first."""
     least, most = first_radius(sigma), widest_radius(sigma, h0_end)
     count = math.ceil(math.log(most / least) / math.log(WIDEST_BAND))
     ends = [most * (least / most) ** (k / count) for k in range(count + 1)]
@@ -202,7 +203,7 @@ def bands(sigma, h0_end):
 
 
 def main():
-    """Print a row for every band: nodes and error for so many digits of the rule."""
+    """Print a row for every band: nodes and error for each number of digits of the rule."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--sigma", type=float, nargs="+",
                         default=[1e-4, 0.0087, 0.1, 0.87, 8.7, 100, 1e3, 1e4])

@@ -1,4 +1,4 @@
-"""What the pictures have in common."""
+"""The common parts of the pictures."""
 
 import program  # noqa: F401 (makes drawing importable)
 from drawing import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILION
@@ -16,7 +16,7 @@ def figure(rows, columns, size=None, **options):
 
 
 def dress(panel, title="", x="", y="", log="xy"):
-    """Give a panel its names and its scales."""
+    """Set the names and the scales of a panel."""
     panel.set_title(title, fontsize=11)
     panel.set_xlabel(x)
     panel.set_ylabel(y)
@@ -29,7 +29,7 @@ def dress(panel, title="", x="", y="", log="xy"):
 
 
 def legend(page, columns=3):
-    """Draw one legend for all panels, below them; each name once."""
+    """Draw one legend for all panels, below them, with each name once."""
     names = {}
     for axes in page.axes:
         for handle, name in zip(*axes.get_legend_handles_labels()):
@@ -39,7 +39,7 @@ def legend(page, columns=3):
 
 
 def guide(panel, x, y, power, text):
-    """Draw a thin line of a power law through the first point, named there."""
+    """Draw a thin line of a power law through the first point, with its name there."""
     values = [y * (value / x[0]) ** power for value in x]
     panel.plot(x, values, color=GREY, linewidth=1.0, linestyle=(0, (4, 2)), zorder=0)
     panel.annotate(text, (x[0], values[0]), (6, 4), textcoords="offset points", color="#555555",

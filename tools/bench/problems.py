@@ -1,4 +1,4 @@
-"""The problems that are measured, and the decks that pose them."""
+"""The measured problems, and their decks."""
 
 import dataclasses
 import math
@@ -33,7 +33,7 @@ class Problem:
         return self._deck("\n".join(parts), numerics)
 
     def approach(self, h0, numerics):
-        """Return a deck that only comes near: to h0 [m], before the jump into contact."""
+        """Return a deck that approaches h0 [m], before the jump into contact."""
         return self._deck(f"&loading h0_start = {2 * h0!r}, h0_end = {h0!r}, h0_step = {h0!r} /",
                           numerics)
 
@@ -49,7 +49,7 @@ class Problem:
 def lennard_jones(sigma):
     """Return the Lennard-Jones problem of a strength of adhesion sigma, (40) of the paper."""
     stiffness = _stiffness_of(sigma)
-    # Where the retreat jumps apart, in units of z0, and some more.
+    # The retreat jumps apart at about this h0, in units of z0, and a little more.
     start = 5 + 3.2 * sigma ** (2 / 3)
     start, turn = float(f"{start:.2g}"), -float(f"{0.25 * start:.1g}")
     return Problem(
@@ -60,7 +60,7 @@ def lennard_jones(sigma):
 
 
 def in_two_parts(problem):
-    """Return a Lennard-Jones problem with the law written as attraction and repulsion."""
+    """Return a Lennard-Jones problem with the law as attraction and repulsion."""
     physics = re.sub(r"&force.*", f"&van_der_waals hamaker = {_HAMAKER} /\n&born z0 = {_Z0} /",
                      problem.physics)
     return dataclasses.replace(problem, name=f"{problem.name}_parts", physics=physics,
@@ -68,7 +68,7 @@ def in_two_parts(problem):
 
 
 def example(name):
-    """Return the problem of an example's deck, for its path as far as the deck goes."""
+    """Return the problem of an example's deck, for the range of its path."""
     deck = (EXAMPLES / f"{name}.nml").read_text(encoding="utf-8")
     turn = float(re.search(r"h0_end *= *([-+.\de]+)", deck)[1])
     left_out = "loading|unloading|equilibrium_path|scene|classical|numerics"
@@ -83,7 +83,7 @@ def experiment(name, accuracy):
 
 
 def _stiffness_of(sigma):
-    """Return the E/(1-nu^2) [Pa] that gives a sigma."""
+    """Return the E/(1-nu^2) [Pa] for a sigma."""
     gamma = _HAMAKER / (16 * math.pi * _Z0**2)
     return gamma / sigma * math.sqrt(_RADIUS / _Z0**3)
 
@@ -100,8 +100,8 @@ def exponential(big_lambda):
 
 
 def sweep_of_paths(count):
-    """Return a deck of so many paths, sigma from 1e-3 to 1e3."""
-    # The stiffness goes as one over sigma.
+    """Return a deck of `count` paths, sigma from 1e-3 to 1e3."""
+    # The stiffness is proportional to 1/sigma.
     soft, stiff = (_stiffness_of(sigma) for sigma in (1e3, 1e-3))
     return (f"&bodies radius = {_RADIUS}, stiffness = {soft!r} /\n"
             f"&force law = 'lennard_jones', hamaker = {_HAMAKER}, z0 = {_Z0} /\n"

@@ -1,4 +1,4 @@
-"""Running the program on a deck, and what comes of it."""
+"""Run the program on a deck, and read the results."""
 
 import dataclasses
 import math
@@ -14,25 +14,25 @@ from gauge import Gauge
 from snapin.results import read_table
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-# Where the plots' colours are.
+# The folder of the plots' colours.
 sys.path.insert(0, str(ROOT / "pywrap" / "plots"))
 
 # The three numbers whose errors are drawn.
 QUANTITIES = ("pull_off", "jump_in", "load")
-# What a run may say and yet have results to measure. The paper's stopping rule never converges.
+# Messages of a run whose results can be measured. The paper's stopping rule never converges.
 _TOLERATED = ("the iteration was stopped on a small change", "under-resolved")
-# Small values of these are measured to the length of the force law.
+# Small values of these are relative to the length of the force law.
 _LENGTHS = ("jump_in", "jump_out", "displacement")
 
 
 @dataclasses.dataclass
 class Run:
-    """One run: what was found, what it cost, and what was wrong with it.
+    """One run: its results, its cost, and its failure.
 
-    seconds: of the processor, start and files included, so that other work on the machine does not
-    count; wall: by the clock, like those of its parts, of which kernel, solutions and estimate are
-    the calculation. unit: the seconds of G beside it (`gauge`); limit: those of its linear algebra
-    and rows alone.
+    seconds: processor time, with start and files, so that other work on the machine does not count;
+    wall: elapsed time, like the times of its parts, of which kernel, solutions and estimate are the
+    calculation. unit: the seconds of G at that time (`gauge`); limit: the seconds of its linear
+    algebra and rows alone.
     """
 
     unit: float = math.nan
@@ -60,7 +60,7 @@ class Run:
 
     @property
     def price_of_run(self):
-        """The same of what the deck asks for, without that of the error estimate."""
+        """Time in G of the deck's request, without the error estimate."""
         return self.price * (1 - self.estimate_seconds / self.wall)
 
     @property
@@ -82,20 +82,19 @@ class Run:
 
 
 class Program:
-    """The program of one build, run in a folder of its own."""
+    """The program of one build, run in its own folder."""
 
     def __init__(self, build, scratch):
         self.build = pathlib.Path(build)
         self.scratch = pathlib.Path(scratch)
         self.scratch.mkdir(parents=True, exist_ok=True)
-        # A copy, so that everything is measured with one program even if it is built anew
-        # meanwhile.
+        # A copy, so that all measurements use one program even if it is rebuilt meanwhile.
         self.snapin = pathlib.Path(shutil.copy2(self.build / "snapin", self.scratch))
         self._references = {}
         self.gauge = Gauge(self.environment)
 
     def environment(self, threads=1):
-        """Return an environment with so many threads."""
+        """Return an environment with the given number of threads."""
         return dict(os.environ, OMP_NUM_THREADS=str(threads), OPENBLAS_NUM_THREADS=str(threads))
 
     def run(self, deck, cap=60, threads=1, before=()):
@@ -118,8 +117,8 @@ class Program:
     def best_of(self, rounds, decks, cap=60, enough=3.0, **options):
         """Run every deck of a dict in turn, `rounds` times over; keep each one's fastest run.
 
-        What takes longer than `enough` seconds, or fails, is run once. G is the least of those
-        measured between them.
+        A deck that takes longer than `enough` seconds, or fails, is run once. G is the least of the
+        values measured between the runs.
         """
         best, unit, calculation = {}, math.inf, {}
         for _ in range(rounds):
@@ -138,7 +137,7 @@ class Program:
         return best
 
     def start_up(self, rounds=10):
-        """Return the price of a program that starts and says what it is."""
+        """Return the price of a program that starts and prints its version."""
         least = math.inf
         for _ in range(rounds):
             began = _processor_seconds()
@@ -148,7 +147,7 @@ class Program:
         return least / self.gauge.unit()
 
     def from_python(self, deck, rounds=20):
-        """Return the price of `snapin.run(deck)` in an interpreter that has started, elapsed."""
+        """Return the elapsed time in G of `snapin.run(deck)` in a running interpreter."""
         script = ("import sys, time, snapin\ndeck, least = sys.stdin.read(), float('inf')\n"
                   f"for _ in range({rounds}):\n"
                   "    began = time.perf_counter()\n"
@@ -162,12 +161,12 @@ class Program:
         return float(done.stdout) / self.gauge.unit()
 
     def reference(self, problem):
-        """Return a converged run: the path, as accurate as the program goes."""
+        """Return a converged run: the path with the highest accuracy of the program."""
         key = problem.name
         if key not in self._references:
             self._references[key] = self.run(problem.path(
                 "accuracy = 1e-10, residual_tolerance = 1e-12"))
-            # A residual at its floor is all that rounding allows: the numbers are what count.
+            # A residual at its floor is the least that rounding allows; the numbers are valid.
             self._references[key].failure = ""
         return self._references[key]
 
@@ -195,7 +194,7 @@ class Program:
                 run.values[key] = summary[f"{key}_h0"]
                 run.values[f"{key}_load"] = summary[f"{key}_load"]
         run.summary = summary
-        # A sweep has none.
+        # A sweep has no such entry.
         if not (folder / "curve.csv").is_file():
             return run
         curve = read_table(folder, "curve.csv")
@@ -207,6 +206,6 @@ class Program:
 
 
 def _processor_seconds():
-    """Return the processor time of all that was run and has ended."""
+    """Return the processor time of all finished child processes."""
     used = resource.getrusage(resource.RUSAGE_CHILDREN)
     return used.ru_utime + used.ru_stime

@@ -3,8 +3,8 @@
 
     tools/bench/ranks.py [--build build-openmpi] [--mpirun "mpirun.openmpi --oversubscribe"]
 
-Needs a build with MPI (`tools/verify/verify.sh mpi` makes two) and some ten minutes; what computes is
-run several times, and the shortest counts.
+Needs a build with MPI (`tools/verify/verify.sh mpi` makes two) and about ten minutes; computations
+are run several times, and the shortest time counts.
 """
 
 import argparse
@@ -27,10 +27,10 @@ DECK = """&bodies radius = 1e-6, stiffness = 1e10 /
 """
 CASES = 1200
 ROUNDS = 5
-# Milliseconds of a case, and processes that sleep.
+# Milliseconds of a case, and numbers of processes that sleep.
 DURATIONS = 1, 10, 1000
 SLEEPERS = 1, 4, 16, 64
-# Seconds that a measurement with sleepers takes, and processes that the plan is for.
+# Seconds of a measurement with sleepers, and numbers of processes of the plan.
 SPAN = 6
 PLANNED = 1, 4, 16, 64, 256, 1024, 4096
 # Seconds of work in a message, as in src/app/dispatch.f90.
@@ -47,7 +47,7 @@ class Bench:
             subprocess.run(["ninja", "-C", self.build, target], check=True, capture_output=True)
 
     def run(self, workers, command, threads=1):
-        """Run on so many workers, 0: without mpirun; return standard output and seconds."""
+        """Run on `workers` workers, 0: without mpirun; return standard output and seconds."""
         start = [*self.mpirun, "-n", str(workers + 1)] if workers else []
         env = dict(os.environ, OMP_NUM_THREADS=str(threads), OMPI_ALLOW_RUN_AS_ROOT="1",
                    OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
@@ -57,7 +57,7 @@ class Bench:
         return done.stdout, time.monotonic() - began
 
     def sweep(self, workers, threads):
-        """Seconds of the program's sweep by its own summary, and those of processors."""
+        """Seconds of the program's sweep from its own summary, and processor seconds."""
         before = sum(os.times()[2:4])
         self.run(workers, [self.build / "snapin", "--quiet", "map.nml"], threads)
         summary = (self.scratch / "results/map/summary.nml").read_text()
@@ -87,7 +87,7 @@ def computed(bench):
 
 
 def limits(bench):
-    """Empty cases of one dispatcher: (what, cases, seconds, messages) of each way."""
+    """Empty cases of one dispatcher: (kind, cases, seconds, messages) of each kind."""
     ways = (("no rows, long batches", 2, 10**6, 0),
             ("no rows, one case a message", 8, 10**5, -1000),
             ("rows and journal, long batches", 2, 10**6, 0, "rows"))
@@ -96,7 +96,7 @@ def limits(bench):
 
 
 def slept(bench):
-    """Efficiency of processes that sleep, rows and journal written: {(ms, workers): share}."""
+    """Efficiency of processes that sleep, with rows and journal: {(ms, workers): share}."""
     found = {}
     for milliseconds in DURATIONS:
         for workers in SLEEPERS:

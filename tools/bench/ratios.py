@@ -1,4 +1,4 @@
-"""The cost model: what is claimed of time, products and factorisations, and what is measured."""
+"""The cost model: goals for time, products and factorisations, and the measured values."""
 
 import math
 
@@ -28,7 +28,7 @@ def measure(program, quick, say):
     cases = {}
     for sigma, path_goal, steps, cycle_goal in _GOALS:
         problem = problems.lennard_jones(sigma)
-        # Three digits are to cost half of six.
+        # The goal for three digits is half of that for six.
         for accuracy, part, at in (("1e-6", 1, ""), ("1e-3", 0.5, ", accuracy 1e-3")):
             cases[f"{problem.label} path{at}"] = (
                 part * path_goal, problem.path(f"accuracy = {accuracy}"))
@@ -41,7 +41,7 @@ def measure(program, quick, say):
     runs = program.best_of(3 if quick else 9, {case: deck for case, (_, deck) in cases.items()})
     for case, (goal, _) in cases.items():
         run = runs[case]
-        # Of a path the calculation is meant, of a cycle the files too.
+        # For a path the goal is for the calculation, for a cycle for the files too.
         if "path" in case:
             claim("G, calculation", case, run.calculation / run.unit, goal, run.least_price)
         claim("G, whole run", case, run.price, math.nan if "path" in case else goal,
@@ -49,11 +49,11 @@ def measure(program, quick, say):
         claim("kernel assembly / run", case, run.kernel_seconds / run.wall, 0.2)
         if "cycle" in case:
             claim("operator products a state, mean", case, run.products / run.states, 6.0)
-            # Factors are renewed as soon as that costs no more than what they lack: no goal.
+            # Factors are renewed as soon as that costs no more than further iterations: no goal.
             claim("states a factorisation", case, run.states / run.factorisations, math.nan)
     start = program.start_up()
     claim("G, whole run", "start alone (snapin --version)", start, 2)
-    # Here a user waits: elapsed time.
+    # A user waits here: elapsed time.
     deck = problems.lennard_jones(0.87).path("accuracy = 1e-6")
     claim("G, elapsed", "σ = 0.87 path from Python", program.from_python(deck), 5)
     scenes = 100 if quick else 1000
@@ -77,5 +77,5 @@ def tables(rows, before):
 
 
 def _goal(row):
-    """Return the goal of a claim in words; some figures have none."""
+    """Return the goal in words; some figures have none."""
     return "–" if math.isnan(row["goal"]) else f"at most {row['goal']:g}"

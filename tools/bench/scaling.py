@@ -1,4 +1,4 @@
-"""How time grows with adhesion, nodes and threads."""
+"""The dependence of time on adhesion, nodes and threads."""
 
 import os
 
@@ -9,7 +9,7 @@ _PIECES = ("assembly", "dgemv", "residual", "mixing", "dgetrs", "anderson", "dge
 
 
 def measure_sigma(program, quick, say):
-    """Return the price of path and cycle against the strength of adhesion."""
+    """Return the cost of path and cycle against the strength of adhesion."""
     exponents = range(-3, 5, 2) if quick else [k / 2 for k in range(-6, 9)]
     cases = {}
     for exponent in exponents:
@@ -32,7 +32,7 @@ def measure_sigma(program, quick, say):
 
 
 def draw_sigma(rows, folder):
-    """Draw price, nodes and states against sigma."""
+    """Draw cost, nodes and states against sigma."""
     page, panels = pictures.figure(1, 2, (9.0, 4.2))
     pictures.dress(panels[0, 0], "accuracy 1e-6, one core", "σ", "time [G]")
     pictures.dress(panels[0, 1], "the path", "σ", "number")

@@ -12,7 +12,7 @@ def machine():
 
 
 def write(path, rows, notes):
-    """Write rows (dicts with the same keys) with lines of notes before them."""
+    """Write rows (dicts with the same keys) after lines of notes."""
     path.parent.mkdir(parents=True, exist_ok=True)
     with path.open("w", encoding="utf-8", newline="") as file:
         for note in notes:

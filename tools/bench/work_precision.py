@@ -9,11 +9,12 @@ from program import QUANTITIES, Run
 NAMES = {"pull_off": "pull-off", "jump_in": "jump-in $h_0$", "load": "load at fixed $h_0$"}
 
 _ACCURACY = (1e-2, 1e-4, 1e-6, 1e-8, 1e-10)
-# A run much longer than this is not started: the last one on a coarser grid tells.
+# A run expected to take much longer than this, by the time of the last run on a coarser grid, is
+# not started.
 _CAP = {True: 2.0, False: 5.0}
 
-# Name, what of &numerics makes it, whether nodes or accuracy set its cost, and the power of the
-# nodes that a step costs.
+# Name, settings of &numerics, the parameter of the cost (nodes or accuracy), and the power of the
+# nodes in the cost of a step.
 _METHODS = (
     ("uniform, mixing, paper's rule",
      "grid = 'uniform', method = 'mixing', convergence = 'displacement_change'", "nodes", 2),
@@ -61,7 +62,7 @@ def _one(program, problem, method, numerics, knob, value, power, cap, quick, las
 
 def _row(problem, method, knob, value, run, reference):
     errors = run.errors(reference, problem.length)
-    # What an error estimate speaks of: on fixed grids jumps are bracketed, and that is told apart.
+    # The numbers of the error estimate: on fixed grids jumps are bracketed and reported separately.
     fixed = method.startswith(("uniform", "fixed"))
     claimed = [error for key, error in errors.items() if not (fixed and key.startswith("jump"))]
     errors = {key: errors[key] for key in QUANTITIES if key in errors}
@@ -107,7 +108,7 @@ def draw(rows, folder):
 
 
 def _panel(panel, rows, problem, key, cost):
-    """Draw one problem: filled marks hold, open ones come with a warning, crosses failed."""
+    """Draw one problem: filled marks are valid runs, open marks have a warning, crosses failed."""
     for place, ((method, *_), colour, marker) in enumerate(
             zip(_METHODS, pictures.COLOURS, pictures.MARKERS)):
         mine = [row for row in rows if row["problem"] == problem.name and row["method"] == method]
@@ -120,7 +121,7 @@ def _panel(panel, rows, problem, key, cost):
                        markerfacecolor="white" if row["warning"] else colour)
         panel.plot([], [], marker, color=colour, label=method, linestyle="-", linewidth=1.0)
         failed = [row[cost] for row in mine if row["failure"] and row[cost] > 0]
-        # Those stopped at the same time would lie on each other.
+        # Runs stopped at the same time would coincide.
         panel.plot(failed, [1e2 * 6.0**place] * len(failed), "x", color=colour, markersize=7,
                    markeredgewidth=1.8)
     panel.axhline(30, color=pictures.GREY, linewidth=0.8)

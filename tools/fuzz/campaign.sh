@@ -1,15 +1,15 @@
 #!/bin/sh
 # The deck reader under attack: tools/fuzz/campaign.sh SECONDS [FOLDER]
 #
-# AFL++ makes decks that reach ever more of the reader (src/namelist, src/scene), from bytes to
-# scene, and one_deck.f90 says what must hold for each. Two builds share one core ($CORE, default 0)
-# and what either finds: one traps invalid operations, overflows, bad indices and undefined reals,
-# the other has the address and undefined-behaviour sanitizers. Then f90nml reads the accepted
-# decks too, and the lines reached are counted.
+# AFL++ makes decks that reach an increasing part of the reader (src/namelist, src/scene), from
+# bytes to scene, and one_deck.f90 checks the promises for each deck. Two builds share one core
+# ($CORE, default 0) and their findings: one traps invalid operations, overflows, bad indices and
+# undefined reals, the other has the address and undefined-behaviour sanitizers. Then f90nml reads
+# the accepted decks too, and the reached lines are counted.
 #
-# Needs gfortran, AFL++ (apt-get install afl++) and the project's .venv. All goes into FOLDER
-# (build-fuzz); a second call goes on where the first stopped. Findings are in
-# FOLDER/found/*/crashes and hangs; read one again: FOLDER/traps/driver FILE.
+# Needs gfortran, AFL++ (apt-get install afl++) and the project's .venv. All files are in FOLDER
+# (build-fuzz); a second call continues the campaign. Findings are in FOLDER/found/*/crashes and
+# hangs; to read one again: FOLDER/traps/driver FILE.
 set -eu
 
 seconds=$1
@@ -19,7 +19,7 @@ here=$root/tools/fuzz
 afl=${AFL_PATH:-/usr/lib/afl}/afl-compiler-rt.o
 meson=$root/.venv/bin/meson
 python=$root/.venv/bin/python
-# Shared memory spares the disk a few thousand files a second.
+# Shared memory avoids a few thousand files a second on the disk.
 work=$(mktemp -d /dev/shm/snapin_fuzz.XXXXXX)
 trap 'rm -rf "$work"' EXIT
 
@@ -28,7 +28,7 @@ build() {
   name=$1 flags=$2 option=$3 definition=$4
   cd "$root"
   gcc -O2 -c "$here/trace.c" -o "$folder/trace.o"
-  # Meson tries whether the flags link, hence the objects they need.
+  # Meson tests whether the flags link, which needs the objects.
   [ -d "$folder/$name" ] || FFLAGS="$flags" LDFLAGS="$flags -no-pie $folder/trace.o $afl" \
     "$meson" setup "$folder/$name" -Dpython=disabled -Dbuildtype=debug -Doptimization=1 "$option"
   "$meson" compile -C "$folder/$name" snapin:static_library
@@ -51,7 +51,7 @@ export AFL_NO_UI=1 AFL_SKIP_CPUFREQ=1 AFL_NO_AFFINITY=1 AFL_IGNORE_SEED_PROBLEMS
 export AFL_I_DONT_CARE_ABOUT_MISSING_CRASHES=1 AFL_TMPDIR="$work"
 export ASAN_OPTIONS=abort_on_error=1:detect_leaks=0:symbolize=0
 export UBSAN_OPTIONS=abort_on_error=1:symbolize=0
-# Without it freed blocks are taken for leaks (driver.c).
+# Without this option freed blocks count as leaks (driver.c).
 export GLIBC_TUNABLES=glibc.malloc.tcache_count=0
 
 # attack NAME ROLE: one fuzzer
@@ -67,7 +67,7 @@ attack traps -M &
 attack sanitizers -S &
 wait
 
-# What f90nml makes of the decks that were accepted.
+# Comparison of the accepted decks with f90nml.
 mkdir "$work/decks"
 count=0
 for deck in "$folder"/found/*/queue/id:*; do
@@ -77,7 +77,7 @@ done
 find "$work/decks" -name '*.nml' -print0 | xargs -0 "$folder/traps/driver"
 "$python" "$here/compare.py" "$work/decks" > "$folder/compare.txt"
 
-# The lines and branches that the decks found reach, in the program itself.
+# The lines and branches of the program itself that the found decks reach.
 find "$folder/lines" -name '*.gcda' -delete
 find "$folder/found" -path '*/queue/id:*' -print0 |
   xargs -0 -n 500 "$folder/lines/snapin" --check > "$folder/check.log" 2>&1 || true

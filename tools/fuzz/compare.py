@@ -1,6 +1,6 @@
-"""Reads accepted decks with f90nml too and prints where it finds other values: compare.py FOLDER
+"""Reads accepted decks with f90nml too and prints the values that differ: compare.py FOLDER
 
-FOLDER holds decks and, where the driver accepted one, NAME.resolved beside it.
+FOLDER has decks and, for each accepted deck, NAME.resolved beside it.
 """
 
 import pathlib

@@ -1,4 +1,4 @@
-!> What must hold for every deck, good or bad.
+!> The promises for every deck, good or bad.
 module one_deck
   use, intrinsic :: iso_c_binding, only: c_char, c_null_char
   use failure, only: failure_t, bad_input
@@ -11,9 +11,9 @@ module one_deck
 
 contains
 
-  !> Reads the deck `path` as `snapin --check` does and stops with an error where a promise is
-  !> broken: a refusal names the file and is short printable text; an accepted deck, written with
-  !> its defaults, is accepted again and says the same.
+  !> Reads the deck `path` like `snapin --check` and stops with an error if a promise is broken: a
+  !> refusal names the file and is short printable text; an accepted deck, written with its
+  !> defaults, is accepted again with the same output.
   subroutine read_one(path) bind(c)
     character(kind=c_char), intent(in) :: path(*)
     type(scene_t) :: scene, again
@@ -44,7 +44,7 @@ contains
     if (.not. same(scene%deck, again%deck)) error stop 'the resolved deck says something else'
   end subroutine read_one
 
-  !> A message for people: of this file, of moderate length, without control characters.
+  !> A message for users: about this file, of moderate length, without control characters.
   subroutine check_message(error, file)
     type(failure_t), intent(in) :: error
     character(len=*), intent(in) :: file
@@ -55,7 +55,7 @@ contains
     if (index(error%message, file // ':') /= 1) error stop 'a message without the file'
     if (len(error%message) > longest) error stop 'an endless message'
     do i = 1, len(error%message)
-      ! Strings may hold tabs.
+      ! Strings may contain tabs.
       if (any(error%message(i:i) == [new_line('a'), achar(9)])) cycle
       if (iachar(error%message(i:i)) < 32 .or. iachar(error%message(i:i)) > 126) &
         error stop 'a message with control characters'

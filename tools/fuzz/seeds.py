@@ -1,8 +1,8 @@
-"""Writes what a campaign starts from: seeds.py SNAPIN FOLDER
+"""Writes the initial decks and words of a campaign: seeds.py SNAPIN FOLDER
 
 FOLDER/seeds/ gets every deck of inputs/ and every small deck text of tests/support/decks.py and of
-the tests of bad decks, FOLDER/words.dict the groups, keys and choices of `snapin --keys` and what
-is awkward in namelists.
+the tests of bad decks, FOLDER/words.dict the groups, keys and choices of `snapin --keys` and the
+difficult parts of namelists.
 """
 
 import pathlib

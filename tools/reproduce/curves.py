@@ -27,9 +27,9 @@ def jkr(a, radius, stiffness, surface_energy):
 def jkr_curve(radius, stiffness, surface_energy, largest_load):
     """Return contact radius, displacement and load of JKR theory, stable at a given displacement.
 
-    It begins where the bodies part when the displacement is held, at -5/6 pi gamma R, (12).
+    It begins at the jump out of contact at fixed displacement, at -5/6 pi gamma R, (12).
     """
-    # d(displacement)/da = 0 there.
+    # There d(displacement)/da = 0.
     least = (radius**2 * np.pi * surface_energy / (4 * stiffness)) ** (1 / 3)
     highest = least
     while jkr(highest, radius, stiffness, surface_energy)[1] < largest_load:
@@ -51,13 +51,13 @@ def jump(curve, towards):
 
 
 def drawn(curve, towards=None):
-    """Return load [uN] and displacement [nm], with NaN where a jump is, so that no line crosses it."""
+    """Return load [uN] and displacement [nm], with NaN at a jump, so that no line crosses it."""
     x, y = curve["load"] * 1e6, curve["displacement"] * 1e9
     return (x, y) if towards is None else np.insert([x, y], jump(curve, towards)[1], np.nan, axis=1)
 
 
 def jump_ends(curve, towards):
-    """Return where a jump begins and ends, in uN and nm."""
+    """Return the start and the end of a jump, in uN and nm."""
     x, y = drawn(curve)
     return [(x[i], y[i]) for i in jump(curve, towards)]
 
@@ -75,13 +75,13 @@ def cubic(at, x, y):
 
 
 def at(x, columns, name, by="h0"):
-    """Return a column of a branch where another has a value, by straight lines."""
+    """Return a column of a branch at values of another column, by linear interpolation."""
     order = np.argsort(columns[by])
     return np.interp(x, columns[by][order], columns[name][order])
 
 
 def states(results, branch="loading"):
-    """Return the profiles of a branch, a dict of arrays each, in order; each begins at r = 0."""
+    """Return the profiles of a branch in order, each a dict of arrays that begin at r = 0."""
     return drawing.states_of(results.branch(branch, "profiles"))
 
 

@@ -1,31 +1,32 @@
-"""What the paper's stopping rule gives is known to within its scatter alone: ranges over runs of
-one deck that differ in nothing but rounding.
+"""Results under the paper's stopping rule have a scatter: ranges over runs of one deck that differ
+by rounding alone.
 
-Each run has the Hamaker constant changed in its twelfth digit, which changes the equations'
-solution by as little. Another build, kernel of the linear algebra or processor does the same.
+Each run has the Hamaker constant changed in its twelfth digit, which changes the solution of the
+equations equally little. Another build, kernel of the linear algebra or processor has the same effect.
 """
 
 import f90nml
 import numpy as np
 
-# Runs of a deck; of one that takes minutes, fewer.
+# Number of runs of a deck; fewer for a deck that takes minutes.
 COUNT = 9
 _FEWER = {"history_c_paper": 3}
 # Relative change of the Hamaker constant from one run to the next.
 _CHANGE = 1e-12
 _KEY = "_draw"
-# Differences below this are rounding's and the stopping of iterations, another one in every build.
+# Differences below this are due to rounding and the stopping of iterations, and vary with the
+# build.
 _ROUNDING = 1e-9
 
 
 def names(stem, count=None):
-    """Return the names of a deck's runs, its own first."""
+    """Return the names of a deck's runs, beginning with the deck's own name."""
     wanted = min(count or COUNT, _FEWER.get(stem, COUNT)) if "_paper" in stem else 1
     return [stem] + [f"{stem}{_KEY}{number}" for number in range(1, wanted)]
 
 
 def parts(name):
-    """Return deck and number of a run; 0 is the deck as it stands."""
+    """Return deck and number of a run; 0 is the unchanged deck."""
     stem, _, number = name.partition(_KEY)
     return stem, int(number or 0)
 
@@ -49,7 +50,7 @@ def read(path):
 
 
 def ranged(values, digits=2, form="f"):
-    """Return the range of values as text, one number where both ends look alike."""
+    """Return the range of values as text, or one number if both ends look alike."""
     values = np.ravel(np.asarray(values, float))
     low, high = (f"{value:.{digits}{form}}" for value in (np.nanmin(values), np.nanmax(values)))
     return low if low == high else f"{low} to {high}"
@@ -61,6 +62,6 @@ def several(columns, digits=2):
 
 
 def within(value):
-    """Return a difference as text; of what is left to rounding no digit means anything."""
+    """Return a difference as text; a difference due to rounding has no significant digit."""
     text = f"{value:.0e}" if value >= _ROUNDING else f"better than {_ROUNDING:.0e}"
     return text.replace("e-0", "e-")

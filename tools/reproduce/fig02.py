@@ -15,12 +15,13 @@ DECKS = ("fig02_exponential_short", "fig02_exponential_long", "fig02_lennard_jon
 
 
 def _slow(load, decay):
-    """Return the displacement that (31) and (32) give at a load: they are proportional."""
+    """Return the displacement of (31) and (32) at a load: they are proportional."""
     return 2 * load / (_STIFFNESS * np.sqrt(2 * np.pi * curves.RADIUS * decay))
 
 
 def numbers(runs):
-    """Return errors of Hertz theory and, of exponentials, where (31) with (32) is the better one."""
+    """Return errors of Hertz theory and, for exponentials, the range in which (31) with (32) is
+    better."""
     found = {}
     for key, deck, _, decay, *_ in _KINDS:
         load, exact = runs[deck].curve["load"], runs[deck].curve["displacement"]

@@ -22,7 +22,7 @@ def errors(runs):
     # (31) and (32) without exp(-kappa h(0)).
     to_displacement = 2 / _STIFFNESS * np.sqrt(2 * np.pi * curves.RADIUS * _DECAY) * _P0
     to_load = 2 * np.pi * curves.RADIUS * _DECAY * _P0
-    # The separation on the axis that (31) has at h0: h = h0 + displacement(h).
+    # The separation on the axis in (31): h = h0 + displacement(h).
     alone = np.maximum(h0, 0.0)
     for _ in range(100):
         raised = to_displacement * np.exp(-alone / _DECAY)
@@ -38,12 +38,13 @@ def errors(runs):
 
 def at(found, key, value):
     """Return an error [%] at a value of Lambda."""
-    # Lambda rises along the approach.
+    # Lambda increases during the approach.
     return 100 * float(np.interp(np.log(value), np.log(found["lambda"]), found[key]))
 
 
 def numbers(runs):
-    """Return the errors at some Lambda, `displacement_1e4` and so on, those `low` without their sign."""
+    """Return the errors at some Lambda, `displacement_1e4` and so on; those named `low` without
+    sign."""
     found = errors(runs)
     named = {f"{key}_{name}": at(found, key, value) for key, *_ in _LINES
              for name, value in (("1e-3", 1e-3), ("001", 0.01), ("1", 1), ("1e4", 1e4), ("1e6", 1e6))}

@@ -9,7 +9,7 @@ _WITHIN = 0.1 * np.sqrt(curves.RADIUS * 1e-9)
 
 
 def numbers(runs):
-    """Return what the page quotes."""
+    """Return the numbers in the text of the page."""
     states, curve = curves.states(runs["fig04"]), runs["fig04"].curve
     first, last = states[0], states[-1]
     steady = all((np.diff(state["pressure"]) <= 0).all() for state in states)

@@ -10,7 +10,7 @@ _STYLES = (("s", style.VERMILION), ("D", style.BLUE), ("^", style.GREEN))
 
 
 def numbers(runs):
-    """Return what the page quotes, of each deck with its number."""
+    """Return the numbers in the text of the page, for each deck with its number."""
     found = {}
     for i, deck in enumerate(DECKS):
         summary, curve = runs[deck].summary, runs[deck].branch("loading")
@@ -51,7 +51,7 @@ def draw(runs):
             cut = curves.jump(loading, "contact")[1] if jumps else 0
             if jumps:
                 style.arrow(panel, *curves.jump_ends(loading, "contact"), color)
-            # Markers are counted anew beyond the jump.
+            # The count of markers begins again beyond the jump.
             for part in (slice(cut), slice(cut, None))[0 if jumps else 1:]:
                 name = f"σ = {summary['sigma']:.{2 if summary['sigma'] > 0.1 else 4}f}"
                 panel.plot(x[part], y[part], marker, color=color, markersize=4.5, markevery=0.04,

@@ -17,7 +17,7 @@ _PANELS = (("a", "separation", 1e-9, "separation [nm]", (0, 16), (0, 15)),
 def _radii_differ(results):
     """Return the largest relative excess of the retreat's contact radius at the same load."""
     loading, retreat = results.branch("loading"), results.branch("unloading_1")
-    # Where the load rises with the approach, so that a load belongs to one state.
+    # In this part of the approach the load increases, so that a load belongs to one state.
     inside = (loading["contact_radius"] > 0) & (loading["load"] > 0)
     back = (retreat["contact_radius"] > 0) & (retreat["load"] > 0)
     order = np.argsort(loading["load"][inside])
@@ -48,10 +48,10 @@ def _tolerances(runs):
 
 
 def numbers(runs):
-    """Return what the page quotes."""
+    """Return the numbers in the text of the page."""
     results, grid, rule = runs["fig06_converged"], runs["fig06_uniform"], runs.draws("fig06_paper")
     summary, states = results.summary, curves.states(results)
-    # The last profile before contact, and the last of all.
+    # The last profile before contact, and the last of all profiles.
     before, last = [s for s in states if s["separation"][0] > 2 * _Z0][-1], states[-1]
     neck, tension, edge = _edge(last)
     deepest, *stopped = (min(s["energy"].min() for s in curves.states(run)) * 1e3

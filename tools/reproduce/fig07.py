@@ -1,4 +1,5 @@
-"""Fig. 7: pull-off against sigma, one value each, and the scatter of the paper's stopping rule."""
+"""Fig. 7: pull-off against sigma, one value each, and the scatter under the paper's stopping
+rule."""
 
 import curves
 import draws
@@ -21,8 +22,8 @@ _MARKERS = (
 
 
 def _paper(runs):
-    """Return the Pulls with the paper's grid and rule: one tuple a sigma and penetration, with all
-    runs."""
+    """Return the Pulls with the paper's grid and rule: one tuple for each sigma and penetration,
+    with all runs."""
     found = list(zip(*(penetrations.of_sweep(results, _TURNS)
                        for results in runs.draws("fig07_paper"))))
     return found + [pulls for cycle in penetrations.of_rule(runs).values() for pulls in cycle]
@@ -34,12 +35,12 @@ def _converged(runs, deck="fig07_converged"):
 
 
 def numbers(runs):
-    """Return what the page quotes."""
+    """Return the numbers in the text of the page."""
     (sigma, ratio), (_, exact) = _converged(runs), _converged(runs, "fig07_exact_sigma")
     paper, rule, cycles = _paper(runs), penetrations.of_rule(runs), penetrations.converged(runs)
     coarse = penetrations.of_cycle(runs["fig10c_uniform"])
     columns, best = runs["fig07_converged"].sweep, runs["fig10c_converged"].summary
-    # One list a run; sigma is the same in all to twelve digits.
+    # One list for each run; sigma is the same in all of them to twelve digits.
     true = [curves.cubic(np.log(pulls[0].sigma), np.log(sigma), ratio)[0] for pulls in paper]
     scattered = [[pull for pull, value in zip(run, true) if abs(pull.ratio / value - 1) > 0.1]
                  for run in zip(*paper)]
@@ -78,7 +79,7 @@ def numbers(runs):
 
 
 def draw(runs):
-    """Return the picture, its axis broken where only unconverged values lie."""
+    """Return the picture; its axis is broken at a range with unconverged values only."""
     page, (upper, lower) = style.figure(
         2, 1, height=5.0, sharex=True, gridspec_kw={"height_ratios": (1, 2.3), "hspace": 0.03})
     paper = _paper(runs)

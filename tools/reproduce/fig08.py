@@ -33,7 +33,8 @@ def _form(runs, name):
 
 
 def _path(runs):
-    """Return the path of equilibria from afar to its first fold, with the gap on the axis."""
+    """Return the path of equilibria from large separation to its first fold, with the gap on the
+    axis."""
     curve = runs["fig08"].branch("path")
     order = slice(None) if curve["h0"][0] > curve["h0"][-1] else slice(None, None, -1)
     fold = int(np.flatnonzero(np.diff(curve["h0"][order]) > 0)[0])
@@ -51,13 +52,13 @@ def exact(runs):
 
 
 def numbers(runs):
-    """Return what the page quotes."""
+    """Return the numbers in the text of the page."""
     summary, path, full = runs["fig08"].summary, _path(runs), _form(runs, "closed_form")
     part, paper, at = _form(runs, "attractive_only"), runs.draws("fig10c_paper"), full["h0"][-1]
     jumps = draws.ranged([run.summary["jump_in_h0"] * 1e9 for run in paper])
     found = {}
     for name in ("displacement", "load"):
-        # At the jump by (29), at the same gap on the axis, and far from the jump, where a state is.
+        # At the jump by (29), at the same gap on the axis, and at a state far from the jump.
         for key, h0, states in (("", at, path), ("_far", 4e-9, _before(runs))):
             found[name + key] = 100 * abs(curves.at(h0, full, name) / curves.at(h0, states, name) - 1)
         same = curves.at(at + full["displacement"][-1], path, name, "gap")

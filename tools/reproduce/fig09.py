@@ -22,7 +22,8 @@ def _columns(results):
 
 
 def _at_jumps_of_the_rule(rule, exact):
-    """Return sigma, the tension in a run by the paper's rule and the exact one where both jump."""
+    """Return sigma, the tension by the paper's rule and the exact one for runs in which both
+    jump."""
     jumps = np.isfinite(exact["jump"])
     both = np.isfinite(rule["jump"]) & (rule["sigma"] >= exact["sigma"][jumps][0])
     true = np.exp(np.interp(np.log(rule["sigma"][both]), np.log(exact["sigma"][jumps]),
@@ -31,7 +32,7 @@ def _at_jumps_of_the_rule(rule, exact):
 
 
 def numbers(runs):
-    """Return what the page quotes."""
+    """Return the numbers in the text of the page."""
     exact = _columns(runs["fig09_converged"])
     jumps = [_at_jumps_of_the_rule(_columns(results), exact)
              for results in runs.draws("fig09_paper")]
@@ -46,11 +47,11 @@ def numbers(runs):
         "late": draws.ranged([sigma[0] for sigma, *_ in jumps]), "count": len(jumps),
         "high": exact["sigma"][-1], "low_close": -off[both[-1]], "low_far": -off[both[0]]}
     for key, name in (("", "jump"), ("_29", "criterion_29")):
-        # The last sigma without and the first with a jump.
+        # The last sigma without a jump and the first with a jump.
         first = int(np.flatnonzero(np.isfinite(exact[name]))[0])
         found[f"none{key}"], found[f"some{key}"] = exact["sigma"][first - 1 : first + 1]
     for number, wanted in enumerate(_CHOSEN):
-        # Of the runs that find a jump nearest to it.
+        # For the runs with a jump, the nearest one.
         near = [int(np.argmin(abs(np.log(sigma / wanted)))) for sigma, *_ in jumps]
         away = [abs(np.log(sigma[i] / wanted)) for (sigma, *_), i in zip(jumps, near)]
         here = [(run, i) for run, i, one in zip(jumps, near, away) if one < min(away) + 1e-6]
@@ -72,7 +73,7 @@ def draw(runs):
     sigma, jumps = exact["sigma"], np.isfinite(exact["jump"])
     told = np.isfinite(exact["criterion_29"])
     panel.plot(sigma, exact["equation_37"], color=style.BLACK, zorder=2, label="(37)")
-    # (36a) is largest, 2 pi, where the separation on the axis is z0.
+    # (36a) has its maximum, 2 pi, at the separation z0 on the axis.
     for shown, values, marker, color, fill, order, name in (
             (jumps, exact["jump"], "s", style.BLUE, None, 4, "exact"),
             (~jumps, exact["largest"], "s", style.BLUE, "white", 4,

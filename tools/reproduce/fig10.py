@@ -16,7 +16,7 @@ _LIMITS = {"a": ((-330, 520), (-2.6, 6.2)), "b": ((-720, 780), (-4.4, 6.4)),
 
 
 def _reached(converged):
-    """Say which approaches pass through the largest tension: it lies below the jump in."""
+    """Return which approaches pass through the largest tension, which lies below the jump in."""
     yes, no = ([sigma for letter, sigma in penetrations.FIG10.items()
                 if (converged[letter].summary["max_tension_h0"]
                     < converged[letter].summary["jump_in_h0"]) == passes]
@@ -26,7 +26,7 @@ def _reached(converged):
 
 
 def _common(results):
-    """Return the largest tension over JKR's of each retreat where all retreats pass."""
+    """Return the largest tension over JKR's of each retreat for h0 that all retreats pass."""
     summary, found = results.summary, []
     for branch in penetrations.branches(results):
         curve = results.branch(branch)
@@ -41,7 +41,7 @@ def _loading_over_unloading(results):
 
 
 def numbers(runs):
-    """Return what the page quotes."""
+    """Return the numbers in the text of the page."""
     rule, true = penetrations.of_rule(runs), penetrations.converged(runs)
     uniform, coarse = (penetrations.of_cycle(runs[f"fig10c_{kind}"]) for kind in ("uniform", "coarse"))
     some = {letter: runs.draws(f"fig10{letter}_paper") for letter in rule}
@@ -116,7 +116,7 @@ def draw(runs):
 
 
 def _dress(panel, results, letter, title, how, x_range, y_range):
-    """Draw JKR theory and a cycle, `how` says in which way, and name the panel."""
+    """Draw JKR theory and a cycle, and label the panel; `how` describes the method."""
     displacement, load = penetrations.jkr(results, 1e-6 * x_range[1] if letter != "d" else 2e-4)
     panel.plot(load * 1e6, displacement * 1e9, color=style.BLACK, **style.DASHED, linewidth=1.2,
                zorder=6)
@@ -140,14 +140,14 @@ def _legend(panel, results):
 
 
 def _kinds(results):
-    """Return branches, colours, markers and which way these jump."""
+    """Return branches, colours, markers and the direction of the jump of each."""
     return [("loading", style.BLUE, "o", "contact"),
             *((branch, color, marker, "apart") for branch, (color, marker) in zip(
                 penetrations.branches(results), style.RETREATS))]
 
 
 def _draw_rule(panel, results, x_range, y_range):
-    """Draw every state, joined in the order in which they were computed."""
+    """Draw every state; lines join the states in the order of computation."""
     outside = 0
     for branch, color, marker, _ in _kinds(results):
         x, y = curves.drawn(results.branch(branch))
@@ -172,7 +172,7 @@ def _draw_grid(panel, results, *_):
 
 
 def _draw_converged(panel, results, x_range, y_range):
-    """Draw the cycles, one on the other, and their jumps."""
+    """Draw the cycles, which coincide, and their jumps."""
     for branch in penetrations.branches(results)[::-1]:
         panel.plot(*curves.drawn(results.branch(branch), "apart"), color=style.ORANGE,
                    linewidth=3.4, zorder=2)

@@ -14,12 +14,12 @@ DECKS = ("fig10c_converged", "fig10c_coarse")
 _Z0, _HAMAKER = 0.5e-9, 1e-19
 _H0, _H0_COARSE = 4e-9, 0.0
 FRACTIONS = np.concatenate([np.geomspace(1e-4, 0.1, 40), np.linspace(0.12, 0.99, 60)])
-# Of the picture: stiffness over the largest slope of the field.
+# Stiffness in the picture, over the largest slope of the field.
 _SHOWN = 0.28
 
 
 def _field():
-    """Return force, slope and the largest slope, which is where h^6 = 7.5 z0^6, in SI."""
+    """Return force, slope and the largest slope, at h^6 = 7.5 z0^6, in SI units."""
     force, slope = spring.library_force(snapin.lennard_jones(hamaker=_HAMAKER, z0=_Z0))
     return force, slope, float(slope(np.array([7.5 ** (1 / 6) * _Z0]))[0])
 
@@ -31,7 +31,7 @@ def _jumps(fraction):
 
 @functools.cache
 def _brackets(fractions):
-    """Return for how many of the stiffnesses the ends of jumps bracket their starts."""
+    """Return the number of stiffnesses for which the ends of jumps bracket their starts."""
     return sum(inward.end < outward.start < inward.start < outward.end
                for inward, outward in map(_jumps, fractions))
 
@@ -42,7 +42,7 @@ def _radius(results, branch, h0):
 
 
 def both_in_contact(results):
-    """Return contact radii of loading and deepest unloading at the h0 where both are in contact."""
+    """Return contact radii of loading and deepest unloading at the h0 with contact on both."""
     loading, unloading = map(results.branch, ("loading", penetrations.branches(results)[-1]))
     here = curves.at(unloading["h0"], loading, "contact_radius")
     both = ((unloading["h0"] <= loading["h0"][curves.jump(loading, "contact")[1]])
@@ -59,7 +59,7 @@ def least_excess(results):
 
 
 def numbers(runs):
-    """Return what the page quotes."""
+    """Return the numbers in the text of the page."""
     converged, coarse = runs["fig10c_converged"], runs["fig10c_coarse"]
     held, count = _brackets(tuple(FRACTIONS)), FRACTIONS.size
     if held != count:

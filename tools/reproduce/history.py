@@ -1,4 +1,5 @@
-"""What makes pull-off depend on the penetration: the grid and the stopping rule, taken apart."""
+"""The dependence of pull-off on the penetration: the effects of grid and stopping rule,
+separately."""
 
 import draws
 import numpy as np
@@ -8,7 +9,7 @@ import style
 # Letter of Fig. 10 and turning points [m].
 _CASES = {"a": (0.0, -2e-9, -5e-9), "b": (0.0, -2e-9, -5e-9), "c": (1e-9, -2e-9, -4e-9, -10e-9)}
 _RULES = ("paper", "residual")
-# Those that take longest first.
+# The decks that take longest come first.
 DECKS = (*(f"history_{letter}_{rule}" for letter in "cba" for rule in _RULES),
          *(f"fig10{letter}_converged" for letter in _CASES))
 _LOOKS = (*style.RETREATS[:3], (style.BLUE, "o"))
@@ -17,8 +18,8 @@ _RESOLVED = 0.2
 
 
 def _pulls(results, turns):
-    """Return spacings over the neck, finest first, largest residuals, and pull-offs over JKR's, a row
-    a turning point."""
+    """Return spacings over the neck, finest first, largest residuals, and pull-offs over JKR's,
+    one row for each turning point."""
     columns = results.sweep
     order = np.argsort(columns["spacing_over_neck"])
     pulls = [columns[f"unload_max_tension_{number}"] / columns["jkr_pull_off"]
@@ -28,7 +29,7 @@ def _pulls(results, turns):
 
 
 def _by_rule(runs, letter):
-    """Return the same of all runs by the paper's rule, residuals and pull-offs by run first."""
+    """Return these for all runs by the paper's rule, residuals and pull-offs by run first."""
     spacings, left, pulls = zip(*(_pulls(results, _CASES[letter])
                                   for results in runs.draws(f"history_{letter}_paper")))
     return spacings[0], np.array(left), np.array(pulls)
@@ -43,12 +44,12 @@ def _at(spacing, wanted):
 
 
 def _shown(percent):
-    """Return per cent as text; of what is left to rounding no digit means anything."""
+    """Return per cent as text; a difference due to rounding has no significant digit."""
     return f"{percent:.1g}" if percent >= 1e-7 else "less than 1e-7"
 
 
 def numbers(runs):
-    """Return what the page quotes."""
+    """Return the numbers in the text of the page."""
     found, apart = {}, {"coarse": [], "two": [], "one": [], "fine": []}
     factors, scatter = [], []
     for letter, turns in _CASES.items():
@@ -60,7 +61,7 @@ def numbers(runs):
         grids, left, pulls = _by_rule(runs, letter)
         factors.extend(np.ravel(pulls[:, -1] / pulls[:, 0]))
         scatter.extend(np.ravel(pulls.max(axis=0) / pulls.min(axis=0)))
-        # Side by side: the finest grid that both were computed on.
+        # The finest grid of both methods, for comparison.
         both, one = _at(spacing, grids[0]), _at(spacing, 1)
         for key, value in (
                 ("turns", penetrations.turns(turns)), ("coarse", solved[-1, _at(spacing, 4)]),
@@ -96,7 +97,8 @@ def draw(runs):
                     style.spread(panel, spacing * 1.06 ** (number - 1), pulls[:, number], marker,
                                  color, line=0.7, markersize=4, zorder=2 + number)
                 else:
-                    # The first ones larger: solved, the lines lie on each other.
+                    # The first markers are larger, since the lines of the solved equations
+                    # coincide.
                     panel.plot(spacing, pulls[number], color=color, marker=marker,
                                markersize=6.5 - 1.3 * number, linewidth=2.6 - 0.6 * number,
                                zorder=2 + number,

@@ -1,7 +1,7 @@
-"""The paper's iteration on its uniform grid, with what it says in words alone left open.
+"""The paper's iteration on its uniform grid; details that the paper gives only in words are parameters.
 
 Units are z0, sqrt(R z0) and gamma/z0, in which sigma is the only parameter; a load is in gamma R.
-Beside the program, which reads the paper in one way: `inputs/fig10c_paper.nml`.
+The program has one of these readings: `inputs/fig10c_paper.nml`.
 """
 
 import dataclasses
@@ -11,7 +11,7 @@ import typing
 import numpy as np
 from misprints import elliptic
 
-# Of the iteration: below this gap [z0] a state is nonsense and a step is cut short.
+# For the iteration: below this gap [z0] a state is meaningless, and a step is shortened.
 _CLOSEST = 0.25
 
 
@@ -19,12 +19,12 @@ _CLOSEST = 0.25
 class Reading:
     """One reading of the paper's rule; lengths in nm.
 
-    `fall` is the factor of the mixing ratio where the change of the central displacement turns round
-    or grows by more than `growth`, `rise` that where it does not; `least` bounds it below. `carried`:
-    from one h0 to the next it stays what it was. The iteration ends where the change is below
-    `tolerance`; `unmixed`: the change before it is mixed; `everywhere`: at every node; after `most`
-    iterations whatever the change; `passes`, if not 0, is the number of iterations, no rule.
-    `interpolated`: pressure is linear between nodes, not constant about them.
+    `fall` is the factor of the mixing ratio if the change of the central displacement changes its sign
+    or grows by more than `growth`, `rise` the factor otherwise; `least` is the smallest ratio.
+    `carried`: the ratio is kept from one h0 to the next. The iteration ends if the change is below
+    `tolerance`; `unmixed`: the change before mixing; `everywhere`: at every node; or after `most`
+    iterations. `passes`, if not 0, is a fixed number of iterations.
+    `interpolated`: the pressure is linear between nodes, otherwise constant about them.
     """
 
     name: str
@@ -79,8 +79,8 @@ def pressure(gap):
 
 
 def cycle(scene, reading, turns, start, end, z0):
-    """Return the loading from `start` and one unloading a turning point, to `end` or where the bodies
-    are apart, as Branches; h0 in z0, `turns` falling, `z0` in nm."""
+    """Return the loading from `start` and one unloading for each turning point, to `end` or to the
+    separation of the bodies, as Branches; h0 in z0, `turns` decreasing, `z0` in nm."""
     step = reading.step / z0
     places = np.arange(start, turns[-1] - step / 2, -step)
     gap, memory, loading, kept = places[0] + scene.shape, [reading.limit], [], {}
@@ -108,8 +108,8 @@ def _branch(rows):
 
 
 def settle(scene, reading, gap, h0, memory, z0):
-    """Iterate at an h0 as the reading says; return the gap and (h0, load, displacement, residual,
-    iterations, ratio). `memory` holds the mixing ratio."""
+    """Iterate at an h0 according to the reading; return the gap and (h0, load, displacement,
+    residual, iterations, ratio). `memory` holds the mixing ratio."""
     ratio = memory[0] if reading.carried else reading.limit
     tolerance, before = reading.tolerance / z0, 0.0
     most = reading.passes or reading.most
@@ -122,7 +122,7 @@ def settle(scene, reading, gap, h0, memory, z0):
             else:
                 ratio = min(reading.rise * ratio, reading.limit)
         before = ratio * step[0]
-        # Never more than half of the way to a gap of the law's wall.
+        # At most half of the distance to the smallest gap of the law.
         room = np.maximum(0.5 * (gap - _CLOSEST), 1e-3)
         cut = min(1.0, float(np.min(room / np.maximum(-ratio * step, room))))
         gap = gap + cut * ratio * step
@@ -139,10 +139,10 @@ def settle(scene, reading, gap, h0, memory, z0):
 
 
 def _kernel(r, interpolated):
-    """Return the matrix that takes pressures at nodes to int p(t) k(r, t) t dt, k of (15).
+    """Return the matrix of int p(t) k(r, t) t dt for pressures at nodes, with k of (15).
 
-    Pressure is linear between nodes, or constant from half-way to half-way; integrals by Gauss's
-    rule, whose points are graded towards r = t, where the kernel is logarithmic.
+    The pressure is linear between nodes, or constant between midpoints; the integrals are by the Gauss
+    rule with points graded towards r = t, where the kernel is logarithmic.
     """
     n, spacing = r.size, r[1]
     matrix = np.zeros((n, n))
@@ -178,7 +178,7 @@ def _gauss(points):
 def _graded(points):
     """Return a rule on (0, 1) graded towards both ends."""
     x, weight = _gauss(points)
-    # x^2 (3 - 2 x) takes half of the points to each end, and once more.
+    # The map x^2 (3 - 2 x) concentrates the points at the ends; it is applied twice.
     for _ in range(2):
         x, weight = x**2 * (3 - 2 * x), weight * 6 * x * (1 - x)
     return x, weight

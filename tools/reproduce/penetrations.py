@@ -1,4 +1,4 @@
-"""Largest tension against sigma and penetration: what Figs. 7 and 10 share."""
+"""Largest tension against sigma and penetration: the common part of Figs. 7 and 10."""
 
 from typing import NamedTuple
 
@@ -6,7 +6,7 @@ import curves
 import draws
 import numpy as np
 
-# Letter of Fig. 10, sigma as the paper gives it.
+# Letter of Fig. 10, sigma in the paper.
 FIG10 = {"a": "1.7", "b": "4.4", "c": "8.7"}
 
 
@@ -19,7 +19,7 @@ class Pull(NamedTuple):
 
 
 def of_cycle(results):
-    """Return one Pull an unloading of a deck with &unloading."""
+    """Return one Pull for each unloading of a deck with &unloading."""
     summary = results.summary
     return [Pull(summary["sigma"], turn, tension / summary["jkr_pull_off"])
             for turn, tension in zip(np.atleast_1d(summary["unload_from"]),
@@ -27,7 +27,8 @@ def of_cycle(results):
 
 
 def of_sweep(results, turns):
-    """Return one Pull a case and unloading of a sweep; `turns` are its turning points [m]."""
+    """Return one Pull for each case and unloading of a sweep; `turns` are its turning points
+    [m]."""
     columns = results.sweep
     return sorted(
         Pull(sigma, turn, tension / jkr) for number, turn in enumerate(turns, 1)
@@ -71,7 +72,7 @@ def turns(pulls):
 
 
 def branches(results):
-    """Return the names of the unloadings, that from the deepest turning point last."""
+    """Return the names of the unloadings; the last is from the deepest turning point."""
     return [f"unloading_{i + 1}" for i in range(np.size(results.summary["unload_from"]))]
 
 
@@ -92,8 +93,8 @@ def jkr_apart(results):
 
 
 def between(results):
-    """Return where JKR theory lies between loading (0) and the deepest unloading (1) in load at
-    the same displacement, on average from -1 to 1 nm."""
+    """Return the position of JKR theory between loading (0) and the deepest unloading (1) in
+    load at the same displacement, on average from -1 to 1 nm."""
     at = np.linspace(-1e-9, 1e-9, 81)
     low, high = (
         curves.at(at, {key: values[curve["contact_radius"] > 0] for key, values in curve.items()},

@@ -1,4 +1,4 @@
-"""Fig. 10 once more: readings of what the paper says in words of its mixing ratio, one table."""
+"""Fig. 10 again: readings of the paper's words about its mixing ratio, in one table."""
 
 import concurrent.futures
 import dataclasses
@@ -69,7 +69,7 @@ def cycle(job):
 
 @functools.lru_cache(maxsize=None)
 def _all():
-    """Return all cycles by job, some at a time."""
+    """Return all cycles by job, several at a time."""
     jobs = [(reading, "c", _TURNS, draw) for reading in _readings() for draw in range(_RUNS)]
     jobs += [(NEAREST, letter, turns, 0) for letter, turns in _CASES.items()]
     jobs.append((BASE, "c", _CASES["c"], 0))
@@ -83,12 +83,13 @@ def tensions(branches):
 
 
 def _contact(branch):
-    """Return the rows that are surely in contact."""
+    """Return the rows that are certainly in contact."""
     return np.flatnonzero(branch.displacement > -1.0)
 
 
 def scatter(branches):
-    """Return the root mean square of loads less the mean of their neighbours, the worst branch's."""
+    """Return the root mean square of loads minus the mean of their neighbours, for the worst
+    branch."""
     worst = 0.0
     for branch in branches:
         rows = _contact(branch)
@@ -100,8 +101,8 @@ def scatter(branches):
 
 
 def between(branches, sigma):
-    """Return where JKR theory lies between loading (0) and the deepest unloading (1) in load at one
-    displacement, on average from -1 to 1 nm; NaN where these cross."""
+    """Return the position of JKR theory between loading (0) and the deepest unloading (1) in
+    load at one displacement, on average from -1 to 1 nm; NaN if these cross."""
     at = np.linspace(-1, 1, 41) / _Z0
     _, displacement, load = curves.jkr_curve(1.0, 1.0, sigma, 40 * sigma)
     theory = np.interp(at, displacement, load / sigma)
@@ -117,7 +118,7 @@ def _load_at(branch, displacement):
 
 
 def statements(branches, sigma):
-    """Return which of the five statements of the paper hold of a cycle."""
+    """Return the statements of the paper, of five, that are true for a cycle."""
     loading, *pulls = tensions(branches)
     place = between(branches, sigma)
     steps = np.median(np.concatenate([branch.iterations for branch in branches]))
@@ -139,7 +140,7 @@ def _line(reading):
 
 
 def numbers(runs):
-    """Return what the page quotes."""
+    """Return the numbers in the text of the page."""
     nearest = {letter: _all()[NEAREST, letter, turns, 0] for letter, turns in _CASES.items()}
     contact = [(branch, _contact(branch)) for branch in nearest["c"]]
     table = report.markdown(("reading", "loading", "unloading", "scatter", "left [z0]",
@@ -160,9 +161,10 @@ def numbers(runs):
 
 
 def draw(_):
-    """Return the picture: the nearest reading for the three sigma, and the old one for the last."""
+    """Return the picture: the nearest reading for the three sigma, and the old one for the last
+    sigma."""
     page, panels = style.figure(2, 2, height=7.2)
-    # Limits are in JKR's pull-off and in nm.
+    # Limits are in units of JKR's pull-off and in nm.
     looks = {"a": (-2, (-3, 6)), "b": (-2.3, (-7, 6.5)), "c": (-3, (-13, 11))}
     jobs = [(NEAREST, letter) for letter in _CASES] + [(BASE, "c")]
     for panel, (reading, letter) in zip(panels.ravel(), jobs):

@@ -1,10 +1,10 @@
-"""The two reports: pages with holes, paper.md and others.md, and the chapters that fill them.
+"""The two reports: pages with fields, paper.md and others.md, and the chapters with their values.
 
-A page begins with what it says at first. A chapter begins with a line `## NAME: TITLE`; its text and
-the rows of its table, one a line, have {fields}. Its module has
+A page begins with an introduction. A chapter begins with a line `## NAME: TITLE`; its text and
+the rows of its table, one on each line, have {fields}. Its module has
 
     DECKS           stems of its decks in inputs/, if it has any
-    numbers(runs)   what the fields stand for, a dict
+    numbers(runs)   the values of the fields, a dict
     draw(runs)      the picture, a matplotlib Figure, if it has one
     rows(runs)      Comparisons, if its table is not on the page
 """
@@ -24,11 +24,11 @@ Value = Union[float, str, None]
 
 
 class Comparison(NamedTuple):
-    """A number of somebody else's beside the converged one.
+    """A published number beside the converged one.
 
-    `kind` is "formula" where `published` was computed from a formula, whose coefficients `source`
-    names; "printed" where it stands in a print at hand; "theory" where it is exact in a limit;
-    "not read" where nothing of theirs was at hand, and `published` is None then.
+    `kind` is "formula" if `published` was computed from a formula, with coefficients from `source`;
+    "printed" if the number is in an available print; "theory" if it is exact in a limit;
+    "not read" if the publication was not available; `published` is None then.
     """
 
     item: str
@@ -40,13 +40,13 @@ class Comparison(NamedTuple):
 
     @property
     def error(self):
-        """By how much what was published is too large [%]; None where one of them is words."""
+        """Relative excess of the published number [%]; None if one of the two is words."""
         if isinstance(self.published, (str, type(None))) or isinstance(self.converged, str):
             return None
         return 100 * (self.published / self.converged - 1)
 
     def cells(self):
-        """Return the row as text; one that does not say where its number is from is refused."""
+        """Return the row as text; a row without the source of its number is refused."""
         if self.kind not in ("formula", "printed", "theory", "not read") or (
                 (self.kind == "not read") != (self.published is None)):
             raise ValueError(f"{self.item}: {self.kind}, {self.published}")
@@ -74,7 +74,7 @@ _CHAPTER = re.compile(r"^## (\w+): (.*)\n", re.MULTILINE)
 
 
 def pages():
-    """Return what is written of each report: its beginning, and title and text of each chapter."""
+    """Return the text of each report: its beginning, and title and text of each chapter."""
     found = {}
     for key in REPORTS:
         text = pathlib.Path(__file__).with_name(f"{key}.md").read_text(encoding="utf-8")
@@ -110,7 +110,7 @@ def filled(name, runs):
 
 
 def shown(value):
-    """Return a value as it is printed: six digits of a number, nothing for None."""
+    """Return a value as printed: six digits of a number, nothing for None."""
     return "" if value is None else value if isinstance(value, str) else f"{float(value):.6g}"
 
 
@@ -125,8 +125,9 @@ def markdown(columns, rows):
 
 
 def write(folder, key, part, made, runs, version):
-    """Write the page of a report and the table of its rows; `made` are dicts of chapters with name,
-    title, caption, rows, whether they have a picture, and problem (None if all went well)."""
+    """Write the page of a report and the table of its rows; `made` are dicts of chapters with
+    name, title, caption, rows, whether they have a picture, and problem (None if there was
+    none)."""
     book, table = REPORTS[key], f"{REPORTS[key].table}{part}.csv"
     text = io.StringIO()
     rows = [row for chapter in made for row in chapter["rows"]]
@@ -154,7 +155,7 @@ def _anchor(title):
 
 
 def _ending(made, runs, version):
-    """Return how this was run: commands, versions, and the time of each deck."""
+    """Return the conditions of the run: commands, versions, and the time of each deck."""
     decks = list(dict.fromkeys(deck for chapter in made for deck in chapter["decks"]))
     seconds = sum(runs.record(deck).get("seconds", 0) for deck in runs.with_draws(decks))
     example = " ".join(chapter["name"] for chapter in made[:2])

@@ -1,15 +1,15 @@
 #!/usr/bin/env python3
-"""Run the paper's decks, draw its figures, and set its numbers, and those of others, beside those
-computed.
+"""Run the paper's decks, draw its figures, and compare the numbers of the paper, and of others, with
+the computed ones.
 
     ./reproduce                 everything, into reproduction/: report.md and others.md
     ./reproduce paper           the paper alone
-    ./reproduce others          what others published alone
+    ./reproduce others          the work of others alone
     ./reproduce fig03 fig07     these chapters alone, into report_part.md
     ./reproduce --publish       and copy reports, tables and pictures to docs/reproduction/
 
-report.py says what a chapter is. Decks on the paper's stopping rule are run several times, with
-rounding changed: draws.py.
+report.py describes a chapter. Decks with the paper's stopping rule are run several times with
+changed rounding: draws.py.
 """
 
 import argparse
@@ -50,7 +50,7 @@ def main():
             continue
         made = [_chapter(name, chapters[name][0], modules[name], runs, folder) for name in chosen]
         problems |= {one["name"]: one["problem"] for one in made if one["problem"]}
-        # Some chapters do not take the place of the whole report.
+        # A report of some chapters does not replace the whole report.
         part = "" if len(chosen) == len(chapters) else "_part"
         rows = report.write(folder, key, part, made, runs, version)
         whole += [key] if not part else []

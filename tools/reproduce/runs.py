@@ -1,4 +1,4 @@
-"""Runs decks and hands out their results; what was run and has not changed is not run again."""
+"""Runs decks and returns their results; a deck that has not changed is not run again."""
 
 import concurrent.futures
 import functools
@@ -17,20 +17,20 @@ from snapin.results import read_summary, read_table
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 INPUTS = ROOT / "inputs"
-# Where the plots' curves and colours are.
+# The folder of the plots' curves and colours.
 sys.path.insert(0, str(ROOT / "pywrap" / "plots"))
 
 
-# After so many seconds without news, what runs is named.
+# After this number of seconds without a message, the running decks are named.
 _HEARTBEAT = 10.0
 
 
 class RunError(Exception):
-    """A deck could not be run, or left no results; the message says why."""
+    """A deck could not be run, or left no results; the message gives the reason."""
 
 
 class Results:
-    """A folder of results; its files are read when they are asked for."""
+    """A folder of results; its files are read on demand."""
 
     def __init__(self, folder):
         self.folder = pathlib.Path(folder)
@@ -66,7 +66,7 @@ class Results:
         return read_table(self.folder, "sweep.csv")
 
     def last(self, key):
-        """Return a number of the summary; of an array, the value of the last turning point."""
+        """Return a number of the summary; for an array, the value of the last turning point."""
         return float(np.ravel(self.summary[key])[-1])
 
     def branch(self, name, table="curve"):
@@ -85,13 +85,13 @@ def path_name(deck):
 class Runs:
     """The runs of many decks, each in `root`/<stem of the deck>/.
 
-    Beside the folder lies <stem>.json: a digest of deck and program, the exit status, the time
-    taken. It is written last and removed first, so that what was interrupted is continued.
+    Beside the folder is <stem>.json: a digest of deck and program, the exit status, and the time.
+    It is written last and removed first, so that an interrupted run is continued.
     """
 
     def __init__(self, root, program=None, count=None, change=None):
-        """`count` is the number of runs of decks on the paper's rule, draws.COUNT by default;
-        `change(groups)` changes every deck first, to make it quicker for instance."""
+        """`count` is the number of runs of decks with the paper's rule, draws.COUNT by default;
+        `change(groups)` changes every deck first, for example to make it quicker."""
         self._count, self._change = count, change
         self.root = pathlib.Path(root)
         self.program = pathlib.Path(program or os.environ.get("SNAPIN", ROOT / "build" / "snapin"))
@@ -99,11 +99,12 @@ class Runs:
         self._program_digest = None
 
     def __getitem__(self, stem):
-        """Return the results of a deck in inputs/; it is run where that is needed."""
+        """Return the results of a deck in inputs/, after a run if necessary."""
         return self.run(stem)
 
     def run(self, deck):
-        """Run a deck, given by its stem or path, unless that is done; return its results."""
+        """Run a deck, given by its stem or path, unless its results are valid; return the
+        results."""
         path = self.path_of(deck)
         if path.stem not in self._results:
             if not self.is_done(path):
@@ -112,7 +113,7 @@ class Runs:
         return self._results[path.stem]
 
     def draws(self, stem):
-        """Return the results of a deck on the paper's rule, one for each of its runs."""
+        """Return the results of a deck with the paper's rule, one for each of its runs."""
         return [self.run(name) for name in draws.names(stem, self._count)]
 
     def with_draws(self, decks):
@@ -131,7 +132,7 @@ class Runs:
         return self._changed_deck(path, str(deck), number)
 
     def _changed_deck(self, path, name, number):
-        """Return the path of a deck written from that in inputs/."""
+        """Return the path of a changed copy of a deck of inputs/."""
         with self._writing:
             if name not in self._written:
                 groups = draws.changed(draws.read(path), number)
@@ -143,21 +144,21 @@ class Runs:
         return self._written[name]
 
     def digest(self, path):
-        """Return what tells one deck and program from another."""
+        """Return a digest of a deck and the program."""
         if self._program_digest is None:
             self._program_digest = hashlib.sha256(self.program.read_bytes()).hexdigest()
         deck = hashlib.sha256(self.path_of(path).read_bytes()).hexdigest()
         return f"deck {deck} program {self._program_digest}"
 
     def record(self, deck):
-        """Return what is known of the deck's last complete run, an empty dict if nothing."""
+        """Return the record of the deck's last complete run, an empty dict if there is none."""
         try:
             return json.loads(self._record_path(self.path_of(deck)).read_text(encoding="utf-8"))
         except (OSError, ValueError):
             return {}
 
     def is_done(self, deck):
-        """Whether this deck was run to its end, well, with this program."""
+        """Whether this deck has a complete and successful run with this program."""
         record = self.record(deck)
         return (record.get("digest") == self.digest(deck) and record.get("problem") is None
                 and (self.root / self.path_of(deck).stem / "summary.nml").is_file())
@@ -165,22 +166,22 @@ class Runs:
     def execute(self, deck):
         """Run a deck now; raise RunError unless it leaves the results it should.
 
-        Exit status 1 is what decks that stop on the paper's rule are expected to end with: they
-        only have to say where they stopped.
+        Decks that stop by the paper's rule end with exit status 1; they only have to report where
+        they stopped.
         """
         path = self.path_of(deck)
         if not path.is_file():
             raise RunError(f"no deck {path}")
         self.root.mkdir(parents=True, exist_ok=True)
         self._record_path(path).unlink(missing_ok=True)
-        # An earlier run's must not pass for this one's.
+        # The results of an earlier run must not be taken for those of this run.
         (self.root / path.stem / "summary.nml").unlink(missing_ok=True)
         self._results.pop(path.stem, None)
         digest, began = self.digest(path), time.perf_counter()
         interrupted = (self.root / path.stem / "journal.partial").is_file()
         done = self._call(path, *(["--resume"] if interrupted else []))
         if interrupted and not (self.root / path.stem / "summary.nml").is_file():
-            # What is left is of another deck or program.
+            # The remaining files belong to another deck or program.
             done = self._call(path)
         seconds = time.perf_counter() - began
         problem = self._problem_of(path, done)
@@ -199,15 +200,15 @@ class Runs:
             check=False)
 
     def run_all(self, decks, jobs, say):
-        """Run decks, `jobs` at a time, going on where one fails; return {stem: problem}.
+        """Run decks, `jobs` at a time, also after a failure; return {stem: problem}.
 
-        `say(text)` is told each deck that ends.
+        `say(text)` is called for each deck that ends.
         """
         decks = list(dict.fromkeys(decks))
         waiting = [deck for deck in decks if not self._is_done_or_missing(deck)]
         if len(waiting) < len(decks):
             say(f"{len(decks) - len(waiting)} of {len(decks)} runs are there already")
-        # Long ones first, so that none is left alone at the end.
+        # Long decks first, so that none runs alone at the end.
         waiting.sort(key=lambda deck: -self._likely_seconds(deck))
         problems, ended, began = {}, 0, time.perf_counter()
         pool = concurrent.futures.ThreadPoolExecutor(max(jobs, 1))
@@ -244,7 +245,7 @@ class Runs:
         known = self.record(deck).get("seconds")
         if known is not None or not self.path_of(deck).is_file():
             return known or 0.0
-        # The paper's iteration is slow, and slower still is solving the equations on its grids.
+        # The paper's iteration is slow; solving the equations on its grids is slower still.
         text = self.path_of(deck).read_text(encoding="utf-8")
         if "&sweep" in text and "'uniform'" in text:
             return 2e3
@@ -259,7 +260,7 @@ class Runs:
                 return None
         elif done.returncode == 0:
             return None
-        # The first line says what is wrong; after it may come the line of the deck.
+        # The first line is the error; the line of the deck may follow.
         messages = [line for line in done.stderr.splitlines() if line and ": warning: " not in line]
         message = messages[0] if messages else "no message"
         return f"snapin ended with status {done.returncode}: {message}"

@@ -1,6 +1,6 @@
-"""Spheres under a Lennard-Jones law at any Tabor parameter, solved: what the chapters on others share.
+"""Solved spheres under a Lennard-Jones law at any Tabor parameter: common to the chapters on others.
 
-Units are z0 of the law, R and E/(1-nu^2) of two identical bodies, twice E*. Loads come out in pi w R,
+Units are z0 of the law, R and E/(1-nu^2) of two identical bodies, twice E*. Loads are in pi w R,
 radii and displacements in Maugis' units, (pi w R^2/K)^(1/3) with K = 4 E*/3 and its square over R;
 h0 in z0.
 """
@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 from runs import ROOT
 
-# Before anything loads OpenMP.
+# To be set before a module loads OpenMP.
 os.environ.setdefault("OMP_NUM_THREADS", "1")
 sys.path.append(str(ROOT / "build" / "pywrap"))
 
@@ -52,16 +52,16 @@ def spaced(low, high, count):
 
 
 def theory(name, lam, load=0.0):
-    """Return pull-off, positive, and radius under a load, stable there, of a theory at a Maugis
-    parameter, in pi w R and Maugis' units."""
-    # With R = 1 and K = 1 pi w is unit load and 1/pi w the cube of the radii's unit.
+    """Return pull-off, positive, and radius at a load, on the stable branch, of a theory at a
+    Maugis parameter, in pi w R and Maugis' units."""
+    # With R = 1 and K = 1, pi w is the unit of load and 1/pi w the cube of the radii's unit.
     material = {"radius": 1.0, "stiffness": 1.5, "surface_energy": 1 / math.pi, "strength": lam / 2}
     return (-snapin.pull_off(name, **material),
             float(snapin.contact_radius(name, "load", [load], **material)[0]))
 
 
 class Sphere(NamedTuple):
-    """What is found at one Tabor parameter; a jump is None where there is none.
+    """The results at one Tabor parameter; a jump that does not exist is None.
 
     Loads in pi w R, tension positive; h0 in z0; `lost` in w R z0. `rest_h0` is h0 without load.
     """
@@ -113,8 +113,9 @@ def curve(tabor):
 
 
 class Contact(NamedTuple):
-    """A contact under a load, in Maugis' units: its radius, its displacement if bodies touch at z0, and
-    by how much theories miss pull-off, radius and indentation, as the program's &regime has it."""
+    """A contact under a load, in Maugis' units: its radius, its displacement if bodies touch at
+    z0, and the errors of theories in pull-off, radius and indentation, from the program's
+    &regime."""
 
     radius: float
     displacement: float
@@ -122,13 +123,13 @@ class Contact(NamedTuple):
 
 
 THEORIES = ("hertz", "jkr", "dmt", "maugis", "carpick", "pietrement")
-# Loads [pi w R] under which contacts are compared.
+# Loads [pi w R] at which contacts are compared.
 LOADS = (0.0, 0.1, 0.3, 1.0, 3.0, 10.0, 30.0, 100.0, 300.0, 1000.0)
 
 
 @functools.lru_cache(maxsize=None)
 def _places(tabor, loads):
-    """Return h0 under each of some loads [pi w R], pressed together, of one path."""
+    """Return h0 under each of some loads [pi w R], in compression, of one path."""
     newtons = [load * math.pi * sigma(tabor) for load in loads]
     table = run(tabor, _deep(tabor, max(loads)), fixed_load={"load": newtons}).fixed_load
     return {load: float(table["h0"][np.isclose(table["load"], each, rtol=1e-12, atol=0)].min())
@@ -148,13 +149,14 @@ def contact(tabor, load):
 
 
 def _deep(tabor, load):
-    """Return an h0 at which the load is surely larger; DMT theory has the deepest, and the gap on the
-    axis is between 0 and 1."""
+    """Return an h0 at which the load is certainly larger; DMT theory has the deepest h0, and the
+    gap on the axis is between 0 and 1."""
     return (0.6 if load == 0 else -0.4) - (max(load, 0.0) + 2.5) ** (2 / 3) * 1.3 * unit(tabor) ** 2
 
 
 def where(found, low, high, accuracy):
-    """Return where `found(x)` turns from false to true, between two numbers, in the logarithm."""
+    """Return the number at which `found(x)` turns from false to true, between two numbers, in
+    the logarithm."""
     low, high = np.log([low, high])
     while high - low > accuracy:
         middle = (low + high) / 2

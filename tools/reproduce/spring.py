@@ -1,15 +1,15 @@
-"""A spring in a field of force: where it jumps and where the jumps end, as in Fig. 11 of the paper.
+"""A spring in a field of force: start and end of its jumps, as in Fig. 11 of the paper.
 
-One end of the spring is held, the other feels the force p(h) of a wall at a gap h (positive:
-repulsion; negative: attraction). Without force the gap would be h_rest, so that at rest
+One end of the spring is fixed; on the other end acts the force p(h) of a wall at a gap h (positive:
+repulsion; negative: attraction). Without force the gap would be h_rest, so that in equilibrium
 
     stiffness (h - h_rest) = p(h).
 
-Approach and retreat change h_rest. Where p'(h) = stiffness the spring cannot follow: the force
-changes as fast as its own. It jumps to the next gap at which forces balance. By the mean-value
-theorem p' equals the stiffness once more between start and end of a jump. Where p' exceeds the
+Approach and retreat change h_rest. At p'(h) = stiffness the equilibrium is lost, since the two forces
+change at the same rate. The spring jumps to the next gap at which the forces balance. By the mean-value
+theorem p' equals the stiffness once more between start and end of a jump. If p' exceeds the
 stiffness on one interval of gaps only, its two ends are the starts, and each jump ends beyond the
-start of the other: no gap within the interval is ever one of rest.
+start of the other: no gap within the interval is a stable equilibrium.
 
 Forces are functions of arrays of gaps; units are the caller's.
 """
@@ -18,14 +18,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-# Halvings that take any bracket to rounding.
+# Number of halvings that reduce any bracket to rounding.
 _HALVINGS = 200
 # Of a walk: steps in one go, growth from one step to the next, and the most goes.
 _STEPS, _GROWTH, _GOES = 400, 1.002, 30
 
 
 class Jump(NamedTuple):
-    """A jump: the gaps at which it starts and ends, and where the spring is held meanwhile."""
+    """A jump: the gaps at its start and its end, and the position of the spring's base."""
 
     start: float
     end: float
@@ -55,9 +55,9 @@ def library_force(law):
 def jumps(force, slope, stiffness, nearest, farthest, count=4000):
     """Return the Jumps of a spring, None if there are none.
 
-    They start between the gaps `nearest` and `farthest`; `count` gaps in between are looked at.
-    A spring whose slope exceeds the stiffness on more than one interval, or at either end of the
-    range, is refused with ValueError.
+    They start between the gaps `nearest` and `farthest`; `count` gaps in between are sampled.
+    If the slope exceeds the stiffness on more than one interval, or at either end of the range,
+    ValueError is raised.
     """
     gaps = np.linspace(nearest, farthest, count)
     excess = slope(gaps) - stiffness
@@ -68,7 +68,7 @@ def jumps(force, slope, stiffness, nearest, farthest, count=4000):
         raise ValueError(f"the slope passes the stiffness {crossings.size} times in the range")
     outward, inward = (
         _root(lambda gap: slope(gap) - stiffness, gaps[i], gaps[i + 1]) for i in crossings)
-    # One step off the start the spring moves by itself.
+    # One step from the start, the spring moves by itself.
     step = 1e-4 * (inward - outward)
     return Jumps(*(
         Jump(start, settle(force, stiffness, rest, start + direction * step, step), rest)
@@ -78,14 +78,14 @@ def jumps(force, slope, stiffness, nearest, farthest, count=4000):
 
 
 def rest_position(force, stiffness, gap):
-    """Return h_rest of a spring that is at rest at a gap."""
+    """Return h_rest of a spring in equilibrium at a gap."""
     return gap - _at(force, gap) / stiffness
 
 
 def settle(force, stiffness, rest, gap, step):
-    """Return the gap at which a spring let go at `gap` comes to rest, moving without inertia.
+    """Return the gap at which a spring released at `gap` comes to rest, without inertia.
 
-    It follows the sum of the forces; `step` is the length of the first step of the walk.
+    The spring moves in the direction of the total force; `step` is the length of the first step.
     """
     def net(gaps):
         return force(gaps) - stiffness * (gaps - rest)

@@ -1,7 +1,7 @@
-"""What all figures have in common: colours, sizes, panels and what is written on them.
+"""The common style of all figures: colours, sizes, panels and labels.
 
-A figure is 6.4 in wide and saved at 120 dots per inch, so that it can be read as it stands in a
-README. Colours stay apart for the colour-blind; markers and line styles repeat what they say.
+A figure is 6.4 in wide and saved at 120 dots per inch, which is legible in a README. Colours are
+distinguishable for the colour-blind; markers and line styles give the same information.
 """
 
 import io
@@ -17,7 +17,7 @@ from PIL import Image
 
 GREY = "#8C8C8C"
 WIDTH, DPI = 6.4, 120
-# Of the turning points of a cycle: colours and markers of their retreats.
+# Colours and markers of the retreats from the turning points of a cycle.
 RETREATS = ((ORANGE, "s"), (GREEN, "^"), (PURPLE, "D"), (SKY, "v"))
 DASHED = {"dashes": (5, 2)}
 
@@ -31,7 +31,7 @@ _SETTINGS = {
 
 def figure(rows=1, columns=1, height=4.2, width=WIDTH, mosaic=None, **kwargs):
     """Return a figure and its panels: one Axes, an array, or the dict of a mosaic."""
-    # Settings are taken up when things are made and when they are drawn.
+    # Settings take effect when objects are made and when they are drawn.
     matplotlib.rcParams.update(_SETTINGS)
     page = Figure(figsize=(width, height), layout="constrained")
     return page, (page.subplot_mosaic(mosaic, **kwargs) if mosaic else page.subplots(rows, columns, **kwargs))
@@ -41,7 +41,7 @@ def label(panel, x, y, zero_lines="", letter="", log="", ticks=None, **limits):
     """Name the axes and set their limits.
 
     `zero_lines` ("x", "y", "xy") draws thin lines where these are zero, `log` makes axes logarithmic,
-    `letter` goes above the upper left corner, `ticks` are the ticks of x and y, written out.
+    `letter` is placed above the upper left corner, `ticks` are the ticks of x and y, written out.
     """
     panel.set_xlabel(x)
     panel.set_ylabel(y)
@@ -65,13 +65,13 @@ def heading(panel, text, **kwargs):
 
 
 def legend(page, columns, panel=None):
-    """Put the legend of a panel, by default the first, below the picture, clear of all data."""
+    """Put the legend of a panel, by default the first, below the picture, outside the data."""
     handles, names = (panel or page.axes[0]).get_legend_handles_labels()
     page.legend(handles, names, loc="outside lower center", ncols=columns, columnspacing=1.6)
 
 
 def statement(panel, text, x, y, align="left"):
-    """Say in a box, at fractions `x`, `y` of the panel, what the paper says."""
+    """Write the paper's statement in a box at fractions `x`, `y` of the panel."""
     panel.text(x, y, text, transform=panel.transAxes, ha=align, va="top", fontsize=8.5, zorder=10,
                bbox={"boxstyle": "round,pad=0.35", "facecolor": "#F7F4E8", "edgecolor": "#C9BFA0",
                      "linewidth": 0.7})
@@ -99,7 +99,7 @@ def spread(panel, x, values, marker, color, name=None, line=0.0, **kwargs):
 
 def profiles(panel, states, column, unit):
     """Draw a column of profiles, in `unit`, against r; return colours and h0 for the bar."""
-    # Viridis without its palest end, which vanishes on white.
+    # Viridis without its palest end, which is not visible on white.
     palette = matplotlib.colormaps["viridis"](np.linspace(0, 0.88, len(states)))
     for color, state in zip(palette, states):
         panel.plot(state["r"] * 1e6, state[column] / unit, color=color, linewidth=1.3)
@@ -120,7 +120,7 @@ def bar(page, panels, colors):
 
 
 def signed(text):
-    """Return a number's text with a minus sign that is one."""
+    """Return a number's text with a typographic minus sign."""
     return text.replace("-", "\N{MINUS SIGN}")
 
 

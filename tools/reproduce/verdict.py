@@ -1,4 +1,4 @@
-"""What of the paper holds, and what its grid or its stopping rule decided."""
+"""The results of the paper that hold, and those due to its grid or its stopping rule."""
 
 import draws
 import fig03
@@ -15,7 +15,7 @@ def _over_jkr(results):
 
 
 def numbers(runs):
-    """Return what the page quotes."""
+    """Return the numbers in the text of the page."""
     weak, adhesion = runs[fig05.DECKS[2]].summary, fig05.numbers(runs)
     low, grid = (runs[f"fig06_{kind}"].summary["max_tension"] for kind in ("converged", "uniform"))
     converged, uniform = (_over_jkr(runs[f"fig10c_{kind}"]) for kind in ("converged", "uniform"))

@@ -1,10 +1,10 @@
-"""Takes guards out of the program, one at a time, and names the test that then fails.
+"""Removes guards from the program, one at a time, and names the test that then fails.
 
     guards.py [NAME ...]
 
-A guard is a statement of a module, told by words in it, never by its text. It is taken out of a copy
-of src/ with a build of its own; `meson` and the tests are this checkout's. Prints a table, and ends
-with status 1 where a guard can go without any test of its list failing.
+A guard is a statement of a module, identified by words in it, never by its text. It is removed from a
+copy of src/ with its own build; `meson` and the tests are those of this checkout. Prints a table, and
+ends with status 1 if no test in a guard's list fails without the guard.
 """
 
 import os
@@ -33,11 +33,11 @@ FAULTS = "system/test_faults.py"
 
 
 class Guard(NamedTuple):
-    """What is guarded; the module, words of the statement, and what becomes of it; the tests that
-    know it.
+    """The name of the guard; the module, words of the statement, and its change; the tests that
+    fail without it.
 
-    A statement is `gone`; its condition is `never` or `always` true; a `swap` puts another expression
-    in the place of a name with its owners; a `value` is assigned; `or` adds a condition.
+    A statement is `gone`; its condition is `never` or `always` true; a `swap` replaces a name with
+    its owners by another expression; a `value` is assigned; `or` adds a condition.
     """
 
     what: str
@@ -46,7 +46,7 @@ class Guard(NamedTuple):
     change: tuple
     tests: tuple
     traps: bool = False
-    # Where a second statement would do for the first: its words and what becomes of it.
+    # If a second statement replaces the first: its words and its change.
     also: tuple = ()
 
 
@@ -149,16 +149,17 @@ GUARDS = {
 
 
 def source_of(module, top=ROOT):
-    """The file of a module, in whatever room."""
+    """The file of a module, in any room."""
     return next(path for path in sorted((top / "src").rglob(f"{module}.*")) if path.suffix in
                 (".f90", ".c"))
 
 
 def statements(text, words):
-    """Where statements that have all of these words begin and end; comments do not count."""
+    """The beginnings and ends of statements that contain all of these words; comments do not
+    count."""
     wanted = [re.compile(rf"(?<![\w-]){re.escape(word)}(?![\w-])") for word in words.split()]
     found = []
-    # A statement goes on in the next line after &.
+    # A statement continues on the next line after &.
     for match in re.finditer(r"^(?:[^\n]*&[ \t]*\n)*[^\n]*$", text, re.MULTILINE):
         if not match[0].lstrip().startswith(("!", "/*")) and all(
                 word.search(match[0]) for word in wanted):
@@ -167,7 +168,7 @@ def statements(text, words):
 
 
 def changed(text, words, change):
-    """The text with every such statement changed; None where there is none."""
+    """The text with every such statement changed; None if there is none."""
     spans = statements(text, words)
     for start, end in reversed(spans):
         text = text[:start] + _changed(text[start:end], *change) + text[end:]

@@ -1,17 +1,17 @@
-"""Holds the program against the independent reference of tests/support: studies with tables.
+"""Compares the program with the independent reference of tests/support: studies with tables.
 
     .venv/bin/python tools/verify/judge.py [STUDY ...] [--count N] [--seed N] [--out FILE]
 
     estimates   true error over estimated error of every number of the summary
-    cycles      random cycles: jumps, tensions, ends, rows, whatever the steps
-    cusp        the same where jumps begin to exist, sigma 0.28 to 0.45
-    folds       states a hair before and beyond the folds
-    energy      the same as estimates at strengths where energy is lost, and close to the cusp
-    laws        true error over estimated error under every law, the truth being the program's own
-                at a higher accuracy
+    cycles      random cycles with any steps: jumps, tensions, ends, rows
+    cusp        the same near the onset of jumps, sigma 0.28 to 0.45
+    folds       states just before and just beyond the folds
+    energy      the same as estimates at strengths with dissipation, and close to the cusp
+    laws        true error over estimated error under every law; the reference is the program
+                itself at a higher accuracy
     layers      the same for bodies with layers
 
-The program is $SNAPIN, else build/snapin. Ends with status 1 where a study finds something wrong.
+The program is $SNAPIN, else build/snapin. Ends with status 1 if a study finds an error.
 """
 
 import argparse
@@ -20,7 +20,7 @@ import pathlib
 import sys
 import tempfile
 
-# Before NumPy is imported: one thread a process.
+# Before NumPy is imported: one thread in each process.
 os.environ["OMP_NUM_THREADS"] = os.environ["OPENBLAS_NUM_THREADS"] = "1"
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 sys.path.insert(0, str(ROOT / "tests"))
@@ -32,17 +32,18 @@ from support.spread import spread  # noqa: E402
 
 
 def bad_estimate(finding):
-    """A number that is missing, or an error that the estimate does not cover."""
+    """A missing number, or an error that exceeds the estimate."""
     ratios = (study_estimates.ratio(one) for one in finding.deviations)
     return finding.wrong or any(ratio is not None and ratio > 1 for ratio in ratios)
 
 
 def cusp_jobs(count, folder, *, seed):
-    """Cycles about and above the cusp."""
+    """Cycles near and above the cusp."""
     return study_cycles.jobs(count, folder, seed=seed, low=0.28, high=0.45)
 
 
-# Module, jobs, number of them (decks for cycles, scenes for laws, else strengths), and what is bad.
+# Module, jobs, number of them (decks for cycles, scenes for laws, else strengths), and the test for
+# a bad finding.
 STUDIES = {
     "estimates": (study_estimates, study_estimates.jobs, 40, bad_estimate),
     "cycles": (study_cycles, study_cycles.jobs, 1000, lambda finding: finding.wrong),
@@ -56,7 +57,7 @@ SEEDED = ("cycles", "cusp", "laws", "layers")
 
 
 def study(name, arguments, folder):
-    """Runs a study; its table, and how many findings are bad."""
+    """Runs a study; returns its table, and the number of bad findings."""
     module, make, count, bad = STUDIES[name]
     seeded = {"seed": arguments.seed} if name in SEEDED else {}
     jobs = make(arguments.count or count, folder / name, **seeded)

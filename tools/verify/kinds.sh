@@ -1,10 +1,11 @@
 #!/bin/sh
-# tools/verify/kinds.sh [PYTEST ARGUMENTS]: the tests once for each kind of linear algebra that this
-# machine can run, OpenBLAS's kernels for other processors (OPENBLAS_CORETYPE) and the reference
-# LAPACK, and for each other compiler, which is called like its Debian package; its results are then
-# compared with those of the usual build (levels.py). Without arguments the quick ones, -m 'not slow
-# and not long'. What is missing is installed. Kinds that cannot be had are skipped, which is said.
-# Ends with status 1 where a test fails. KINDS is the list of kinds.
+# tools/verify/kinds.sh [PYTEST ARGUMENTS]: runs the tests once for each kind of linear algebra that
+# this machine can run, OpenBLAS's kernels for other processors (OPENBLAS_CORETYPE) and the
+# reference LAPACK, and for each other compiler, which has the name of its Debian package. The
+# results are then compared with those of the usual build (levels.py). Without arguments the quick
+# tests are run, -m 'not slow and not long'. Missing packages are installed. Kinds that are not
+# available are skipped with a message. Ends with status 1 if a test fails. KINDS is the list of
+# kinds.
 set -u
 here=$(dirname -- "$(readlink -f -- "$0")")
 top=$(dirname -- "$(dirname -- "$here")")
@@ -12,7 +13,7 @@ top=$(dirname -- "$(dirname -- "$here")")
 prepare
 cd "$top" || exit
 PATH=$venv/bin:$PATH
-# Where tests find the tools.
+# The folders in which tests find the tools.
 tools="pywrap/plots tools tools/verify tools/reproduce"
 export PATH
 [ $# -gt 0 ] || set -- -m 'not slow and not long'
@@ -24,7 +25,8 @@ flags() {
   done
 }
 
-# has_kernel KERNEL: whether the processor has what it needs, and this OpenBLAS has the kernel.
+# has_kernel KERNEL: whether the processor has the required features, and this OpenBLAS has the
+# kernel.
 has_kernel() {
   case $1 in
     Prescott) flags pni ;;
@@ -35,7 +37,8 @@ has_kernel() {
     grep -qix "core: $1" || { reason='this build has no such kernel'; return 1; }
 }
 
-# provides PACKAGE...: installs these where Debian offers them. What cannot be installed then ends all.
+# provides PACKAGE...: installs packages if Debian offers them. A failed installation ends the
+# script.
 provides() {
   dpkg -s "$@" > /dev/null 2>&1 && return
   reason="missing: $*"
@@ -47,7 +50,7 @@ provides() {
     apt-get install -y --no-install-recommends -o DPkg::Lock::Timeout=300 "$@"
 }
 
-# Debian keeps the reference libraries beside OpenBLAS's, which answers to their names.
+# Debian installs the reference libraries beside OpenBLAS's, which have the same names.
 reference_libraries() {
   for folder in /usr/lib/*/lapack /usr/lib/*/blas; do
     [ -d "$folder" ] && printf '%s:' "$folder"
@@ -56,7 +59,7 @@ reference_libraries() {
 
 has_reference() { [ -n "$(reference_libraries)" ] || provides liblapack-dev libblas-dev; }
 
-# The C compiler that goes with a Fortran compiler.
+# The C compiler of the same version as a Fortran compiler.
 c_compiler() {
   case $1 in
     flang-*) echo "clang-${1#*-}" ;;
@@ -106,8 +109,8 @@ compiler() {
   CC=$(c_compiler "$name")
   export FC CC
   builds "build-$name" -Dpython=enabled || return
-  # LLVM's OpenMP leaves an empty file behind where a process is killed as it starts, and a later
-  # process with the same number dies of it (SIGBUS).
+  # LLVM's OpenMP leaves an empty file if a process is killed during its start, and a later process
+  # with the same number crashes because of the file (SIGBUS).
   rm -f /dev/shm/__KMP_REGISTERED_LIB_* /tmp/__KMP_REGISTERED_LIB_*
   tests_of "build-$name" "$@"
   tested=$?

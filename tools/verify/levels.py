@@ -1,15 +1,15 @@
-"""How far results depend on the compiler and its options, on threads, and on OpenBLAS's kernels.
+"""Measure how results depend on the compiler and its options, on threads, and on OpenBLAS's kernels.
 
     levels.py [--builds] REFERENCE [NAME=PROGRAM ...]
 
 runs decks with the program REFERENCE on one thread, and with every other PROGRAM: the decks below,
-and those of inputs/ but for LEFT_OUT. Without --builds the decks below are also run with REFERENCE
+and those of inputs/ except LEFT_OUT. Without --builds the decks below are also run with REFERENCE
 on 1, 2 and 4 threads, twice, and with the kernels for other processors that this one can run.
-Compared are all columns of all tables, over the largest value of the column, and all numbers of the
-summary, but for ROUNDED. Prints a table: the largest difference, where it is, and in how many rows
-the iterations are not as many, which is not judged. Ends with status 1 where a difference is above
-the deck's limit, where a run repeated gives other bytes, or where threads change a byte of a deck
-whose matrices are too small to be shared between them.
+It compares all columns of all tables, relative to the largest value of the column, and all numbers of
+the summary, except ROUNDED. Prints a table: the largest difference, its place, and the number of rows
+with a different number of iterations, which is not judged. Ends with status 1 if a difference exceeds
+the deck's limit, if a repeated run gives other bytes, or if threads change a byte of a deck whose
+matrices are too small to be shared between threads.
 """
 
 import argparse
@@ -27,45 +27,47 @@ sys.path.insert(0, str(ROOT / "tests"))
 
 from support.scenes import Run, exponential, lennard_jones, loading, several  # noqa: E402
 
-# Limits of differences. EXACT is what is promised of Newton's method and of a residual_tolerance of
-# 1e-12. Anderson acceleration stops anywhere below its tolerance, 1e-10 by default, and rounding
-# decides where: then the states agree to WITHIN (between OpenBLAS's kernels they differ by 1.1e-12
-# at sigma 0.87 already, between compilers by 1.4e-11). Mixing stops where its last change of the
-# ratio leaves it, perhaps an iteration sooner or later: to a part of the tolerance. A fit stops where a step changes the sum of
-# squares by less than 1e-8 of it: what is fitted is known to the root of that times its error.
+# Limits of differences. EXACT is promised for Newton's method and for a residual_tolerance of
+# 1e-12. Anderson acceleration stops anywhere below its tolerance, 1e-10 by default, at a residual
+# that depends on rounding: then the states agree to WITHIN (between OpenBLAS's kernels they differ
+# by 1.1e-12 at sigma 0.87 already, between compilers by 1.4e-11). Mixing stops after the last
+# change of the ratio, perhaps an iteration sooner or later: to a part of the tolerance. A fit stops
+# if a step changes the sum of squares by less than 1e-8 of it: the fitted values are known to the
+# root of this times their error.
 EXACT, WITHIN, STOPPED, FITTED = 1e-12, 3e-11, 1e-8, 1e-5
-# Rows of a traced path lie where its steps end. Rounding moves them along the path, which stays the
-# same: 4.2e-7 at sigma 1000 between compilers.
+# Rows of a traced path lie at the ends of its steps. Rounding moves them along the path, which is
+# unchanged: 4.2e-7 at sigma 1000 between compilers.
 PLACED = 1e-6
-# Decks of inputs/ have tolerances of their own: their limit is the residual that is left, times
-# this, since states near a fold move by more than what is left.
+# Decks of inputs/ have tolerances of their own: their limit is the remaining residual times this
+# factor, since states near a fold move by more than the residual.
 OF_RESIDUAL = 10
-# Decks of inputs/ that stop by the paper's rule, whose states rounding decides (./reproduce gives
-# their ranges), and those with grids so coarse that the edge of a contact is held until it slips:
-# rounding decides which slip is the last. Maps: thousands of paths such as others show alone. And
-# drives, whose steps are as long as differences of loads allow: rows are at other times.
+# Decks of inputs/ that stop by the paper's rule, whose states depend on rounding (./reproduce gives
+# their ranges), and those with grids so coarse that the edge of a contact is pinned until it slips:
+# the last slip depends on rounding. Maps: thousands of paths such as others show alone. And drives,
+# whose steps depend on differences of loads: rows are at other times.
 LEFT_OUT = ("_paper", "history_", "map_", "viscoelastic", "drainage")
-# Not compared: what an iteration leaves, estimates, which are differences of numbers that agree to
-# many digits, and the resolution, which depends on which node is the nearest to the edge.
+# Not compared: the remaining residual; estimates, which are differences of numbers that agree to
+# many digits; and the resolution, which depends on the node nearest to the edge.
 ROUNDED = ("residual", "iterations", "_error", "_uncertainty", "_estimate", "spacing_over_neck")
 THREADS = (1, 2, 4)
 TINY = np.finfo(float).tiny
-# Kernels of OpenBLAS and what a processor needs for them.
+# Kernels of OpenBLAS and the processor features that they need.
 KERNELS = {
     "Prescott": {"pni"}, "Haswell": {"avx2", "fma"},
     "SkylakeX": {"avx512f", "avx512dq", "avx512bw", "avx512vl"}, "Zen": {"avx2", "fma"}}
 
 CYCLE = {"loading": loading(6, -2, 0.25), "unloading": {}}
 CLOSE = {"residual_tolerance": 1e-12}
-# On uniform grids the default is 1e-8: of states that stop there no twelve digits can be promised.
+# On uniform grids the default is 1e-8: states at this tolerance do not agree to twelve digits.
 FIXED = {"grid": "uniform", "nodes": 300, **CLOSE}
-# Matrices from so many nodes on are given to more than one thread (src/system/blas_threads.f90).
+# Matrices with at least this number of nodes use more than one thread
+# (src/system/blas_threads.f90).
 SHARED = 2500
 THREADED = {"grid": "uniform", "nodes": 2600, "r_max": 20.0, **CLOSE}
 STRONG = {"loading": loading(13, -4, 0.25), "unloading": {"from_": [2.0, -4.0]}}
 STRONGER = {"loading": loading(80, -4, 2), "unloading": {"from_": [2.0, -4.0]}}
 
-# Deck, and what is promised of it.
+# Deck, and its promised agreement.
 DECKS = {
     "cycle, sigma 0.17": (lennard_jones(0.17, **CYCLE), WITHIN),
     "cycle, sigma 0.87": (lennard_jones(0.87, **CYCLE, stability={}), WITHIN),
@@ -152,8 +154,9 @@ def numbers_of(one):
 
 
 def apart(name, mine, theirs):
-    """How far a column or entry differs, over its largest number; infinite where what is no number
-    does. Deformations are small differences of separations, over which they are taken."""
+    """The difference of a column or entry, over its largest number; infinite if one is not a
+    number. Differences of deformations are relative to the separations, since deformations are
+    their small differences."""
     a, b = mine[name], theirs[name]
     if a.dtype.kind == "U":
         return 0.0 if np.array_equal(a, b) else np.inf
@@ -165,8 +168,8 @@ def apart(name, mine, theirs):
 
 
 def limit_for(name, one, limit):
-    """The limit of a column or entry. On grids that stay where they are the place of an extremum is
-    searched by loads, and known to the root of what these are."""
+    """The limit of a column or entry. On fixed grids the place of an extremum is found by a
+    search in loads, and is known to the square root of their error."""
     if name.endswith("max_tension_h0") and one.summary.get("grid", "edge_locked") != "edge_locked":
         return limit**0.5
     traced = name.startswith("curve.csv") and "path" in one.curve["branch"]
@@ -174,8 +177,8 @@ def limit_for(name, one, limit):
 
 
 def difference(one, other, limit):
-    """How far `other` is from `one`, where that is most of what it may be; None where they have not
-    the same rows or entries."""
+    """The difference of `other` from `one` at the place where it is largest relative to its
+    limit; None if they do not have the same rows or entries."""
     mine, theirs = numbers_of(one), numbers_of(other)
     if mine.keys() != theirs.keys():
         return None
@@ -190,7 +193,7 @@ def difference(one, other, limit):
 
 
 def limit_of(one):
-    """The largest difference that a deck of inputs/ may have."""
+    """The largest permitted difference of a deck of inputs/."""
     if (one.folder / "fit.nml").is_file():
         return FITTED
     left = [value for name, value in numbers_of(one).items() if name.endswith("worst_residual")]
@@ -206,7 +209,7 @@ def same_bytes(one, other):
 
 
 class Comparison:
-    """The table of differences, and what is broken of the promises."""
+    """The table of differences, and the violated promises."""
 
     def __init__(self, reference, folder):
         self.reference, self.folder = reference, folder
@@ -221,7 +224,7 @@ class Comparison:
         return run(program, deck_name, deck, threads, folder, kernel)
 
     def note(self, variant, deck_name, limit, one, other):
-        """A row of the table."""
+        """Adds a row to the table."""
         found = difference(one, other, limit)
         if found is None:
             print(f"| {variant} | {deck_name} | other rows or entries | | | |", flush=True)
@@ -238,14 +241,14 @@ class Comparison:
             self.broken.append(f"{deck_name}, {variant}: {found.place} differs by {found.size:.1e}")
 
     def builds(self, programs, name, deck, limit=None):
-        """A deck on every other program; the run of the reference."""
+        """Runs a deck on every other program; returns the run of the reference."""
         one = self.run(self.reference, name, deck)
         for build, program in programs.items():
             self.note(build, name, limit or limit_of(one), one, self.run(program, name, deck))
         return one
 
     def threads(self, name, deck, limit, one):
-        """A deck on several threads, twice."""
+        """Runs a deck on several threads, twice."""
         for threads in THREADS:
             variant = f"threads: {threads}"
             other = self.run(self.reference, name, deck, threads)
@@ -256,7 +259,7 @@ class Comparison:
                 self.broken.append(f"{name}, {variant}: the same run twice gives other bytes")
 
     def kernels(self, name, deck, limit, one):
-        """A deck with OpenBLAS's kernels for other processors."""
+        """Runs a deck with OpenBLAS's kernels for other processors."""
         for kernel in kernels():
             self.note(f"kernel: {kernel}", name, limit, one,
                       self.run(self.reference, name, deck, kernel=kernel))

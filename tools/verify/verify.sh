@@ -1,27 +1,28 @@
 #!/bin/sh
-# tools/verify/verify.sh [STAGE ...]: what ./test has no time for. docs/testing.md has the results.
+# tools/verify/verify.sh [STAGE ...]: checks that take too long for ./test. docs/testing.md has the
+# results.
 #
-#   long       every test, those that take minutes too
+#   long       every test, also those that take minutes
 #   traps      the tests that go through the program, on a build that stops at the first invalid
 #              operation, overflow, index out of bounds or use of an unset real number
 #   memory     valgrind over tools/verify/decks: no leak, no use of memory that was not set
-#   coverage   which lines of src/ the quick tests reach; those that they do not are listed
+#   coverage   lines of src/ that the quick tests reach, with a list of the other lines
 #   levels     builds at -O0, -O2, -O3 and -march=native, 1, 2 and 4 threads, OpenBLAS's kernels for
-#              other processors: how far results differ; then the quick tests on each of these
+#              other processors: differences of results; then the quick tests on each of these
 #              kernels and on the reference LAPACK (kinds.sh)
-#   extremes   decks drawn at random from the far ends, on the build of `traps`
+#   extremes   random decks with extreme values, on the build of `traps`
 #   judge      the program against an independent solution of the Lennard-Jones problem: studies of
 #              every reported number, of cycles, folds and the energy lost (tools/verify/judge.py)
 #   faults     every system call on results fails, kills the run, or is the last before a power cut
-#   guards     guards are taken out one at a time, and a test has to fail
-#   mpi        builds with OpenMPI and with MPICH, which are installed where Debian offers them, and the
+#   guards     guards are removed one at a time, and a test must fail
+#   mpi        builds with OpenMPI and with MPICH, which are installed if Debian offers them, and the
 #              tests of sweeps on many processes on each
-#   fuzz       a coverage-led search for decks that the reader misreads (needs AFL++)
-#   pages      no page has figures of older numerics than src/ (tools/pages.py says what renews it)
+#   fuzz       a coverage-guided search for decks that the reader misreads (needs AFL++)
+#   pages      no page has figures of older numerics than src/ (tools/pages.py lists the commands that renew pages)
 #
-# Without a stage: all of them, about two hours on two cores. Ends with status 1 where one
-# fails. EXTREMES (200) is the number of decks, FIRST (5000) the first of them, FUZZ (240) seconds,
-# SEED (1) that of the judge's random decks.
+# Without a stage: all stages, about two hours on two cores. Ends with status 1 if one
+# fails. EXTREMES (200) is the number of decks, FIRST (5000) the first of them, FUZZ (240) the seconds of
+# the search, SEED (1) the seed of the judge's random decks.
 set -u
 here=$(dirname -- "$(readlink -f -- "$0")")
 top=$(dirname -- "$(dirname -- "$here")")
@@ -29,7 +30,7 @@ top=$(dirname -- "$(dirname -- "$here")")
 prepare
 cd "$top" || exit
 python="$venv/bin/python"
-# Ninja may be there alone.
+# Ninja may be installed alone.
 PATH=$venv/bin:$PATH
 export PATH
 
@@ -44,8 +45,7 @@ traps() {
     $(grep -l 'snapin' tests/*/test_*.py | grep -v 'wrapper')
 }
 
-# OpenBLAS reads a few lanes beyond its arguments with some of its kernels; those for Haswell do
-# not.
+# Some kernels of OpenBLAS read a few lanes beyond their arguments; those for Haswell do not.
 memory() {
   has valgrind || { say 'valgrind is missing: apt-get install valgrind'; return 1; }
   builds build-memory --buildtype=debugoptimized -Dpython=disabled || return
@@ -67,8 +67,8 @@ memory() {
   return $errors
 }
 
-# gcovr merges what gcov counts and writes the report. gcov takes counts of more than 2^32 for
-# mistakes, and `end module` for a line, where the compiler puts copies of types.
+# gcovr merges the counts of gcov and writes the report. gcov takes counts of more than 2^32 for
+# errors, and `end module` for a line, since the compiler puts copies of types there.
 coverage() {
   "$python" -c 'import gcovr' 2> /dev/null ||
     "$python" -m pip install --quiet --disable-pip-version-check gcovr==8.3 || return

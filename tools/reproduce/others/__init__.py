@@ -1,1 +1,1 @@
-"""What others published, a module a chapter."""
+"""The work of others, one module for each chapter."""

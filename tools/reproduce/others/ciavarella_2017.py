@@ -1,4 +1,4 @@
-"""Ciavarella, Greenwood and Barber (2017): the energy lost in a cycle of contact."""
+"""Ciavarella, Greenwood and Barber (2017): the energy dissipated in a cycle of contact."""
 
 import math
 
@@ -22,7 +22,7 @@ def jkr():
     a = (low + high) / 2 + (high - low) / 2 * x
     load = a**3 - a * np.sqrt(6 * a)
     slope = 2 * a - np.sqrt(6 / a) / 3
-    # Tension from D = 0 back to the jump apart, which ends at no load.
+    # Tension from D = 0 back to the jump apart, which ends at zero load.
     area = -float(np.sum(weight * load * slope) * (high - low) / 2)
     return math.pi * (math.pi * 3 / 4) ** (2 / 3) * area
 
@@ -46,7 +46,7 @@ def _solved(tabor):
 
 
 def numbers(_):
-    """Return what the page quotes."""
+    """Return the numbers in the text of the page."""
     def error(found, tabor):
         return 100 * abs(found(tabor) / _loss(tabor) - 1)
 

@@ -1,4 +1,4 @@
-"""What the chapters on formulas fitted to Maugis-Dugdale theory have in common."""
+"""The common part of the chapters on formulas fitted to Maugis-Dugdale theory."""
 
 import functools
 
@@ -9,7 +9,7 @@ from report import Comparison
 
 LAMBDAS = (0.01, 0.03, 0.1, 0.3, 1.0, 3.0, 10.0)
 _MANY = spheres.spaced(0.01, 100, 81)
-# Where the range of the force is short enough for bodies to have a contact radius.
+# Here the range of the force is so short that bodies have a contact radius.
 SOFT = 1.0
 
 
@@ -19,8 +19,8 @@ def _over(theory):
 
 
 def _errors(theory):
-    """Return errors [%] of pull-off and of radius without load: a dict by what they are against, of
-    arrays over _MANY."""
+    """Return errors [%] of pull-off and of radius without load: a dict by reference, of arrays
+    over _MANY."""
     solved = [spheres.contact(spheres.tabor_of(lam), 0.0).errors[theory.split("_")[0]][:2]
               for lam in _MANY]
     return {"maugis": 100 * (_over(theory) / _over("maugis") - 1),
@@ -28,7 +28,8 @@ def _errors(theory):
 
 
 def numbers(theory, _):
-    """Return largest and typical (median) errors against both, and where they are largest."""
+    """Return largest and typical (median) errors against both references, and the places of the
+    largest."""
     found = {"from": SOFT}
     for against, values in _errors(theory).items():
         for what, each in zip(("pull", "radius"), abs(values)):

@@ -11,17 +11,18 @@ from report import Comparison
 TABORS = (0.01, 0.1, 0.5, 0.8, 1.0, 2.0, 5.0)
 _SHOWN = (0.1, 0.5, 1.0, 2.0, 5.0)
 _COLORS = (style.BLACK, style.BLUE, style.GREEN, style.ORANGE, style.VERMILION)
-# Loss in a cycle of JKR theory at fixed displacement, in (R^4 w^5/E*^2)^(1/3): effects of both jumps.
+# Dissipation in a cycle of JKR theory at fixed displacement, in (R^4 w^5/E*^2)^(1/3), by both
+# jumps.
 _MULLER = 32 / (3 * math.pi) * (2 / math.pi) ** (1 / 3)
 
 
 def cusp():
-    """Return the Tabor parameter from which on there are jumps."""
+    """Return the Tabor parameter above which there are jumps."""
     return spheres.where(lambda tabor: spheres.sphere(tabor).jump_in is not None, 0.6, 0.8, 2e-5)
 
 
 def numbers(_):
-    """Return what the page quotes."""
+    """Return the numbers in the text of the page."""
     first = cusp()
     above = spheres.sphere(first * 1.0001)
     bradley = spheres.where(lambda tabor: spheres.sphere(tabor).tension < 1.98, 0.01, 0.5, 1e-3)
@@ -64,7 +65,7 @@ def draw(_):
 
 
 def _stable(h0, load, found):
-    """Return the pieces of a path that an approach and a retreat see."""
+    """Return the pieces of a path on an approach and a retreat."""
     if found.jump_in is None:
         return [(-h0, load)]
     first = int(np.argmin(abs(h0 - found.jump_in[0]) + abs(load + found.jump_in[1])))

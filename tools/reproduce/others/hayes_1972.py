@@ -33,7 +33,7 @@ def kappa(nu, ratio):
 
 
 def numbers(_):
-    """Return what the page quotes."""
+    """Return the numbers in the text of the page."""
     return {"half": kappa(0.5, 1.0), "third": kappa(0.3, 1.0)}
 
 

@@ -31,7 +31,7 @@ def good_to(name, percent):
 
 
 def numbers(_):
-    """Return what the page quotes."""
+    """Return the numbers in the text of the page."""
     found = {}
     for name in _SOURCES:
         letter = name[0]

@@ -8,7 +8,7 @@ from matplotlib.patches import Patch
 from report import Comparison
 
 LAMBDAS = spheres.spaced(1e-3, 100, 31)
-# Within so much a theory is said to hold.
+# Largest error with which a theory counts as valid.
 _GOOD = 0.05
 _THEORIES = ("bradley", "hertz", "dmt", "jkr", "maugis")
 _NAMES = ("none", "Bradley", "Hertz", "DMT", "JKR", "Maugis-Dugdale")
@@ -16,8 +16,8 @@ _COLORS = ("#FFFFFF", style.GREY, style.SKY, style.ORANGE, style.GREEN, style.PU
 
 
 def worst(theory, lam, load):
-    """Return the larger error of contact radius and indentation; of Hertz's 1 where it has none; of
-    Bradley's theory the error of h0 over z0."""
+    """Return the larger error of contact radius and indentation; 1 for Hertz theory without a
+    value; for Bradley's theory the error of h0 over z0."""
     if theory == "bradley":
         h0 = 1 - spheres.contact(spheres.tabor_of(lam), load).displacement * spheres.unit(spheres.tabor_of(lam)) ** 2
         return abs(_rigid(load) - h0)
@@ -31,7 +31,7 @@ def _rigid(load):
 
 
 def simplest(lam, load):
-    """Return the number of the simplest theory that holds, 0 for none."""
+    """Return the number of the simplest valid theory, 0 for none."""
     held = [worst(theory, lam, load) <= _GOOD for theory in _THEORIES]
     return held.index(True) + 1 if any(held) else 0
 
@@ -41,7 +41,7 @@ def _pull(theory, lam):
 
 
 def numbers(_):
-    """Return what the page quotes."""
+    """Return the numbers in the text of the page."""
     at = min(LAMBDAS, key=lambda lam: abs(lam - 1))
     hertz = next(load for load in spheres.LOADS if worst("hertz", at, load) <= _GOOD)
     peak = max(LAMBDAS, key=lambda lam: _pull("maugis", lam))
@@ -76,7 +76,7 @@ def draw(_):
 
 
 def rows(_):
-    """Return where theories hold."""
+    """Return the ranges in which theories hold."""
     found = numbers(_)
     lines = [("Hertz, radius and indentation within 5 %, least load at lambda = 1", found["hertz"],
               "pi w R"),

@@ -1,4 +1,5 @@
-"""Greenwood (2007), Barthel (1998) and others: how little contact depends on the law of force."""
+"""Greenwood (2007), Barthel (1998) and others: the weak dependence of contact on the law of
+force."""
 
 import functools
 
@@ -19,7 +20,7 @@ def pull_offs(tabor):
 
 
 def numbers(_):
-    """Return what the page quotes."""
+    """Return the numbers in the text of the page."""
     spreads, below = [], []
     for tabor in TABORS:
         laws, theory = pull_offs(tabor)

@@ -1,4 +1,4 @@
-"""Maugis (1992): Dugdale's law, its theory and its equations solved, beside Lennard-Jones."""
+"""Maugis (1992): Dugdale's law, its theory and its solved equations, beside Lennard-Jones."""
 
 import functools
 
@@ -17,8 +17,8 @@ _SOLVED = (0.3, 1.0, 3.0)
 
 @functools.lru_cache(maxsize=None)
 def dugdale(lam, smoothing):
-    """Return pull-off over pi w R under Dugdale's law, solved, that of the theory with the same work
-    and largest tension, and lambda of these."""
+    """Return the solved pull-off over pi w R under Dugdale's law, the pull-off of the theory
+    with the same work and largest tension, and their lambda."""
     # Range, R and E/(1-nu^2) are 1, K = 2/3: lambda = 2 w (pi w K^2)^(-1/3) with w the stress.
     stress = (lam / 2) ** 1.5 * (4 * np.pi / 9) ** 0.5
     summary = spheres.solved(
@@ -36,7 +36,7 @@ def _error(lam, number=0):
 
 
 def numbers(_):
-    """Return what the page quotes."""
+    """Return the numbers in the text of the page."""
     pull = [_error(lam) for lam in _MANY]
     left = [100 * (solved / theory - 1) for solved, theory, _ in
             (dugdale(1.0, smoothing) for smoothing in SMOOTHINGS)]

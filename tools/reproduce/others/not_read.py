@@ -1,1 +1,2 @@
-"""What could not be read, and what is not computed yet: the page says it, and has no rows."""
+"""Publications that were not available, and results that are not computed yet: text without
+rows."""

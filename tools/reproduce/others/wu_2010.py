@@ -1,4 +1,4 @@
-"""Wu (2010) and Attard and Parker (1992): where the bodies jump into contact."""
+"""Wu (2010) and Attard and Parker (1992): the place of the jump into contact."""
 
 import functools
 
@@ -33,7 +33,7 @@ def _errors():
 
 
 def numbers(_):
-    """Return what the page quotes."""
+    """Return the numbers in the text of the page."""
     errors = _errors()
     worst = int(np.argmax(abs(errors[:, 0])))
     top = _MANY[-1]

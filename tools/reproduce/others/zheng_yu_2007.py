@@ -62,14 +62,14 @@ def rigid_cone():
 
 
 def _good(exponent):
-    """Return the mu_n from which on the formula is within 1 %, of those drawn."""
+    """Return the least mu_n, of those drawn, above which the formula is within 1 %."""
     bad = [tabor for tabor in _MANY if abs(1 / ratio(exponent, tabor) - 1) > 0.01]
     above = [tabor for tabor in _MANY if not bad or tabor > bad[-1]]
     return f"{above[0]:.2g}" if above else f"beyond {_MANY[-1]:g}"
 
 
 def numbers(_):
-    """Return what the page quotes."""
+    """Return the numbers in the text of the page."""
     return {"goods": ", ".join(map(_good, EXPONENTS)),
             "exponents": ", ".join(f"{n:g}" for n in EXPONENTS)}
 
