@@ -109,7 +109,8 @@ def test_a_step_of_a_thousandth_of_the_range_is_resolved(run, sigma, smoothing):
     sharp, smooth, smoother = (
         check(run(steps(sigma, **dugdale(width))))["max_tension"]
         for width in (smoothing, 0.02, 0.04))
-    assert sharp == pytest.approx(smooth + (smooth - smoother) * (0.02 - smoothing) / 0.02, rel=2e-3)
+    expected = smooth + (smooth - smoother) * (0.02 - smoothing) / 0.02
+    assert sharp == pytest.approx(expected, rel=2e-3)
 
 
 def test_step_outside_a_stronger_attraction(run):
