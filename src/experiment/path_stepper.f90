@@ -19,6 +19,7 @@ module path_stepper
   use mending, only: left_on_path
   use edge_locked, only: mesh_family_t
   use discretisation, only: discretisation_t
+  use mapped_mesh, only: mapped_shape_t
   use known_path, only: known_path_t, landing_t, know_pieces, interval_at, lowest_point
   use stepper, only: branch_point_t, step_result_t, extreme_t, remember
   implicit none
@@ -84,18 +85,20 @@ contains
     type(mesh_family_t), intent(in) :: others
     logical, intent(in) :: wanted(:)
     logical, allocatable, intent(out) :: taken(:)
-    type(mesh_family_t) :: own
+    type(mapped_shape_t) :: shape
+    type(discretisation_t) :: grid
     logical :: lost
     integer :: mesh
 
     taken = wanted
     do mesh = 1, size(wanted)
       if (.not. wanted(mesh)) cycle
-      own = self%meshes
-      call self%meshes%take_over(mesh, others)
+      shape = self%meshes%shape(mesh)
+      grid = self%meshes%grid(mesh)
+      call self%meshes%replace(mesh, others%shape(mesh), others%grid(mesh))
       call self%operator%forget()
-      call trace_again(self%solver_t, own%grid(mesh), mesh, self%known%path, lost)
-      if (lost) call self%meshes%take_over(mesh, own)
+      call trace_again(self%solver_t, grid, mesh, self%known%path, lost)
+      if (lost) call self%meshes%replace(mesh, shape, grid)
       taken(mesh) = .not. lost
     end do
     call self%operator%forget()

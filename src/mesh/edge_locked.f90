@@ -60,7 +60,7 @@ module edge_locked
     procedure :: has_short_panels
     procedure :: locked_gap
     procedure :: renew
-    procedure :: take_over
+    procedure :: replace
     procedure :: refine
     procedure :: shape_for
     procedure :: complete
@@ -195,15 +195,16 @@ contains
     self%waits(mesh) = .false.
   end subroutine renew
 
-  !> Replaces a mesh by that of another family.
-  subroutine take_over(self, mesh, other)
+  !> Replaces a mesh by one that was made before.
+  subroutine replace(self, mesh, shape, grid)
     class(mesh_family_t), intent(inout) :: self
     integer, intent(in) :: mesh
-    type(mesh_family_t), intent(in) :: other
+    type(mapped_shape_t), intent(in) :: shape
+    type(discretisation_t), intent(in) :: grid
 
-    self%shape(mesh) = other%shape(mesh)
-    self%grid(mesh) = other%grid(mesh)
-  end subroutine take_over
+    self%shape(mesh) = shape
+    self%grid(mesh) = grid
+  end subroutine replace
 
   !> Makes a mesh, without its kernel, that is finer than that of a coarser family.
   subroutine refine(self, problem, mesh, coarser)
