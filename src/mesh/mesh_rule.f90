@@ -100,8 +100,8 @@ contains
 
     inner = 0.15_wp + digits*(0.24_wp + 0.0105_wp*digits)
     if (problem%law%adhesion > 0) then
-      ! Under strong adhesion a small contact is elongated; under strong repulsion the repulsion
-      ! begins inside the edge. Both need more nodes, mainly there.
+      ! Under strong adhesion a small contact is drawn out into a neck. Under strong repulsion the
+      ! repulsion begins inside the edge. Both cases need more nodes, mainly inside the edge.
       inner = inner*(1 + 0.03_wp*log(1 + adhesion_strength(problem)/(1 + high)**2))
       repulsion = log(1 + high/(pi*adhesion_strength(problem)))
       outer = inner*(1 + 0.5_wp*log(1 + 0.75_wp*repulsion))

@@ -1,21 +1,23 @@
-!> How bodies that remember yield to a pressure that changes. Their compliance after a time t is
+!> The response of viscoelastic bodies to a changing pressure. A time t after a step of the
+!> pressure, the compliance of the bodies is
 !>
 !>     theta_0 [1 + Sum_k share_k (1 - exp(-t/time_k))] ,
 !>
-!> that of springs and dashpots. What has yielded late by the k-th of them is theta_0 share_k W Z_k
-!> with a memory Z_k, in the material, that follows the pressure:
+!> the compliance of springs and dashpots. The delayed deformation of the k-th spring and dashpot is
+!> theta_0 share_k W Z_k. The memory Z_k is a field in the material that follows the pressure:
 !>
 !>     time_k dZ_k/dt = P - Z_k .
 !>
-!> Over a step in which P changes linearly Z_k becomes kept Z_k + past P + present P_new, exactly:
-!> the present pressure meets a softer half-space, and earlier ones have left a deformation.
+!> Over a step in which P changes linearly, Z_k becomes exactly kept Z_k + past P + present P_new.
+!> The step is therefore an elastic problem: the present pressure acts on a softer half-space that
+!> has a deformation due to earlier pressures.
 module creep
   use kinds, only: wp
   implicit none
   private
   public :: creep_t, elastic_bodies
 
-  !> Compliances over the instantaneous one, and times of retardation [s].
+  !> Compliances over the instantaneous compliance, and times of retardation [s].
   type :: creep_t
     real(wp), allocatable :: share(:), time(:)
   contains
@@ -24,31 +26,32 @@ module creep
     procedure :: shortest
   end type creep_t
 
-  !> Steps over a time of retardation below which exponentials are summed as series.
+  !> Ratio of a step to a time of retardation below which exponentials are summed as series.
   real(wp), parameter :: short = 0.02_wp
 
 contains
 
-  !> Bodies that remember nothing.
+  !> Bodies without memory.
   pure type(creep_t) function elastic_bodies() result(creep)
     allocate (creep%share(0), creep%time(0))
   end function elastic_bodies
 
-  !> The compliance of bodies at rest over the instantaneous one.
+  !> The compliance of relaxed bodies over the instantaneous compliance.
   pure real(wp) function relaxed(self)
     class(creep_t), intent(in) :: self
 
     relaxed = 1 + sum(self%share)
   end function relaxed
 
-  !> The shortest time of retardation; huge where there is none.
+  !> The shortest time of retardation; huge if there is none.
   pure real(wp) function shortest(self)
     class(creep_t), intent(in) :: self
 
     shortest = minval(self%time)
   end function shortest
 
-  !> What a step of so many seconds keeps of the memory, and takes of the pressures at its ends.
+  !> Coefficients of the memory at the end of a step of `seconds`: `kept` of the memory at the
+  !> beginning, `past` of the pressure at the beginning, `present` of the pressure at the end.
   pure subroutine over_step(self, seconds, kept, past, present)
     class(creep_t), intent(in) :: self
     real(wp), intent(in) :: seconds

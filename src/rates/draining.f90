@@ -1,5 +1,6 @@
-!> What a fluid between the bodies makes of the last instants: the rate of the gaps over a step, and
-!> what the fluid takes in it (`drainage`); beside what the bodies remember.
+!> The fluid between the bodies during a step in time (`drainage`): the rate of the gaps, computed
+!> from the last two instants, and the energy that the fluid dissipates. The memory of the bodies is
+!> that of `remembering`.
 module draining
   use kinds, only: wp, pi
   use besides, only: rise_at
@@ -11,9 +12,9 @@ module draining
   public :: draining_t
 
   type, extends(remembering_t) :: draining_t
-    !> What came before the present instant.
+    !> The instant before the present instant.
     type(instant_t) :: before
-    !> The weight of the present gaps in the rate, 1/s, that the Jacobian was made for.
+    !> The weight of the present gaps in the rate, 1/s, for which the Jacobian was computed.
     real(wp) :: made_for = 1
   contains
     procedure :: prepare
@@ -23,14 +24,14 @@ module draining
     procedure, private :: remember_fluid
   end type draining_t
 
-  !> Steps after a turn over which gaps change along lines.
+  !> Number of steps after a turn in which gaps change linearly with time.
   integer, parameter :: calming = 4
-  !> Logarithm of the ratio of steps that have no Jacobian in common.
+  !> Logarithm of the ratio of two steps above which they need different Jacobians.
   real(wp), parameter :: other_length = 0.5_wp
 
 contains
 
-  !> Makes the equations those of a step from an instant to a time.
+  !> Makes the equations of a step from an instant to a time.
   subroutine prepare(self, from, time)
     class(draining_t), intent(inout) :: self
     type(instant_t), intent(in) :: from
@@ -40,7 +41,7 @@ contains
     call self%prepare_memory(from, time)
   end subroutine prepare
 
-  !> What the instant that a step has led to remembers.
+  !> Computes the memories, and the data of the fluid, of the instant at the end of a step.
   subroutine remember(self, from, to)
     class(draining_t), intent(inout) :: self
     type(instant_t), intent(in) :: from
@@ -50,7 +51,8 @@ contains
     if (allocated(self%drainage)) call self%remember_fluid(from, to)
   end subroutine remember
 
-  !> Brings the rise that the memory makes to the nodes of a mesh at about a scale.
+  !> Interpolates the rise of the gap due to the memory, and the earlier gaps of the fluid, at the
+  !> nodes of a mesh whose scale is about `scale`.
   subroutine place_rise(self, mesh, scale)
     class(draining_t), intent(inout) :: self
     integer, intent(in) :: mesh
@@ -61,19 +63,20 @@ contains
       self%risen, self%meshes%grid(mesh), scale)
   end subroutine place_rise
 
-  !> The rate at which gaps change over a step: of a parabola through the last two instants, where
-  !> these are two.
+  !> The weights of present and earlier gaps in the rate of the gaps: the slope of a parabola in
+  !> time through the gaps of the last two instants and the present gaps, or of a line if there is
+  !> one earlier instant.
   subroutine prepare_fluid(self, from, time)
     class(draining_t), intent(inout) :: self
     type(instant_t), intent(in) :: from
     real(wp), intent(in) :: time
     real(wp) :: weights(3)
 
-    ! Where the drive turns the rate jumps. What bodies that hardly yield make of that dies away in
-    ! a time that no step may resolve: a parabola would overshoot.
+    ! The rate jumps where the drive turns. The response of stiff bodies to this jump decays in a
+    ! time that may be shorter than a step: a parabola would overshoot.
     weights = rate_weights(time - from%time, merge(from%time - self%before%time, 0.0_wp, &
       from%since_turn >= calming))
-    ! A Jacobian made for another length of steps says little of this one.
+    ! A Jacobian computed for a different length of the step is not accurate for this step.
     if (abs(log(weights(1)/self%made_for)) > other_length) then
       call self%frozen%forget()
       self%made_for = weights(1)
@@ -96,7 +99,7 @@ contains
 
   end subroutine prepare_fluid
 
-  !> What the fluid does at the end of a step; what it takes in it.
+  !> The suction and power of the fluid at the end of a step, and the energy dissipated in the step.
   subroutine remember_fluid(self, from, to)
     class(draining_t), intent(in) :: self
     type(instant_t), intent(in) :: from

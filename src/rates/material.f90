@@ -1,7 +1,8 @@
-!> A mesh fixed in the material, for what bodies remember: pressures are brought to it from meshes
-!> that move with the contact, and the rise of the gap that the half-space makes of them is found
-!> there. Panels are as fine as the edge of a contact wherever that may pass; where the edge is not,
-!> a pressure is smooth, and long panels, each in place of several, hold it.
+!> A mesh fixed in the material, for the memory of the bodies. Pressures are interpolated from
+!> meshes that move with the contact, and the rise of the gap due to these pressures is computed on
+!> the fixed mesh. The panels are fine enough for the contact edge wherever the edge may pass. Away
+!> from the edge a pressure is smooth, and long panels, each in place of several fine panels,
+!> represent it.
 module material
   use kinds, only: wp
   use discretisation, only: discretisation_t, local_nodes_t, gauss_nodes, first_node
@@ -11,31 +12,34 @@ module material
   private
   public :: material_t, new_material
 
-  !> Nodes of the fine mesh are those of long panels, in order, and then of the panels farther out.
+  !> The nodes of the fine mesh are first those inside long panels, in order, then those of the
+  !> panels farther out.
   type, extends(discretisation_t) :: material_t
-    !> Long panels: how many, their length, the fine nodes of each, their own nodes.
+    !> Long panels: their number, the number of fine nodes in each, their length, their own nodes.
     integer :: long = 0, inside = 0
     real(wp) :: length = 0
     type(local_nodes_t) :: own
-    !> Values on the fine nodes of a long panel from those on its own, (inside, own nodes).
+    !> Matrix from values at the own nodes of a long panel to values at its fine nodes,
+    !> (inside, own nodes).
     real(wp), allocatable :: spread(:, :)
     !> The kernel's columns for the own nodes of all long panels.
     real(wp), allocatable :: smooth_kernel(:, :)
-    !> What a long panel may lack of a pressure, over the largest.
+    !> Largest tail of a pressure on a long panel, over the largest pressure.
     real(wp) :: lacking = 0
   contains
     procedure :: take
   end type material_t
 
-  !> Fine panels in a long one, and how many nodes it has more than each of these.
+  !> Number of fine panels in a long panel, and number of nodes that a long panel has in excess of
+  !> a fine panel.
   integer, parameter :: together = 8, more_nodes = 2
-  !> A pressure over the largest whose deformation is no matter.
+  !> Ratio of a pressure to the largest pressure below which its deformation is neglected.
   real(wp), parameter :: nothing = 1.0e-12_wp
 
 contains
 
-  !> The mesh `grid`, whose first `equal` panels from the axis have one length, with long panels
-  !> that may lack a part `lacking` of a pressure.
+  !> The mesh `grid`, whose first `equal` panels from the axis have the same length, with long
+  !> panels. lacking: largest tail of a pressure on a long panel, over the largest pressure.
   function new_material(grid, equal, lacking) result(material)
     type(discretisation_t), intent(in) :: grid
     integer, intent(in) :: equal
@@ -64,8 +68,8 @@ contains
     end do
   end function new_material
 
-  !> Brings the pressure of another mesh at a scale to the nodes (values), and makes the rise of it
-  !> on the rows of the kernel.
+  !> Interpolates the pressure of another mesh at a scale to the nodes (`values`), and computes the
+  !> rise of the gap due to this pressure for the rows of the kernel (`rise`).
   subroutine take(self, grid, scale, pressure, values, rise)
     class(material_t), intent(in) :: self
     type(discretisation_t), intent(in) :: grid
@@ -92,7 +96,7 @@ contains
       end associate
     end do
     values(self%long*self%inside + 1:) = at(self%x(self%long*self%inside + 1:))
-    ! Neighbours of one kind together, the panels farther out with the last.
+    ! One product for adjacent panels of one kind, and one for the panels farther out.
     rise = 0
     first = 1
     do while (first <= self%long)
@@ -114,7 +118,7 @@ contains
 
   contains
 
-    !> The pressure at some radii.
+    !> The pressure at given radii.
     pure function at(radii) result(found)
       real(wp), intent(in) :: radii(:)
       real(wp) :: found(size(radii))
@@ -126,7 +130,7 @@ contains
       end do
     end function at
 
-    !> Adds the rise that columns make, up to the last that matters.
+    !> Adds the rise due to columns of the kernel, up to the last weight that is not negligible.
     subroutine add(columns, weights)
       real(wp), intent(in), contiguous :: columns(:, :)
       real(wp), intent(in) :: weights(:)

@@ -1,4 +1,4 @@
-!> A drive that moves: towards the other body at constant velocity, a dwell, and back.
+!> The motion of a drive: an approach at constant velocity, a dwell, and a retreat.
 module motion
   use kinds, only: wp
   implicit none
@@ -9,7 +9,8 @@ module motion
   character(len=*), parameter :: names_of_ways(3) = [character(len=8) :: 'approach', 'dwell', &
     'retreat']
 
-  !> Times [s] at which the ways begin and the last ends, and positions there (law's lengths).
+  !> Times [s] at which the ways begin and the last way ends, and positions at these times (law's
+  !> lengths).
   type :: motion_t
     real(wp) :: time(0:3) = 0, position(0:3) = 0
   contains
@@ -18,7 +19,8 @@ module motion
 
 contains
 
-  !> From `start` to `turn`, a dwell [s], and to `finish`; velocity in the law's lengths a second.
+  !> The motion from `start` to `turn`, a dwell [s], and the motion to `finish`. velocity: the law's
+  !> lengths per second.
   pure type(motion_t) function new_motion(velocity, start, turn, dwell, finish) result(motion)
     real(wp), intent(in) :: velocity, start, turn, dwell, finish
 
@@ -28,7 +30,7 @@ contains
     motion%time(3) = motion%time(2) + abs(finish - turn)/velocity
   end function new_motion
 
-  !> The position at a time of a way.
+  !> The position of the drive on a way at a time.
   pure real(wp) function at(self, way, time) result(position)
     class(motion_t), intent(in) :: self
     integer, intent(in) :: way

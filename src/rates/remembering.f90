@@ -1,8 +1,8 @@
-!> What bodies remember. A step in time is an elastic problem: over it the pressures change
-!> linearly, so that the present ones meet half-spaces softer than at once, and earlier ones have
-!> left a deformation (`creep`). The memory belongs to the material: it is kept on a mesh fixed in
-!> space, where pressures are interpolated to, and the deformation that it makes, which is smoother,
-!> is interpolated from.
+!> The memory of viscoelastic bodies. A step in time is an elastic problem (`creep`): pressures
+!> change linearly during the step, the present pressures act on half-spaces that are softer than
+!> instantaneously, and earlier pressures have left a deformation. The memory belongs to the
+!> material and is stored on a mesh fixed in space. Pressures are interpolated to this mesh; the
+!> deformation due to the memory, which is smoother, is interpolated from it.
 module remembering
   use kinds, only: wp, pi
   use discretisation, only: first_node
@@ -16,14 +16,15 @@ module remembering
   private
   public :: remembering_t
 
-  !> instant: coupling of bodies that have no time to yield more.
+  !> instant: coupling of the bodies without delayed deformation. compliance: that of the spring of
+  !> the drive, 0 without a spring.
   type, extends(solver_t) :: remembering_t
     type(creep_t) :: creep
     real(wp) :: instant = 0, compliance = 0
-    !> Fixed in space, of scale 1; there is none of bodies that do not remember.
+    !> The mesh fixed in space, of scale 1; it is not set for bodies without memory.
     type(material_t) :: material
-    !> Of a step: memories that are left of earlier ones, the parts of the present pressure in them,
-    !> and the rise that they make.
+    !> Of a step: the memories without the part of the present pressure, and the rise due to each;
+    !> the coefficients of the present pressure in the memories; the rise of the gap due to `left`.
     real(wp), allocatable :: left(:, :), left_rise(:, :), present(:), risen(:)
   contains
     procedure :: prepare_memory
@@ -35,7 +36,7 @@ module remembering
 
 contains
 
-  !> Makes the equations those of a step from an instant to a time.
+  !> Makes the equations of a step from an instant to a time.
   subroutine prepare_memory(self, from, time)
     class(remembering_t), intent(inout) :: self
     type(instant_t), intent(in) :: from
@@ -58,7 +59,7 @@ contains
     self%risen = 2*self%instant*matmul(self%left_rise, self%creep%share)
   end subroutine prepare_memory
 
-  !> The memories of the instant that a step has led to.
+  !> Computes the memories of the instant at the end of a step, and the energy dissipated in it.
   subroutine remember_pressure(self, from, to)
     class(remembering_t), intent(inout) :: self
     type(instant_t), intent(in) :: from
@@ -82,7 +83,7 @@ contains
     end associate
   end subroutine remember_pressure
 
-  !> Lets an instant be one of bodies at rest under their pressure.
+  !> Sets the memories of an instant to those of relaxed bodies under the present pressure.
   subroutine set_memory(self, at)
     class(remembering_t), intent(in) :: self
     type(instant_t), intent(inout) :: at
@@ -92,8 +93,8 @@ contains
     at%memory_rise = spread(at%pressure_rise, 2, size(self%creep%time))
   end subroutine set_memory
 
-  !> Notes the pressure of an instant on the nodes of the material's mesh, and what the half-space
-  !> makes of it; bodies that do not remember have none.
+  !> Stores the pressure of an instant at the nodes of the material's mesh, and the rise due to this
+  !> pressure; both are empty for bodies without memory.
   subroutine note_pressure(self, at)
     class(remembering_t), intent(in) :: self
     type(instant_t), intent(inout) :: at
@@ -107,7 +108,7 @@ contains
     end if
   end subroutine note_pressure
 
-  !> The energy that bodies, surface force and spring hold, in units of load times length.
+  !> The energy stored in bodies, surface force and spring, in units of load times length.
   real(wp) function energy(self, at)
     class(remembering_t), intent(inout) :: self
     type(instant_t), intent(in) :: at

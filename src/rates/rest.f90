@@ -1,4 +1,4 @@
-!> Where a drive in time begins: bodies at rest, as an approach from afar leaves them.
+!> The initial state of a drive in time: bodies at rest after a slow approach from a large distance.
 module rest
   use kinds, only: wp
   use dimensionless_problem, only: calm_gap
@@ -15,13 +15,14 @@ module rest
   private
   public :: begin_at_rest
 
-  !> Steps of the position on the way to a start, over the gap; the least, over the gap.
+  !> Step of the position on the way to the initial state, over the gap, and the shortest step, over
+  !> the gap.
   real(wp), parameter :: part_of_gap = 0.1_wp, least_part = 1.0e-5_wp
 
 contains
 
-  !> The equilibrium of relaxed bodies at a position, to which an approach from afar leads;
-  !> found = .false.: they jump before.
+  !> The equilibrium of relaxed bodies at a position, reached by an approach from a large distance.
+  !> found = .false.: the bodies jump before they reach the position.
   subroutine begin_at_rest(steps, position, at, found)
     type(time_stepper_t), intent(inout) :: steps
     real(wp), intent(in) :: position
@@ -32,7 +33,7 @@ contains
     real(wp) :: far, next, step
 
     if (allocated(steps%besides)) deallocate (steps%besides)
-    ! A fluid at rest has no part in it.
+    ! A fluid at rest exerts no pressure.
     if (allocated(steps%drainage)) call move_alloc(steps%drainage, fluid)
     steps%problem%coupling = steps%instant*steps%creep%relaxed()
     at%mesh = merge(approach, contact, steps%meshes%traceable)
@@ -65,8 +66,9 @@ contains
     if (found) steps%before = at
   end subroutine begin_at_rest
 
-  !> The same state as a step of no time has it, most of its deformation from the material's mesh:
-  !> what that and the other mesh differ by is no motion, and a fluid must not resist it.
+  !> Solves for the same state as a step of zero duration, with the delayed deformation from the
+  !> material's mesh. The deformations computed on the two meshes differ slightly; this difference
+  !> is not a motion, and the fluid must not resist it.
   subroutine begin_as_steps_do(steps, at, found)
     type(time_stepper_t), intent(inout) :: steps
     type(instant_t), intent(inout) :: at
@@ -79,8 +81,8 @@ contains
     call steps%frozen%forget()
   end subroutine begin_as_steps_do
 
-  !> Solves from a guess for relaxed bodies at a position; if they are found near where they were,
-  !> that is where they are.
+  !> Solves for relaxed bodies at a position, from the guess `state`. found: there is a solution
+  !> near the state of `at`, on the path; this solution then replaces the state of `at`.
   subroutine solve_relaxed(steps, position, state, at, found)
     type(time_stepper_t), intent(inout) :: steps
     real(wp), intent(in) :: position

@@ -1,4 +1,4 @@
-!> Bodies at one time.
+!> The bodies at a time.
 module time_instant
   use kinds, only: wp
   use shape, only: shape_t
@@ -8,27 +8,28 @@ module time_instant
   private
   public :: instant_t, extrapolate
 
-  !> Bodies at a time [s]: the position of the drive, D = H0 - compliance*load, the state; on the
-  !> material's mesh the memories (nodes, terms of `creep`) and the pressure. dissipated: what
-  !> dashpots and the fluid took in the step that led there. Of the fluid: the power [1/s] that it
-  !> takes, its largest suction and where that is (lateral units).
+  !> Bodies at a time [s]: the position of the drive, D = H0 - compliance*load, and the state; on
+  !> the material's mesh the memories (nodes, terms of `creep`) and the pressure. dissipated: the
+  !> energy dissipated by dashpots and the fluid in the step that ends at this time. Of the fluid:
+  !> the dissipated power [1/s], the largest suction and its radius (lateral units).
   type :: instant_t
     real(wp) :: time = 0, position = 0
     integer :: mesh = 1
     type(state_t) :: state
     real(wp), allocatable :: memory(:, :), pressure(:)
-    !> What the kernel makes of them, so that a step has one product with it.
+    !> Products of the kernel with memories and pressure, so that a step computes one product only.
     real(wp), allocatable :: memory_rise(:, :), pressure_rise(:)
     real(wp) :: dissipated = 0, power = 0, suction = 0, suction_at = 0
-    !> Steps since the drive turned.
+    !> Number of steps since the last turn of the drive.
     integer :: since_turn = 0
   end type instant_t
 
 contains
 
-  !> The state that the line through two of a mesh leads to, so far beyond the later one:
-  !> deformations are on it, and the shape beneath, which is known, is not. A gap that would shrink
-  !> by much is not believed.
+  !> Linear extrapolation of a state from two states on one mesh. ahead: distance beyond the later
+  !> state over the distance between the two. The deformations are extrapolated; the undeformed
+  !> shape is known. If an extrapolated gap is much smaller than the later gap, the result is the
+  !> later state.
   pure subroutine extrapolate(shape, grid, before, now, ahead, state)
     class(shape_t), intent(in) :: shape
     type(discretisation_t), intent(in) :: grid

@@ -1,7 +1,7 @@
-!> Steps in time where h0 does not tell the state, beside folds and over them: along the path of the
-!> equilibria that the memory of the moment allows, in its own coordinate, until the drive is where
-!> it is to be. A jump is such a step however far it leads, and lands where bodies are stable: where
-!> the drive has to come nearer for them to come nearer.
+!> Steps in time near folds and across folds, where h0 does not determine the state. The step
+!> follows the path of the equilibria with the present memory, in the coordinate of the path, until
+!> the drive has the given position. A jump is such a step of any length. A jump ends in a stable
+!> state, where an approach of the bodies needs an approach of the drive.
 module time_jump
   use kinds, only: wp
   use contact_state, only: state_t
@@ -17,20 +17,23 @@ module time_jump
   private
   public :: step_along
 
-  !> First, longest and shortest step of the coordinate; steps before a path is given up.
+  !> First, longest and shortest step of the coordinate; largest number of steps along a path.
   real(wp), parameter :: first = 0.01_wp, longest = 0.15_wp, shortest = 1.0e-6_wp
   integer, parameter :: most_steps = 1000
-  !> A position so far from the drive's, law's lengths, is on the way to infinity.
+  !> Distance from the position of the drive (law's lengths) beyond which the path is assumed to go
+  !> to infinity.
   real(wp), parameter :: too_far = 1.0e4_wp
-  !> What is left of the drive's position, law's lengths, and states to find it with.
+  !> Tolerated error of the position of the drive (law's lengths); largest number of states solved
+  !> in the search for this position.
   real(wp), parameter :: left_over = 1.0e-9_wp
   integer, parameter :: most_rounds = 30
 
 contains
 
-  !> From an instant to a time and the position there, along the path inward or outward or, where
-  !> that does not come there, the other way, and no farther than `farthest` in its coordinate; if
-  !> that is huge, it is a jump.
+  !> A step from an instant to a time and the position at this time, along the path inward or
+  !> outward (`inwards`). If the path in this direction does not reach the position, the step goes
+  !> in the other direction. The coordinate of the path changes by `farthest` at most; if `farthest`
+  !> is huge, the step is a jump.
   subroutine step_along(steps, from, time, position, inwards, farthest, to, done)
     class(time_stepper_t), intent(inout) :: steps
     type(instant_t), intent(in) :: from
@@ -51,7 +54,7 @@ contains
     call steps%remember(from, to)
   end subroutine step_along
 
-  !> Goes one way.
+  !> Follows the path in one direction.
   subroutine go(steps, from, position, inwards, jumps, farthest, to, done)
     class(time_stepper_t), intent(inout) :: steps
     type(instant_t), intent(in) :: from
@@ -96,7 +99,7 @@ contains
       missing_last = missing
       missing = off(steps, to, position)
       if (.not. passed()) cycle
-      ! Between what the two meshes say of one state.
+      ! The position lies between the drives of one state on the two meshes.
       call steps%frozen%forget()
       call steps%solve(steps%control_at(position, mesh, to%state), to%state, done)
       return
@@ -105,7 +108,8 @@ contains
 
   contains
 
-    !> Whether the drive's position was passed, by a jump in the sense in which bodies are stable.
+    !> Whether the position of the drive was passed. A jump passes the position only where the
+    !> bodies are stable.
     pure logical function passed()
       passed = (missing < 0) .neqv. (missing_last < 0)
       if (jumps) passed = passed .and. (inwards .eqv. missing < 0)
@@ -113,7 +117,7 @@ contains
 
   end subroutine go
 
-  !> By how much the drive is beyond a position.
+  !> The distance of the drive beyond a position.
   pure real(wp) function off(steps, at, position)
     class(time_stepper_t), intent(in) :: steps
     type(instant_t), intent(in) :: at
@@ -122,7 +126,7 @@ contains
     off = at%state%h0 - steps%compliance*at%state%load - position
   end function off
 
-  !> Solves for the state at a coordinate, from that of an instant as it is.
+  !> Solves for the state at a coordinate, with the state of the instant as the guess.
   subroutine solve_at(steps, s, at, found)
     class(time_stepper_t), intent(inout) :: steps
     real(wp), intent(in) :: s
@@ -139,7 +143,7 @@ contains
     if (found) at%state = state
   end subroutine solve_at
 
-  !> Goes on by a step of the coordinate, inward if it is positive.
+  !> Continues the path by a step `ds` of the coordinate, inward if `ds` is positive.
   subroutine advance(steps, ds, last, s_last, at, s, found)
     class(time_stepper_t), intent(inout) :: steps
     real(wp), intent(in) :: ds
@@ -161,7 +165,8 @@ contains
     s = to
   end subroutine advance
 
-  !> The place between two where the drive is at a position; `at`: the second, then that.
+  !> The state at which the drive has a position, between two states. at: at entry the second state,
+  !> at return the result.
   subroutine find_between(steps, position, last, s_last, missing_last, at, s, missing, done)
     class(time_stepper_t), intent(inout) :: steps
     real(wp), intent(in) :: position, s_last, missing_last, s, missing
@@ -187,7 +192,7 @@ contains
     end do
   end subroutine find_between
 
-  !> The scale of the mesh under a control of the path.
+  !> The scale of the mesh that a control of the path prescribes.
   pure real(wp) function scale_of(control)
     type(control_t), intent(in) :: control
 

@@ -1,5 +1,5 @@
-!> Steps in time of bodies that remember, or that a fluid drains from between. States are solved on
-!> meshes that follow the contact edge.
+!> Steps in time of viscoelastic bodies, or of bodies with a fluid between them. States are solved
+!> on meshes that follow the contact edge.
 module time_stepper
   use kinds, only: wp
   use contact_state, only: state_t
@@ -18,10 +18,10 @@ module time_stepper
   private
   public :: time_stepper_t
 
-  !> Goes from instant to instant.
+  !> Computes one instant after the other.
   type, extends(draining_t) :: time_stepper_t
-    !> The largest change of the path's coordinate in a step: what changes by more has jumped, or is
-    !> to be followed in shorter steps.
+    !> The largest change of the path's coordinate in a step. A state that changes by more has
+    !> jumped, or needs shorter steps.
     real(wp) :: farthest = 0.3_wp
   contains
     procedure :: step
@@ -32,22 +32,22 @@ module time_stepper
     procedure, private :: guess
   end type time_stepper_t
 
-  !> Radius over that of a passage at which a mesh is left again; longest extrapolation over the
-  !> step before.
+  !> Ratio of the radius to the radius of a passage below which the state returns to the mesh before
+  !> the passage; longest extrapolation over the previous step.
   real(wp), parameter :: back = 0.97_wp, longest_guess = 3
-  !> What the scale may miss the expected one by, over what is finest, for the memory or
-  !> the earlier gaps to be linear in it; rounds.
+  !> Largest difference between the scale and the expected scale, over `finest`, for which the
+  !> memory, or the earlier gaps under a fluid, are linear in the scale; largest number of rounds.
   real(wp), parameter :: far_off = 0.1_wp, far_off_fluid = 0.02_wp
   integer, parameter :: most_rounds = 3
-  !> Parts of radius and gap by which two meshes may differ in what they say of one state.
+  !> Largest relative difference of radius and gap between two meshes for one state.
   real(wp), parameter :: same_state = 0.05_wp
-  !> The part of a contact that is as fine as its edge may be.
+  !> Largest value of `finest` over the radius of the contact.
   real(wp), parameter :: part_of_contact = 0.3_wp
 
 contains
 
-  !> From an instant to a later time and the position there. done = .false.: the bodies are not near
-  !> where they were, and the step is too long, or leads over a jump.
+  !> A step from an instant to a later time and the position at this time. done = .false.: there is
+  !> no solution near the earlier state; the step is too long, or the bodies jump.
   subroutine step(self, from, time, position, to, done)
     class(time_stepper_t), intent(inout) :: self
     type(instant_t), intent(in) :: from
@@ -68,7 +68,7 @@ contains
       expected = to%state%scale
       call self%solve(control, to%state, done)
       if (.not. done .and. allocated(self%drainage)) then
-        ! The fluid's part of the Jacobian changes much where gaps close.
+        ! The fluid's part of the Jacobian changes considerably where gaps close.
         call self%guess(from, time, position, control, to%state)
         call solve_anderson(self%equations_t, newton_of(self%options), self%frozen, control, &
           to%state, done)
@@ -89,8 +89,8 @@ contains
     call self%remember(from, to)
   end subroutine step
 
-  !> The state to be expected at a time, from the last two instants where they are on one mesh, and
-  !> the control for it.
+  !> The expected state at a time, extrapolated from the last two instants if they are on one mesh,
+  !> and the control for this state.
   subroutine guess(self, from, time, position, control, state)
     class(time_stepper_t), intent(in) :: self
     type(instant_t), intent(in) :: from
@@ -112,22 +112,22 @@ contains
       self%meshes%grid(from%mesh), self%meshes%grid(from%mesh), control%scale)
   end subroutine guess
 
-  !> The control that prescribes the position of the drive on a mesh; state: about what is expected.
+  !> The control that prescribes the position of the drive on a mesh. state: a guess of the state.
   type(control_t) function control_at(self, position, mesh, state) result(control)
     class(time_stepper_t), intent(in) :: self
     real(wp), intent(in) :: position
     integer, intent(in) :: mesh
     type(state_t), intent(in) :: state
 
-    ! Behind a spring the position may move far while h0 hardly does.
+    ! With a spring, the position may change considerably while h0 is almost constant.
     control = h0_control(self%problem%shape, self%meshes, mesh, &
       merge(state%h0, position, self%compliance > 0))
     control%value = position
     control%compliance = self%compliance
   end function control_at
 
-  !> The finest that the memory is about the edge: the neck of relaxed bodies, or a part of the
-  !> contact.
+  !> The shortest length over which the memory changes near the edge: the width of the cohesive zone
+  !> of relaxed bodies, or a part of the contact radius.
   pure real(wp) function finest(self, radius)
     class(time_stepper_t), intent(in) :: self
     real(wp), intent(in) :: radius
@@ -145,7 +145,7 @@ contains
     if (control%kind == at_h0_with_edge) control_scale = state%scale
   end function control_scale
 
-  !> The mesh that a state belongs on, which it may be on already.
+  !> The mesh on which a state of the mesh `mesh` is to be solved; it may be the same mesh.
   integer function mesh_for(self, mesh, state)
     class(time_stepper_t), intent(in) :: self
     integer, intent(in) :: mesh
@@ -166,7 +166,8 @@ contains
     end associate
   end function mesh_for
 
-  !> Moves an instant to another mesh, at the same position; where that fails it stays.
+  !> Moves an instant to another mesh, at the same position of the drive. If this fails, the instant
+  !> remains on its mesh.
   subroutine move_to_mesh(self, mesh, position, at)
     class(time_stepper_t), intent(inout) :: self
     integer, intent(in) :: mesh
@@ -183,7 +184,7 @@ contains
       self%meshes%grid(mesh), scale)
     call self%place_rise(mesh, scale)
     call self%solve(self%control_at(position, mesh, at%state), state, done)
-    ! Beside a fold another state has the same h0.
+    ! Near a fold, a second state has the same h0.
     if (done) done = abs(state%axis_gap - at%state%axis_gap) < &
       same_state*(1 + abs(at%state%axis_gap)) .and. abs(state%scale - scale) < same_state*scale
     if (.not. done) then

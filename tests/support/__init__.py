@@ -1,1 +1,1 @@
-"""What tests and studies share and the program knows nothing of."""
+"""The common parts of tests and studies, independent of the program."""

@@ -1,11 +1,11 @@
-"""A mesh for two Abel transforms in a row, which are the elastic kernel.
+"""A mesh for two successive Abel transforms, which are the elastic kernel.
 
 Copson's identity says that with g(s) = Int_s^inf P t dt/sqrt(t^2 - s^2)
 
     Int_0^inf P(t) k(r,t) t dt = (4/pi) Int_0^r g(s) ds/sqrt(r^2 - s^2)
 
-so that no elliptic integral is needed. Square-root singularities go with a square root as the
-variable of integration; nodes are Gauss-Legendre's in panels of z, x = centre + d sinh z.
+so no elliptic integral is needed. A square root as the variable of integration removes square-root
+singularities; the nodes are Gauss-Legendre nodes in panels of z, x = centre + d sinh z.
 """
 
 import functools
@@ -42,7 +42,7 @@ def lagrange(u, count):
 class Mesh:
     """Nodes x = centre + d sinh z, and the elastic operator on them.
 
-    `operator` @ P is Int P k t dt at the nodes, `axis` and `edge` are its rows for x = 0 and x = 1,
+    `operator` @ P is Int P k t dt at the nodes; `axis` and `edge` are its rows for x = 0 and x = 1;
     `area` @ P is Int P t dt. All for unit scale: with r = c x they are multiplied by c and c^2.
     """
 
@@ -76,7 +76,7 @@ class Mesh:
         return np.concatenate(all_ends)
 
     def position(self, z):
-        """x at z; near x = 0 of a mesh in contact as a difference, without cancellation."""
+        """x at z; near x = 0 of a mesh in contact computed without cancellation."""
         if not self.centre:
             return self.d * np.sinh(z)
         low = math.asinh(-1 / self.d)
@@ -123,7 +123,7 @@ class Mesh:
         return np.einsum("iq,iqj->ij", kernel * weights * (high - low)[:, None], self.basis(k, z))
 
     def beside_the_axis(self, i):
-        """The same in the first panel, where t = -s is near too: pieces that double."""
+        """The same in the first panel, where t = -s is also close: pieces of doubled length."""
         a, b, _ = self.panel(0)
         cuts = [self.z[i]]
         while cuts[-1] < b:

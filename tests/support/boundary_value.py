@@ -1,7 +1,7 @@
 """Pressure between charged surfaces by collocation of the Poisson-Boltzmann equation.
 
-It shares nothing with the program: the profile of the potential is the unknown, at Chebyshev points
-of a gap that is divided into pieces, narrow at the surfaces.
+This solution is independent of the program. The unknown is the profile of the potential at
+Chebyshev points of the gap, which is divided into pieces that are narrow at the surfaces.
 """
 
 import numpy as np
@@ -22,7 +22,7 @@ def pressure(potential, regulation, gap, order=24, pieces=4):
     """
     y_alone, p = np.array(potential, float), np.array(regulation, float)
     s_alone, capacity = 2 * np.sinh(y_alone / 2), np.cosh(y_alone / 2)
-    # Layers are as thin as exp(-|y|/2): ends of pieces go there geometrically.
+    # The thickness of layers is exp(-|y|/2): the pieces shrink geometrically towards the surfaces.
     thin = min(0.5, 4 * np.exp(-abs(y_alone).max() / 2) / gap)
     half = np.r_[0, np.geomspace(thin, 0.5, pieces)] if thin < 0.5 else np.array([0, 0.5])
     ends = gap * np.unique(np.r_[half, 1 - half])
@@ -69,6 +69,6 @@ def pressure(potential, regulation, gap, order=24, pieces=4):
         if abs(step).max() <= 1e-12 * abs(y).max():
             break
     found = 2 * np.sinh(y / 2) ** 2 - (first @ y) ** 2 / 2
-    # Where the potential is least the pressure is not a difference of large numbers.
+    # Where the potential is smallest the pressure is not a difference of large numbers.
     calm = np.argsort(abs(y))[:8]
     return np.median(found[calm]), np.ptp(found[calm])

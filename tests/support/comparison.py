@@ -1,10 +1,10 @@
-"""One run's numbers beside the reference's."""
+"""Comparison of the numbers of a run with those of the reference."""
 
 import math
 from typing import NamedTuple
 
-# By how much two resolutions of the reference differ at most, relative: where a load is extreme is
-# known worst, and rounding sets the limit at strong adhesion.
+# Largest relative difference between two resolutions of the reference. It is largest for the place
+# of an extremum of the load; at strong adhesion rounding sets the limit.
 KNOWN, KNOWN_PLACE, KNOWN_BY_SIGMA = 3e-11, 3e-10, 2e-14
 
 
@@ -28,7 +28,7 @@ class Deviation(NamedTuple):
 
 
 def missing(report, expected):
-    """Keys that are there and should not be, or the other way round, and arrays of wrong shape."""
+    """Keys that are present or absent by mistake, and arrays of wrong shape."""
     wrong = []
     for key, value in expected.items():
         there = key in report.numbers
@@ -47,7 +47,7 @@ def aslist(value):
 
 
 def deviations(report, expected, path):
-    """All numbers that both have."""
+    """The deviations of all numbers that both have."""
     pull_off = path.pull_off.load
     found = []
     for key, value in expected.items():
@@ -81,7 +81,7 @@ def floor(key, sigma):
 
 
 def scale_of(key, pull_off):
-    """What errors of a small number are relative to."""
+    """The scale to which errors of a small number are relative."""
     if key == "energy_lost":
         return 0.0
     return 1.0 if key.endswith(("h0", "displacement")) else abs(pull_off)

@@ -1,8 +1,10 @@
-"""An independent solution for bodies that remember, to hold the program against: dense, on a mesh
-fixed in space, by Newton's method for the logarithm of the gap; memory by the trapezoidal rule.
+"""An independent solution for viscoelastic bodies, for comparison with the program. It uses a dense
+matrix on a mesh fixed in space, Newton's method for the logarithm of the gap, and the trapezoidal
+rule for the memory.
 
-Units: z0 for gaps, gamma/z0 for pressures, gamma R for loads. Bodies of strength sigma at once and
-sigma (1 + share) at rest follow with a time of 1.
+Units: z0 for gaps, gamma/z0 for pressures, gamma R for loads. The
+strength of the bodies is sigma instantaneously and sigma (1 + share) at rest, with a time of
+retardation of 1.
 """
 
 import numpy as np
@@ -12,7 +14,7 @@ from support.states import energy, pressure, slope
 
 
 class Creeping:
-    """Bodies on their way: gaps, pressures and memory at the nodes."""
+    """The moving bodies: gaps, pressures and memory at the nodes."""
 
     def __init__(self, sigma, share, start, finer=4):
         self.mesh = Mesh(0.0, 0.5, 400.0, USUAL, finer)
@@ -23,7 +25,7 @@ class Creeping:
         self.memory = self.pressure = pressure(self.gap)
 
     def solve(self, h0, sigma, rise):
-        """The gaps at h0 where a rise is there already."""
+        """The gaps at h0 with a given rise."""
         for _ in range(40):
             left = (self.gap - h0 - self.shape - rise
                     - 2 * sigma * self.mesh.operator @ pressure(self.gap))
@@ -51,7 +53,7 @@ class Creeping:
 
     @property
     def held(self):
-        """Energy of surfaces and bodies."""
+        """The energy stored in surfaces and bodies."""
         area = 2 * np.pi * self.mesh.area
         elastic = [area @ (p * (self.mesh.operator @ p)) for p in (self.pressure, self.memory)]
         return area @ energy(self.gap) + self.sigma * (elastic[0] + self.share * elastic[1])

@@ -1,4 +1,4 @@
-"""Decks for the tests of the deck reader: good ones, and the beginnings of bad ones."""
+"""Decks for the tests of the deck reader: good decks, and the beginnings of bad decks."""
 
 import re
 
@@ -108,17 +108,17 @@ ACCEPTED = {
 
 
 def with_bodies(text):
-    """A deck whose first line is `&bodies text`, with all else in order."""
+    """A deck whose first line is `&bodies text` and whose other lines are correct."""
     return f"&bodies {text}\n" + FORCE + LOADING
 
 
 def with_extra(text):
-    """A good deck and `text` from line 4 on."""
+    """A good deck followed by `text` from line 4 on."""
     return GOOD + text
 
 
 def assert_refused(check, text, line, group, key, phrase):
-    """The deck is refused, first of all for what is wrong with this key of a group in this line."""
+    """The deck is refused, and the first mistake is that of this key of a group in this line."""
     status, out, err = check(text)
     assert (status, out) == (2, "")
     first = err.splitlines()[0]

@@ -46,17 +46,17 @@ class Units(NamedTuple):
         return deck(bodies=bodies, force=force, **scaled)
 
     def metres(self, value):
-        """A length or several."""
+        """One or several lengths in metres."""
         return [x * self.z0 for x in value] if isinstance(value, list) else value * self.z0
 
 
-# With these h0 is in z0 and loads are in sigma; and crossed cylinders in air.
+# Units in which h0 is in z0 and loads are in sigma; and crossed cylinders in air.
 PLAIN = Units(1.0, 1.0, 1.0)
 REAL = Units(1.5e-2, 1.0e10, 0.5e-9)
 
 
 class Report(NamedTuple):
-    """What a run reported. numbers: those of the summary; errors: how well it says it knows each,
+    """The results of a run. numbers: those of the summary; errors: estimates for each number,
     in the number's own unit where the summary has a key for it; estimate: the one for all."""
 
     status: int
@@ -69,7 +69,7 @@ class Report(NamedTuple):
 
 
 def said(found):
-    """The status of a run that failed, and why."""
+    """The status of a run that failed, and the reason."""
     reasons = " | ".join([found.stderr.strip()[-120:], *found.warnings])
     return f"status {found.status}: {reasons[:200]}"
 
@@ -81,7 +81,7 @@ def program_path():
 
 
 def report(sigma, groups, folder, name="deck", *, rows=False, seconds=120, units=PLAIN):
-    """Runs a deck of these groups in a folder and reads what it reports, in z0 and gamma R."""
+    """Runs a deck of these groups in a folder and reads its results, in z0 and gamma R."""
     folder.mkdir(parents=True, exist_ok=True)
     (folder / f"{name}.nml").write_text(units.deck(sigma, groups))
     environment = dict(os.environ, OMP_NUM_THREADS="1", OPENBLAS_NUM_THREADS="1")

@@ -1,11 +1,11 @@
-"""Loads between rigid bodies, by a quadrature of its own over the logarithm of r, in pieces."""
+"""Loads between rigid bodies, by an independent quadrature over the logarithm of r, in pieces."""
 
 import math
 
 import numpy as np
 import snapin
 
-# Part of the equator's radius up to which the program's spheroids reach; beyond, they are straight.
+# Part of the equator's radius up to which the program has spheroids; beyond, the body is straight.
 REACHING = 0.98
 
 
@@ -58,7 +58,7 @@ def spheroid(radius, b, kind="spheroid"):
 
 
 def profile(path, r, radius):
-    """Points of a parabola, of which the program's spline is the parabola."""
+    """Points of a parabola, through which the program's spline is the parabola."""
     np.savetxt(path, np.column_stack([r, r**2 / (2 * radius)]), fmt="%.17e")
     return Body("profile", lambda x: x**2 / (2 * radius), lambda f: np.sqrt(2 * radius * f),
                 file=str(path))

@@ -9,7 +9,7 @@ from numpy.polynomial import chebyshev
 from support import boundary_value
 
 BOLTZMANN, CHARGE, AVOGADRO, VACUUM = 1.380649e-23, 1.602176634e-19, 6.02214076e23, 8.8541878128e-12
-# From here on, in Debye lengths, double layers fall as exp(-x) to all digits that matter.
+# Gap in Debye lengths beyond which double layers decay as exp(-x) to all significant digits.
 FAR = 24.0
 
 
@@ -23,7 +23,7 @@ class Dlvo:
         ions = 2 * AVOGADRO * salt * CHARGE**2
         self.debye = math.sqrt(permittivity * VACUUM * BOLTZMANN * temperature / ions)
         self.osmotic = permittivity * VACUUM * (thermal / self.debye) ** 2
-        # ln(p exp(x)) is smooth; its series in x = gap/debye, closer where layers overlap.
+        # ln(p exp(x)) is smooth; its series in x = gap/debye: short pieces where layers overlap.
         y = [potential / thermal] * 2
         nodes = chebyshev.chebpts1(48)
         at = FAR * ((nodes + 1) / 2) ** 2
@@ -53,7 +53,7 @@ class Dlvo:
         return pressure, slope, energy
 
     def energy_of_layers(self, gap):
-        """The integral of their pressure from each gap on."""
+        """The integral of the pressure of the double layers from each gap to infinity."""
         x, w = np.polynomial.legendre.leggauss(60)
         flat = np.atleast_1d(gap).ravel()
         # Over z = 1 - exp(-(t - gap)/debye), in which the integrand is nearly constant.

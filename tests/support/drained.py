@@ -1,8 +1,9 @@
-"""An independent solution for bodies with a fluid between them, to hold the program against: dense,
-on a mesh fixed in space. The film is one of finite volumes: through the edge of a ring flows what
-the gaps inside it lose, and that is the mobility there times the difference of the pressures beside
-it. Euler's implicit rule in time, with Newton's method for the gaps; runs with steps halved and
-rings doubled are extrapolated.
+"""An independent solution for bodies with a fluid between them, for comparison with the program. It
+uses a dense matrix on a mesh fixed in space. The film is computed by finite volumes: the flow
+through the edge of a ring is the volume that the gaps inside this edge lose, and is equal to the
+mobility times the difference of the pressures on either side. The rule in time is Euler's implicit
+rule, with Newton's method for the gaps. Results are extrapolated from runs with half the step and
+twice the number of rings.
 
 Units: z0 for gaps, gamma/z0 for pressures, gamma R for loads. strength = 12 eta R/gamma is a time.
 """
@@ -21,7 +22,7 @@ def the_mesh():
 
 
 def interpolation(mesh, z):
-    """The matrix that takes nodal values to the places z."""
+    """The matrix from nodal values to values at the places z."""
     order = mesh.order
     panel = np.clip(np.searchsorted(mesh.ends, z, side="right") - 1, 0, mesh.ends.size - 2)
     u = (z - mesh.ends[panel]) / np.diff(mesh.ends)[panel]
@@ -32,7 +33,7 @@ def interpolation(mesh, z):
 
 
 class Drained:
-    """Bodies on their way: gaps at the nodes, and the film in so many rings of equal width in z."""
+    """The moving bodies: gaps at the nodes, and the film in `rings` rings of equal width in z."""
 
     def __init__(self, sigma, strength, start, rings):
         self.mesh = mesh = the_mesh()
@@ -43,11 +44,11 @@ class Drained:
         edge = width * np.arange(1, rings + 1)
         self.edge, self.speed = mesh.position(edge), mesh.growth(edge)
         area = np.diff(np.concatenate([[0], self.edge**2])) / 2
-        # What flows through edges, of rates at nodes.
+        # Matrix from rates at nodes to flows through edges.
         self.gather = np.cumsum(area[:, None] * interpolation(mesh, edge - width / 2), axis=0)
         self.at_edge = interpolation(mesh, edge)
-        # Pressures at nodes, of their drops from ring to ring: sums from without, on parabolas
-        # through three rings.
+        # Matrix from drops of the pressure between rings to pressures at nodes: sums from outside,
+        # interpolated by parabolas through three rings.
         middle = edge - width / 2
         sums = np.triu(np.ones((rings, rings)))
         k = np.clip(np.round(mesh.z / width - 0.5).astype(int), 1, rings - 2)
@@ -56,7 +57,7 @@ class Drained:
         i = np.arange(mesh.x.size)
         three[i, k - 1], three[i, k], three[i, k + 1] = s * (s - 1) / 2, 1 - s**2, s * (s + 1) / 2
         self.drops = three @ sums * width
-        # Beyond the last ring the flow goes on as the square of the position, and the gap too.
+        # Beyond the last ring, flow and gap are assumed to grow as the square of the position.
         self.beyond = 2 * strength / self.edge[-1]**6
         self.gap = start + self.shape
         for _ in range(60):
@@ -89,14 +90,15 @@ class Drained:
 
     @property
     def load(self):
-        # With the tail of a pressure that falls as x**-4.
+        # The last term is the tail of a pressure that decreases as x**-4.
         last = self.mesh.x[-1]
         return 2 * np.pi * (self.mesh.area @ self.pressure + self.pressure[-1] * last**2 / 2)
 
 
 def cycle(sigma, strength, start, turn, velocity, steps, rings):
     """Loads of an approach and a retreat at the ends of ten equal parts of each. Steps in the first
-    part after a turn are in proportion to what has passed, in the others a part over `steps`."""
+    part after a turn are proportional to the time since the turn; the other parts have `steps`
+    equal steps."""
     bodies = Drained(sigma, strength, start, rings)
     part = (start - turn) / velocity / 10
     loads = []
@@ -117,7 +119,7 @@ def cycle(sigma, strength, start, turn, velocity, steps, rings):
 
 
 def extrapolated(*case, steps=8, rings=120):
-    """The loads, and about what is left of their errors."""
+    """The extrapolated loads, and estimates of their remaining errors."""
     a, b, c = (cycle(*case, steps * 2**k, rings) for k in range(3))
     coarse, fine = 2 * b - a, 2 * c - b
     best = fine + (fine - coarse) / 3

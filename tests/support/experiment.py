@@ -1,7 +1,7 @@
-"""What an experiment that steps h0 must report, read off the reference path.
+"""The numbers that an experiment with stepped h0 must report, from the reference path.
 
-The bodies stay on a stable branch to its end and then jump to the other: how long the steps are
-makes no difference. Units: z0 for h0, gamma R for loads.
+The bodies stay on a stable branch to its end and then jump to the other branch: the length of the
+steps makes no difference. Units: z0 for h0, gamma R for loads.
 """
 
 import math
@@ -9,14 +9,14 @@ from typing import NamedTuple
 
 
 class Leg(NamedTuple):
-    """A stretch of one branch, from one point of the path to another."""
+    """A part of one branch, from one point of the path to another."""
 
     first: object
     last: object
 
 
 class Cycle(NamedTuple):
-    """The branches of an experiment: each a list of legs with a jump between any two."""
+    """The branches of an experiment: each a list of legs, with a jump between successive legs."""
 
     path: object
     loading: list
@@ -31,7 +31,7 @@ def cycle(path, start, end, turning=(), retreat=None):
 
 
 def in_contact(path, start, h0):
-    """Whether an approach from afar, first looked at at `start`, has jumped into contact at h0."""
+    """Whether an approach whose first state is at `start` has jumped into contact at h0."""
     return bool(path.folds) and min(start, h0) < path.jump_in.h0
 
 
@@ -60,14 +60,14 @@ def withdrawal(path, start, turn, retreat):
 
 
 def largest_tension(path, legs):
-    """The point of largest tension that a branch passes; nothing where all loads are positive."""
+    """The point of largest tension on a branch; None if all loads are positive."""
     passed = [point for leg in legs for point in path.swept(leg.first, leg.last)]
     lowest = min(passed, key=lambda point: point.load)
     return lowest if lowest.load < 0 else None
 
 
 def reported(found):
-    """The numbers of a summary. None: the key is not there; NaN: nothing at this turning point."""
+    """The numbers of a summary. None: the key is absent; NaN: no value at this turning point."""
     path = found.path
     branches = [largest_tension(path, legs) for legs in (found.loading, *found.unloadings)]
     tensions = [point for point in branches if point]

@@ -1,6 +1,6 @@
-"""Decks at the far ends of all keys, drawn at random, and what is claimed of every one of them.
+"""Random decks with extreme values of all keys, and the claims about each of them.
 
-As a command it tries more of them than the suite does, and keeps those that break a claim:
+As a command it tries more decks than the suite, and keeps those that break a claim:
 
     export SNAPIN=build-traps/snapin PYTHONPATH=tests
     .venv/bin/python -m support.extremes --first 0 --count 2000 --out FOLDER
@@ -35,7 +35,7 @@ def power(rng, low, high):
 
 
 def bodies(rng, radius, stiffness):
-    """The bodies, said in one of the three ways."""
+    """The bodies, given in one of the three ways."""
     way = rng.random()
     if way < 0.15:
         return {"radius": radius, "rigid": True}
@@ -47,7 +47,7 @@ def bodies(rng, radius, stiffness):
 
 
 def force(rng, radius, stiffness):
-    """A law and its length: lengths and pressures of matter or beyond it, or a coupling drawn."""
+    """A law and its length: lengths and pressures of matter and beyond, or a random coupling."""
     if rng.random() < 0.65:
         z0 = power(rng, -12, -3)
         if rng.random() < 0.5:
@@ -93,7 +93,7 @@ def ranges(rng, length):
 
 
 def effects(rng, groups):
-    """What else a scene may have."""
+    """The other groups of a scene."""
     if rng.random() < 0.15:
         groups["stability"] = {}
     if rng.random() < 0.2:
@@ -151,13 +151,13 @@ def extreme_deck(number):
 
 # --- Claims
 
-# What Fortran writes where a number does not fit, or is none.
+# Fortran's output for a number that does not fit, is infinite or is NaN.
 NO_NUMBER = re.compile(r"\*|\b(nan|inf|infinity)\b", re.IGNORECASE)
-# Columns of theories say NaN for what a theory does not say, and arrays of the summary for a
+# Columns of theories have NaN where a theory gives no number; arrays of the summary have NaN for a
 # turning point without a jump.
 MAY_BE_NAN = ("classical.csv", "approximations.csv", "sweep.csv", "summary.nml")
-# Columns of curve.csv that do so where a criterion does not apply, a row is no equilibrium, or an
-# eigenvalue is not certain.
+# Columns of curve.csv that have NaN where a criterion does not apply, a row is no equilibrium, or
+# an eigenvalue is not certain.
 STABILITY = ("smallest_eigenvalue", "criterion_28", "criterion_29")
 
 
@@ -171,8 +171,8 @@ def claim(holds, text):
 
 
 def run_deck(program, text, folder, name, seconds):
-    """The status of a deck's run, its standard error and the seconds of the processor it took, at
-    most `seconds`: a machine that is busy with other things does not count."""
+    """The status of a deck's run, its standard error and its processor time, at most `seconds`. The
+    limit is independent of the load of the machine."""
     folder.mkdir(parents=True, exist_ok=True)
     (folder / f"{name}.nml").write_text(text)
     environment = dict(os.environ, OMP_NUM_THREADS="1", OPENBLAS_NUM_THREADS="1")
@@ -190,12 +190,12 @@ def run_deck(program, text, folder, name, seconds):
 
 
 def processor_seconds():
-    """What runs that ended have taken so far; with several at once, those of others too."""
+    """Processor time of all runs that have ended; with simultaneous runs, also of the others."""
     return resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
 
 
 def check_run(status, stderr, folder):
-    """All that is claimed of any deck; returns the status."""
+    """Checks all claims about any deck; returns the status."""
     claim(status in (0, 1, 2), f"status {status}: {stderr[-1500:]}")
     claim("SIG" not in stderr and "Fortran runtime" not in stderr, stderr[-1500:])
     if status == 2:
@@ -231,8 +231,8 @@ def check_run(status, stderr, folder):
         claim(len(curve) > 0, "nothing computed, and status 0")
         worst = max(curve["residual"])
         claim(summary["worst_residual"] >= worst * (1 - 1e-12), "worst_residual hides a state")
-        # Where gaps are many of the law's lengths rounding sets a floor of its own. It is never
-        # high, and whoever may mind is told.
+        # Where gaps are many of the law's lengths, rounding sets a lower limit of the residual. The
+        # limit is never high, and a warning reports it where it may matter.
         told = any("rounding leaves" in text for text in warnings)
         excused = 1e-3 if told else max(1e-8, groups["numerics"]["accuracy"])
         claim(worst <= max(tolerance, excused), f"residual {worst} above {tolerance}, untold")
@@ -246,12 +246,12 @@ def check_run(status, stderr, folder):
 
 
 def tolerance_of(keys):
-    """The residual that a deck asks for."""
+    """The residual that a deck requests."""
     return keys.get("residual_tolerance", min(1e-8, 0.01 * keys.get("accuracy", 1e-6)))
 
 
 def try_deck(number, program, out, seconds):
-    """Runs deck `number`; its status, or what is broken; its seconds."""
+    """Runs deck `number`; returns its status, or the broken claim, and its processor time."""
     name = f"deck{number}"
     text = extreme_deck(number)
     try:

@@ -1,14 +1,14 @@
-"""Runs whose system calls fail, that are killed at one, or that lose power.
+"""Runs in which a system call fails, or that are killed or lose power at a system call.
 
     faults.py [--every N]
 
-tries every call (or every N-th), prints a table of how many were tried and how runs ended, and
-ends with status 1 where what src/system/publication.f90 promises does not hold.
+tries every call (or every N-th), prints a table of the number of tries and of the ends of the
+runs, and ends with status 1 if a promise of src/system/publication.f90 is broken.
 
-A run is to replace the results of an older deck of the same name, or has a new folder. Whatever
-happens: files with final names are the old set (in a new folder: none) or the new one, or
-INCOMPLETE.txt is there and the run has said so; the same deck with --resume then leaves exactly
-what an undisturbed run does.
+A run is to replace the results of an older deck of the same name, or has a new folder. In every
+case, files with final names are the old set (in a new folder: none) or the new set, or
+INCOMPLETE.txt exists and the run has reported it; the same deck with --resume then leaves exactly
+the files of an undisturbed run.
 """
 
 import argparse
@@ -37,7 +37,7 @@ NEW = scenes.deck(**RIGID, loading=scenes.loading(5, 1, 0.5), profiles={"h0": [2
 
 
 class Broken(AssertionError):
-    """A promise that did not hold."""
+    """A broken promise."""
 
 
 def require(held, *what):
@@ -46,7 +46,7 @@ def require(held, *what):
 
 
 def contents(folder):
-    """What results say: name -> bytes, the summary without times; without partial files."""
+    """The contents of results: name -> bytes, the summary without times; without partial files."""
     found = {}
     for path in folder.iterdir() if folder.is_dir() else ():
         if path.name.endswith(".partial"):
@@ -57,9 +57,9 @@ def contents(folder):
 
 
 class Stand:
-    """The old and the new results, and a folder where the new are to replace the old.
+    """The old and the new results, and a folder where the new results are to replace the old ones.
 
-    Without `old` that folder is not there before the run.
+    Without `old` this folder does not exist before the run.
     """
 
     def __init__(self, snapin, folder, old=OLD, new=NEW):
@@ -78,7 +78,7 @@ class Stand:
         require(self.old != self.new, "two decks of the same results")
 
     def run(self, out="try", *options, **fault):
-        """The program, with what goes wrong as keywords: call="rename", at=3, errno=5."""
+        """Runs the program with a fault given by keywords: call="rename", at=3, errno=5."""
         env = dict(os.environ, OMP_NUM_THREADS="1", OPENBLAS_NUM_THREADS="1")
         if fault:
             env["LD_PRELOAD"] = str(self.library)
@@ -101,7 +101,7 @@ class Stand:
         return [line.split("\t") for line in path.read_text().splitlines()]
 
     def number(self, call, **options):
-        """How many calls of a kind a run makes."""
+        """The number of calls of a kind in a run."""
         self.reset()
         path = self.folder / "count.log"
         path.unlink(missing_ok=True)
@@ -109,7 +109,7 @@ class Stand:
         return int(path.read_text().splitlines()[-1].split("\t")[1])
 
     def state(self):
-        """What the folder holds: 'old' or 'none', 'new', or 'told'."""
+        """The state of the folder: 'old' or 'none', 'new', or 'told'."""
         found = contents(self.target)
         if INTENT in found:
             del found[INTENT]
@@ -120,7 +120,7 @@ class Stand:
         return self.before if found == self.old else "new"
 
     def mend(self, *options):
-        """The next run leaves what an undisturbed one does, and nothing else."""
+        """The next run leaves the files of an undisturbed run, and no other file."""
         done = self.run("try", *(options or ["--resume"]))
         require(done.returncode == 0, "no way on:", done.stderr)
         require(contents(self.target) == self.new, "not the same after --resume")
@@ -128,7 +128,7 @@ class Stand:
         require(left == sorted(self.new), "left behind:", left)
 
     def attempt(self, call, at, code, lasts=False):
-        """A run with one fault; how it ended."""
+        """Makes a run with one fault; returns its end."""
         self.reset()
         fault = {"call": call, "at": at, "errno": code, "under": "try/d"}
         done = self.run(**fault, **({"lasts": 1} if lasts else {}))
@@ -141,7 +141,7 @@ class Stand:
             require(state == "new", "status 0 and no new results")
         if done.returncode == 1:
             require(done.stderr.strip(), "no message")
-            # Where the system does not say what is in the folder, it is said once too often.
+            # If the system does not list the folder, the run may report the state without need.
             told = f"see {INTENT}" in done.stderr
             require(told if state == "told" else not told or call == "fstat", state, done.stderr)
         self.mend()
@@ -152,7 +152,7 @@ class Stand:
 
 
 class Inode:
-    """The content of a file: what was done to it, and how much of that is on the disk."""
+    """The content of a file: the operations on it, and the number of them that are on the disk."""
 
     def __init__(self, data=b""):
         self.steps, self.synced = [("write", data)], 1
@@ -165,10 +165,10 @@ class Inode:
 
 
 def power_failures(stand, every=1, seed=1):
-    """Lays out what a disk may hold when the power fails after each call of a run, and mends it.
+    """Makes the folders that a power failure after each call of a run may leave, and repairs them.
 
-    What was not synchronised is on the disk or not: contents whole, in part or not at all; names in
-    any combination. Counts how many were whole or told.
+    Data that were not synchronised may be on the disk or not: contents whole, in part or not at
+    all; names in any combination. Counts the folders with a whole set and those reported.
     """
     calls = stand.log()[:-1]
     rng = random.Random(seed)
@@ -184,7 +184,7 @@ def power_failures(stand, every=1, seed=1):
 
 
 def lay_out(stand, calls, keep, rng):
-    """The folder as a disk may hold it after `calls`."""
+    """The folder as it may be on the disk after `calls`."""
     old = stand.folder / "old/d"
     disk = {path.name: Inode(path.read_bytes()) for path in (old.iterdir() if stand.old else ())}
     now, waiting, lasting = dict(disk), [], bool(stand.old)
@@ -236,7 +236,7 @@ ERRORS = {"killed": KILL, "EIO": errno.EIO, "ENOSPC": errno.ENOSPC, "EACCES": er
 
 
 def campaign(stand, kinds=KINDS, errors=tuple(ERRORS), every=1, lasting=True):
-    """Yields (call, what happened, how many, how they ended, what was broken)."""
+    """Yields (call, event, number of tries, ends of the runs, broken promises)."""
     for call in kinds:
         number = stand.number(call)
         if number == 0:
@@ -267,7 +267,7 @@ def main():
 
 
 def report(stand, every):
-    """Prints the table of a campaign and returns how many promises were broken."""
+    """Prints the table of a campaign and returns the number of broken promises."""
     bad = 0
     for call, what, count, ends, broken in campaign(stand, every=every):
         text = "; ".join(f"{number} {end}" for end, number in sorted(ends.items()))

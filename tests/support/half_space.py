@@ -1,7 +1,7 @@
-"""An independent solution of the elastic problem in NumPy, which shares no code with the program.
+"""An independent solution of the elastic problem in NumPy. It shares no code with the program.
 
 H = H0 + r^2/2 + 2 s Int P(H(t)) k(r, t) t dt on fixed Gauss-Legendre panels, by Newton's method and
-continuation in H0. In units of the law's length; s is sigma or Lambda.
+continuation in H0. Lengths are in units of the law's length; s is sigma or Lambda.
 """
 
 import ctypes
@@ -30,7 +30,7 @@ def agm_k(complement):
 
 
 def kernel(r, t, distance):
-    """k(r, t), with |r - t| given so that it need not be computed by cancellation."""
+    """k(r, t); |r - t| is an argument to avoid cancellation."""
     large = np.maximum(r, t)
     complement = np.sqrt(distance / large * (1 + np.minimum(r, t) / large))
     return 4 / (np.pi * large) * agm_k(complement)
@@ -70,10 +70,10 @@ def waves_of_layer(a, ratio, nu, base):
 
 def layer_image(r, t, layer):
     """2 Int (L - 1) J0(k r) J0(k t) dk for layer: thickness, ratio of moduli, Poisson's ratios of
-    layer and base, and the part of the bodies' yield that has the layer."""
+    layer and base, and the part of the bodies' compliance that has the layer."""
     near = 12
     if r.max() > near:
-        # Far away only the base shows, and pressures there are so small that little of it matters.
+        # At large radii only the base has an effect, and the small pressures there matter little.
         image = layer_image_to(5 / layer[0], r, t, layer)
         image[np.ix_(r <= near, t <= near)] = layer_image_to(20 / layer[0], r[r <= near],
                                                              t[t <= near], layer)
@@ -82,7 +82,7 @@ def layer_image(r, t, layer):
 
 
 def layer_image_to(last, r, t, layer):
-    """The integral up to k = last; past 20 over the thickness exp(-40) is left."""
+    """The integral up to k = last; beyond 20 over the thickness, exp(-40) is neglected."""
     thickness, ratio, nu, base, part = layer
     x, w = np.polynomial.legendre.leggauss(16)
     # Panels are short for the waves and, near 0, for stiff layers.
@@ -147,12 +147,12 @@ class HalfSpace:
             self.matrix += layer_image(targets, self.r, layer) * self.weight
 
     def solve(self, law, s, h0, largest=0.8):
-        """The gaps (axis first) at each of several H0; none falls by more than `largest` a step."""
+        """The gaps (axis first) at each of several H0; `largest`: decrease of a gap in a step."""
         r = np.concatenate([[0.0], self.r])
         gap = h0[0] + r**2 / 2
         found = []
         for value in h0:
-            # As far as the last step went; in contact that is hardly at all.
+            # Extrapolation by the last step, which is almost zero in contact.
             gap = 2 * found[-1] - found[-2] if len(found) > 1 else gap
             if found and gap.min() < 0.3:
                 gap = found[-1]
@@ -171,9 +171,9 @@ class HalfSpace:
         return found
 
     def with_axis(self, law, s, axis):
-        """The gaps and H0 for each of several gaps on the axis, from far away inwards.
+        """The gaps and H0 for each of several gaps on the axis, from large gaps inwards.
 
-        The gap on the axis is given and H0 sought, so that folds in H0 are states like others.
+        The gap on the axis is given and H0 is unknown, so folds in H0 are regular states.
         """
         r = np.concatenate([[0.0], self.r])
         shape, gap, h0 = r**2 / 2, axis[0] + r**2 / 2, axis[0]
@@ -183,7 +183,7 @@ class HalfSpace:
             for _ in range(60):
                 pressure, slope, _ = law(gap[1:])
                 residual = gap - h0 - shape - 2 * s * self.matrix @ pressure
-                # The first column is that of H0, since the gap on the axis does not change.
+                # The first column is that of H0, since the gap on the axis is constant.
                 jacobian = np.eye(len(r))
                 jacobian[:, 1:] -= 2 * s * self.matrix * slope
                 jacobian[:, 0] = -1
@@ -220,7 +220,7 @@ class HalfSpace:
         return found
 
     def load(self, law, s, gap):
-        """The load; beyond the mesh the deformation is taken as constant."""
+        """The load; the deformation is assumed to be constant beyond the mesh."""
         pressure, _, _ = law(gap[1:])
         _, _, energy = law(np.array([gap[-1] + (self.end**2 - self.r[-1] ** 2) / 2]))
         return 2 * np.pi * s * (self.weight @ pressure + energy[0])
@@ -239,7 +239,7 @@ def lennard_jones(gap):
 
 
 def behind_a_barrier(gap):
-    """Lennard-Jones and an exponential repulsion of ten times its range."""
+    """The Lennard-Jones law and an exponential repulsion of ten times its range."""
     push = 0.03 * np.exp(-gap / 10)
     return tuple(one + more for one, more in zip(lennard_jones(gap), (push, -push / 10, 10 * push)))
 
@@ -264,18 +264,18 @@ def independent_states(law, s, h0, ends, largest=0.8):
 
 @functools.cache
 def path_by_axis(law, s, axis, ends, image=None, layer=None, softness=(0.0,), **keys):
-    """H0 and loads, (two, states), at each gap on the axis, from far away inwards; and, for each
+    """H0 and loads, (two, states), at each gap on the axis, from large gaps inwards; and, for each
     softness, H0 and load, (two, folds), where H0 - softness*load turns: the position of a drive
-    behind a spring. softness is in lengths over loads of the result; `keys` are of the law."""
+    with a spring. softness is in lengths over loads of the result; `keys` are of the law."""
     states, *folds = carried_out({"law": law, "s": s, "axis": axis, "ends": ends, "image": image,
                                   "layer": layer, "softness": softness, "keys": keys})
     return np.array(states).T, *(np.array(each).T for each in folds)
 
 
 def carried_out(task):
-    """What `main` makes of a task.
+    """The result of `main` for a task.
 
-    In a process of its own with one thread: NumPy's threads stall each other on a busy machine.
+    It runs in a process with one thread: NumPy's threads stall each other on a busy machine.
     """
     environment = dict(os.environ, OPENBLAS_NUM_THREADS="1", OMP_NUM_THREADS="1")
     done = subprocess.run(

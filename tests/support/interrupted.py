@@ -1,4 +1,4 @@
-"""Runs that are stopped or killed and continued, and their journals as bytes."""
+"""Runs that are stopped or killed and then continued, and their journals as bytes."""
 
 import os
 import signal
@@ -13,7 +13,7 @@ WORD = 8
 
 
 def frames(journal):
-    """The frames of a journal: its heading, then one a record."""
+    """The frames of a journal: its heading, then one frame for each record."""
     found, at = [], 0
     while at < len(journal):
         (held,) = struct.unpack_from("<q", journal, at)
@@ -25,7 +25,7 @@ def frames(journal):
 
 
 def checksum(words):
-    """The checksum of 64-bit words, as src/base/checksums.f90 has it."""
+    """The checksum of 64-bit words, as in src/base/checksums.f90."""
     def added(value, halves):
         for half in halves:
             value = (value ^ half) * 0x5BD1E995 & 0xFFFFFFFF
@@ -41,7 +41,7 @@ def checksum(words):
 
 
 def sealed(frame):
-    """A frame with the checksum that belongs to it."""
+    """A frame with its checksum."""
     words = list(struct.unpack(f"<{len(frame) // WORD}Q", frame))
     words[1] = 0
     words[1] = checksum(words)
@@ -62,7 +62,7 @@ def owner(frame):
 
 
 def linked_id(file):
-    """The first half of the id that the linker gave a program or library, as headings have it."""
+    """The first half of the linker's id of a program or library, as in headings."""
     note = struct.pack("<3I4s", 4, 20, 3, b"GNU")
     _, found, after = file.read_bytes().partition(note)
     assert found, f"{file} has no build id"
@@ -70,7 +70,7 @@ def linked_id(file):
 
 
 def rows(lines):
-    """The rows of a table, without what comes before them."""
+    """The rows of a table, without the lines before them."""
     return [line for line in lines if not line.startswith(b"#")][1:]
 
 
@@ -79,7 +79,7 @@ def environment(threads):
 
 
 class Bench:
-    """One deck, run to the end in one go, and once more with the journal kept."""
+    """One deck, run to the end without interruption, and once more with the journal kept."""
 
     def __init__(self, snapin, path, folder, text, threads=1, status=0):
         self.snapin, self.path, self.folder, self.threads = snapin, path, folder, threads
@@ -89,7 +89,7 @@ class Bench:
         done = self.run("whole")
         assert done.returncode == status, done.stderr
         self.whole = self.files("whole")
-        # Where the summary cannot get its name the run stops short of the end.
+        # If the summary cannot be renamed, the run stops before its end.
         (folder / "cut/deck").mkdir(parents=True, exist_ok=True)
         self.journal = self.stop(b"")
 
@@ -99,7 +99,7 @@ class Bench:
             **kwargs)
 
     def files(self, out):
-        """What results say: tables to the byte, the summary without times."""
+        """The contents of results: tables to the byte, the summary without times."""
         found = {}
         for path in sorted((self.folder / out / "deck").iterdir()):
             lines = path.read_bytes().splitlines()
@@ -107,7 +107,7 @@ class Bench:
         return found
 
     def resume(self, journal, out="cut"):
-        """The run that goes on from a journal."""
+        """The run that continues from a journal."""
         target = self.folder / out / "deck"
         target.mkdir(parents=True, exist_ok=True)
         for path in target.iterdir():
@@ -116,7 +116,7 @@ class Bench:
         return self.run(out, "--resume")
 
     def stop(self, journal):
-        """The journal of the run that goes on from a journal and is stopped at its end."""
+        """The journal of a run that continues from a journal and is stopped at its end."""
         (self.folder / "cut/deck/summary.nml").unlink(missing_ok=True)
         (self.folder / "cut/deck/summary.nml").mkdir()
         (self.folder / "cut/deck/journal.partial").write_bytes(journal)

@@ -7,7 +7,8 @@ import numpy as np
 def claim_slope(of, gap, unit, size=None):
     """By central differences at separations `gap` [m]; unit: the law's numbers.
 
-    size: the slope's parts, which set the rounding where it passes through zero; else itself.
+    size: the parts of the slope, which set the rounding where the slope passes through zero; by
+    default the slope itself.
     """
     # Extrapolated twice: the error is that of the sixth order in a step of 1 % of the gap or
     # length, 1e-12 times the ninth power's coefficients.
@@ -24,9 +25,9 @@ def claim_slope(of, gap, unit, size=None):
 
 
 def claim_energy(of, gap, unit, size=None):
-    """By quadrature between neighbouring separations; nothing is left far away.
+    """By quadrature between neighbouring separations; the energy vanishes at large separations.
 
-    size: what the energy's parts round to; else what is integrated.
+    size: the parts of the energy, which set its rounding; by default the integrand.
     """
     x, w = np.polynomial.legendre.leggauss(30)
     low, high = gap[:-1], gap[1:]

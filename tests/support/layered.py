@@ -1,5 +1,5 @@
-"""Waves of pressure on layered bodies, solved directly, in arithmetic of so many digits that
-nothing is lost: each layer has four waves, and all conditions at once are one linear system."""
+"""Waves of pressure on layered bodies, solved directly with enough digits to avoid any loss of
+accuracy: each layer has four waves, and all conditions together are one linear system."""
 
 from decimal import Decimal, localcontext
 
@@ -7,7 +7,7 @@ DIGITS = 60
 
 
 def surface_yield(k, thickness, shear, poisson, base=None):
-    """L(k) of layers from the top down on a base, (shear modulus, Poisson's ratio), or on rigid."""
+    """L(k) of layers from the top down on a base, (shear modulus, Poisson's ratio), or rigid."""
     with localcontext() as context:
         context.prec = DIGITS
         k = Decimal(k)
@@ -41,8 +41,8 @@ def surface_yield(k, thickness, shear, poisson, base=None):
 
 
 def waves(g, n, k, z, thickness):
-    """(u, w, tau, sigma) at depth z of the four waves of a layer: two that decay downward, and two
-    upward from its lower side. Papkovich and Neuber: u = -(phi + z psi)',
+    """(u, w, tau, sigma) at depth z of the four waves of a layer: two that decay downwards, and two
+    that decay upwards from its lower side. Papkovich and Neuber: u = -(phi + z psi)',
     w = 4 (1 - nu) psi - (phi + z psi)'."""
     found = []
     for sign, size in ((-1, (-k * z).exp()), (1, (k * (z - thickness)).exp())):

@@ -1,5 +1,5 @@
-"""Force curves as an instrument would measure them, computed for tests: from the exact states of a
-device, at even steps of the base, or by a closed form."""
+"""Simulated force curves of an instrument, for tests: from the exact states of a device, at equal
+steps of the base, or by a closed form."""
 
 import warnings
 
@@ -28,7 +28,7 @@ def states_of_device(groups, spring=SPRING, start=40e-9, h0_end=-2e-9):
 
 
 class Branches:
-    """The outer and the inner stable branch behind a spring, from many states at given h0."""
+    """The outer and the inner stable branch with a spring, from many states at given h0."""
 
     def __init__(self, groups, spring=SPRING, far=60e-9, h0_end=-5e-10, step=1e-11):
         run = snapin.run({
@@ -41,7 +41,7 @@ class Branches:
 
     @staticmethod
     def _until_turn(rows, spring):
-        """Position and load along the way until the position turns round, ascending."""
+        """Position and load along the way up to the turn of the position, ascending."""
         z = rows["h0"] - rows["load"] / spring
         ahead = np.diff(z) * np.sign(z[-1] - z[0]) > 0
         last = len(z) if ahead.all() else np.argmin(ahead) + 1
@@ -54,8 +54,8 @@ class Branches:
         return np.where(z > jump, _hermite(z, *self.outer), _hermite(z, *self.inner))
 
     def measure(self, n, noise=0.0, seed=0):
-        """z, force and segment of n samples on each way; `noise` is white. Where the samples lie on
-        each way is random too: a jump is anywhere between two of them."""
+        """z, force and segment of n samples on each way; `noise` is white. The positions of the
+        samples are random too, so a jump may be anywhere between two of them."""
         rng = np.random.default_rng(seed)
         near, far = self.inner[0][0], self.outer[0][-1]
         step = (far - near) / n
@@ -69,12 +69,12 @@ class Branches:
 
 @pytest.fixture(scope="session")
 def branches():
-    """Those of the Lennard-Jones scene, for tests that import it."""
+    """The branches of the Lennard-Jones scene, for tests that import them."""
     return Branches(LENNARD_JONES)
 
 
 def _hermite(at, x, y):
-    """A cubic between each two of many points, at places that may lie beyond them."""
+    """A cubic between adjacent points, at places that may be beyond the points."""
     slope = np.gradient(y, x)
     i = np.clip(np.searchsorted(x, at) - 1, 0, len(x) - 2)
     width = x[i + 1] - x[i]
@@ -94,7 +94,7 @@ def write(path, z, signal, segment=None, header="z,force,segment", digits=16):
 
 
 def fit_deck(groups, file, parameters, fit=None, measurement=None, **others):
-    """The deck of a fit; `fit` and `measurement` are more keys of these groups."""
+    """The deck of a fit; `fit` and `measurement` are further keys of these groups."""
     return {
         **groups,
         "measurement": {
@@ -106,7 +106,7 @@ def fit_deck(groups, file, parameters, fit=None, measurement=None, **others):
 
 
 def run(deck):
-    """A fit whose warnings are for the test to look at."""
+    """A fit whose warnings the test examines."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", snapin.SnapinWarning)
         return snapin.run(deck)

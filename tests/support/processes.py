@@ -1,10 +1,10 @@
-"""Python in a process of its own, for claims about what may end or stop a process."""
+"""Python in a separate process, for claims about code that may end or stop a process."""
 
 import os
 import subprocess
 import sys
 
-# Seconds of the clock that only what hangs takes, however busy the machine is.
+# Seconds of the clock that only a hanging process exceeds, at any load of the machine.
 HANG = 3600
 
 
@@ -17,14 +17,14 @@ def python(*arguments, seconds=HANG, **environment):
 
 
 def answer(script, **options):
-    """What a script prints that must succeed."""
+    """The output of a script that must succeed."""
     result = python("-c", script, **options)
     assert result.returncode == 0, f"status {result.returncode}\n{result.stderr[-2000:]}"
     return result.stdout
 
 
-# The system counts to a process what its parent had in memory when it was made: hundreds of MB of
-# the tests'. This parent is smaller than any program.
+# The system attributes to a process the memory of its parent at the start: hundreds of MB for the
+# tests. This parent is smaller than any program.
 _SMALL_PARENT = """
 import os, sys
 answer = os.dup(1)
@@ -35,7 +35,7 @@ os.write(answer, b"%d %d" % (os.waitstatus_to_exitcode(status), used.ru_maxrss))
 
 
 def status_and_memory(*command, cwd):
-    """Exit status of a command and the most memory it had [bytes]."""
+    """Exit status of a command and its largest memory [bytes]."""
     result = subprocess.run(
         [sys.executable, "-I", "-S", "-c", _SMALL_PARENT, *map(str, command)], cwd=cwd,
         stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, timeout=HANG, check=True)

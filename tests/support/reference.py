@@ -1,10 +1,11 @@
-"""An independent solution of the Lennard-Jones problem, to hold the program against.
+"""An independent solution of the Lennard-Jones problem, for comparison with the program.
 
-Nothing here is the program's way of doing it: the kernel is two Abel transforms (`abel`), the
+All methods differ from those of the program: the kernel is two Abel transforms (`abel`), the
 unknown is the logarithm of the gap (`states`), and the path is a chain of Chebyshev series
 (`series`) in its parameter: the gap on the axis before contact, then the radius of the contact.
-Folds, extrema, states at given h0 and areas are those of the series. Their joints, where meshes
-change, and a second resolution say how good they are. Units: z0 for h0, gamma R for loads.
+Folds, extrema, states at given h0 and areas are those of the series. The accuracy is known from the
+joints of the series, where meshes change, and from a second resolution. Units: z0 for h0, gamma R
+for loads.
 """
 
 import functools
@@ -19,14 +20,14 @@ from support.states import edge_radius, jkr_radius, neck, solve
 
 # The gap on the axis where the parameter changes.
 PASSAGE = 1.1
-# Radius at which meshes end: what is beyond changes nothing by 1e-12, and its load is added.
+# Radius at which meshes end: the pressure beyond changes no result by 1e-12; its load is added.
 REACH = 2000.0
 # Where an S-shape begins: the cusp.
 CUSP = 0.29108493
 
 
 class Point(NamedTuple):
-    """A place on the path: its position along it, and what it is there."""
+    """A place on the path: its position along the path, and the quantities there."""
 
     place: float
     h0: float
@@ -39,7 +40,7 @@ class Point(NamedTuple):
 
 
 class Branch(NamedTuple):
-    """What lies between two folds in h0 (or an end), and how many directions are unstable there."""
+    """The part between two folds in h0 (or an end), and the number of unstable directions there."""
 
     first: Point
     last: Point
@@ -74,13 +75,13 @@ class Path:
         return pieces
 
     def in_contact(self, resolution):
-        """c from where the other parameter ended, until the last branch is past h0_end."""
+        """c from the end of the other parameter until the last branch is past h0_end."""
         state = self.pieces[-1].last
         c, largest = edge_radius(state), jkr_radius(self.sigma, self.h0_end)
         while True:
             wide = min(3.0, max(1.05 * largest / c, 1.1))
             fine = resolution.scale * neck(self.sigma, wide * c) / (c * math.sqrt(wide))
-            # While the contact is smaller than its neck, what is sharp is as near to the axis.
+            # While the contact is smaller than its neck, sharp features are close to the axis too.
             finer = 2 if c < 4 * neck(self.sigma, c) else 1
             reach = max(REACH / c, 50.0)
             mesh = Mesh(1.0, min(fine, resolution.scale), reach, resolution, finer)
@@ -95,7 +96,7 @@ class Path:
     # --- Reading it
 
     def point(self, place):
-        """What is at a place: piece number + position in it from 0 to 1."""
+        """The quantities at a place: number of the piece + position in the piece from 0 to 1."""
         k = min(int(place), len(self.pieces) - 1)
         u = 2 * (place - k) - 1
         piece = self.pieces[k]
@@ -129,7 +130,7 @@ class Path:
         return [self.point(place) for place in places]
 
     def derivative(self, name, place, order):
-        """A derivative by the place in the piece; its sign is that along the path."""
+        """A derivative by the place in the piece; it has the sign of that along the path."""
         k = min(int(place), len(self.pieces) - 1)
         series_of = chebyshev.chebder(getattr(self.pieces[k], name), order)
         return float(chebyshev.chebval(2 * (place - k) - 1, series_of))
@@ -145,15 +146,15 @@ class Path:
         return [*branches, Branch(first, self.ending, unstable)]
 
     def on(self, branch, h0):
-        """The state of a branch at h0, or nothing."""
+        """The state of a branch at h0, or None."""
         low, high = sorted((branch.first.h0, branch.last.h0))
         if not low <= h0 <= high:
             return None
         places = self.roots(
             lambda piece: chebyshev.chebsub(piece.h0, [h0]), branch.first.place, branch.last.place)
-        if not places:  # So near a fold that rounding has swallowed the distance.
+        if not places:  # So close to a fold that rounding hides the distance.
             return min((branch.first, branch.last), key=lambda point: abs(point.h0 - h0))
-        # A root beside a fold has a twin on the other side of it.
+        # A root near a fold has a second root on the other side of the fold.
         middle = (branch.first.place + branch.last.place) / 2
         return self.point(min(places, key=lambda place: abs(place - middle)))
 
@@ -169,7 +170,7 @@ class Path:
                 total += float(ends[1] - ends[0])
         return total
 
-    # --- What an experiment that controls h0 sees
+    # --- Results of an experiment that controls h0
 
     @property
     def far_branch(self):
@@ -192,7 +193,7 @@ class Path:
         """Area between the branches from jump in to jump out, in units of gamma R z0."""
         if not self.folds:
             return None
-        # The area that the path encloses with the two jumps, for which h0 stands still.
+        # The area that the path encloses with the two jumps, at which h0 is constant.
         after_in = self.on(self.contact_branch, self.jump_in.h0)
         before_out = self.on(self.far_branch, self.jump_out.h0)
         return self.work(self.jump_out, after_in) - self.work(before_out, self.jump_in)
@@ -205,12 +206,12 @@ class Path:
             key=lambda p: p.load)
 
     def swept(self, first, last):
-        """Points among which the extrema of the load from one point to another are."""
+        """Points that contain the extrema of the load from one point to another."""
         low, high = sorted((first.place, last.place))
         return [first, last, *(p for p in self.load_folds if low < p.place < high)]
 
 
 @functools.lru_cache(maxsize=64)
 def path(sigma, h0_end=-4.0, far=None):
-    """A path at the usual resolution, kept."""
+    """A path at the usual resolution, cached."""
     return Path(sigma, h0_end, far)

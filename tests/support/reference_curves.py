@@ -1,6 +1,6 @@
-"""Force curves of the Lennard-Jones model behind a spring, by the independent solution
-(`reference`), as an instrument would have them: noise, outliers, a baseline. Paths are kept in a
-folder, so that many curves cost as much as one.
+"""Force curves of the Lennard-Jones model with a spring, by the independent solution (`reference`),
+as an instrument would measure them, with noise, outliers and a baseline. Paths are kept in a
+folder, so many curves need as much time as one.
 """
 
 import math
@@ -20,7 +20,7 @@ POINTS = 600
 
 
 class Truth(NamedTuple):
-    """What a curve is made of. SI; `sigma` is the strength of adhesion."""
+    """The true values of a curve, in SI units; `sigma` is the strength of adhesion."""
 
     sigma: float
     energy: float
@@ -33,8 +33,8 @@ class Truth(NamedTuple):
 
 
 def truth(sigma, softness, modulus=1e10):
-    """Bodies of a strength of adhesion; softness: deflection of the spring at pull-off, over the
-    length by which adhesion deforms the bodies (or the range of the force, if that is more)."""
+    """Bodies of a strength of adhesion. softness: deflection of the spring at pull-off, over the
+    length by which adhesion deforms the bodies (or the range of the force, if this is larger)."""
     stiffness = modulus * min(1.0, 5 / sigma)
     # Two equal bodies: the deck's stiffness is twice that of the contact.
     energy = sigma * stiffness * Z0**1.5 / math.sqrt(RADIUS)
@@ -56,11 +56,11 @@ def path_of(sigma):
 
 
 class Driven:
-    """Load against position of the drive, on the way in and out, each with its jump (or none)."""
+    """Load against position of the drive, on approach and retreat, each with its jump (or none)."""
 
     def __init__(self, true):
         h0, load = path_of(true.sigma)
-        # Beyond the path the bodies hardly deform, and the force is that of rigid spheres.
+        # Beyond the path the deformation is negligible, and the force is that of rigid spheres.
         tail = h0[0] * np.geomspace(400, 1, 400)[:-1]
         h0 = np.append(tail, h0)
         load = np.append(load[0] * (h0[len(tail)] / tail) ** 2, load)
@@ -72,7 +72,7 @@ class Driven:
         first = len(ahead) - np.argmin(ahead[::-1]) if self.turns else 0
         self.inner = self._part(first, len(self.z))
         self.pull_off = -self.load.min()
-        # Without jumps there is a place of largest tension at least.
+        # Without jumps there is at least a place of largest tension.
         self.jump_in = self.jump_out = self.z[self.load.argmin()]
         if self.turns:
             self.jump_in, self.jump_out = self.outer[0][0], self.inner[0][-1]
@@ -99,7 +99,7 @@ class Curve(NamedTuple):
 
 def measure(true, samples, noise, rng, outliers=0.0, push=0.7, baseline=0.5):
     """A curve of `samples` on each way; noise over the pull-off; outliers: their share; push: load
-    at the turn over the pull-off; baseline: its length over what comes before."""
+    at the turn over the pull-off; baseline: its length over that of the part before it."""
     driven = Driven(true)
     pulled = driven.load.argmin()
     near = np.interp(push * driven.pull_off, driven.load[pulled:], driven.z[pulled:])

@@ -1,7 +1,7 @@
 """Scenes for tests: decks written from keywords, run by the program, and read back.
 
-Most scenes are posed in the law's own lengths: with R = z0 = E/(1-nu^2) = 1 the parameter sigma of
-the paper is gamma itself, h0 is in units of z0, and loads come out in units of sigma (gamma R).
+Most scenes are in units of the law's length: with R = z0 = E/(1-nu^2) = 1 the parameter sigma of
+the paper is gamma itself, h0 is in units of z0, and loads are in units of sigma (gamma R).
 """
 
 import math
@@ -20,7 +20,7 @@ JKR = 1.5 * math.pi  # Pull-off of JKR theory in units of gamma R.
 def deck(**groups):
     """A deck; a group is a dict of its keys ({}: without any), and None leaves it out.
 
-    `from` is a word of Python's: write from_.
+    `from` is a keyword of Python: write from_.
     """
     return deck_text({
         name: keys and {key.rstrip("_"): value for key, value in keys.items()}
@@ -52,7 +52,7 @@ def loading(start, end, step):
 
 
 def of_numbers(warnings):
-    """The warnings that are about numbers, not about the ground of the model."""
+    """The warnings about numbers, without those about the validity of the model."""
     return [text for text in warnings if not text.startswith("beyond the model:")]
 
 
@@ -84,13 +84,13 @@ def read_table(path):
     columns = results.read_table(path.parent, path.name)
     lines = path.read_text().splitlines()
     comments = [line for line in lines if line.startswith("#")]
-    # All '#' lines come before the header, and no name is there twice.
+    # All '#' lines come before the header, and no name occurs twice.
     assert lines[len(comments)].split(",") == list(columns), path
     return Table(comments, columns)
 
 
 class Run(NamedTuple):
-    """What came of a deck."""
+    """The results of a deck."""
 
     status: int
     stderr: str
@@ -115,7 +115,7 @@ class Run(NamedTuple):
 
     @property
     def warnings(self):
-        """All but those of scales: scenes in the law's own lengths have R = z0 = E/(1-nu^2)."""
+        """All warnings except those of scales: scenes in law's lengths have R = z0 = E/(1-nu^2)."""
         found = self.summary.get("warnings", [])
         return of_numbers([found] if isinstance(found, str) else found)
 
@@ -128,14 +128,14 @@ class Run(NamedTuple):
 
 
 def several(value):
-    """Several values of a namelist, of which f90nml returns a single one bare."""
+    """The values of a namelist key as a list; f90nml returns a single value without a list."""
     return list(value) if isinstance(value, list) else [value]
 
 
 def runner(snapin, folder):
     """run(deck text, status=0, threads=1) -> Run; the same deck is not run twice.
 
-    One thread unless told: on a busy machine threads that wait for each other cost the most.
+    One thread by default: on a busy machine, threads that wait for each other take most time.
     """
     done = {}
 

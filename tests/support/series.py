@@ -1,4 +1,4 @@
-"""Stretches of the path as Chebyshev series in its parameter, halved until they are resolved."""
+"""Parts of the path as Chebyshev series in its parameter, halved until they are resolved."""
 
 import math
 from typing import NamedTuple
@@ -9,7 +9,7 @@ from support.states import Lost, State, solve
 
 
 class Resolution(NamedTuple):
-    """How fine: widths of panels in z, nodes in one, distance of nodes, terms of a series."""
+    """Widths of panels in z, nodes in a panel, distance of nodes, terms of a series."""
 
     width: float = 1.5
     order: int = 18
@@ -23,7 +23,7 @@ FINE = Resolution(width=1.2, order=20, scale=0.15, terms=21, tail=1e-11)
 
 
 class Piece(NamedTuple):
-    """A stretch of the path as Chebyshev series over [-1, 1]."""
+    """A part of the path as Chebyshev series over [-1, 1]."""
 
     h0: np.ndarray
     load: np.ndarray
@@ -70,7 +70,7 @@ def stretch(sigma, mesh, parameter, limits, state, resolution):
 
 
 def ahead(known, place):
-    """Gaps and h0 that the last few states let one expect at `place`."""
+    """Gaps and h0 at `place`, extrapolated from the last few states."""
     few = known[-5:]
     log_gap, h0 = 0.0, 0.0
     for i, (mine, state) in enumerate(few):
@@ -81,6 +81,6 @@ def ahead(known, place):
 
 
 def trimmed(coefficients):
-    """A series without its last coefficients where they are rounding, so that roots stay put."""
+    """A series without last coefficients that are only rounding errors and would move roots."""
     kept = np.flatnonzero(abs(coefficients) > 1e-15 * abs(coefficients).max())
     return coefficients[: kept[-1] + 1] if len(kept) else coefficients[:1]

@@ -1,4 +1,4 @@
-"""Jobs over a few processes, one thread each, with progress."""
+"""Runs jobs in a few processes, one thread each, and shows the progress."""
 
 import concurrent.futures
 import sys
@@ -6,7 +6,7 @@ import time
 
 
 def spread(function, jobs, *, workers=2, name="jobs"):
-    """function(job) for every job, a list of results in order; progress goes to standard error."""
+    """A list of function(job) for every job, in order; writes the progress to standard error."""
     began, results = time.monotonic(), {}
     if workers == 1:
         for i, job in enumerate(jobs):

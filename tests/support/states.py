@@ -4,8 +4,9 @@ In units of z0 (gaps), sqrt(R z0) (radii), gamma/z0 (pressures) and gamma R (loa
 
     H(r) = H0 + r^2/2 + 2 sigma Int P(H(t)) k(r,t) t dt,   P(H) = (8/3) (H^-9 - H^-3)
 
-On a mesh around the axis the parameter is the gap there; on one around the edge of the contact it
-is the edge's radius c, with the gap EDGE at it. With r = c x the operator is multiplied by c.
+On a mesh around the axis the parameter is the gap on the axis; on a mesh around the edge of the
+contact it is the radius c of the edge, where the gap is EDGE. With r = c x the operator is
+multiplied by c.
 """
 
 import math
@@ -14,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 from support.abel import Mesh
 
-# The gap that says where the edge is.
+# The gap at the edge of the contact.
 EDGE = 1.25
 
 # --- The law
@@ -26,7 +27,7 @@ def pressure(gap):
 
 
 def slope(gap):
-    """Its derivative by the gap."""
+    """The derivative of the pressure by the gap."""
     return 8 * gap**-4 * (1 - 3 * gap**-6)
 
 
@@ -49,7 +50,7 @@ class State(NamedTuple):
     load: float
 
     def at(self, r):
-        """The gap at radii r; beyond the mesh the deformation falls like 1/r."""
+        """The gap at radii r; beyond the mesh the deformation decreases as 1/r."""
         end = self.c * self.mesh.x[-1]
         deformation = self.gap - self.h0 - (self.c * self.mesh.x) ** 2 / 2
         inside = np.minimum(r, end)
@@ -58,11 +59,11 @@ class State(NamedTuple):
 
 
 class Lost(ArithmeticError):
-    """Newton's method did not arrive."""
+    """Newton's method did not converge."""
 
 
 def solve(sigma, mesh, value, log_gap, h0):
-    """The equilibrium with the parameter `value`: c on a mesh in contact, else the axis' gap."""
+    """The equilibrium with the parameter `value`: c in contact, otherwise the gap on the axis."""
     contact = mesh.centre > 0
     c = value if contact else 1.0
     coupling, row = 2 * sigma * c, mesh.edge if contact else mesh.axis
@@ -91,7 +92,7 @@ def solve(sigma, mesh, value, log_gap, h0):
 
 
 def finished(sigma, mesh, c, gap, h0):
-    """The state with its load, what is beyond the mesh included."""
+    """The state with its load, including the load beyond the mesh."""
     p = pressure(gap)
     axis = h0 + 2 * sigma * c * (mesh.axis @ p)
     end = h0 + (c * float(mesh.position(mesh.ends[-1]))) ** 2 / 2
@@ -100,12 +101,12 @@ def finished(sigma, mesh, c, gap, h0):
 
 
 def neck(sigma, c):
-    """The finest length at the edge: of the neck, or of Hertz's edge between large bodies."""
+    """The shortest length at the edge: of the neck, or of Hertz's edge between large bodies."""
     return min(0.375 / sigma, 0.5 * max(c, 1.0) ** (-1 / 3))
 
 
 def edge_radius(state):
-    """Where the gap is EDGE."""
+    """The radius at which the gap is EDGE."""
     low, high = 0.0, 10.0
     for _ in range(60):
         middle = (low + high) / 2
@@ -114,7 +115,7 @@ def edge_radius(state):
 
 
 def jkr_radius(sigma, h0):
-    """Radius of JKR's contact at h0 (of the pull-off where that is larger)."""
+    """Contact radius of JKR theory at h0 (at the pull-off if this is larger)."""
     c = 1.0
     for _ in range(200):
         c = math.sqrt(max(1 - h0, 1.0) + math.sqrt(4 * math.pi * sigma * c))

@@ -1,4 +1,4 @@
-"""Random cycles against the reference: whatever the steps, the numbers are those of the path.
+"""Random cycles against the reference: for any steps, the numbers are those of the path.
 
 A job is a strength with a few decks of it; deck k of a seed is always the same deck.
 """
@@ -14,17 +14,18 @@ from support.experiment import cycle, reported
 from support.reference import Path
 from support.scenes import loading
 
-# A default deck is good to 1e-6; ten times that is wrong. Where a flat extremum is, is known worse.
+# A default deck is accurate to 1e-6; ten times this is wrong. The place of a flat extremum is less
+# accurate.
 WRONG, WRONG_PLACE = 1e-5, 1e-3
-# So near a fold or a tie the program may decide either way.
+# At this distance from a fold or a tie, both decisions of the program are right.
 UNDECIDED = 1e-4
 MOST_STATES = 400
-# Where most loadings end at the latest, and how far some go, in z0.
+# The last h0 of most loadings, and of some deeper loadings, in z0.
 DEEPEST, ABYSS = -10.0, (-30.0, -5000.0)
 
 
 class Job(NamedTuple):
-    """A strength, how deep its loadings may go, and the numbers of its decks."""
+    """A strength, the depth of its loadings, and the numbers of its decks."""
 
     sigma: float
     deepest: float
@@ -34,7 +35,7 @@ class Job(NamedTuple):
 
 
 class Finding(NamedTuple):
-    """What is wrong with a deck: kinds of trouble, each with a line; and its deviations."""
+    """The errors of a deck: kinds of error, each with a line; and its deviations."""
 
     sigma: float
     deck: int
@@ -44,7 +45,7 @@ class Finding(NamedTuple):
 
 
 def jobs(count, folder, *, seed=1, low=1e-3, high=1e3, each=8):
-    """Strengths drawn evenly in their logarithm."""
+    """Random strengths with a uniform logarithm."""
     rng = random.Random(f"strengths {seed} {low} {high}")
     starts = range(0, count, each)
     return [
@@ -87,7 +88,7 @@ def drawn(sigma, deepest, deck, seed):
 
 
 def drawn_step(rng, span):
-    """From fine to longer than the range, and no more than so many states."""
+    """A random step, from fine to longer than the range, with a limit of the number of states."""
     way = rng.random()
     if way < 0.5:
         step = logarithmic(rng, 0.02, 5)
@@ -99,12 +100,12 @@ def drawn_step(rng, span):
 
 
 def ambiguous(path, places):
-    """Whether an end is so near to a fold that either answer is right."""
+    """Whether an end is so close to a fold that both answers are right."""
     return any(abs(h0 - fold.h0) < UNDECIDED for h0 in places for fold in path.folds)
 
 
 def examine(job):
-    """The findings of a job: one a deck that is not ambiguous."""
+    """The findings of a job: one for each deck that is not ambiguous."""
     path = Path(job.sigma, 1.05 * job.deepest, 2 * reach_of(job.sigma) + 2)
     return [
         examined(path, drawn(job.sigma, job.deepest, deck, job.seed), job.folder, deck)
@@ -113,7 +114,7 @@ def examine(job):
 
 
 def examined(path, scene, folder, deck=0):
-    """One deck against its path; odd ones are posed in metres."""
+    """One deck against its path; decks with odd numbers are in metres."""
     sigma = path.sigma
     start, end, step, turning, retreat, back = scene
     groups = {"loading": loading(start, end, step)}
@@ -132,7 +133,7 @@ def examined(path, scene, folder, deck=0):
 
 
 def judged(path, sigma, expected, found, deck, text):
-    """Trouble by kind."""
+    """The errors by kind."""
     numbers = reported(expected)
     wrong = {}
     if found.status != 0:
@@ -169,7 +170,7 @@ def rows_off(path, expected, table):
 
 
 def true_load(path, leg, h0):
-    """The load at h0 on a leg, or nothing where the leg does not go."""
+    """The load at h0 on a leg, or None if the leg does not contain h0."""
     low, high = sorted((leg.first.h0, leg.last.h0))
     if not low - 1e-9 <= h0 <= high + 1e-9:
         return None
@@ -181,7 +182,7 @@ def true_load(path, leg, h0):
 
 
 def table(findings):
-    """Lines of a report: how many decks are wrong, and how."""
+    """Lines of a report: the number of wrong decks and the kinds of error."""
     decided = [f for f in findings if "(undecided)" not in f.text]
     kinds = collections.Counter(kind for f in decided for kind in f.wrong)
     bad = [f for f in decided if f.wrong]

@@ -1,4 +1,4 @@
-"""True errors beside estimated ones, number by number, for paths and cycles of any strength."""
+"""True and estimated errors, number by number, for paths and cycles of any strength."""
 
 import collections
 import statistics
@@ -16,7 +16,7 @@ DEPTH = -4.0
 
 
 class Job(NamedTuple):
-    """A strength, and the accuracies asked for."""
+    """A strength, and the requested accuracies."""
 
     sigma: float
     accuracies: tuple
@@ -24,7 +24,7 @@ class Job(NamedTuple):
 
 
 class Finding(NamedTuple):
-    """One deck: its deviations, or what else is wrong."""
+    """One deck: its deviations, or other errors."""
 
     sigma: float
     kind: str
@@ -72,9 +72,9 @@ def examine(job):
 
 
 def ratio(one, strict=False):
-    """True error over the allowed one, nothing where the reference does not know better.
+    """True error over the estimated error; None if the reference is not more accurate.
 
-    strict: both relative to the value itself, so that an estimate for all says nothing of scales.
+    strict: both are relative to the value itself; the scales of a common estimate have no effect.
     """
     if not one.known:
         return None
@@ -85,7 +85,7 @@ def ratio(one, strict=False):
 
 
 def table(findings):
-    """Lines of a report: least, median and largest ratio of each number."""
+    """Lines of a report: smallest, median and largest ratio of each number."""
     by_key = collections.defaultdict(list)
     for f in findings:
         for one in f.deviations:

@@ -1,8 +1,8 @@
-"""States a hair before and beyond a fold: before it none may jump, beyond it every one must.
+"""States just before and beyond a fold: no state before it may jump, every state beyond it must.
 
-The distance is kept from the program's own fold, which a first run of the same range reports, and
-in the reference from its own: the folds themselves differ by the error of the program's mesh.
-Profiles are asked for in that run too where they are afterwards: they call for a finer mesh.
+The distance is that from the program's own fold, which a first run of the same range reports, and
+in the reference that from its own fold: the two folds differ by the error of the program's mesh.
+The first run has profiles if the later runs have profiles, since profiles need a finer mesh.
 """
 
 import collections
@@ -16,8 +16,8 @@ from support.reference import Path
 from support.scenes import loading
 
 DEPTH = -4.0
-# Default decks are good to 1e-6. Beside a fold the load goes with the root of the distance: this
-# part of its difference from that of the fold may be wrong (at 1e-8 z0 the fold, good to
+# Default decks are accurate to 1e-6. Near a fold the load varies as the root of the distance: this
+# part of its difference from the load of the fold may be wrong (at 1e-8 z0 the fold, accurate to
 # rounding and the tolerance of the solver, moves by a part of the distance).
 WRONG, WRONG_BESIDE = 1e-5, 0.1
 WAYS = {"in": ("step", "turning point", "profile"), "out": ("step", "profile")}
@@ -34,7 +34,7 @@ class Job(NamedTuple):
 
 
 class Finding(NamedTuple):
-    """One deck, and what is wrong with it."""
+    """One deck and its errors."""
 
     sigma: float
     accuracy: float
@@ -77,7 +77,7 @@ def examine(job):
         width = path.jump_out.h0 - path.jump_in.h0
         for way, power, side in (
                 (way, power, side) for way in ways for power in job.powers for side in (1, -1)):
-            # Farther than to the other fold is not beside this one.
+            # A state farther away than the other fold is not near this fold.
             if 10.0**-power > 0.5 * width:
                 continue
             mine = first[way].numbers.get(f"jump_{fold}_h0")
@@ -107,7 +107,7 @@ def look_at_path(job, path, groups, fold, way, place, true, far):
 
 
 def limit_of(path, fold, load, accuracy):
-    """By how much a load beside a fold may be wrong."""
+    """The allowed error of a load near a fold."""
     at = path.jump_in.load if fold == "in" else path.jump_out.load
     return max(WRONG, 10 * accuracy) * abs(path.pull_off.load) + WRONG_BESIDE * abs(load - at)
 
@@ -133,7 +133,7 @@ def look_at_cycle(job, path, groups, fold, way, place, true, far):
 
 
 def cycle_off(job, path, expected, found, fold, branch, place, true):
-    """What is wrong: keys, numbers, the state at h0 itself."""
+    """The errors: keys, numbers, the state at h0 itself."""
     numbers = reported(expected)
     wrong = missing(found, numbers)
     for one in deviations(found, numbers, path):
@@ -157,7 +157,7 @@ def cycle_off(job, path, expected, found, fold, branch, place, true):
 
 
 def table(findings):
-    """Lines of a report: how many decks are wrong, by experiment, fold and way, and what at."""
+    """Lines of a report: number of wrong decks by experiment, fold and way, and their errors."""
     lines = [f"decks {len(findings)}, wrong {sum(bool(f.wrong) for f in findings)}"]
     kinds = collections.defaultdict(list)
     for f in findings:

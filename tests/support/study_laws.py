@@ -1,7 +1,7 @@
-"""True errors beside estimated ones under every law: random scenes, paths and cycles.
+"""True and estimated errors under every law: random scenes, paths and cycles.
 
 There is no independent solution for most laws. The truth is the same scene at a much higher
-accuracy, and a deviation counts where it is well above what that run says of itself. Scene k of a
+accuracy, and a deviation counts if it is well above the estimated error of the truth. Scene k of a
 seed is always the same scene.
 """
 
@@ -22,18 +22,18 @@ ACCURACIES = (1e-3, 1e-8)
 STRENGTHS = (1e-4, 1e4)
 RADIUS, STIFFNESS, Z0 = 1.5e-2, 1e10, 0.5e-9
 KEYS = (*LOADS, *LENGTHS, "energy_lost")
-# By how much the truth is more accurate than the run (meshes gain three quarters of a digit for
-# each of the accuracy), and how accurate runs can be.
+# Ratio of the accuracies of truth and run (meshes gain three quarters of a digit for each digit of
+# the accuracy), and the smallest possible accuracy.
 FINER, FINEST = 1e-4, 1e-10
-# The truth is off by as much as it says; a deviation this many times larger is the run's own.
+# The error of the truth is its estimate; a deviation this many times larger is that of the run.
 WELL_ABOVE = 3
 SECONDS = 30
-# Quantiles of a table, and what is below the least honest ratio: an estimate 30 times the error.
+# Quantiles of a table, and the smallest acceptable ratio: an estimate of 30 times the error.
 QUANTILES, PESSIMISTIC = (0.05, 0.5, 0.95), 1 / 30
 
 
 class Law(NamedTuple):
-    """The groups of a law, the gap at rest or thereabouts, and its length [m]."""
+    """The groups of a law, the approximate gap at rest, and its length [m]."""
 
     groups: dict
     rest: float
@@ -41,7 +41,7 @@ class Law(NamedTuple):
 
 
 class Scene(NamedTuple):
-    """What is run: its number and seed, and what was drawn."""
+    """A scene: its number and seed, and its random values."""
 
     number: int
     seed: int
@@ -53,7 +53,7 @@ class Scene(NamedTuple):
 
 
 class Deviation(NamedTuple):
-    """A number of a run: what it should be, its error, and the error that it may have, it says."""
+    """A number of a run: the true value, its error, and its estimated error."""
 
     key: str
     value: float
@@ -66,8 +66,8 @@ class Deviation(NamedTuple):
 
 
 class Finding(NamedTuple):
-    """A scene with its deviations, how many numbers were as good as the truth, what is wrong; of
-    the run at the accuracy asked for how long it took, infinite if too long, and its warnings."""
+    """A scene with its deviations, the number of values as accurate as the truth, and the errors;
+    of the run at the requested accuracy the time, infinite if too long, and the warnings."""
 
     scene: Scene
     deviations: list
@@ -82,7 +82,7 @@ def lennard_jones(rng, **more):
 
 
 def beside(rng, **groups):
-    """Another force beside a Lennard-Jones one."""
+    """A Lennard-Jones force and another force."""
     return Law({**lennard_jones(rng), **groups}, Z0, Z0)
 
 
@@ -183,7 +183,7 @@ def examine(scene):
 
 
 def truth_of(scene):
-    """The numerics of a scene's truth."""
+    """The numerics of the truth of a scene."""
     return {"accuracy": max(FINER * scene.accuracy, FINEST), "residual_tolerance": 1e-12}
 
 
@@ -199,8 +199,8 @@ def driven(rng, scene, law):
 
 
 def strength(scene, law):
-    """sigma of the law on bodies of the usual stiffness, from a table that solves nothing; of a law
-    without adhesion Lambda."""
+    """sigma of the law on bodies of the usual stiffness, from a table without solved equations;
+    Lambda of a law without adhesion."""
     summary, _ = run(scene, "strength", {
         "bodies": {"radius": RADIUS, "stiffness": STIFFNESS}, **law.groups,
         "classical": {"h0_start": law.rest + law.length, "h0_end": law.rest}})
@@ -208,7 +208,7 @@ def strength(scene, law):
 
 
 def run(scene, name, groups):
-    """The summary of a deck and what went wrong, if anything did."""
+    """The summary of a deck and the reason of a failure, if it failed."""
     (scene.folder / f"{name}.nml").write_text(deck(**groups))
     environment = dict(os.environ, OMP_NUM_THREADS="1", OPENBLAS_NUM_THREADS="1")
     try:
@@ -228,11 +228,11 @@ def run(scene, name, groups):
 
 
 def judged(scene, law, found, truth):
-    """Numbers of a run beside those of the truth, or why there is nothing to compare."""
+    """The numbers of a run compared with those of the truth, or the reason of no comparison."""
     (mine, trouble), (theirs, doubt) = found, truth
     cost = {"seconds": mine.get("wall_seconds", math.inf),
             "warnings": tuple(several(mine.get("warnings", [])))}
-    # Without a truth nothing can be said, nor of what this machine has no time for.
+    # There is no result without a truth, or for a run that took too long.
     if doubt or trouble.startswith("more than"):
         return Finding(scene, [], 0, [], **cost)
     if trouble:
@@ -259,7 +259,7 @@ def judged(scene, law, found, truth):
 
 
 def of_number(summary, key, i, size):
-    """The estimate of a number: its own, else the one for all times its size."""
+    """The estimate of a number: its own, otherwise the common estimate times the size."""
     for name in (f"{key}_error", f"{key}_uncertainty"):
         errors = several(summary.get(name, []))
         if i < len(errors):
@@ -273,12 +273,12 @@ def is_bad(finding):
 
 
 def is_warned(finding):
-    """Whether a run says that it is not as exact as it was asked to be."""
+    """Whether a run warns that it is less accurate than requested."""
     return any("resolve" in said or "error" in said for said in finding.warnings)
 
 
 def table(findings):
-    """Lines of a report: quantiles of the ratio for each number, and the offenders, worst first."""
+    """Lines of a report: quantiles of the ratio for each number, and the largest errors."""
     by_key = collections.defaultdict(list)
     for finding in findings:
         for one in finding.deviations:

@@ -1,6 +1,6 @@
-"""True errors beside estimated ones for bodies with layers: random scenes, paths and cycles.
+"""True and estimated errors for bodies with layers: random scenes, paths and cycles.
 
-The truth is the same scene at a much higher accuracy, as in `study_laws`, whose tables these are.
+The truth is the same scene at a much higher accuracy, as in `study_laws`, which makes the tables.
 Scene k of a seed is always the same scene.
 """
 
@@ -21,7 +21,7 @@ Z0 = 0.5e-9
 
 
 def jobs(count, folder, *, seed=1):
-    """Scenes one by one, of one layer and of several in turn."""
+    """Scenes one by one, alternately with one layer and with several."""
     made = []
     for number in range(count):
         rng = random.Random(f"layers {seed} {number}")
@@ -48,8 +48,8 @@ def examine(scene):
 
 
 def bodies(rng, scene, stiffness):
-    """Bodies that have this stiffness by their top layers: a film on something rigid, a layer or
-    several on an elastic base, one body of the same modulus beside it or both alike."""
+    """Bodies with this stiffness of their top layers: a film on a rigid base, one or several layers
+    on an elastic base; the other body is of the same modulus or has the same layers."""
     count = rng.randint(2, 4) if scene.law == "layers" else 1
     body = rng.choice(("1", "2", "both"))
     radius = math.sqrt(RADIUS * Z0) * (9 * math.pi * scene.sigma) ** (1 / 3)
@@ -61,7 +61,7 @@ def bodies(rng, scene, stiffness):
         young.append(young[-1] * logarithmic(rng, *RATIOS) ** (1 / count))
     layer = {"thickness": [total * part / sum(parts) for part in parts], "young": young[:-1],
              "poisson": poisson[:-1], "body": body}
-    # What is beside the layers yields as their top does.
+    # The body without layers has the stiffness of the top layer.
     base = {"young": [young[-1]] * 2, "poisson": [poisson[-1]] * 2}
     if body != "both":
         other = 1 if body == "1" else 0

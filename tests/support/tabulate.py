@@ -1,9 +1,9 @@
-"""Writes references.csv: what the reference finds at many strengths, slow ones included.
+"""Writes references.csv: the results of the reference at many strengths, including slow ones.
 
     PYTHONPATH=tests .venv/bin/python -m support.tabulate
 
-Each row is computed at two resolutions; `difference` is by how much they differ at most, relative.
-The numbers are the finer one's, in units of z0 and gamma R.
+Each row is computed at two resolutions; `difference` is their largest relative difference.
+The numbers are those of the finer resolution, in units of z0 and gamma R.
 """
 
 import csv
@@ -23,7 +23,7 @@ COLUMNS = (
 
 
 def strengths():
-    """From the weakest to the strongest, and densely about the cusp."""
+    """Strengths from the weakest to the strongest, and dense near the cusp."""
     wide = np.logspace(-3, 4, 43)
     dense = np.concatenate([np.arange(0.25, 0.6, 0.01), np.arange(0.6, 1.5, 0.05)])
     beside = CUSP * (1 + np.array([-1e-2, -1e-3, 1e-3, 3e-3, 1e-2, 2e-2]))

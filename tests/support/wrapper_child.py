@@ -1,5 +1,5 @@
-"""Goes through the cases of entries of wrapper_registry.py and tells what happened, a line of JSON
-each. A process of its own, since a case that goes wrong may end it.
+"""Runs the cases of entries of wrapper_registry.py and writes the result of each as a line of JSON.
+It is a separate process, since a failing case may end it.
 
     python -m support.wrapper_child ENTRY ...
 """
@@ -15,12 +15,12 @@ import snapin
 from support.wrapper_registry import REGISTRY
 from support.wrapper_values import REFUSED, cases
 
-# The entry and the argument of each kind that every value is tried of.
+# The entry and the argument of each kind with which every value is tried.
 KINDS_FIRST = {}
 for _which, _entry in REGISTRY.items():
     for _name, _kind in _entry.kinds.items():
         KINDS_FIRST.setdefault(_kind, (_which, _name))
-# A case that takes longer hangs [s of the processor]: a busy machine does not count.
+# A case that takes longer is assumed to hang [s of processor time, independent of other load].
 PATIENCE = 300
 
 
@@ -31,13 +31,13 @@ def flat(result):
     if hasattr(result, "__dataclass_fields__"):
         return flat([getattr(result, name) for name in result.__dataclass_fields__])
     if isinstance(result, snapin.Result):
-        # What it cost is in seconds too.
+        # The cost is in seconds too.
         return flat([list(result.tables.values()), list(result.summary.values())])
     return [result]
 
 
 def same(one, other):
-    """Whether two results agree to the bit."""
+    """Whether two results are identical to the bit."""
     one, other = flat(one), flat(other)
     return len(one) == len(other) and all(map(same_part, one, other))
 
@@ -52,7 +52,7 @@ def same_part(one, other):
 
 
 def bits(value):
-    """What must not change in an argument; other objects are taken as they are."""
+    """The part of an argument that must not change; other objects are returned unchanged."""
     plain = type(value) is np.ndarray and value.nbytes < 10**6
     return value.tobytes() if plain else None
 
@@ -80,13 +80,13 @@ def may_be_left_out(entry, name):
 
 
 def names_one(problem, names, kinds):
-    """Whether a message names one of these arguments: it begins so, or a deck's mistake is in the
-    key, or a law's in its groups."""
+    """Whether a message names one of these arguments: it begins with the name, or the mistake of a
+    deck is in the key, or that of a law in its groups."""
     text = str(problem)
     known = [f"{one}: " for one in names]
     in_deck = [f'key "{one}' for one in names]
     if any(kinds[one] == "law" for one in names):
-        # Names of groups and keys are no arguments.
+        # Names of groups and keys are not arguments.
         known += ["deck: ", "force: ", "hamaker: ", "p0: ", "part: ", "law: "]
         in_deck += ["&force", "&frog"]
     if isinstance(problem, snapin.DeckError):
@@ -95,15 +95,15 @@ def names_one(problem, names, kinds):
 
 
 def fault(entry, name, value, clean):
-    """What is wrong with how the entry's call takes this value; None if nothing is."""
+    """The error in the reaction of the entry's call to this value; None if there is no error."""
     result = attempt(entry, name, value)
     if isinstance(result, Exception):
         if not isinstance(result, (ValueError, TypeError, MemoryError, snapin.SnapinError)):
             return f"raised {type(result).__name__}: {str(result)[:200]}"
-        # What has no state at all is an error of the calculation, not of an argument.
+        # A case without any state is an error of the calculation, not of an argument.
         if isinstance(result, snapin.SnapinError) and not isinstance(result, snapin.DeckError):
             return None
-        # Where a value is right by itself another may be the one that does not fit.
+        # A value that is right by itself may be inconsistent with another argument.
         alone = clean is REFUSED and entry.kinds[name] != "paired"
         if not names_one(result, [name] if alone else entry.good, entry.kinds):
             return f"the message names no argument: {type(result).__name__}: {str(result)[:200]}"

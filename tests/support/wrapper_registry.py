@@ -1,9 +1,9 @@
-"""Every public callable of the package `snapin`, with one good call of each and what its arguments
-are. tests/support/wrapper_values.py has the values, good and bad, for each kind of argument.
+"""Every public callable of the package `snapin`, with one good call of each and the kinds of its
+arguments. tests/support/wrapper_values.py has the values, good and bad, for each kind of argument.
 
 A kind is a word: vector, paired (a vector as long as another), scalar, positive, count, name, law,
-mesh; number, whole, word and switch are keys of a deck, whose range and type are the program's
-affair.
+mesh; number, whole, word and switch are keys of a deck, whose range and type the program
+checks.
 """
 
 import dataclasses
@@ -13,7 +13,7 @@ import numpy as np
 import snapin
 from snapin import numerics
 
-# Bodies in which lengths are the law's own.
+# Bodies for which lengths are in units of the law's length.
 UNIT = {"radius": 1.0, "stiffness": 1.0}
 
 
@@ -131,7 +131,7 @@ REGISTRY = {
         MESH.interpolate, values=(PAIRED, np.linspace(1.0, 2.0, 8)), at=(VECTOR, RISING)),
 }
 
-# Arguments that a good call leaves out, and those gathered by `**numerics`.
+# Arguments that a good call omits, and those collected by `**numerics`.
 LEFT_OUT = {
     "equilibrium by Anderson": {
         "method", "most_iterations", "patience", "mixing_limit", "displacement_tolerance"},

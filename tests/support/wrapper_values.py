@@ -1,9 +1,10 @@
 """Values, good and bad, for every kind of argument in tests/support/wrapper_registry.py.
 
 A case is a label, a value, and what is claimed of it: REFUSED, or the clean value whose result it
-must give (a contiguous float64 array, a float, an int, a str), if it is not refused. Cases stand by
-what is odd about the value. Of one argument of each kind all are tried, of every other one the
-first of each sort: which check an argument goes through shows in these.
+must give (a contiguous float64 array, a float, an int, a str), if it is not refused. Cases are
+sorted by the property that makes the value unusual. One argument of each kind is tested with all
+cases, every other argument with the first case of each sort, which shows the checks of the
+argument.
 """
 
 import array
@@ -15,7 +16,7 @@ import numpy as np
 
 REFUSED = object()
 EXTREMES = (5e-324, 1e-150, 1e-30, 1e30, 1e150, np.finfo(float).max)
-# No number of any kind.
+# Values that are not numbers.
 FOREIGN = {
     "str": "1.0", "bool": True, "complex without imaginary part": complex(2.0, 0.0),
     "masked": np.ma.masked, "bytes": b"1", "object": object(), "dict": {}, "set": {1.0},
@@ -32,7 +33,7 @@ def refused(values):
 
 
 def taken(values, clean):
-    """Cases of values that are what a clean one is."""
+    """Cases of values that are equivalent to a clean value."""
     return [(label, value, clean) for label, value in values.items()]
 
 
@@ -158,8 +159,8 @@ def names(good):
 
 
 def in_deck(make, like_good, left_out=()):
-    """Cases of the same as a key of a deck: it may be left out, one value may be a list, and what
-    is in range the deck says."""
+    """Cases of the same as a key of a deck: it may be omitted, one value may be a list, and the
+    deck determines the range."""
     def cases(good):
         return {sort: [(label, value, good if label in like_good else clean)
                        for label, value, clean in each if label not in left_out]
@@ -209,10 +210,10 @@ def meshes(good):
 _CASES = {
     "vector": vectors, "paired": pairs, "scalar": scalars, "positive": positives, "count": counts,
     "name": names, "law": laws, "mesh": meshes, "switch": switches,
-    # Beyond float64's whole numbers the nearest is taken, as from a deck that someone wrote.
+    # An integer that float64 cannot represent is rounded to the nearest, as in a deck.
     "number": in_deck(scalars, ("list", "1-d"), ("inexact whole",)),
     "whole": in_deck(counts, ("list", "1-d")),
-    # Neither case nor blanks at the end matter.
+    # Case and trailing blanks have no effect.
     "word": in_deck(names, ("space behind", "upper case", "list", "tuple")),
 }
 
