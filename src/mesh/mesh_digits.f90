@@ -25,7 +25,7 @@ module mesh_digits
   !> Digits for each decade of the ratio of the contact's compliance to that on a half-space, times
   !> the square of the decades by which the contact is wider than the layer: such a layer differs
   !> from a half-space for waves of at most `waves_in_layer` over the radius.
-  real(wp), parameter :: for_softer = 0.3_wp, waves_in_layer = 32
+  real(wp), parameter :: for_softer = 0.6_wp, waves_in_layer = 32
   !> The sigma at which jumps begin under the Lennard-Jones law (for other laws approximately);
   !> digits to be added there; the factor in sigma within which they are added; and the part of this
   !> range, logarithmically, in which the two folds are so close that coarse meshes miss them.
