@@ -1,8 +1,7 @@
 !> Stability of an equilibrium at fixed h0: the smallest eigenvalue of the operator, which is
 !> decisive, and the paper's local criteria, which are estimates.
 module stability
-  use kinds, only: wp
-  use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
+  use kinds, only: wp, nan
   use dimensionless_problem, only: problem_t
   use discretisation, only: discretisation_t, first_node
   use contact_state, only: state_t
@@ -136,7 +135,7 @@ contains
 
   !> NaN for a value that does not exist.
   pure real(wp) function unknown()
-    unknown = ieee_value(unknown, ieee_quiet_nan)
+    unknown = nan
   end function unknown
 
   !> The maximum of the left side of (28), |2 u p'/p|; above 1 the state is unstable by this

@@ -2,8 +2,7 @@
 !> pieces of the equilibrium path, with a jump from the end of each piece to the next stable piece
 !> at the same position of the drive; and the energy that is dissipated.
 module device
-  use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
-  use kinds, only: wp
+  use kinds, only: wp, nan
   use solver, only: solver_t
   use path_tangent, only: of_h0
   use traced_path, only: traced_path_t
@@ -58,7 +57,7 @@ contains
 
     allocate (driven%leg(0), driven%jump(0))
     driven%drive = drive
-    driven%energy_lost = ieee_value(1.0_wp, ieee_quiet_nan)
+    driven%energy_lost = nan
     driven%cycle_energy = driven%energy_lost
     call find_pieces(solver, path, drive, driven%piece, driven%solved)
     if (size(driven%piece) == 0) return

@@ -2,8 +2,8 @@
 !> a name, one or more elements, and for each element one place, or several places of which it is
 !> the sum, such as the energies before and after jumps.
 module places
-  use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan, ieee_is_nan
-  use kinds, only: wp
+  use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
+  use kinds, only: wp, nan
   use dimensionless_problem, only: problem_t
   use reported_place, only: place_t, point_of_path, values_of, units_of, rates_of, least, &
     quantities, of_h0, of_load
@@ -99,7 +99,7 @@ contains
       call mark(entry%place)
       call mark(self%place(entry%place)%after)
     end if
-    if (.not. present(place)) entry%factor = ieee_value(1.0_wp, ieee_quiet_nan)
+    if (.not. present(place)) entry%factor = nan
     if (present(factor)) entry%factor = factor
     self%entry = [self%entry, entry]
 
@@ -224,7 +224,7 @@ contains
     allocate (found%rate(self%parameters(), n), source=0.0_wp)
     allocate (known(n), source=.true.)
     units = units_of(problem)
-    none = ieee_value(none, ieee_quiet_nan)
+    none = nan
     do i = 1, merge(size(self%entry), 0, n > 0)
       associate (entry => self%entry(i), k => self%entry(i)%element)
         if (entry%name /= name) cycle

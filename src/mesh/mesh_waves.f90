@@ -14,7 +14,7 @@ module mesh_waves
   use linear_algebra, only: multiply, multiply_left, add_by_transposed
   use bessel, only: bessel_t, new_bessel
   use wave_quadrature, only: wave_rule
-  use panel_map, only: panel_map_t, algebraic_map
+  use panel_map, only: algebraic_map
   use discretisation, only: discretisation_t, local_nodes_t, gauss_nodes, axis_row, centre_row, &
     first_node
   implicit none

@@ -5,12 +5,11 @@
 module continuation
   use kinds, only: wp
   use dimensionless_problem, only: problem_t
-  use contact_state, only: state_t, radius_of_gap
+  use contact_state, only: state_t, radius_of_gap, felt_load
   use equilibrium, only: equations_t
   use solver, only: solver_t
   use edge_locked, only: approach
   use seen_gaps, only: seen_gaps_t
-  use contact_state, only: felt_load
   use regridding, only: regrid
   use path_coordinate, only: path_control, coordinate_of
   use path_tangent, only: tangent_t, tangent_along

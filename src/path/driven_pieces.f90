@@ -5,9 +5,8 @@
 !> fixed D if no mode of the bodies is unstable at fixed h0 and k - dF/dh0 > 0, the Schur complement
 !> of bodies and spring. On the path followed inward D decreases there.
 module driven_pieces
-  use kinds, only: wp
+  use kinds, only: wp, nan
   use quadrature, only: gauss_legendre
-  use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
   use interpolation, only: hermite_t
   use solver, only: solver_t
   use traced_path, only: traced_path_t
@@ -266,7 +265,7 @@ contains
     jump%inward = inward
     jump%before = pieces(from)%first
     if (inward) jump%before = pieces(from)%last
-    jump%energy = ieee_value(1.0_wp, ieee_quiet_nan)
+    jump%energy = nan
     associate (position => drive%position(jump%before))
       jump%piece = piece_with(pieces, drive, position, from, inward)
       if (jump%piece == 0) return

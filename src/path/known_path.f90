@@ -3,7 +3,6 @@
 !> bodies land after a jump from a fold.
 module known_path
   use kinds, only: wp
-  use contact_state, only: state_t
   use solver, only: solver_t
   use path_tangent, only: of_h0
   use driven_pieces, only: drive_t, driven_piece_t, jump_t, find_pieces, find_jump, interval_with

@@ -14,7 +14,7 @@ module mending
   use mesh_rule, only: is_even
   use edge_locked, only: mesh_family_t
   use seen_gaps, only: seen_gaps_t
-  use contact_state, only: state_t, gap_at, felt_load
+  use contact_state, only: gap_at, felt_load
   use equilibrium, only: equations_t
   use continuation, only: continuation_t
   use traced_path, only: traced_path_t

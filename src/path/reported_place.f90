@@ -3,8 +3,7 @@
 !> module that finds the place sets the values, `place_errors` the errors, and `place_rates` the
 !> derivatives.
 module reported_place
-  use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
-  use kinds, only: wp
+  use kinds, only: wp, nan
   use dimensionless_problem, only: problem_t
   use contact_state, only: state_t
   implicit none
@@ -194,7 +193,7 @@ contains
       of_profile], units => units_of(problem))
       values(others) = values(others)*units(others)
     end associate
-    if (.not. place%drive(1) > 0) values(of_position) = ieee_value(1.0_wp, ieee_quiet_nan)
+    if (.not. place%drive(1) > 0) values(of_position) = nan
   end function values_of
 
   !> The units of all quantities [SI].
@@ -231,7 +230,7 @@ contains
       select case (quantity)
       case (of_position)
         rate = matmul(weights, own(:2, :))
-        if (.not. weights(1) > 0) rate = ieee_value(1.0_wp, ieee_quiet_nan)
+        if (.not. weights(1) > 0) rate = nan
       case (of_tension)
         rate = -own(of_load, :)
       case (of_energy)

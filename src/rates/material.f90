@@ -5,7 +5,7 @@
 !> represent it.
 module material
   use kinds, only: wp
-  use discretisation, only: discretisation_t, local_nodes_t, gauss_nodes, first_node
+  use discretisation, only: discretisation_t, local_nodes_t, gauss_nodes
   use quadrature, only: lagrange_basis
   use linear_algebra, only: multiply
   implicit none

@@ -1,5 +1,5 @@
-"""Claims about a path whose folds and extrema are not as exact as asked for: it is traced again
-with more digits where these help, and the better one is shown."""
+"""Claims about a path whose folds, extrema or end are not as exact as asked for: it is traced again
+over their meshes, made finer, where finer meshes help."""
 
 import pytest
 from support.scenes import deck, lennard_jones, of_numbers, several
@@ -7,7 +7,7 @@ from support.scenes import deck, lennard_jones, of_numbers, several
 
 @pytest.mark.parametrize("sigma,accuracy", [(1.6607746, 1e-8), (1.6607746, 1e-7), (5.475, 1e-6)])
 def test_extrema_that_have_just_come_to_be_are_as_exact_as_asked_for(run, sigma, accuracy):
-    """Small errors move two extrema near each other far: such a path is traced with more digits."""
+    """Small errors move two extrema near each other far: their mesh is made finer."""
     deck = {"equilibrium_path": {"h0_end": -20.0}}
     found = run(lennard_jones(sigma, numerics={"accuracy": accuracy}, **deck)).summary
     truth = run(lennard_jones(sigma, numerics={"accuracy": 1e-10}, **deck)).summary
@@ -25,7 +25,7 @@ def other_force(stiffness, accuracy, h0_end, **force):
         equilibrium_path={"h0_end": h0_end}, numerics={"accuracy": accuracy}, **force)
 
 
-def test_a_path_is_traced_again_as_if_a_higher_accuracy_were_asked_for(run):
+def test_extrema_on_panels_that_were_too_long_are_as_exact_as_asked_for(run):
     """More nodes on panels that are too long do not help: their halving has to go with them."""
     depletion = {"osmotic_pressure": 1e5, "diameter": 1.16407163e-9}
     found, truth = (
@@ -37,8 +37,8 @@ def test_a_path_is_traced_again_as_if_a_higher_accuracy_were_asked_for(run):
     assert found["load_folds_load"] == pytest.approx(truth["load_folds_load"], rel=1e-6)
 
 
-def test_where_more_digits_do_not_help_the_better_path_stays(run):
-    """About a kink errors go up and down with the nodes: one that is worse must not be shown."""
+def test_a_path_whose_law_has_a_kink_is_not_made_worse(run):
+    """About a kink errors go up and down with the nodes, so that a finer mesh may be worse."""
     steric = {"brush_thickness": 1.7417738643505404e-9, "grafting_density": 1e16}
     found = run(other_force(3.959643598120061e11, 1e-6, 2.105954964614361e-10, steric=steric))
     assert not found.warnings
