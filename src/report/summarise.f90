@@ -1,6 +1,6 @@
 !> Makes the summary of the results of experiments: SI units, and warnings.
 module summarise
-  use kinds, only: wp, long
+  use kinds, only: long
   use numerics_choice, only: grid_names, unchosen, edge_locked
   use dimensionless_problem, only: problem_t
   use scene_groups, only: scene_t
