@@ -276,7 +276,7 @@ contains
     type(discretisation_t), intent(in) :: grid
     integer, intent(in) :: p
     real(wp), intent(in) :: ends(2), k(:)
-    integer :: nodes(size(k)), i
+    integer :: nodes(size(k))
     real(wp) :: of_pressure, last(2), speed(2)
 
     associate (panel => grid%panel(p), local => grid%local(grid%which(p)), &
@@ -288,8 +288,8 @@ contains
         last = last_on(grid, p, places, passing)
         speed = panel%speed(places)
       end associate
-      nodes = [(max(hat + 1, ceiling(0.5_wp*(of_pressure + more_degrees + &
-        degrees*length*maxval(min(k(i), last)*speed)))), i=1, size(k))]
+      nodes = max(hat + 1, ceiling(0.5_wp*(of_pressure + more_degrees + degrees*length* &
+        max(min(k, last(1))*speed(1), min(k, last(2))*speed(2)))))
     end associate
   end function nodes_for
 
