@@ -26,6 +26,8 @@ module law_panels
   !> for which the pressure is evaluated: `tried`, or `often` where waves move with them.
   real(wp), parameter :: shortest = 0.01_wp
   integer, parameter :: tried = 9, often = 33
+  !> Distance from a step, in its widths, at which nothing is left of the step.
+  real(wp), parameter :: whole_step = 6
   !> Factors by which the number of nodes is increased in turn. A panel that needs no more nodes
   !> than its halves is not halved: waves need more nodes, steps need shorter panels.
   real(wp), parameter :: times(*) = [1.0_wp, 1.3_wp, 1.7_wp, 2.2_wp, 2.8_wp, 3.6_wp]
@@ -128,7 +130,9 @@ contains
     end function order_of
 
     !> Whether the nodes of a panel integrate the pressure with a small enough error of the load and
-    !> of the gap nearby. The gap that was worst before is tested first.
+    !> of the gap nearby. The gap that was worst before is tested first. Under a law with a step, the
+    !> gaps between the first and the last one are tested only where their step is on the panel:
+    !> elsewhere their pressures are as smooth as those of the first or of the last gap.
     logical function is_resolved(z, z_length, nodes)
       real(wp), intent(in) :: z, z_length
       integer, intent(in) :: nodes
@@ -144,6 +148,9 @@ contains
       if (side < 0) ends = [ends(2), ends(1)]
       do k = 0, size(parameter)
         j = merge(k, worst, k > 0)
+        if (k > 1 .and. k < size(parameter) .and. problem%law%step_width > 0) then
+          if (.not. meets_step(gap_of(j, offset([1, nodes])))) cycle
+        end if
         gap = gap_of(j, offset)
         pressure = problem%law%pressure(gap)
         associate (unit => merge(1.0_wp, parameter(j), about == about_axis))
@@ -155,6 +162,16 @@ contains
       end do
       is_resolved = .true.
     end function is_resolved
+
+    !> Whether two gaps have the step of the law between them, or nearby.
+    pure logical function meets_step(gap)
+      real(wp), intent(in) :: gap(2)
+
+      associate (law => problem%law)
+        meets_step = maxval(gap) > law%step_at - whole_step*law%step_width .and. &
+          minval(gap) < law%step_at + whole_step*law%step_width
+      end associate
+    end function meets_step
 
     !> The gap number j at offsets from the centre.
     function gap_of(j, offset) result(gap)
