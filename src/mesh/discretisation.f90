@@ -13,6 +13,8 @@ module discretisation
   private
   public :: discretisation_t, local_nodes_t, gauss_nodes, axis_row, centre_row, first_node
 
+  !> Stands for a distance 0 from a node.
+  real(wp), parameter :: at_node = 1.0e-100_wp
   !> Number of nodes from which the value on the axis is interpolated.
   integer, parameter :: nodes_at_axis = 6
 
@@ -24,6 +26,7 @@ module discretisation
     real(wp), allocatable :: node(:), weight(:), barycentric(:)
   contains
     procedure :: value => value_at
+    procedure :: values => values_at
     procedure :: tail
   end type local_nodes_t
 
@@ -55,6 +58,7 @@ module discretisation
     real(wp) :: digits = 14
   contains
     procedure :: interpolate
+    procedure :: interpolate_all
     procedure :: on_one_panel
     procedure :: crossing
     procedure :: note_axis
@@ -100,6 +104,25 @@ contains
     end do
     value_at = value_at/shares
   end function value_at
+
+  !> The same at many points, faster.
+  pure function values_at(self, values, s) result(value)
+    class(local_nodes_t), intent(in) :: self
+    real(wp), intent(in) :: values(:), s(:)
+    real(wp), dimension(size(s)) :: value, share, shares
+    integer :: j
+
+    value = 0
+    shares = 0
+    do j = 1, size(values)
+      share = s - self%node(j)
+      ! At a node, its share exceeds the others by more than the digits of a number.
+      share = self%barycentric(j)/merge(share, at_node, abs(share) > at_node)
+      shares = shares + share
+      value = value + share*values(j)
+    end do
+    value = value/shares
+  end function values_at
 
   !> The larger of the last two Legendre coefficients of a function given at the nodes; small if the
   !> polynomial represents the function well. On n nodes, roots of P_n, the node's weight times
@@ -150,6 +173,33 @@ contains
         self%panel(k)%local(x - self%centre))
     end associate
   end function interpolate
+
+  !> Interpolated values at many positions in any order, faster if neighbours are mostly on one
+  !> panel.
+  pure function interpolate_all(self, values, x) result(value)
+    class(discretisation_t), intent(in) :: self
+    real(wp), intent(in) :: values(:), x(:)
+    real(wp) :: value(size(x))
+    integer :: i, last, k
+
+    last = 0
+    do while (last < size(x))
+      i = last + 1
+      last = i
+      k = self%panel_at(x(i))
+      associate (panel => self%panel(k), local => self%local(self%which(k)), &
+        first => self%first(k))
+        do while (last < size(x))
+          associate (next => x(last + 1) - self%centre)
+            if (next < panel%left .or. next >= panel%right) exit
+          end associate
+          last = last + 1
+        end do
+        value(i:last) = local%values(values(first:first + size(local%node) - 1), &
+          panel%local(x(i:last) - self%centre))
+      end associate
+    end do
+  end function interpolate_all
 
   !> Whether node j and the next one are on the same panel, and this panel does not extend to
   !> infinity.

@@ -93,11 +93,9 @@ contains
     integer, intent(in) :: j
     real(wp), intent(in) :: offset(:)
     real(wp) :: gap(size(offset))
-    integer :: i
 
     associate (r => abs(self%from(j) + self%radius(j)*offset), k => self%state(j))
-      gap = shape%height(r) + [(self%grid%interpolate(self%beside(:, k), r(i)/self%scale(k)), &
-        i=1, size(offset))]
+      gap = shape%height(r) + self%grid%interpolate_all(self%beside(:, k), r/self%scale(k))
     end associate
   end function gap
 

@@ -193,8 +193,8 @@ module result_rows
     row_t('end_load', 'N', 'load of the last equilibrium', always, &
       place='end', quantity=of_load, error=judged), &
     row_t('profiles_error', '', &
-      'error of each profile: of gaps over the law''s length, or over the gap where that ' // &
-      'is larger; or of pressures over the largest', &
+      'error of each profile: of gaps over the larger of gap and law''s length; of pressures ' // &
+      'over the largest', &
       list=.true., place='profiles', quantity=of_profile), &
     row_t('jump_criterion_29_h0', 'm', &
       'h0 at which approaching bodies first violate (29)', approximations), &
