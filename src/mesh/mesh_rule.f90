@@ -4,7 +4,6 @@
 module mesh_rule
   use kinds, only: wp, pi
   use root_finding, only: bracket_t
-  use shape, only: shape_t
   use dimensionless_problem, only: problem_t, calm_gap, adhesion_strength, coupling_over
   use contact_scales, only: smallest_feature, cohesive_width
   use law_panels, only: fit_panels, nodes_on, about_axis, about_front, about_edge
@@ -13,7 +12,7 @@ module mesh_rule
   use mapped_mesh, only: mapped_shape_t
   implicit none
   private
-  public :: approach_shape, contact_shape, is_narrow, rim_passed_at, is_even
+  public :: approach_shape, contact_shape, is_narrow, rim_passed_at
 
   !> The length d over the smallest feature: errors change little between half this value and twice.
   real(wp), parameter :: finer = 0.5_wp
@@ -80,7 +79,7 @@ contains
     feature = smallest_feature(problem, 1.0_wp)
     if (front_leads(problem%law)) feature = min(feature, first_front(problem))
     shape%d = exp(rung*floor(log(finer*feature)/rung))
-    shape%even = is_even(problem%shape)
+    shape%even = problem%shape%is_even()
     call add_panels(problem, shape, about_axis, 1, asinh(reach/shape%d), density, digits, 0.0_wp, &
       0.0_wp, seen)
     call refine_axis(problem, digits, 3.0_wp, shape)
@@ -118,7 +117,7 @@ contains
     call give_tail(problem, max(level, problem%law%edge_gap), digits, reach, outer, shape)
     reach = max(tail_of_contact, reach/low)
     shape%centre = 1
-    shape%even = is_even(problem%shape)
+    shape%even = problem%shape%is_even()
     shape%d = min(finer*smallest_feature(problem, high)/high, 1.0_wp)
     if (about == about_front) shape%d = finer*front_width(problem, high)
     call add_panels(problem, shape, about, -1, asinh(1/shape%d), inner, digits, low, high, &
@@ -146,7 +145,7 @@ contains
       shape%decay = problem%shape%growth*problem%law%tail_power
       ! For other shapes the pressure over its power need not be a polynomial in the inverse
       ! position.
-      if (.not. is_even(problem%shape) .or. problem%shape%ends < huge(1.0_wp)) &
+      if (.not. problem%shape%is_even() .or. problem%shape%ends < huge(1.0_wp)) &
         shape%tail_order = 2*shape%tail_order
       reach = max(reach, problem%shape%position_of(problem%law%power_from), &
         beyond_poles*problem%shape%smooth_from())
@@ -322,7 +321,7 @@ contains
     real(wp) :: power, order
     integer :: on_axis
 
-    if (is_even(problem%shape)) return
+    if (problem%shape%is_even()) return
     power = problem%shape%exponent + beyond
     order = short_order + short_orders*digits
     on_axis = ceiling(order)
@@ -336,13 +335,6 @@ contains
       order = max(least, order - power*fewer)
     end do
   end subroutine refine_axis
-
-  !> Whether a shape is even in r, so that it is smooth on its axis.
-  pure logical function is_even(shape)
-    class(shape_t), intent(in) :: shape
-
-    is_even = .not. abs(shape%exponent - 2*nint(0.5_wp*shape%exponent)) > 0
-  end function is_even
 
   !> Digits of the kernel: its errors matter less than those of the pressure's polynomials. They
   !> matter more for more compliant bodies, and for bodies that are stiffer at this contact radius

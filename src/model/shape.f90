@@ -40,6 +40,7 @@ module shape
     procedure :: opening
     procedure :: hertz_gap
     procedure :: smooth_from
+    procedure :: is_even
   end type shape_t
 
   abstract interface
@@ -194,5 +195,12 @@ contains
     r = 0
     if (allocated(self%breaks)) r = maxval([0.0_wp, pack(self%breaks, self%breaks < self%ends)])
   end function smooth_from
+
+  !> Whether the shape is even in r, so that it is smooth on its axis.
+  pure logical function is_even(self)
+    class(shape_t), intent(in) :: self
+
+    is_even = .not. abs(self%exponent - 2*nint(0.5_wp*self%exponent)) > 0
+  end function is_even
 
 end module shape

@@ -11,7 +11,6 @@ module mending
   use panel_map, only: algebraic_map
   use mapped_mesh, only: mapped_shape_t, new_mapped_mesh
   use law_panels, only: left_out
-  use mesh_rule, only: is_even
   use edge_locked, only: mesh_family_t
   use seen_gaps, only: seen_gaps_t
   use contact_state, only: gap_at, felt_load
@@ -213,7 +212,7 @@ contains
     logical :: smooth
     integer :: k
 
-    smooth = is_even(problem%shape) .and. .not. problem%shape%smooth_from() > 0
+    smooth = problem%shape%is_even() .and. .not. problem%shape%smooth_from() > 0
     pressure = problem%law%pressure(gap)
     left = 0
     do k = 1, size(grid%panel)
