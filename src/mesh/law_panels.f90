@@ -130,9 +130,9 @@ contains
     end function order_of
 
     !> Whether the nodes of a panel integrate the pressure with a small enough error of the load and
-    !> of the gap nearby. The gap that was worst before is tested first. Under a law with a step, the
-    !> gaps between the first and the last one are tested only where their step is on the panel:
-    !> elsewhere their pressures are as smooth as those of the first or of the last gap.
+    !> of the gap nearby. The gap that was worst before is tested first. Under a law with a step,
+    !> gaps between the first and the last one are tested only if their step is on the panel; if it
+    !> is not, their pressures are as smooth as those of the first or of the last gap.
     logical function is_resolved(z, z_length, nodes)
       real(wp), intent(in) :: z, z_length
       integer, intent(in) :: nodes
