@@ -12,6 +12,8 @@ module timed_run
   use mesh_digits, only: most_digits
   use records, only: observer_t
   use journal, only: journal_t
+  use listener, only: listener_t
+  use path_stepper, only: path_stepper_t
   use numerics_choice, only: choice_t, fixed_choice, fixed_mesh, panels
   use experiment_request, only: request_t, numerics_t
   use path_demand, only: h0_in_contact
@@ -78,7 +80,7 @@ contains
       before = none
       if (whole > 0) before = now
       now = none
-      call lay_out(request, drive, low, chosen, pass, steps)
+      call lay_out(request, drive, low, chosen, pass, observer, steps)
       steps%farthest = farthest/2**(pass - 1)
       call go_through(request, drive, pass, before, steps, journal, observer, now)
       if (now%result%lost) then
@@ -161,19 +163,19 @@ contains
 
   !> Lays out meshes for relaxed bodies, whose neck is the narrowest, with more digits in each pass;
   !> and for the memory panels fixed in space, with one more node each.
-  subroutine lay_out(request, drive, low, chosen, pass, steps)
+  subroutine lay_out(request, drive, low, chosen, pass, listener, steps)
     class(request_t), intent(in) :: request
     type(motion_t), intent(in) :: drive
     real(wp), intent(in) :: low
     type(choice_t), intent(in) :: chosen
     integer, intent(in) :: pass
+    class(listener_t), intent(inout) :: listener
     type(time_stepper_t), intent(inout) :: steps
     type(problem_t) :: relaxed
     type(numerics_t) :: numerics
     type(choice_t) :: of_memory
     type(discretisation_t) :: grid
     real(wp) :: digits
-    integer :: k
 
     relaxed = relaxed_problem(steps)
     ! The memory uses the pressure at the nodes, which has half as many digits as its integrals.
@@ -184,10 +186,8 @@ contains
     associate (meshes => steps%meshes)
       meshes = new_mesh_family(relaxed, maxval(drive%position), low, &
         min(most_digits, digits + more_digits*(pass - 1)))
-      ! There is no path during which waiting meshes would be laid out.
-      do k = 1, size(meshes%grid)
-        if (meshes%waits(k)) call meshes%renew(k, meshes%shape_for(relaxed, k))
-      end do
+      if (any(meshes%waits)) call fit_to_path(relaxed, maxval(drive%position), low, &
+        request%numerics%accuracy, listener, steps)
       if (allocated(steps%drainage)) call steps%drainage%lay_out(meshes%grid)
       call steps%frozen%forget()
       steps%cost%kernel_entries = steps%cost%kernel_entries + sum(meshes%grid%kernel_entries())
@@ -205,6 +205,30 @@ contains
       steps%cost%kernel_entries = steps%cost%kernel_entries + steps%material%kernel_entries()
     end associate
   end subroutine lay_out
+
+  !> Lays out the meshes on the path of relaxed bodies, for the gaps of its states, as laws with a
+  !> step or waves need it. Meshes that the path does not reach are laid out without seen gaps.
+  subroutine fit_to_path(relaxed, high, low, accuracy, listener, steps)
+    type(problem_t), intent(in) :: relaxed
+    real(wp), intent(in) :: high, low, accuracy
+    class(listener_t), intent(inout) :: listener
+    type(time_stepper_t), intent(inout) :: steps
+    type(path_stepper_t) :: at_rest
+    integer :: k
+
+    at_rest%problem = relaxed
+    at_rest%options = steps%options
+    at_rest%cost = steps%cost
+    at_rest%meshes = steps%meshes
+    call at_rest%know_path(high, low, .true., listener, accuracy=accuracy)
+    steps%meshes = at_rest%meshes
+    steps%cost = at_rest%cost
+    associate (meshes => steps%meshes)
+      do k = 1, size(meshes%grid)
+        if (meshes%waits(k)) call meshes%renew(k, meshes%shape_for(relaxed, k))
+      end do
+    end associate
+  end subroutine fit_to_path
 
   !> Sets the errors of a pass from its differences to the previous pass.
   subroutine compare(accuracy, before, now)

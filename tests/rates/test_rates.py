@@ -41,6 +41,23 @@ def test_an_elastic_body_has_its_path_at_any_velocity(run, sigma):
         assert off <= found["energy_dissipated_error"] + 1e-4 * sigma
 
 
+@pytest.mark.parametrize("groups, low", [
+    ({"dugdale": {"stress": 1e6, "range": 5e-9},
+      "hydration": {"pressure": 1e7, "decay_length": 0.3e-9}}, -20e-9),
+    ({"van_der_waals": {"hamaker": 6.5e-20}, "born": {"z0": 0.25e-9},
+      "structural": {"amplitude": 3e7, "period": 0.9e-9, "decay_length": 1e-9}}, 0.2e-9)])
+def test_an_elastic_body_under_a_step_or_waves_has_its_path(run, groups, low):
+    bodies = {"radius": 10e-6, "young": 2e6, "poisson": 0.49}
+    if "structural" in groups:
+        bodies = {"radius": 5e-6, "young": 1e10, "poisson": 0.35}
+    path = run(deck(bodies=bodies, **groups, equilibrium_path={"h0_end": low})).summary
+    found = run(deck(bodies=bodies, **groups, numerics={"accuracy": 1e-3}, drive={
+        "velocity": 1e-6, "z_start": 100e-9, "z_turn": low})).summary
+    for key in ("max_tension", "max_tension_h0"):
+        assert abs(found[key] / path[key] - 1) < 1e-3
+        assert near(found, key, path[key])
+
+
 def test_fast_bodies_are_those_at_once_and_slow_ones_those_at_rest(run):
     fast = run(scene(0.1, 0.5, velocity=FAST)).summary["max_tension"]
     slow, slower = (run(scene(0.1, 0.5, velocity=velocity, accuracy=1e-3)).summary["max_tension"]
