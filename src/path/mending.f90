@@ -35,8 +35,10 @@ module mending
     type(traced_path_t) :: path
     type(continuation_t) :: walker
     integer, allocatable :: rounds(:)
-    !> Part of the load that each mesh missed at its last check.
+    !> Part of the load that each mesh missed when this fell for the last time, and its number of
+    !> nodes then.
     real(wp), allocatable :: left(:)
+    integer, allocatable :: nodes(:)
   contains
     procedure :: note
     procedure :: mend
@@ -53,8 +55,9 @@ module mending
   !> Growth of the number of nodes at which halving stops until the path has been traced again: the
   !> estimated errors of a path that is lost may require any number of nodes.
   real(wp), parameter :: most_growth = 1.5_wp
-  !> A mesh on which the path is lost is refined again only if the quadrature error fell below this
-  !> fraction of the earlier one.
+  !> A refinement has helped if the quadrature error fell below this fraction of the earlier one. If
+  !> it has not, a mesh on which the path is lost is not refined again; others are refined until
+  !> their number of nodes has grown by `most_growth`: shorter panels are useless at a tip.
   real(wp), parameter :: helped = 0.9_wp
 
 contains
@@ -69,6 +72,7 @@ contains
     mender%most = accuracy*merge(too_much, 1.0_wp, law%has_kink .or. law%period > 0)
     allocate (mender%rounds(size(meshes%grid)), source=0)
     allocate (mender%left(size(meshes%grid)), source=huge(1.0_wp))
+    allocate (mender%nodes(size(meshes%grid)), source=0)
   end function new_mender
 
   !> Saves the path before it enters another mesh.
@@ -95,8 +99,14 @@ contains
 
     left = maxval(left_on_mesh(equations, path, mesh, equations%meshes%grid(mesh)))
     mended = self%rounds(mesh) < most_rounds .and. left > self%most
-    if (lost) mended = mended .and. left < helped*self%left(mesh)
-    self%left(mesh) = left
+    associate (nodes => equations%meshes%grid(mesh)%nodes)
+      if (left < helped*self%left(mesh)) then
+        self%left(mesh) = left
+        self%nodes(mesh) = nodes
+      else
+        mended = mended .and. .not. lost .and. nodes < most_growth*self%nodes(mesh)
+      end if
+    end associate
     if (.not. mended) return
     if (.not. (self%rounds(mesh) > 0 .or. lost) .and. equations%problem%law%edge_gap > 0) then
       shape = shape_for_seen(equations, path, mesh, self%most)

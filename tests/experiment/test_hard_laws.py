@@ -225,6 +225,16 @@ def test_the_edge_of_a_contact_passes_the_rim_of_a_punch(run):
             assert abs(value - right) <= error + doubt
 
 
+def test_a_tip_does_not_make_meshes_grow_where_it_does_not_help(run):
+    # The panel on the axis was halved again and again: 3,008 nodes, and 9 seconds.
+    found = run(deck(
+        bodies={"stiffness": 1e7}, shape={"kind": "cone", "half_angle": 1.2217},
+        force={"law": "lennard_jones", "hamaker": 1e-19, "z0": 0.5e-9},
+        equilibrium_path={"h0_end": -100e-9}, numerics={"accuracy": 1e-9}))
+    assert found.cost["nodes"] < 1500
+    assert found.summary["error_estimate"] < 3e-9
+
+
 def test_a_mesh_that_is_mended_does_not_have_the_whole_path_traced_again(run):
     """Waves are foreseen badly before contact; in contact meshes are laid out by what is seen.
 
