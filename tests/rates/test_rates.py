@@ -195,7 +195,8 @@ def test_bodies_that_are_lost_have_no_numbers(run):
         fluid={"viscosity": 1e-6}, numerics={"accuracy": 1e-2}), status=None)
     lost = any("no further state was found" in text for text in found.warnings)
     assert lost == (found.status == 1) == ("energy_dissipated" not in found.summary)
-    assert any("the error could not be estimated" in text for text in found.warnings)
+    if lost:
+        assert any("the error could not be estimated" in text for text in found.warnings)
 
 
 def test_rigid_bodies_have_the_drag_of_a_film_beside_their_force(run):
