@@ -20,10 +20,11 @@ HEADER = ("σ", "pull-off/JKR", "jump-in h0", "load", "jump-out h0", "load", "en
 
 
 def rows(path):
-    """Return the rows of a sweep, each as a dict of numbers."""
+    """Return the rows of a sweep, each as a dict of numbers; the reason of a failure is left out."""
     lines = [line for line in path.read_text(encoding="utf-8").splitlines()
              if not line.startswith("#")]
-    return [{key: float(value) for key, value in row.items()} for row in csv.DictReader(lines)]
+    return [{key: float(value) for key, value in row.items() if key != "failure"}
+            for row in csv.DictReader(lines)]
 
 
 def cells(row):
