@@ -7,7 +7,7 @@ module tracing
   use contact_state, only: state_t, state_from
   use discretisation, only: discretisation_t
   use regridding, only: regrid
-  use equilibrium, only: equations_t
+  use equilibrium, only: control_t, equations_t
   use solver, only: solver_t
   use edge_locked, only: approach
   use contact_scales, only: largest_radius, lost_in_rounding
@@ -240,6 +240,7 @@ contains
     type(traced_path_t) :: anew
     type(continuation_t) :: walker
     type(state_t) :: state
+    type(control_t) :: control
     real(wp) :: tolerance
     logical :: led_on, done
     integer :: i, last
@@ -257,7 +258,10 @@ contains
         if (point%fold .or. point%load_extremum) cycle
         state = regrid(solver%problem%shape, point%state, before, grid, point%state%scale)
         call solver%frozen%forget()
-        call solver%correct(path_control(solver%problem, mesh, point%coordinate), state, done)
+        ! An experiment may begin at the h0 of the first point.
+        control = path_control(solver%problem, mesh, point%coordinate)
+        if (i == 1) control = h0_control(solver%problem%shape, solver%meshes, mesh, point%state%h0)
+        call solver%correct(control, state, done)
         lost = .not. done
         if (done) call walker%take(solver, state, mesh, lost)
         if (lost) exit

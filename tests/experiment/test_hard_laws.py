@@ -235,6 +235,21 @@ def test_a_tip_does_not_make_meshes_grow_where_it_does_not_help(run):
     assert found.summary["error_estimate"] < 3e-9
 
 
+def test_a_path_traced_again_begins_where_the_experiment_does(run):
+    # Its first state had the gap on the axis of the earlier one, and another h0: no step was made.
+    for z0, energy in ((5e-10, 0.011549681592573975), (4e-10, 0.01), (5e-10, 0.02)):
+        for accuracy in (2e-8, 1e-9):
+            found = run(deck(
+                bodies={"radius": 0.015, "stiffness": 27538782685.611225},
+                force={"law": "lennard_jones", "hamaker": 1e-19, "z0": z0},
+                hydrophobic={"energy": energy, "decay_length": 7.351483207407723e-10},
+                loading={"h0_start": 5.517633670770173e-09, "h0_end": 2.1310650969421797e-10,
+                         "h0_step": 2.3061810093606781e-10},
+                numerics={"accuracy": accuracy}))
+            check(found)
+            assert len(found.curve["h0"]) > 20
+
+
 def test_a_mesh_that_is_mended_does_not_have_the_whole_path_traced_again(run):
     """Waves are foreseen badly before contact; in contact meshes are laid out by what is seen.
 
