@@ -8,7 +8,7 @@
 module law_panels
   use kinds, only: wp, pi
   use dimensionless_problem, only: problem_t, calm_gap, adhesion_strength
-  use force_law, only: force_law_t
+  use force_law, only: force_law_t, whole_step
   use discretisation, only: local_nodes_t, gauss_nodes
   use seen_gaps, only: seen_gaps_t
   use step_front, only: front_leads
@@ -26,8 +26,6 @@ module law_panels
   !> for which the pressure is evaluated: `tried`, or `often` where waves move with them.
   real(wp), parameter :: shortest = 0.01_wp
   integer, parameter :: tried = 9, often = 33
-  !> Distance from a step, in its widths, at which nothing is left of the step.
-  real(wp), parameter :: whole_step = 6
   !> Factors by which the number of nodes is increased in turn. A panel that needs no more nodes
   !> than its halves is not halved: waves need more nodes, steps need shorter panels.
   real(wp), parameter :: times(*) = [1.0_wp, 1.3_wp, 1.7_wp, 2.2_wp, 2.8_wp, 3.6_wp]

@@ -8,7 +8,7 @@
 !> law, 0 for rigid bodies. For other shapes R is defined by their lateral unit, sqrt(R L).
 module dimensionless_problem
   use kinds, only: wp, pi
-  use force_law, only: force_law_t
+  use force_law, only: force_law_t, whole_step
   use shape, only: shape_t
   use elastic_body, only: elastic_body_t, half_space_t
   implicit none
@@ -118,12 +118,10 @@ contains
   !> about a tenth of that at the jump. The gap is outside a step of the law.
   pure real(wp) function calm_gap(problem) result(gap)
     type(problem_t), intent(in) :: problem
-    !> Distance from a step, in its widths, at which erfc(x) is below rounding.
-    real(wp), parameter :: outside = 6
 
     gap = max(5.0_wp, yielding_gap(problem, 1.0_wp/8))
     if (problem%law%step_width > 0) &
-      gap = max(gap, problem%law%step_at + outside*problem%law%step_width)
+      gap = max(gap, problem%law%step_at + whole_step*problem%law%step_width)
     if (problem%shape%parabolic) &
       gap = max(gap, 2*(27*coupling_over(problem, problem%shape%position_of(0.5_wp*gap))* &
       problem%law%adhesion)**(2.0_wp/7))

@@ -8,7 +8,11 @@ module force_law
   use kinds, only: wp
   implicit none
   private
-  public :: force_law_t
+  public :: force_law_t, whole_step
+
+  !> Distance from a step of the pressure, in its widths, beyond which nothing of the step is left:
+  !> there erfc is below rounding.
+  real(wp), parameter :: whole_step = 6
 
   type, abstract :: force_law_t
     !> Set by the law: unit of gap [m] and of pressure [Pa], and the separation [m] at gap 0, which

@@ -6,7 +6,7 @@ module step_attraction
   use failure, only: failure_t
   use deck, only: deck_t
   use deck_keys, only: key_spec, real_key
-  use force_law, only: force_law_t
+  use force_law, only: force_law_t, whole_step
   use law_reading, only: check_decades
   implicit none
   private
@@ -25,9 +25,8 @@ module step_attraction
   !> Default of the smoothing over the range; and number of smoothing lengths beyond which the error
   !> function has its limit.
   real(wp), parameter :: usual = 0.02_wp, farthest = 26
-  !> Distance from the step, in smoothing lengths, beyond which nothing of the step is left; and
-  !> smallest such distance, below which rounding hides the position of the step.
-  real(wp), parameter :: outside = 6, least = 1.0e-12_wp
+  !> Smallest distance between the step and the breaks about it, which rounding does not hide.
+  real(wp), parameter :: least = 1.0e-12_wp
 
 contains
 
@@ -75,7 +74,7 @@ contains
     this%smoothing = this%smoothing/range
     this%step_at = 1
     this%step_width = this%smoothing
-    this%breaks = 1 + max(outside*this%smoothing, least)*[-1.0_wp, 1.0_wp]
+    this%breaks = 1 + max(whole_step*this%smoothing, least)*[-1.0_wp, 1.0_wp]
     this%group = group
     this%strength_key = strength_key
     this%length_key = length_key
