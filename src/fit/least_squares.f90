@@ -51,9 +51,12 @@ module least_squares
     end subroutine lmder
   end interface
 
-  !> Relative changes of the sum of squares and of x at which the search ends (noise changes the sum
-  !> by far more than 1e-7 of it); largest number of evaluations; length of the first step.
-  real(wp), parameter :: less = 1.0e-7_wp, nearer = 1.0e-10_wp, first_step = 0.3_wp
+  !> The search ends where the next step would change x by about this part of its standard errors:
+  !> one standard error changes the sum of squares by its mean square.
+  real(wp), parameter :: of_error = 1.0e-3_wp
+  !> Relative change of x at which the search ends too; length of the first step.
+  real(wp), parameter :: nearer = 1.0e-10_wp, first_step = 0.3_wp
+  !> Largest number of evaluations.
   integer, parameter :: most_evaluations = 80
   !> Replaces residuals that do not exist; lmder then shortens its step.
   real(wp), parameter :: nowhere = 1.0e8_wp
@@ -76,8 +79,8 @@ contains
     carrier%residuals => residuals
     diag = 1
     call lmder(evaluate_for_lmder, c_loc(carrier), size(residual), size(x), x, residual, jacobian, &
-      size(residual), less, nearer, 0.0_wp, most_evaluations, diag, 2, first_step, 0, &
-      info, evaluations, jacobians, pivot, qtf, wa1, wa2, wa3, wa4)
+      size(residual), of_error**2/size(residual), nearer, 0.0_wp, most_evaluations, diag, 2, &
+      first_step, 0, info, evaluations, jacobians, pivot, qtf, wa1, wa2, wa3, wa4)
     ! 6 to 8: rounding allows no further gain.
     found = any(info == [1, 2, 3, 4, 6, 7, 8])
   end subroutine minimise
