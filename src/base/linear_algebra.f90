@@ -9,12 +9,19 @@ module linear_algebra
     add_by_transposed, factorisation_t, factorise, solve, determinant_sign, &
     log_determinant, claim_buffers, eigenvalues, solve_tridiagonal, singular_values
 
-  !> LU factors of a square matrix, from `factorise`.
+  !> LU factors of a square matrix, from `factorise`. Columns of the unit matrix need no factors: lu
+  !> is then the block of the other columns, the kept ones, and of their rows.
   type :: factorisation_t
     real(wp), allocatable :: lu(:, :)
     integer, allocatable :: pivot(:)
     !> .false. if there are no factors, or the matrix was singular.
     logical :: valid = .false.
+    !> The kept columns in the order of lu, the columns of the unit matrix, and the rows of these,
+    !> (row, kept column); not allocated if all columns are in lu.
+    integer, allocatable :: kept(:), unit(:)
+    real(wp), allocatable :: rows(:, :)
+  contains
+    procedure :: unknowns
   end type factorisation_t
 
 contains
@@ -79,6 +86,14 @@ contains
     end if
   end subroutine factorise
 
+  !> Number of unknowns of a factorised system.
+  pure integer function unknowns(self)
+    class(factorisation_t), intent(in) :: self
+
+    unknowns = size(self%lu, 1)
+    if (allocated(self%unit)) unknowns = unknowns + size(self%unit)
+  end function unknowns
+
   !> Adds matmul(a, transpose(b)) to the first rows of c.
   subroutine add_by_transposed(a, b, c)
     real(wp), intent(in), contiguous :: a(:, :), b(:, :)
@@ -92,6 +107,24 @@ contains
   subroutine solve(factors, b)
     type(factorisation_t), intent(in) :: factors
     real(wp), intent(inout) :: b(:)
+    real(wp), allocatable :: kept(:), unit(:)
+
+    if (.not. allocated(factors%kept)) then
+      call substitute(factors, b)
+      return
+    end if
+    kept = b(factors%kept)
+    call substitute(factors, kept)
+    b(factors%kept) = kept
+    allocate (unit(size(factors%unit)))
+    call multiply(factors%rows, size(kept), kept, unit)
+    b(factors%unit) = b(factors%unit) - unit
+  end subroutine solve
+
+  !> Overwrites b with the solution of the system of lu.
+  subroutine substitute(factors, b)
+    type(factorisation_t), intent(in) :: factors
+    real(wp), intent(inout) :: b(:)
     integer :: info, n
 
     n = size(b)
@@ -100,7 +133,7 @@ contains
     else
       call dgetrs('n', n, 1, factors%lu, n, factors%pivot, b, n, info)
     end if
-  end subroutine solve
+  end subroutine substitute
 
   !> Overwrites b with the solution of a regular tridiagonal system; destroys the three diagonals.
   subroutine solve_tridiagonal(below, middle, above, b)

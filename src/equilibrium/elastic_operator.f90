@@ -76,29 +76,33 @@ contains
     rise = 2*problem%coupling*scale*rise
   end subroutine deform
 
-  !> a(:, j) = A(c)_ij factor(j) for rows `first` to first - 1 + size(a, 1).
-  subroutine matrix(self, problem, grid, scale, factor, first, a)
+  !> a(i, j) = A(c)_rk factor(j) with r = row(i) and k = column(j).
+  subroutine matrix(self, problem, grid, scale, factor, row, column, a)
     class(elastic_operator_t), intent(inout) :: self
     type(problem_t), intent(in) :: problem
     type(discretisation_t), intent(in) :: grid
     real(wp), intent(in) :: scale, factor(:)
-    integer, intent(in) :: first
+    integer, intent(in) :: row(:), column(:)
     real(wp), intent(out) :: a(:, :)
     real(wp) :: yielding
-    integer :: j, last
+    integer :: i, j
 
-    last = first - 1 + size(a, 1)
     yielding = 2*problem%coupling*scale
     if (problem%body%is_homogeneous()) then
-      do j = 1, size(a, 2)
-        a(:, j) = yielding*factor(j)*grid%kernel(first:last, j)
+      do j = 1, size(column)
+        do i = 1, size(row)
+          a(i, j) = yielding*factor(j)*grid%kernel(row(i), column(j))
+        end do
       end do
     else
       call self%prepare(problem, grid, scale)
       if (.not. allocated(self%remainder)) &
         call self%waves_of(self%now)%matrix(self%strength, self%remainder)
-      do j = 1, size(a, 2)
-        a(:, j) = yielding*factor(j)*(grid%kernel(first:last, j) + self%remainder(first:last, j))
+      do j = 1, size(column)
+        do i = 1, size(row)
+          a(i, j) = yielding*factor(j)*(grid%kernel(row(i), column(j)) + &
+            self%remainder(row(i), column(j)))
+        end do
       end do
     end if
   end subroutine matrix

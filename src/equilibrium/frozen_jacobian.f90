@@ -1,8 +1,9 @@
 !> A factorised Jacobian that is used for many states, and the state at which it was made. Equal
 !> states and controls give equal factors, bit by bit.
 module frozen_jacobian
+  use kinds, only: wp
   use contact_state, only: state_t
-  use equilibrium, only: control_t, equations_t
+  use equilibrium, only: control_t, equations_t, at_h0
   use jacobian, only: factorise_jacobian
   use linear_algebra, only: factorisation_t
   implicit none
@@ -25,6 +26,9 @@ module frozen_jacobian
     procedure :: forget
   end type frozen_jacobian_t
 
+  !> Changes of gaps that the factors may neglect, over the change of the gap that causes them.
+  real(wp), parameter :: negligible = 1.0e-4_wp
+
 contains
 
   !> Whether the factors have the same number of unknowns, kind of control and mesh.
@@ -35,7 +39,7 @@ contains
 
     serves = self%factors%valid .and. self%control%kind == control%kind .and. &
       self%control%mesh == control%mesh
-    if (serves) serves = size(self%factors%lu, 1) == unknowns
+    if (serves) serves = self%factors%unknowns() == unknowns
   end function serves
 
   !> Invalidates the factors, so that the next state makes new ones: the old ones are too far from
@@ -46,14 +50,20 @@ contains
     self%factors%valid = .false.
   end subroutine forget
 
-  !> Factorises the Jacobian at a state. frozen%factors%valid: the Jacobian is regular.
-  subroutine freeze(equations, control, state, frozen)
+  !> Factorises the Jacobian at a state. frozen%factors%valid: the Jacobian is regular. The factors
+  !> are approximate, for iterations, unless they are to be exact or H0 is prescribed at a fixed
+  !> scale, where their determinants are used.
+  subroutine freeze(equations, control, state, frozen, exact)
     type(equations_t), intent(inout) :: equations
     type(control_t), intent(in) :: control
     type(state_t), intent(in) :: state
     type(frozen_jacobian_t), intent(inout) :: frozen
+    logical, intent(in), optional :: exact
+    real(wp) :: neglected
 
-    call factorise_jacobian(equations, control, state, frozen%factors)
+    neglected = merge(0.0_wp, negligible, control%kind == at_h0)
+    if (present(exact)) neglected = merge(0.0_wp, neglected, exact)
+    call factorise_jacobian(equations, control, state, frozen%factors, neglected=neglected)
     frozen%control = control
     frozen%state%gap = state%gap
     frozen%state%h0 = state%h0

@@ -2,7 +2,7 @@
 !> prescribed value of a control.
 module jacobian
   use kinds, only: wp, pi
-  use dimensionless_problem, only: problem_t
+  use dimensionless_problem, only: problem_t, coupling_over
   use discretisation, only: discretisation_t, axis_row, centre_row, first_node
   use linear_algebra, only: factorisation_t, factorise, add_by_transposed
   use elastic_operator, only: elastic_operator_t
@@ -18,17 +18,24 @@ contains
 
   !> Factors of the Jacobian of `residual` at a state: I - A(c) diag(P'), bordered by the
   !> derivatives by H0 or c if the control has one of these as an unknown. `shift` is added to the
-  !> diagonal of the nodes' block.
-  subroutine factorise_jacobian(equations, control, state, factors, shift)
+  !> diagonal of the nodes' block. neglected: if present, the part of a change of a node's gap that
+  !> may be neglected in all other gaps. Where pressures hardly change with the gap, as outside the
+  !> range of the force or within a constant tension, the columns of A(c) diag(P') are then left
+  !> out, and iterations with the factors need to solve for the other gaps only.
+  subroutine factorise_jacobian(equations, control, state, factors, shift, neglected)
     type(equations_t), intent(inout) :: equations
     type(control_t), intent(in) :: control
     type(state_t), intent(in) :: state
     type(factorisation_t), intent(inout) :: factors
-    real(wp), intent(in), optional :: shift
+    real(wp), intent(in), optional :: shift, neglected
+    real(wp) :: least
 
+    least = 0
+    if (present(neglected) .and. .not. (allocated(equations%besides) .or. &
+      allocated(equations%drainage) .or. control%compliance > 0)) least = neglected
     associate (grid => equations%meshes%grid(control%mesh), problem => equations%problem)
       call fill(problem, grid, equations%operator, equations%meshes%locked_gap( &
-        problem%law, control%mesh), control, state, factors, equations%cost, shift)
+        problem%law, control%mesh), control, state, least, factors, equations%cost, shift)
       if (allocated(equations%besides)) call add_besides(equations%besides, control, state, &
         factors%lu)
       if (h0_is_prescribed(control) .and. control%compliance > 0) &
@@ -101,7 +108,8 @@ contains
         if (size(lu, 2) > n) slopes(n + 1, :) = merge(by_scale, 0.0_wp, &
           control%kind == at_h0_with_edge)
       end block
-      call equations%operator%matrix(problem, grid, c, spread(1.0_wp, 1, n), axis_row, yields)
+      call equations%operator%matrix(problem, grid, c, spread(1.0_wp, 1, n), &
+        [(i, i=axis_row, size(yields, 1))], [(i, i=1, n)], yields)
       rise = 0
       call add_by_transposed(yields, slopes, rise)
       load = 0
@@ -126,46 +134,90 @@ contains
     type(cost_t), intent(inout) :: cost
     real(wp), intent(in), optional :: shift
 
-    call fill(problem, grid, operator, locked_gap, control, state, factors, cost, shift)
+    call fill(problem, grid, operator, locked_gap, control, state, 0.0_wp, factors, cost, shift)
     call factorise(factors)
     cost%factorisations = cost%factorisations + 1
   end subroutine factorise_on
 
-  !> Assembles the matrix to be factorised.
-  subroutine fill(problem, grid, operator, locked_gap, control, state, factors, cost, shift)
+  !> Assembles the matrix to be factorised. neglected: see `factorise_jacobian`.
+  subroutine fill(problem, grid, operator, locked_gap, control, state, neglected, factors, cost, &
+    shift)
     type(problem_t), intent(in) :: problem
     type(discretisation_t), intent(in) :: grid
     type(elastic_operator_t), intent(inout) :: operator
-    real(wp), intent(in) :: locked_gap
+    real(wp), intent(in) :: locked_gap, neglected
     type(control_t), intent(in) :: control
     type(state_t), intent(in) :: state
     type(factorisation_t), intent(inout) :: factors
     type(cost_t), intent(inout) :: cost
     real(wp), intent(in), optional :: shift
-    real(wp) :: factor(size(state%gap)), diagonal
-    integer :: n, m, j
+    real(wp) :: factor(size(state%gap)), column(size(state%gap) + 1), diagonal
+    logical :: matters(size(state%gap))
+    integer, allocatable :: node(:), calm(:)
+    integer :: n, k, m, j
 
     n = size(state%gap)
-    m = n
-    if (control%kind /= at_h0) m = n + 1
+    factor = -problem%law%slope(state%gap)
+    cost%pressure_evaluations = cost%pressure_evaluations + n*problem%law%terms
+    matters = .true.
+    if (neglected > 0) matters = abs(factor)*largest_rise(problem, grid, state%scale) > neglected
+    node = pack([(j, j=1, n)], matters)
+    calm = pack([(j, j=1, n)], .not. matters)
+    k = size(node)
+    m = k
+    if (control%kind /= at_h0) m = k + 1
+    call make_room(factors, node, calm, n, m)
+    diagonal = 1
+    if (present(shift)) diagonal = 1 + shift
+    associate (lu => factors%lu)
+      call operator%matrix(problem, grid, state%scale, factor(node), first_node - 1 + node, node, &
+        lu(:k, :k))
+      if (m > k) call operator%matrix(problem, grid, state%scale, -factor(node), &
+        [bordered_row(control)], node, lu(m:, :k))
+      do j = 1, k
+        lu(j, j) = lu(j, j) + diagonal
+      end do
+      if (m > k) then
+        call border(problem, grid, operator, locked_gap, control, state, column)
+        lu(:k, m) = column(node)
+        lu(m, m) = column(n + 1)
+      end if
+      if (k == n) return
+      call operator%matrix(problem, grid, state%scale, factor(node), first_node - 1 + calm, node, &
+        factors%rows(:, :k))
+      if (m > k) factors%rows(:, m) = column(calm)
+    end associate
+  end subroutine fill
+
+  !> Makes room for the factors of a system with n nodes of which some are calm: their columns are
+  !> those of the unit matrix. m: the number of all other columns.
+  pure subroutine make_room(factors, node, calm, n, m)
+    type(factorisation_t), intent(inout) :: factors
+    integer, intent(in) :: node(:), calm(:), n, m
+    integer :: j
+
     if (allocated(factors%lu)) then
       if (size(factors%lu, 1) /= m) deallocate (factors%lu)
     end if
     if (.not. allocated(factors%lu)) allocate (factors%lu(m, m))
-    factor = -problem%law%slope(state%gap)
-    cost%pressure_evaluations = cost%pressure_evaluations + n*problem%law%terms
-    diagonal = 1
-    if (present(shift)) diagonal = 1 + shift
-    associate (lu => factors%lu)
-      call operator%matrix(problem, grid, state%scale, factor, first_node, lu(:n, :n))
-      if (m > n) call operator%matrix(problem, grid, state%scale, -factor, bordered_row(control), &
-        lu(m:, :n))
-      do j = 1, n
-        lu(j, j) = lu(j, j) + diagonal
-      end do
-      if (m > n) call border(problem, grid, operator, locked_gap, control, state, lu(:, m))
-    end associate
-  end subroutine fill
+    if (allocated(factors%kept)) deallocate (factors%kept, factors%unit, factors%rows)
+    if (size(calm) == 0) return
+    factors%kept = [node, [(n + j, j=1, m - size(node))]]
+    factors%unit = calm
+    allocate (factors%rows(size(calm), m))
+  end subroutine make_room
+
+  !> The largest rise of a gap under a unit pressure at each node, approximately for layered bodies.
+  pure function largest_rise(problem, grid, scale) result(rise)
+    type(problem_t), intent(in) :: problem
+    type(discretisation_t), intent(in) :: grid
+    real(wp), intent(in) :: scale
+    real(wp) :: rise(grid%nodes)
+    integer :: j
+
+    rise = 2*max(problem%coupling, coupling_over(problem, scale))*scale* &
+      [(maxval(abs(grid%kernel(:, j))), j=1, grid%nodes)]
+  end function largest_rise
 
   !> The Jacobian of `residual` at a state times a change of the unknowns.
   function jacobian_times(equations, control, state, change) result(product)

@@ -64,7 +64,8 @@ contains
     ! If rows and columns share the slope equally, the eigenvectors are far from parallel.
     root = sqrt(abs(factor))
     allocate (matrix(n, n))
-    call operator%matrix(problem, grid, state%scale, sign(root, factor), first_node, matrix)
+    call operator%matrix(problem, grid, state%scale, sign(root, factor), &
+      [(first_node - 1 + j, j=1, n)], [(j, j=1, n)], matrix)
     do j = 1, n
       matrix(:, j) = root*matrix(:, j)
     end do

@@ -82,7 +82,7 @@ contains
     found = frozen%serves(control, size(right))
     if (found) call refine(equations, error, control, state, frozen, right, dz, found)
     if (.not. found) then
-      call freeze(equations, control, state, frozen)
+      call freeze(equations, control, state, frozen, exact=.true.)
       found = frozen%factors%valid
       if (.not. found) return
       dz = right

@@ -58,7 +58,7 @@ contains
     integer :: i
 
     call freeze(equations, path_control(equations%problem, place%mesh, place%s), place%state, &
-      frozen)
+      frozen, exact=.true.)
     found = frozen%factors%valid
     do i = 1, size(varied)
       if (.not. found) return
