@@ -27,7 +27,7 @@ module exact_path
   integer, parameter :: most_rounds = 4
   !> A finer mesh reduces errors about ten times. If errors remain above this fraction, they have
   !> another cause, such as rounding, and a further mesh is useless.
-  real(wp), parameter :: helped = 0.3_wp
+  real(wp), parameter :: helped = 0.5_wp
 
 contains
 
