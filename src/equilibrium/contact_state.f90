@@ -8,7 +8,8 @@ module contact_state
   use root_finding, only: root_search_t, new_root_search
   implicit none
   private
-  public :: state_t, state_from, load_reach, gap_at_end, gap_at, radius_of_gap, felt_load, far_gap
+  public :: state_t, state_from, load_reach, gap_at_end, gap_at, radius_of_gap, radius_of_step, &
+    felt_load, far_gap
 
   !> At gaps above this value, in the law's lengths, forces do not depend on the last digits.
   real(wp), parameter :: far_gap = 1000
@@ -125,5 +126,16 @@ contains
     end do
     c = state%scale*search%root
   end function radius_of_gap
+
+  !> The radius at which the gap of a state is that of the law's step; 0: there is none.
+  pure real(wp) function radius_of_step(problem, grid, state) result(c)
+    type(problem_t), intent(in) :: problem
+    type(discretisation_t), intent(in) :: grid
+    type(state_t), intent(in) :: state
+
+    c = 0
+    if (problem%law%step_width > 0) &
+      c = radius_of_gap(problem%shape, problem%law%step_at, grid, state)
+  end function radius_of_step
 
 end module contact_state

@@ -27,9 +27,9 @@ module edge_locked
   integer, parameter :: approach = 1, contact = 2
 
   !> Largest ratio of the contact radii of one mesh: wider bands need more nodes, narrower bands
-  !> more meshes. Under a law that oscillates or has a step, short panels cover all places that the
+  !> more meshes. Under a law that has a step or oscillates, short panels cover all places that the
   !> law's special gaps have at any radius of the band.
-  real(wp), parameter :: widest_band = 30, narrow_band = 1.5_wp
+  real(wp), parameter :: widest_band = 30, step_band = 4, wave_band = 1.5_wp
   !> Fraction of the radius at which a front becomes sharp; above it a mesh is locked to the front.
   real(wp), parameter :: early = 0.25_wp
 
@@ -167,7 +167,9 @@ contains
 
     real(wp) :: ratio
 
-    ratio = merge(narrow_band, widest_band, is_narrow(problem))
+    ratio = widest_band
+    if (problem%law%step_width > 0) ratio = step_band
+    if (problem%law%period > 0) ratio = wave_band
     bands = ceiling(log(last/first)/log(ratio))
   end function bands_for
 

@@ -57,15 +57,17 @@ contains
     real(wp), allocatable, intent(inout) :: length(:)
     integer, allocatable, intent(out) :: order(:)
     type(seen_gaps_t), intent(in), optional :: seen
+    !> Number of places on a panel at which a step is tried.
+    integer, parameter :: places = 5
     real(wp), allocatable :: given(:), parameter(:), load(:)
-    real(wp) :: centre, most
+    real(wp) :: centre, most, worst_radius
     integer :: worst, k
 
     most = 10.0_wp**(-digits)
     if (problem%law%has_kink) most = hardly_felt*most
-    worst = 1
+    worst = 0
     if (present(seen)) then
-      parameter = seen%radius
+      parameter = [(0.0_wp, k=1, seen%tried())]
     else if (about == about_axis) then
       parameter = axis_gaps(problem)
     else
@@ -128,38 +130,64 @@ contains
     end function order_of
 
     !> Whether the nodes of a panel integrate the pressure with a small enough error of the load and
-    !> of the gap nearby. The gap that was worst before is tested first. Under a law with a step,
-    !> gaps between the first and the last one are tested only if their step is on the panel; if it
-    !> is not, their pressures are as smooth as those of the first or of the last gap.
+    !> of the gap nearby. The gap that was worst before is tested first.
     logical function is_resolved(z, z_length, nodes)
       real(wp), intent(in) :: z, z_length
       integer, intent(in) :: nodes
       type(local_nodes_t) :: local
-      real(wp), dimension(nodes) :: gap, pressure, offset
-      real(wp) :: ends(2)
-      integer :: j, k
+      real(wp), allocatable :: radius(:)
+      integer :: j, i
 
-      is_resolved = .false.
       local = gauss_nodes(nodes)
+      is_resolved = .true.
+      if (worst > 0) is_resolved = suffices(z, z_length, local, worst, worst_radius)
+      do j = 1, size(parameter)
+        radius = radii_of(j, side*d*sinh(z + z_length*[(i, i=0, places - 1)]/(places - 1.0_wp)))
+        do i = 1, size(radius)
+          if (.not. is_resolved) return
+          is_resolved = suffices(z, z_length, local, j, radius(i))
+          if (is_resolved) cycle
+          worst = j
+          worst_radius = radius(i)
+        end do
+      end do
+    end function is_resolved
+
+    !> The radii at which gap number j is tried on a panel with places at the given offsets.
+    function radii_of(j, offset) result(radius)
+      integer, intent(in) :: j
+      real(wp), intent(in) :: offset(:)
+      real(wp), allocatable :: radius(:)
+
+      if (present(seen)) then
+        radius = seen%radii(j, offset)
+      else
+        radius = [parameter(j)]
+      end if
+    end function radii_of
+
+    !> Whether the nodes of a panel resolve the pressure of gap number j at a radius. Under a law
+    !> with a step, gaps between the first and the last one are tested only if their step is on the
+    !> panel; if it is not, their pressures are as smooth as those of the first or of the last gap.
+    logical function suffices(z, z_length, local, j, radius)
+      real(wp), intent(in) :: z, z_length, radius
+      type(local_nodes_t), intent(in) :: local
+      integer, intent(in) :: j
+      real(wp), dimension(size(local%node)) :: offset
+      real(wp) :: ends(2)
+
       offset = side*d*sinh(z + z_length*local%node)
+      if (j > 1 .and. j < size(parameter) .and. problem%law%step_width > 0) then
+        suffices = .not. meets_step(gap_of(j, radius, offset([1, size(offset)])))
+        if (suffices) return
+      end if
       ends = centre + side*d*sinh(z + z_length*[0, 1])
       if (side < 0) ends = [ends(2), ends(1)]
-      do k = 0, size(parameter)
-        j = merge(k, worst, k > 0)
-        if (k > 1 .and. k < size(parameter) .and. problem%law%step_width > 0) then
-          if (.not. meets_step(gap_of(j, offset([1, nodes])))) cycle
-        end if
-        gap = gap_of(j, offset)
-        pressure = problem%law%pressure(gap)
-        associate (unit => merge(1.0_wp, parameter(j), about == about_axis))
-          if (left_out(problem, local, unit*centre, unit*ends, unit*(centre + offset), &
-            pressure, load(j)) <= most) cycle
-        end associate
-        worst = j
-        return
-      end do
-      is_resolved = .true.
-    end function is_resolved
+      associate (unit => merge(1.0_wp, radius, about == about_axis))
+        suffices = left_out(problem, local, unit*centre, unit*ends, unit*(centre + offset), &
+          problem%law%pressure(gap_of(j, radius, offset)), load(j)) <= most
+      end associate
+    end function suffices
 
     !> Whether two gaps have the step of the law between them, or nearby.
     pure logical function meets_step(gap)
@@ -171,14 +199,14 @@ contains
       end associate
     end function meets_step
 
-    !> The gap number j at offsets from the centre.
-    function gap_of(j, offset) result(gap)
+    !> The gap number j at offsets from the centre; radius: that of a contact.
+    function gap_of(j, radius, offset) result(gap)
       integer, intent(in) :: j
-      real(wp), intent(in) :: offset(:)
+      real(wp), intent(in) :: radius, offset(:)
       real(wp) :: gap(size(offset))
 
       if (present(seen)) then
-        gap = seen%gap(problem%shape, j, offset)
+        gap = seen%gap(problem%shape, j, radius, offset)
       else
         gap = gap_at(problem, about, parameter(j), offset, d)
       end if
@@ -198,8 +226,8 @@ contains
       else if (about == about_axis) then
         z = sum(length)/points*[(i - 0.5_wp, i=1, points)]
         offset = d*sinh(z)
-        load = min(load, &
-          sum(length)/points*sum(abs(problem%law%pressure(gap_of(j, offset)))*offset*d*cosh(z)))
+        load = min(load, sum(length)/points* &
+          sum(abs(problem%law%pressure(gap_of(j, 1.0_wp, offset)))*offset*d*cosh(z)))
       end if
     end function load_of
 

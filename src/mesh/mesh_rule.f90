@@ -58,7 +58,7 @@ module mesh_rule
 contains
 
   !> Whether short panels cover all places with the law's special gaps, so that each mesh is for a
-  !> narrow band of radii and is laid out for seen gaps.
+  !> narrower band of radii and is laid out for seen gaps.
   pure logical function is_narrow(problem)
     type(problem_t), intent(in) :: problem
 

@@ -15,24 +15,30 @@ module seen_gaps
     type(discretisation_t), pointer, private :: grid => null()
     integer, private :: held = 0
     real(wp), allocatable, private :: beside(:, :), scale(:), on(:)
+    !> The last position on a bounded mesh.
+    real(wp), private :: last = huge(1.0_wp)
     !> The part of the load that panels for these gaps may miss (`law_panels`).
     real(wp) :: most = 0
-    !> For each tried gap: a state, the radius at which this state has the gap to which the new mesh
-    !> is locked, and the radius to which this gap is moved (lateral units).
-    integer, allocatable, private :: state(:)
-    real(wp), allocatable, private :: from(:)
-    real(wp), allocatable :: radius(:)
+    type(moved_t), allocatable, private :: moved(:)
   contains
     procedure :: begin_on
     procedure :: add
     procedure :: try
-    procedure :: try_between
+    procedure :: tried
+    procedure :: radii
     procedure :: gap
     procedure :: load
   end type seen_gaps_t
 
-  !> Ratio of successive tried radii: a step of the pressure moves by less than its width between
-  !> them.
+  !> A state, moved to other radii: its number, the radius at which it has the gap to which the new
+  !> mesh is locked, the least and the largest radius to which this gap is moved, and the radius of
+  !> a step of the pressure in the state, or 0 (lateral units).
+  type :: moved_t
+    integer :: state = 0
+    real(wp) :: from = 0, low = 0, high = 0, step = 0
+  end type moved_t
+
+  !> Ratio of successive tried radii, if the law has no step.
   real(wp), parameter :: ratio = 1.02_wp
 
 contains
@@ -46,9 +52,10 @@ contains
     real(wp), intent(in) :: most
 
     self%grid => grid
+    if (grid%is_bounded()) self%last = grid%x(grid%nodes)
     self%most = most
     allocate (self%beside(grid%nodes, states), self%scale(states), self%on(states))
-    allocate (self%state(0), self%from(0), self%radius(0))
+    allocate (self%moved(0))
   end subroutine begin_on
 
   !> Adds a state: its gaps, scale, and the load to which its errors are relative.
@@ -63,48 +70,74 @@ contains
     self%on(self%held) = load
   end subroutine add
 
-  !> Adds a tried gap: the newest state, moved so that its gap at the radius `from` is at `radius`.
-  pure subroutine try(self, from, radius)
+  !> The gaps of the newest state are to be tried, moved so that the gap at the radius `from` is at
+  !> radii from low to high. step: the radius of a step of the pressure in this state; 0: there is
+  !> none.
+  pure subroutine try(self, from, low, high, step)
     class(seen_gaps_t), intent(inout) :: self
-    real(wp), intent(in) :: from, radius
+    real(wp), intent(in) :: from, low, high, step
 
-    self%state = [self%state, self%held]
-    self%from = [self%from, from]
-    self%radius = [self%radius, radius]
+    self%moved = [self%moved, moved_t(self%held, from, min(low, high), high, step)]
   end subroutine try
 
-  !> Adds tried gaps at radii between two radii.
-  pure subroutine try_between(self, from, least, most)
-    class(seen_gaps_t), intent(inout) :: self
-    real(wp), intent(in) :: from, least, most
+  !> Number of states to be tried, each at one or more radii.
+  pure integer function tried(self)
+    class(seen_gaps_t), intent(in) :: self
+
+    tried = size(self%moved)
+  end function tried
+
+  !> The radii at which the tried state number j is tried on a panel: the least and the largest one,
+  !> and between them those with the step at the given offsets from the centre of the mesh or, if
+  !> there is no step, radii in equal ratios.
+  pure function radii(self, j, offset)
+    class(seen_gaps_t), intent(in) :: self
+    integer, intent(in) :: j
+    real(wp), intent(in) :: offset(:)
+    real(wp), allocatable :: radii(:)
     integer :: steps, k
 
-    if (.not. most > least) return
-    steps = ceiling(log(most/least)/log(ratio))
-    do k = 0, steps
-      call self%try(from, least*(most/least)**(real(k, wp)/steps))
-    end do
-  end subroutine try_between
+    associate (moved => self%moved(j))
+      radii = [moved%low]
+      if (.not. moved%high > moved%low) return
+      if (moved%step > 0) then
+        radii = pack((moved%step - moved%from)/offset, abs(offset) > 0)
+        radii = [moved%low, moved%high, &
+          pack(radii, radii > moved%low .and. radii < moved%high)]
+      else
+        steps = ceiling(log(moved%high/moved%low)/log(ratio))
+        radii = moved%low*(moved%high/moved%low)**[(real(k, wp)/steps, k=0, steps)]
+      end if
+    end associate
+  end function radii
 
-  !> The tried gap number j at offsets from the centre of a mesh at its radius, or from the axis.
-  pure function gap(self, shape, j, offset)
+  !> The gap of the tried state number j, moved to a radius, at offsets from the centre of a mesh at
+  !> this radius, or from the axis. Gaps outside a contact keep their distance from the edge. Inside
+  !> they keep it approximately, near the edge, and the axis stays the axis.
+  pure function gap(self, shape, j, radius, offset)
     class(seen_gaps_t), intent(in) :: self
     class(shape_t), intent(in) :: shape
     integer, intent(in) :: j
-    real(wp), intent(in) :: offset(:)
-    real(wp) :: gap(size(offset))
+    real(wp), intent(in) :: radius, offset(:)
+    real(wp) :: gap(size(offset)), r(size(offset))
 
-    associate (r => abs(self%from(j) + self%radius(j)*offset), k => self%state(j))
-      gap = shape%height(r) + self%grid%interpolate_all(self%beside(:, k), r/self%scale(k))
+    associate (from => self%moved(j)%from, k => self%moved(j)%state)
+      r = from + radius*offset
+      where (offset < 0) r = abs(from + radius*offset/(1 - offset*(radius/from - 1)))
+      gap = shape%height(r)
+      ! Beyond the mesh of the state deformations decrease as 1/r.
+      r = r/self%scale(k)
+      gap = gap + self%grid%interpolate_all(self%beside(:, k), min(r, self%last))* &
+        min(1.0_wp, self%last/r)
     end associate
   end function gap
 
-  !> The load of the state of a tried gap.
+  !> The load of the tried state number j.
   pure real(wp) function load(self, j)
     class(seen_gaps_t), intent(in) :: self
     integer, intent(in) :: j
 
-    load = self%on(self%state(j))
+    load = self%on(self%moved(j)%state)
   end function load
 
 end module seen_gaps

@@ -5,7 +5,7 @@
 module continuation
   use kinds, only: wp
   use dimensionless_problem, only: problem_t
-  use contact_state, only: state_t, radius_of_gap, felt_load
+  use contact_state, only: state_t, radius_of_gap, radius_of_step, felt_load
   use equilibrium, only: equations_t
   use solver, only: solver_t
   use edge_locked, only: approach
@@ -245,8 +245,8 @@ contains
       call seen%begin_on(meshes%grid(from), 1, 10.0_wp**(-meshes%digits))
       call seen%add(problem%shape, state%gap, state%scale, &
         felt_load(problem, meshes%grid(from), state))
-      call seen%try_between(radius_for(equations, from, to, state), meshes%reach(1, to), &
-        beyond_passage*meshes%reach(2, to))
+      call seen%try(radius_for(equations, from, to, state), meshes%reach(1, to), &
+        beyond_passage*meshes%reach(2, to), radius_of_step(problem, meshes%grid(from), state))
       call meshes%renew(to, meshes%shape_for(problem, to, seen))
       cost%kernel_entries = cost%kernel_entries + meshes%grid(to)%kernel_entries()
     end associate

@@ -13,7 +13,7 @@ module mending
   use law_panels, only: left_out
   use edge_locked, only: mesh_family_t
   use seen_gaps, only: seen_gaps_t
-  use contact_state, only: gap_at, felt_load
+  use contact_state, only: gap_at, felt_load, radius_of_step
   use equilibrium, only: equations_t
   use continuation, only: continuation_t
   use traced_path, only: traced_path_t
@@ -154,10 +154,12 @@ contains
         k = k + 1
         associate (state => path%point(i)%state)
           call seen%add(problem%shape, state%gap, state%scale, felt_load(problem, grid, state))
-          call seen%try(grid%centre*state%scale, state%scale)
+          call seen%try(grid%centre*state%scale, state%scale, state%scale, 0.0_wp)
           if (.not. grid%centre > 0) cycle
-          if (k == 1) call seen%try_between(state%scale, reach(1), state%scale)
-          if (k == states) call seen%try_between(state%scale, state%scale, reach(2))
+          if (k == 1) call seen%try(state%scale, reach(1), state%scale, &
+            radius_of_step(problem, grid, state))
+          if (k == states) call seen%try(state%scale, state%scale, reach(2), &
+            radius_of_step(problem, grid, state))
         end associate
       end do
       shape = meshes%shape_for(problem, mesh, seen)
