@@ -7,6 +7,8 @@ module exact_path
   use clock, only: seconds
   use listener, only: listener_t
   use mesh_digits, only: most_digits
+  use edge_locked, only: new_mesh_family
+  use ending, only: path_lost
   use mesh_store, only: mesh_store_t
   use known_path, only: known_path_t
   use traced_path, only: traced_path_t
@@ -23,6 +25,9 @@ module exact_path
   private
   public :: trace_exactly
 
+  !> Largest number of further attempts, on finer meshes, to trace a path that was lost: on coarse
+  !> meshes strong adhesion makes folds that bodies do not have.
+  integer, parameter :: most_attempts = 2
   !> Largest number of rounds of judging.
   integer, parameter :: most_rounds = 4
   !> A finer mesh reduces errors about ten times. If errors remain above this fraction, they have
@@ -31,9 +36,10 @@ module exact_path
 
 contains
 
-  !> Traces the path on steps%meshes. If the path is an output, and its folds, extrema or end are
-  !> not as accurate as requested, traces it again on finer meshes where these can help. h0: law's
-  !> lengths; fine: judges places of the path; places: the judged places; store: of meshes.
+  !> Traces the path on steps%meshes, or on finer ones if it is lost. If the path is an output, and
+  !> its folds, extrema or end are not as accurate as requested, traces it again on finer meshes
+  !> where these can help. h0: law's lengths; fine: judges places of the path; places: the judged
+  !> places; store: of meshes.
   subroutine trace_exactly(request, steps, h0_high, h0_low, listener, fine, places, store)
     class(request_t), intent(in) :: request
     class(path_stepper_t), intent(inout), target :: steps
@@ -52,6 +58,15 @@ contains
     if (request%reads_path()) farthest = farthest_wanted(request, steps%problem)
     associate (accuracy => request%numerics%accuracy, cost => steps%cost)
       call steps%know_path(h0_high, h0_low, allocated(request%path), listener, farthest, accuracy)
+      do round = 1, most_attempts
+        if (steps%known%ending%cause /= path_lost .or. &
+          steps%meshes%digits + more_digits > most_digits) exit
+        steps%meshes = new_mesh_family(steps%problem, h0_high, h0_low, &
+          steps%meshes%digits + more_digits, store=store)
+        cost%kernel_entries = cost%kernel_entries + sum(steps%meshes%grid%kernel_entries())
+        call steps%know_path(h0_high, h0_low, allocated(request%path), listener, farthest, &
+          accuracy)
+      end do
       call fine%lay_out(steps, h0_high, h0_low, store)
       renewed = spread(.false., 1, size(steps%meshes%grid))
       before = huge(before)

@@ -62,9 +62,12 @@ contains
     logical, intent(in) :: into_contact
     class(listener_t), intent(inout) :: listener
     real(wp), intent(in), optional :: farthest, accuracy
+    type(known_path_t) :: nothing
     type(branch_point_t) :: position
     type(step_result_t) :: event
 
+    self%known = nothing
+    call self%operator%forget()
     call self%begin_afar(h0_high, position, event)
     if (.not. event%ending%early()) then
       call trace(self%solver_t, position%state, h0_low, into_contact, listener, self%known, &

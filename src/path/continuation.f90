@@ -47,6 +47,7 @@ module continuation
     procedure :: follow_closely
     procedure :: take
     procedure :: forget
+    procedure :: is_full
     procedure :: advance
     procedure :: has_come_to_next
     procedure :: change_mesh
@@ -74,7 +75,7 @@ contains
     logical, intent(out) :: lost
 
     self%mesh = mesh
-    if (self%held == memory) call self%drop_first()
+    if (self%is_full()) call self%drop_first()
     call add_with_tangent(solver, self%slope_error, state, self%arc_t, lost)
   end subroutine take
 
@@ -86,6 +87,13 @@ contains
     self%arc_t = nothing
     self%step = first_step
   end subroutine forget
+
+  !> Whether there are as many states as the extrapolation uses.
+  pure logical function is_full(self)
+    class(continuation_t), intent(in) :: self
+
+    is_full = self%held == memory
+  end function is_full
 
   !> Adds a state on the arc's mesh to an arc. lost: the state has no tangent.
   subroutine add_with_tangent(solver, slope_error, state, arc, lost)
@@ -128,7 +136,7 @@ contains
     end do
     self%step = min(self%longest_step, abs(s - self%coordinate(self%held))* &
       factor_for(self%wanted_miss/max(miss, tiny(1.0_wp))))
-    if (self%held == memory) call self%drop_first()
+    if (self%is_full()) call self%drop_first()
     call self%add(s, state, tangent)
   end subroutine advance
 

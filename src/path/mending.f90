@@ -15,7 +15,6 @@ module mending
   use seen_gaps, only: seen_gaps_t
   use contact_state, only: gap_at, felt_load, radius_of_step
   use equilibrium, only: equations_t
-  use continuation, only: continuation_t
   use traced_path, only: traced_path_t
   implicit none
   private
@@ -30,17 +29,13 @@ module mending
   type :: mender_t
     !> Part of the load that the nodes may miss.
     real(wp) :: most = 0
-    !> The path and its continuation before they entered the current mesh; number of refinements of
-    !> each mesh.
-    type(traced_path_t) :: path
-    type(continuation_t) :: walker
+    !> Number of refinements of each mesh.
     integer, allocatable :: rounds(:)
     !> Part of the load that each mesh missed when this fell for the last time, and its number of
     !> nodes then.
     real(wp), allocatable :: left(:)
     integer, allocatable :: nodes(:)
   contains
-    procedure :: note
     procedure :: mend
   end type mender_t
 
@@ -75,18 +70,8 @@ contains
     allocate (mender%nodes(size(meshes%grid)), source=0)
   end function new_mender
 
-  !> Saves the path before it enters another mesh.
-  subroutine note(self, path, walker)
-    class(mender_t), intent(inout) :: self
-    type(traced_path_t), intent(in) :: path
-    type(continuation_t), intent(in) :: walker
-
-    self%path = path
-    self%walker = walker
-  end subroutine note
-
   !> Refines a mesh whose end the path has reached, or on which the path is lost, if the nodes miss
-  !> too much. mended: the path is to be continued from the saved one.
+  !> too much. mended: the path is to be continued from its entry into the mesh.
   subroutine mend(self, equations, path, mesh, lost, mended)
     class(mender_t), intent(inout) :: self
     type(equations_t), intent(inout) :: equations

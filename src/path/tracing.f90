@@ -92,10 +92,8 @@ contains
       end if
       mended = .false.
       if (guarded .and. .not. lost) then
-        if (walker%has_come_to_next(solver%equations_t)) then
+        if (walker%has_come_to_next(solver%equations_t)) &
           call mender%mend(solver%equations_t, known%path, walker%mesh, .false., mended)
-          if (.not. mended) call mender%note(known%path, walker)
-        end if
       end if
       if (.not. (lost .or. mended)) call pass_on(known%path, walker, solver, lost)
       known%fallen = collapsed(solver%problem, known%path)
@@ -117,7 +115,7 @@ contains
       if (.not. mended) cycle
       known%ending = going_on
       finished = .false.
-      call go_back(mender, solver, start, known%path, walker, lost)
+      call go_back(solver, start, walker%mesh, known%path, walker, lost)
       if (lost) known%ending%cause = path_lost
     end do
     solver%options%tolerance = tolerance
@@ -128,24 +126,24 @@ contains
   end subroutine trace
 
   !> Returns to the entry of the path into a refined mesh, or to the start of the path.
-  subroutine go_back(mender, solver, start, path, walker, lost)
-    type(mender_t), intent(in) :: mender
+  subroutine go_back(solver, start, mesh, path, walker, lost)
     class(solver_t), intent(inout) :: solver
     type(state_t), intent(in) :: start
+    integer, intent(in) :: mesh
     type(traced_path_t), intent(inout) :: path
     type(continuation_t), intent(inout) :: walker
     logical, intent(out) :: lost
     type(state_t) :: state
     logical :: done
 
-    path = mender%path
+    path%held = count(path%point(:path%held)%mesh < mesh)
+    call walker%forget()
+    call solver%frozen%forget()
     if (path%held > 0) then
-      walker = mender%walker
+      call stand_at_end(path, walker)
       call pass_on(path, walker, solver, lost)
       return
     end if
-    call walker%forget()
-    call solver%frozen%forget()
     associate (problem => solver%problem, grid => solver%meshes%grid(approach))
       state = state_from(grid%nodes)
       state%h0 = start%h0
@@ -158,6 +156,24 @@ contains
     lost = .not. done
     if (done) call walker%take(solver, state, approach, lost)
   end subroutine go_back
+
+  !> Gives a continuation without states the last states of a path.
+  subroutine stand_at_end(path, walker)
+    type(traced_path_t), intent(in) :: path
+    type(continuation_t), intent(inout) :: walker
+    integer :: i
+
+    walker%mesh = path%point(path%held)%mesh
+    do i = path%held, 1, -1
+      associate (point => path%point(i))
+        if (point%mesh /= walker%mesh .or. walker%is_full()) exit
+        if (point%fold .or. point%load_extremum) cycle
+        call walker%add(point%coordinate, point%state, point%tangent)
+      end associate
+    end do
+    if (walker%held > 1) &
+      walker%step = walker%coordinate(walker%held) - walker%coordinate(walker%held - 1)
+  end subroutine stand_at_end
 
   !> Whether the contact is much larger than expected: on a mesh that is too coarse folds can be
   !> lost, and then no later state counts as stable.
