@@ -8,8 +8,8 @@ module power_pair
   private
   public :: power_pair_t, new_power_pair, pair_factor
 
-  !> The pressure is repulsive/gap^n - attractive/gap^m, in units of w/z0 with C times the weights of
-  !> the parts, which are 0 or 1.
+  !> The pressure is repulsive/gap^n - attractive/gap^m; in units of w/z0 these factors are C times
+  !> the weights of the parts, which are 0 or 1.
   type, extends(force_law_t) :: power_pair_t
     real(wp) :: n = 9, m = 3
     real(wp) :: repulsive = 0, attractive = 0
