@@ -46,19 +46,6 @@ def test_path_has_the_folds_and_pull_off_of_the_reference_to_all_digits(run, sig
     assert f"jump_{way}_uncertainty" not in summary
 
 
-@pytest.mark.parametrize("sigma", TABLE)
-@pytest.mark.parametrize("accuracy", [1e-2, 1e-4, 1e-6, 1e-8])
-def test_path_is_as_accurate_as_asked_for(run, sigma, accuracy):
-    summary, table = run(path(sigma, accuracy)).summary, TABLE[sigma]
-    pairs = [(of(sigma, summary["max_tension"]) / JKR, table["pull-off"])]
-    for way in ("in", "out"):
-        pairs.append((summary[f"jump_{way}_h0"], table[way][0]))
-        pairs.append((of(sigma, summary[f"jump_{way}_load"]), table[way][1]))
-    for found, exact in pairs:
-        # And the last digit of the table.
-        assert found == pytest.approx(exact, rel=accuracy, abs=abs(exact) * accuracy + 1e-7)
-
-
 def test_large_sigma_has_two_more_folds_before_contact(run):
     summary = run(path(8.7)).summary
     np.testing.assert_allclose(
