@@ -22,20 +22,20 @@ contains
       jkr_load_at_displacement, jkr_pressure, jkr_pull_off, jkr_pull_off_fixed_displacement, &
       jkr_radius_at_displacement, jkr_radius_at_load
     use failure, only: bad_input
-    use maugis, only: maugis_displacement, maugis_load, maugis_pull_off, &
-      maugis_radius_at_displacement, maugis_radius_at_edge_ratio, maugis_radius_at_load
+    use maugis, only: maugis_t, new_maugis
     use transition_fits, only: fit_t, carpick_fit, pietrement_fit
     character(len=*), intent(in) :: theory, quantity
     integer(c_int), intent(in) :: n
     real(c_double), intent(in) :: x(n), a, radius, stiffness, surface_energy, strength
     real(c_double), intent(out) :: y(n)
     integer(c_int), intent(out) :: stat
+    type(maugis_t) :: cohesive
     type(fit_t) :: fit
 
     stat = 0
-    if (theory == 'carpick') fit = carpick_fit(radius, stiffness, surface_energy, strength)
-    if (theory == 'pietrement_troyon') &
-      fit = pietrement_fit(radius, stiffness, surface_energy, strength)
+    if (surface_energy > 0) cohesive = new_maugis(radius, stiffness, surface_energy, strength)
+    if (theory == 'carpick') fit = carpick_fit(cohesive)
+    if (theory == 'pietrement_troyon') fit = pietrement_fit(cohesive)
     associate (r => radius, k => stiffness, gamma => surface_energy)
       select case (theory//' '//quantity)
       case ('hertz radius at load'); y = hertz_radius_at_load(x, r, k)
@@ -44,21 +44,19 @@ contains
       case ('hertz radius at displacement', 'dmt radius at displacement')
         y = hertz_radius_at_displacement(x, r)
       case ('jkr radius at displacement'); y = jkr_radius_at_displacement(x, r, k, gamma)
-      case ('maugis radius at load'); y = maugis_radius_at_load(x, r, k, gamma, strength)
+      case ('maugis radius at load'); y = cohesive%radius_at_load(x)
       case ('carpick radius at load', 'pietrement_troyon radius at load')
         y = fit%radius_at_load(x)
       case ('pietrement_troyon displacement at load'); y = fit%displacement_at_load(x)
-      case ('maugis radius at displacement')
-        y = maugis_radius_at_displacement(x, r, k, gamma, strength)
-      case ('maugis radius at edge_ratio')
-        y = maugis_radius_at_edge_ratio(x, r, k, gamma, strength)
+      case ('maugis radius at displacement'); y = cohesive%radius_at_displacement(x)
+      case ('maugis radius at edge_ratio'); y = cohesive%radius_at_edge_ratio(x)
       case ('hertz load'); y = hertz_load(x, r, k)
       case ('jkr load'); y = jkr_load(x, r, k, gamma)
       case ('dmt load'); y = dmt_load(x, r, k, gamma)
-      case ('maugis load'); y = maugis_load(x, r, k, gamma, strength)
+      case ('maugis load'); y = cohesive%load(x)
       case ('hertz displacement', 'dmt displacement'); y = hertz_displacement(x, r)
       case ('jkr displacement'); y = jkr_displacement(x, r, k, gamma)
-      case ('maugis displacement'); y = maugis_displacement(x, r, k, gamma, strength)
+      case ('maugis displacement'); y = cohesive%displacement(x)
       case ('hertz pressure'); y = hertz_pressure(x, a, r, k)
       case ('jkr pressure'); y = jkr_pressure(x, a, r, k, gamma)
       case ('hertz gap'); y = hertz_gap(x, a, r)
@@ -69,7 +67,7 @@ contains
       case ('jkr pull_off at load'); y = jkr_pull_off(r, gamma)
       case ('jkr pull_off at displacement'); y = jkr_pull_off_fixed_displacement(r, gamma)
       case ('dmt pull_off at load'); y = dmt_pull_off(r, gamma)
-      case ('maugis pull_off at load'); y = maugis_pull_off(r, k, gamma, strength)
+      case ('maugis pull_off at load'); y = cohesive%pull_off()
       case ('carpick pull_off at load', 'pietrement_troyon pull_off at load'); y = fit%pull_off
       case default
         y = 0
@@ -82,14 +80,16 @@ contains
   !> for this strength Maugis' parameter, and c/a at contact radii `a` [m].
   subroutine maugis_numbers(a, radius, stiffness, surface_energy, z0, strength, lambda, &
     edge_ratio, n)
-    use maugis, only: lennard_jones_strength, maugis_lambda, maugis_edge_ratio
+    use maugis, only: lennard_jones_strength, maugis_t, new_maugis
     integer(c_int), intent(in) :: n
     real(c_double), intent(in) :: a(n), radius, stiffness, surface_energy, z0
     real(c_double), intent(out) :: strength, lambda, edge_ratio(n)
+    type(maugis_t) :: theory
 
     strength = lennard_jones_strength(surface_energy, z0)
-    lambda = maugis_lambda(radius, stiffness, surface_energy, strength)
-    edge_ratio = maugis_edge_ratio(a, radius, stiffness, surface_energy, strength)
+    theory = new_maugis(radius, stiffness, surface_energy, strength)
+    lambda = theory%lambda
+    edge_ratio = theory%edge_ratio(a)
   end subroutine maugis_numbers
 
   !> Displacement [m], its derivative by the gap, and load [N] of a deck's bodies at gaps on the

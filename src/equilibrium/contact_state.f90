@@ -3,13 +3,13 @@
 module contact_state
   use kinds, only: wp, pi
   use shape, only: shape_t
-  use dimensionless_problem, only: problem_t
+  use dimensionless_problem, only: problem_t, contact_level_of
   use discretisation, only: discretisation_t
   use root_finding, only: root_search_t, new_root_search
   implicit none
   private
   public :: state_t, state_from, load_reach, gap_at_end, gap_at, radius_of_gap, radius_of_step, &
-    felt_load, far_gap
+    contact_radius_of, felt_load, far_gap
 
   !> At gaps above this value, in the law's lengths, forces do not depend on the last digits.
   real(wp), parameter :: far_gap = 1000
@@ -137,5 +137,14 @@ contains
     if (problem%law%step_width > 0) &
       c = radius_of_gap(problem%shape, problem%law%step_at, grid, state)
   end function radius_of_step
+
+  !> Contact radius of a state, lateral units; 0 without contact.
+  pure real(wp) function contact_radius_of(problem, grid, state) result(radius)
+    type(problem_t), intent(in) :: problem
+    type(discretisation_t), intent(in) :: grid
+    type(state_t), intent(in) :: state
+
+    radius = radius_of_gap(problem%shape, contact_level_of(problem), grid, state)
+  end function contact_radius_of
 
 end module contact_state

@@ -106,6 +106,7 @@ contains
     self%cost = steps%cost
     associate (own => self%options, given => steps%options)
       own%slope_error = given%slope_error
+      own%place_error = given%place_error
       own%tolerance = min(given%tolerance, residual_over_place*given%place_error)
       own%patience = patience
     end associate

@@ -44,7 +44,7 @@ contains
 
     call places%enter_list('folds', path%fold)
     call places%enter_list('load_folds', path%extremum)
-    call enter_profiles(path%profile, places)
+    call places%enter_list('profiles', path%profile)
     n = size(path%fold)
     if (n > 0) then
       ! A part of the path may begin with another fold.
@@ -101,22 +101,9 @@ contains
       if (finish == 'end') call places%forget(finish)
       call places%enter(finish, places%elements(finish) + 1, branch%finish)
     end if
-    if (allocated(branch%profile)) call enter_profiles(branch%profile, places)
+    if (allocated(branch%profile)) call places%enter_list('profiles', branch%profile)
     if (allocated(branch%sample)) call places%enter_list('samples', branch%sample)
   end subroutine enter_branch
-
-  subroutine enter_profiles(list, places)
-    type(place_t), intent(in) :: list(:)
-    type(places_t), intent(inout) :: places
-    type(place_t) :: place
-    integer :: i
-
-    do i = 1, size(list)
-      place = list(i)
-      place%with_profile = .true.
-      call places%enter('profiles', places%elements('profiles') + 1, place)
-    end do
-  end subroutine enter_profiles
 
   !> Enters a place of largest tension if its tension exceeds that of the entered one.
   subroutine enter_tension(lowest, places)
@@ -134,7 +121,6 @@ contains
   subroutine enter_readings(readings, places)
     type(path_readings_t), intent(in) :: readings
     type(places_t), intent(inout) :: places
-    type(place_t) :: place
     integer :: i
 
     if (allocated(readings%device)) then
@@ -144,9 +130,7 @@ contains
     end if
     if (.not. allocated(readings%loaded)) return
     do i = 1, size(readings%loaded)
-      place = of_curve(readings%loaded(i)%state, load_alone)
-      place%with_radius = .true.
-      call places%enter('fixed_load', i, place)
+      call places%enter('fixed_load', i, of_curve(readings%loaded(i)%state, load_alone))
     end do
   end subroutine enter_readings
 

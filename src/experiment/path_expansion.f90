@@ -4,12 +4,13 @@
 !> where a small error of h0 changes the load much.
 module path_expansion
   use kinds, only: wp
-  use contact_state, only: state_t
+  use contact_state, only: state_t, contact_radius_of
   use path_coordinate, only: path_control
   use path_tangent, only: tangent_t, tangent_along, h0_alone => of_h0, load_alone => of_load
   use arc, only: arc_t
   use potential_energy, only: energy_of
-  use reported_place, only: read_of_states, of_h0, of_load, of_displacement, of_energy, of_edge
+  use reported_place, only: read_of_states, of_h0, of_load, of_displacement, of_energy, &
+    of_radius, of_edge
   use finer_solver, only: finer_t
   implicit none
   private
@@ -21,7 +22,8 @@ module path_expansion
     type(state_t) :: state
     !> h0, load and gap on the axis: values, slopes and second derivatives by the path's coordinate.
     real(wp), dimension(3) :: value = 0, slope = 0, curvature = 0
-    real(wp) :: energy = 0
+    !> Energy; contact radius and its slope.
+    real(wp) :: energy = 0, radius = 0, widening = 0
   contains
     procedure :: move_to
     procedure :: distance_to
@@ -32,6 +34,8 @@ module path_expansion
   !> Largest distance at which the expansion is accurate; largest move, and number of moves.
   real(wp), parameter :: believed = 1.0e-3_wp, farthest = 0.1_wp
   integer, parameter :: most_moves = 8
+  !> Distance for the difference quotient of the contact radius.
+  real(wp), parameter :: beside = 1.0e-5_wp
 
 contains
 
@@ -78,6 +82,7 @@ contains
     integer, intent(in) :: mesh
     logical, intent(out) :: found
     type(tangent_t) :: tangent
+    type(state_t) :: next
     real(wp) :: uncertainty
 
     call fine%find(path_control(fine%problem, mesh, near%s), near%state, found)
@@ -86,6 +91,16 @@ contains
     near%value = [near%state%h0, near%state%load, near%state%axis_gap]
     near%slope = [tangent%h0, tangent%load, tangent%axis_gap]
     call energy_of(fine%equations_t, mesh, near%state, near%energy, uncertainty)
+    associate (grid => fine%meshes%grid(mesh))
+      near%radius = contact_radius_of(fine%problem, grid, near%state)
+      near%widening = 0
+      if (.not. near%radius > 0) return
+      next = near%state
+      next%gap = next%gap + beside*tangent%gap
+      next%axis_gap = next%axis_gap + beside*tangent%axis_gap
+      next%scale = next%scale + beside*tangent%scale
+      near%widening = (contact_radius_of(fine%problem, grid, next) - near%radius)/beside
+    end associate
   end subroutine expand
 
   !> Distance from the centre of an expansion to the place at which D turns or is `wanted`. If D has
@@ -108,8 +123,7 @@ contains
     end if
   end function distance_to
 
-  !> The quantities at a distance from the centre, without the contact radius. The energy's
-  !> derivative by h0 is minus the load.
+  !> The quantities at a distance from the centre. The energy's derivative by h0 is minus the load.
   pure function read_at(near, distance) result(read)
     class(expansion_t), intent(in) :: near
     real(wp), intent(in) :: distance
@@ -121,6 +135,7 @@ contains
       read(of_displacement) = read(3) - read(of_h0)
       read(of_energy) = near%energy - distance*value(of_load)*slope(of_h0) - 0.5_wp*distance**2* &
         (slope(of_load)*slope(of_h0) + value(of_load)*curvature(of_h0))
+      read(of_radius) = max(0.0_wp, near%radius + distance*near%widening)
       read(of_edge) = exp(near%s + distance)
     end associate
   end function read_at

@@ -4,7 +4,7 @@
 module path_rows
   use kinds, only: wp
   use dimensionless_problem, only: contact_level_of
-  use contact_state, only: state_t, radius_of_gap
+  use contact_state, only: state_t, contact_radius_of
   use equilibrium, only: control_t, at_axis_gap
   use solver, only: solver_t
   use path_coordinate, only: path_control
@@ -144,8 +144,7 @@ contains
       if (control%value >= contact_level_of(solver%problem)) return
       call span%expected(solver, s, state)
       state%axis_gap = control%value
-      values(3) = radius_of_gap(solver%problem%shape, contact_level_of(solver%problem), &
-        solver%meshes%grid(span%mesh), state)
+      values(3) = contact_radius_of(solver%problem, solver%meshes%grid(span%mesh), state)
     end function seen_at
 
   end function places_between

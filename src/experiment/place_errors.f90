@@ -5,8 +5,7 @@
 module place_errors
   use kinds, only: wp
   use regridding, only: regrid
-  use contact_state, only: state_t, gap_at, radius_of_gap
-  use dimensionless_problem, only: contact_level_of
+  use contact_state, only: state_t, gap_at, contact_radius_of
   use equilibrium, only: control_t, equations_t, residual_floor
   use solver, only: solver_t
   use edge_locked, only: approach
@@ -30,6 +29,8 @@ module place_errors
   !> Error of h0 after a search for a state along the path; and a change of h0 for a difference
   !> quotient, small and yet large against rounding (law's lengths).
   real(wp), parameter :: tight = 3.0e-11_wp, shift = 1.0e-5_wp
+  !> Quantities that the residual moves.
+  integer, parameter :: moving(*) = [of_h0, of_load, of_displacement, of_radius]
 
 contains
 
@@ -57,6 +58,8 @@ contains
           dot_product(place%drive, places%place(place%after)%fine(:2))
         place%judged = .true.
         place%margin = fine%margin
+        if (place%has_state()) place%at(of_radius) = &
+          contact_radius_of(steps%problem, steps%meshes%grid(place%mesh), place%state)
         place%fine = place%at
         if (place%mesh == no_mesh) then
           place%left = rounding*abs(place%at)
@@ -160,21 +163,23 @@ contains
     associate (at => place%at, there => place%fine)
       there = near%read_at(distance)
       if (place%mesh == approach) there(of_edge) = at(of_edge)
-      there(of_radius) = at(of_radius)
       left = 0
       if (place%turns() .or. place%after > 0) left = tight
       ! Where bodies deform much, rounding of h0 exceeds the error of the search.
       if (place%turns()) left = max(left, residual_floor(fine%problem, place%state))
       place%left(of_load) = (rounding + worst_residual*tight)*abs(at(of_load))
       place%left(of_displacement) = left + rounding*abs(at(of_displacement))
+      place%left(of_radius) = rounding*at(of_radius)
       if (place%turns()) then
         place%left(of_h0) = left
+        ! The contact radius is not stationary where D turns.
+        moved = near%read_at(distance + fine%options%place_error)
+        place%left(of_radius) = place%left(of_radius) + abs(moved(of_radius) - there(of_radius))
       else
         ! The residual moves a state at a given D like an equal error of h0 in D.
         left = max(left, what_residual_leaves(near%state))
         moved = near%read_at(near%distance_to(place%drive, .false., wanted + place%drive(1)*left))
-        place%left(:of_displacement) = place%left(:of_displacement) + &
-          abs(moved(:of_displacement) - there(:of_displacement))
+        place%left(moving) = place%left(moving) + abs(moved(moving) - there(moving))
         if (abs(place%drive(1)) <= 0) place%left(of_h0) = place%left(of_h0) + left
         ! A given value is exact; that of a landing has the error of the turn.
         if (abs(place%drive(2)) <= 0) then
@@ -184,13 +189,11 @@ contains
         if (abs(place%drive(1)) <= 0 .and. place%after == 0) there(of_load) = at(of_load)
       end if
     end associate
-    if (.not. (place%with_profile .or. place%with_radius)) return
+    if (.not. place%with_profile) return
     right = near%state
     call fine%find(path_control(fine%problem, place%mesh, near%s + distance), right, found)
-    if (place%with_profile) place%profile = 1
-    if (place%with_profile .and. found) place%profile = profile_error(own, fine, place, right)
-    if (place%with_radius .and. found) place%fine(of_radius) = radius_of_gap(own%problem%shape, &
-      contact_level_of(own%problem), fine%meshes%grid(place%mesh), right)
+    place%profile = 1
+    if (found) place%profile = profile_error(own, fine, place, right)
   end subroutine judge_on_path
 
   !> Judges a place without a path, where h0 determines the state.
@@ -213,6 +216,7 @@ contains
     call fine%find(control, state, place%known)
     if (.not. place%known) return
     there = place_of_state(place%mesh, state)
+    there%at(of_radius) = contact_radius_of(own%problem, fine%meshes%grid(place%mesh), state)
     place%fine = there%at
     place%left = rounding*abs(place%at)
     if (place%with_profile) place%profile = profile_error(own, fine, place, state)
@@ -221,6 +225,7 @@ contains
     call fine%find(control, state, place%known)
     if (.not. place%known) return
     beside = place_of_state(place%mesh, state)
+    beside%at(of_radius) = contact_radius_of(own%problem, fine%meshes%grid(place%mesh), state)
     place%left = place%left + left*abs(beside%at - there%at)
     place%left(of_h0) = 0
   end subroutine judge_at_h0

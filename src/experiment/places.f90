@@ -6,7 +6,8 @@ module places
   use kinds, only: wp, nan
   use dimensionless_problem, only: problem_t
   use reported_place, only: place_t, point_of_path, values_of, units_of, rates_of, least, &
-    quantities, of_h0, of_load
+    quantities, of_h0, of_load, of_radius, of_profile
+  use result_rows, only: rows
   implicit none
   private
   public :: places_t, readings_t
@@ -46,6 +47,11 @@ module places
 
   !> Numbers that are not judged place by place.
   character(len=*), parameter :: of_table = 'table', of_energies = 'energy_lost'
+  !> Numbers of which the error of the profile is read, and those of which the contact radius is
+  !> reported, in the summary or, for fixed loads, in a table.
+  character(len=*), parameter :: of_profiles(*) = pack(rows%place, rows%quantity == of_profile)
+  character(len=*), parameter :: with_radius(*) = [character(len=name_length) :: 'fixed_load', &
+    pack(rows%place, rows%quantity == of_radius)]
   !> Numbers without derivatives.
   character(len=*), parameter :: not_differentiated(*) = [character(len=8) :: 'profiles', &
     'samples', of_table]
@@ -74,11 +80,11 @@ contains
   pure logical function is_same(one, other)
     type(place_t), intent(in) :: one, other
 
-    is_same = one%point == other%point .and. (one%landing .eqv. other%landing) .and. &
-      (one%with_profile .eqv. other%with_profile)
+    is_same = one%point == other%point .and. (one%landing .eqv. other%landing)
     if (is_same .and. one%point == 0) is_same = one%mesh == other%mesh .and. &
       one%after == other%after .and. (one%searched .eqv. other%searched) .and. &
-      all(abs([one%at, one%drive, one%turn_of] - [other%at, other%drive, other%turn_of]) <= 0)
+      all(abs([one%at(:of_load), one%drive, one%turn_of] - &
+      [other%at(:of_load), other%drive, other%turn_of]) <= 0)
   end function is_same
 
   !> Adds a term to an element of a number: `factor` times the quantity at a place. Without a place
@@ -110,6 +116,11 @@ contains
 
       if (i == 0) return
       self%place(i)%read = .true.
+      if (any(of_profiles == name) .and. .not. self%place(i)%with_profile) then
+        self%place(i)%with_profile = .true.
+        ! A point of the path may have been judged without its profile.
+        if (self%place(i)%point > 0) self%place(i)%judged = .false.
+      end if
       self%place(i)%differentiated = self%place(i)%differentiated .or. &
         all(not_differentiated /= name)
     end subroutine mark
@@ -184,7 +195,8 @@ contains
         if (entry%place == 0 .or. entry%name == of_energies) cycle
         associate (place => self%place(entry%place))
           if (entry%name == of_table) load = max(load, abs(place%at(of_load)))
-          if (entry%name /= of_table) largest = max(largest, place%relative_error())
+          if (entry%name /= of_table) largest = &
+            max(largest, place%relative_error(any(with_radius == entry%name)))
         end associate
       end associate
     end do

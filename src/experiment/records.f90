@@ -3,9 +3,9 @@
 module records
   use kinds, only: wp
   use listener, only: listener_t
-  use dimensionless_problem, only: problem_t, contact_level_of
+  use dimensionless_problem, only: problem_t
   use discretisation, only: discretisation_t
-  use contact_state, only: state_t, radius_of_gap
+  use contact_state, only: state_t, contact_radius_of
   implicit none
   private
   public :: record_t, observer_t, silent_observer_t, record_of, extent_t
@@ -98,8 +98,7 @@ contains
     record%h_centre = problem%law%separation_of(state%axis_gap)
     record%displacement = (state%axis_gap - state%h0)*problem%length
     record%load = state%load*problem%load
-    record%contact_radius = problem%lateral*radius_of_gap(problem%shape, &
-      contact_level_of(problem), grid, state)
+    record%contact_radius = problem%lateral*contact_radius_of(problem, grid, state)
     record%stable = stable
     ! A state that is not an equilibrium is neither stable nor unstable.
     if (.not. converged) record%stable = stable_unasked

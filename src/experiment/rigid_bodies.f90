@@ -11,7 +11,7 @@ module rigid_bodies
   use discretisation, only: discretisation_t
   use contact_state, only: state_t, state_from
   use ending, only: touching, turn_not_reached
-  use reported_place, only: place_t, add_place, of_h0, of_load
+  use reported_place, only: place_t, add_place, of_h0, of_load, of_radius
   use finer_solver, only: rounding
   use records, only: observer_t, record_t, stable_yes, stable_unasked
   use experiment_request, only: request_t
@@ -109,10 +109,9 @@ contains
     type(record_t) :: record
 
     record%branch = plan%name
-    associate (h0 => plan%h0(i), level => contact_level_of(problem))
+    associate (h0 => plan%h0(i))
       record%h0 = problem%law%separation_of(h0)
-      if (h0 < level) &
-        record%contact_radius = problem%lateral*problem%shape%position_of(level - h0)
+      record%contact_radius = problem%lateral*contact_radius(problem, h0)
       grid%x = positions(problem, h0, plan%profile(i))
       grid%nodes = size(grid%x)
       state = state_from(grid%nodes)
@@ -219,7 +218,10 @@ contains
     found = place_at(problem, h0)
     if (.not. (slopes(1) < 0 .and. slopes(2) > 0)) then
       ! A minimum between neighbours that was not resolved.
-      if (low < h0 .and. h0 < high) found%left(of_h0) = high - low
+      if (low < h0 .and. h0 < high) then
+        found%left(of_h0) = high - low
+        found%left(of_radius) = radius_error(problem, h0, high - low)
+      end if
       return
     end if
     search = new_root_search(low, slopes(1), high, slopes(2))
@@ -234,6 +236,7 @@ contains
       load_slope_undeformed(problem, search%root - shift))/(2*shift)
     found%left(of_h0) = min(high - low, given_error(problem, search%root) + &
       (slope%error + abs(slope%value))/max(curvature, tiny(1.0_wp)))
+    found%left(of_radius) = radius_error(problem, search%root, found%left(of_h0))
   end function lowest_about
 
   !> The place of a state, with its error: that of the integral and that due to the rounding of h0.
@@ -245,12 +248,34 @@ contains
     load = measured_load(problem, h0)
     reported%at(of_h0) = h0
     reported%at(of_load) = load%value
+    reported%at(of_radius) = contact_radius(problem, h0)
     reported%fine = reported%at
     reported%left(of_load) = load%error + rounding*abs(load%value) + &
       given_error(problem, h0)*abs(load_slope_undeformed(problem, h0))
+    reported%left(of_radius) = radius_error(problem, h0, given_error(problem, h0))
     reported%profile = rounding
     reported%judged = .true.
   end function place_at
+
+  !> Contact radius, lateral units; 0 without contact.
+  pure real(wp) function contact_radius(problem, h0) result(radius)
+    type(problem_t), intent(in) :: problem
+    real(wp), intent(in) :: h0
+
+    radius = 0
+    associate (level => contact_level_of(problem))
+      if (h0 < level) radius = problem%shape%position_of(level - h0)
+    end associate
+  end function contact_radius
+
+  !> Error of the contact radius due to an error of h0, and to rounding.
+  pure real(wp) function radius_error(problem, h0, off)
+    type(problem_t), intent(in) :: problem
+    real(wp), intent(in) :: h0, off
+
+    radius_error = contact_radius(problem, h0 - off) - contact_radius(problem, h0 + off) + &
+      rounding*contact_radius(problem, h0)
+  end function radius_error
 
   !> Rounding error of an h0 that is given in metres.
   pure real(wp) function given_error(problem, h0)

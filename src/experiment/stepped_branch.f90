@@ -6,7 +6,8 @@ module stepped_branch
   use stepper, only: stepper_t, branch_point_t, step_result_t
   use ending, only: ending_t
   use tension_search, only: tension_search_t
-  use reported_place, only: place_t, place_of_state, point_of_path, add_place, of_h0, of_load
+  use reported_place, only: place_t, place_of_state, place_without_state, &
+    point_of_path, add_place, of_load
   use records, only: observer_t, record_t, extent_t, record_of, stable_yes, stable_unasked
   implicit none
   private
@@ -127,9 +128,8 @@ contains
     real(wp), intent(in) :: h0
 
     if (event%jumped .and. .not. allocated(branch%jump)) then
-      branch%jump = point_of_path(event%fold)
-      branch%jump%at(of_h0) = event%jump_h0
-      branch%jump%at(of_load) = event%jump_load
+      branch%jump = place_without_state(event%jump_h0, event%jump_load)
+      branch%jump%point = event%fold
       branch%jump_uncertainty = event%jump_uncertainty
     end if
     if (allocated(event%lowest)) call lower(branch, position, event)

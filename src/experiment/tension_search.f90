@@ -4,7 +4,7 @@ module tension_search
   use kinds, only: wp
   use interpolation, only: interpolated_maximum
   use stepper, only: stepper_t, branch_point_t, step_result_t
-  use reported_place, only: place_t, place_of_state, of_h0, of_load
+  use reported_place, only: place_t, place_of_state, place_without_state, of_load
   implicit none
   private
   public :: tension_search_t, load_tolerance
@@ -57,7 +57,6 @@ contains
     class(tension_search_t), intent(inout) :: self
     real(wp), intent(in) :: load, h0
     type(branch_point_t), intent(in), optional :: position
-    type(place_t) :: blank
 
     if (.not. load < 0) return
     if (allocated(self%lowest)) then
@@ -66,9 +65,7 @@ contains
     if (present(position)) then
       self%lowest = place_of_state(position%mesh, position%state)
     else
-      self%lowest = blank
-      self%lowest%at(of_h0) = h0
-      self%lowest%at(of_load) = load
+      self%lowest = place_without_state(h0, load)
     end if
   end subroutine lower
 

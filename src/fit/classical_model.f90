@@ -5,7 +5,7 @@ module classical_model
   use kinds, only: wp
   use root_finding, only: bracket_t
   use classical, only: jkr_load, jkr_displacement, dmt_load, hertz_displacement
-  use maugis, only: maugis_load, maugis_displacement
+  use maugis, only: maugis_t, new_maugis
   use force_branch, only: branch_t
   use force_model, only: force_model_t, response_t, way_t, inward, outward
   implicit none
@@ -128,6 +128,7 @@ contains
     class(classical_model_t), intent(in) :: model
     real(wp), intent(in) :: number(2), a
     real(wp) :: state(2)
+    type(maugis_t) :: theory
 
     associate (r => model%radius, w => number(1), y => number(2))
       select case (model%theory)
@@ -136,8 +137,8 @@ contains
       case ('dmt')
         state = [-hertz_displacement(a, r), dmt_load(a, r, y, w)]
       case default
-        state = [-maugis_displacement(a, r, y, w, w/model%range), &
-          maugis_load(a, r, y, w, w/model%range)]
+        theory = new_maugis(r, y, w, w/model%range)
+        state = [-theory%displacement(a), theory%load(a)]
       end select
     end associate
   end function state

@@ -5,6 +5,7 @@
 !> position h0 - load/stiffness.
 module force_branch
   use kinds, only: wp
+  use interpolation, only: interval_of
   use root_finding, only: bracket_t
   implicit none
   private
@@ -23,8 +24,10 @@ module force_branch
     logical :: turns_first = .false., turns_last = .false.
     !> 1/stiffness of the spring.
     real(wp) :: compliance = 0
-    !> Positions at the begins of the panels, and at the end of the last.
+    !> Positions at the begins of the panels, and at the end of the last; and their negatives, which
+    !> ascend.
     real(wp), allocatable :: position(:)
+    real(wp), allocatable, private :: ascending(:)
   contains
     procedure :: close
     procedure :: at
@@ -50,6 +53,7 @@ contains
     n = size(self%h0, 2)
     self%position = [self%h0(1, :) - self%compliance*self%load(1, :), &
       self%h0(2, n) - self%compliance*self%load(2, n)]
+    self%ascending = -self%position
   end subroutine close
 
   !> The load at a position. Beyond a turn the load stays constant. Beyond an end of the path it
@@ -69,28 +73,11 @@ contains
       found = on_panel(self, n, 1.0_wp)
       found%load = found%load + found%slope*(position - self%position(n + 1))
     else
-      i = panel_of(self%position, position)
+      i = interval_of(self%ascending(:n), -position)
       t = place_on(self, i, position)
       found = on_panel(self, i, t)
     end if
   end function at
-
-  !> The last panel that begins at or before a position. Positions fall.
-  pure integer function panel_of(positions, position) result(low)
-    real(wp), intent(in) :: positions(:), position
-    integer :: high, middle
-
-    low = 1
-    high = size(positions)
-    do while (high - low > 1)
-      middle = (low + high)/2
-      if (positions(middle) >= position) then
-        low = middle
-      else
-        high = middle
-      end if
-    end do
-  end function panel_of
 
   !> t of a position on panel i, over which the position falls.
   pure real(wp) function place_on(self, i, position) result(t)

@@ -6,13 +6,15 @@ module power_pair
   use force_law, only: force_law_t
   implicit none
   private
-  public :: new_power_pair, pair_factor
+  public :: power_pair_t, new_power_pair, pair_factor
 
+  !> The pressure is repulsive/gap^n - attractive/gap^m; in units of w/z0 these factors are C times
+  !> the weights of the parts, which are 0 or 1.
   type, extends(force_law_t) :: power_pair_t
     real(wp) :: n = 9, m = 3
-    !> C times the weights of the parts, which are 0 or 1.
     real(wp) :: repulsive = 0, attractive = 0
   contains
+    procedure :: set_scales
     procedure :: pressure
     procedure :: slope
     procedure :: energy
@@ -28,7 +30,7 @@ contains
   end function pair_factor
 
   !> surface_energy [J/m^2], z0 [m]; exponents n > m > 1; part is 'full', 'repulsive' or
-  !> 'attractive'. Scales have closed forms; all else is as in `new_lennard_jones`.
+  !> 'attractive'. The scales have closed forms.
   pure type(power_pair_t) function new_power_pair(surface_energy, z0, exponents, part) result(law)
     real(wp), intent(in) :: surface_energy, z0, exponents(2)
     character(len=*), intent(in) :: part
@@ -38,14 +40,11 @@ contains
     law%repulsive = merge(0.0_wp, pair_factor(exponents), part == 'attractive')
     law%attractive = merge(0.0_wp, pair_factor(exponents), part == 'repulsive')
     law%length = z0
-    law%has_z0 = .true.
     law%pressure_unit = surface_energy/z0
     law%range = 60
     law%tail_power = law%m
     if (part == 'repulsive') law%tail_power = law%n
-    law%smallest_gap = 10.0_wp**(-120/(law%n + 1))
-    if (part /= 'attractive') law%repulsion_length = 0.9_wp/law%n
-    law%closure_fraction = 2.7_wp/law%n
+    call law%set_scales()
     if (part /= 'repulsive') law%adhesion = 1
     if (part == 'full') then
       law%edge_gap = (law%n/law%m)**(1/(law%n - law%m))
@@ -56,12 +55,26 @@ contains
     law%length_key = 'z0'
   end function new_power_pair
 
+  !> Sets what follows from n.
+  pure subroutine set_scales(self)
+    class(power_pair_t), intent(inout) :: self
+
+    self%has_z0 = .true.
+    ! The slope at this gap is 1e121, whose square does not overflow.
+    self%smallest_gap = 10.0_wp**(-120/(self%n + 1))
+    ! For n = 9 a tenth of a gap that is below 1 in contact.
+    if (self%repulsive > 0) self%repulsion_length = 0.9_wp/self%n
+    ! The repulsion may grow by a factor of 25 in an iteration, and a gap never reaches zero.
+    self%closure_fraction = 2.7_wp/self%n
+  end subroutine set_scales
+
   pure function pressure(self, gap) result(value)
     class(power_pair_t), intent(in) :: self
     real(wp), intent(in) :: gap(:)
     real(wp) :: value(size(gap))
 
-    value = self%repulsive*gap**(-self%n) - self%attractive*gap**(-self%m)
+    value = self%repulsive*gap**(-self%n)
+    if (self%attractive > 0) value = value - self%attractive*gap**(-self%m)
   end function pressure
 
   pure function slope(self, gap) result(value)
@@ -69,7 +82,8 @@ contains
     real(wp), intent(in) :: gap(:)
     real(wp) :: value(size(gap))
 
-    value = (self%attractive*self%m*gap**(-self%m) - self%repulsive*self%n*gap**(-self%n))/gap
+    value = -self%repulsive*self%n*gap**(-self%n - 1)
+    if (self%attractive > 0) value = value + self%attractive*self%m*gap**(-self%m - 1)
   end function slope
 
   pure function energy(self, gap) result(value)
@@ -77,8 +91,8 @@ contains
     real(wp), intent(in) :: gap(:)
     real(wp) :: value(size(gap))
 
-    value = gap*(self%repulsive/(self%n - 1)*gap**(-self%n) - &
-      self%attractive/(self%m - 1)*gap**(-self%m))
+    value = self%repulsive/(self%n - 1)*gap**(1 - self%n)
+    if (self%attractive > 0) value = value - self%attractive/(self%m - 1)*gap**(1 - self%m)
   end function energy
 
 end module power_pair

@@ -2,10 +2,10 @@
 !> value or an extremum; on the path's meshes or, farther out, of undeformed bodies.
 module curve_states
   use kinds, only: wp
-  use dimensionless_problem, only: problem_t, contact_level_of
+  use dimensionless_problem, only: problem_t
   use interpolation, only: hermite_t
   use root_finding, only: root_search_t, new_root_search
-  use contact_state, only: state_t, radius_of_gap
+  use contact_state, only: state_t, contact_radius_of
   use solver, only: solver_t
   use path_tangent, only: tangent_t
   use path_search, only: found_t, find_extrema, find_place, may_turn
@@ -139,8 +139,7 @@ contains
     found%axis_gap = state%axis_gap
     found%residual = state%residual
     found%slopes = [tangent%h0, tangent%load]
-    found%radius = radius_of_gap(solver%problem%shape, contact_level_of(solver%problem), &
-      solver%meshes%grid(found%mesh), state)
+    found%radius = contact_radius_of(solver%problem, solver%meshes%grid(found%mesh), state)
     call energy_of(solver%equations_t, found%mesh, state, found%energy, found%uncertainty)
   end function told
 

@@ -8,7 +8,7 @@
 module place_sensitivity
   use kinds, only: wp
   use dimensionless_problem, only: problem_t, contact_level_of
-  use contact_state, only: state_t, gap_at, radius_of_gap
+  use contact_state, only: state_t, gap_at, contact_radius_of
   use equilibrium, only: equations_t
   use solver_options, only: solver_options_t, tightened
   use anderson, only: solve_anderson
@@ -57,8 +57,7 @@ contains
     call differentiate(equations, place, frozen, varied, change, found)
     if (.not. found) return
     local%along = change(1)%separation
-    radius = radius_of_gap(equations%problem%shape, contact_level_of(equations%problem), &
-      equations%meshes%grid(place%mesh), place%state)
+    radius = contact_radius_of(equations%problem, equations%meshes%grid(place%mesh), place%state)
     call measure(equations, place, varied(1), change(1), radius, local%slope)
     do i = 2, size(varied)
       call measure(equations, place, varied(i), change(i), radius, local%rate(:, i - 1))

@@ -8,8 +8,8 @@ module reported_place
   use contact_state, only: state_t
   implicit none
   private
-  public :: place_t, place_of_state, point_of_path, add_place, drive_weights, values_of, &
-    units_of, rates_of
+  public :: place_t, place_of_state, place_without_state, point_of_path, add_place
+  public :: drive_weights, values_of, units_of, rates_of
   public :: of_h0, of_load, of_displacement, of_energy, of_radius, of_edge, of_position, &
     of_tension, of_profile
   public :: read_of_states, quantities, nowhere
@@ -40,16 +40,16 @@ module reported_place
     !> started that ended here at the same D.
     real(wp) :: drive(2) = [1.0_wp, 0.0_wp], turn_of(2) = 0
     integer :: after = 0
-    !> Whether profile and contact radius are requested; searched: h0 was found by a search between
-    !> steps, and its error is not known.
-    logical :: with_profile = .false., with_radius = .false., searched = .false.
-    !> Values at the place; values at the same place of a finer mesh; error of the values due to the
-    !> iteration and rounding.
+    !> searched: h0 was found by a search between steps, and its error is not known.
+    logical :: searched = .false.
+    !> Values at the place (the contact radius of a state is read when the place is judged); values
+    !> at the same place of a finer mesh; error of the values due to the iteration and rounding.
     real(wp), dimension(read_of_states) :: at = 0, fine = 0, left = 0
     !> Error of gaps, and of pressures over the largest of them.
     real(wp) :: profile = 0
-    !> Whether the place is read for a number, and whether for derivatives.
-    logical :: read = .false., differentiated = .false.
+    !> Whether the place is read for a number, whether for an error of its profile, and whether for
+    !> derivatives.
+    logical :: read = .false., with_profile = .false., differentiated = .false.
     !> Whether the place was compared with a finer mesh, and whether the finer mesh has the place;
     !> margin: factor of the differences.
     logical :: judged = .false., known = .true.
@@ -85,6 +85,15 @@ contains
     place%at(of_displacement) = state%axis_gap - state%h0
     place%at(of_edge) = state%scale
   end function place_of_state
+
+  !> A place of which only h0 and load are known; its other quantities do not exist.
+  pure type(place_t) function place_without_state(h0, load) result(place)
+    real(wp), intent(in) :: h0, load
+
+    place%at = nan
+    place%at(of_h0) = h0
+    place%at(of_load) = load
+  end function place_without_state
 
   !> The place of a point of the traced path; landing: the place is the state in which the jump from
   !> this point lands.
@@ -161,9 +170,10 @@ contains
   end function errors
 
   !> The largest relative error of the quantities reported at a place; 0 if the place was not
-  !> judged.
-  pure real(wp) function relative_error(self) result(largest)
+  !> judged. with_radius: whether the contact radius is one of them.
+  pure real(wp) function relative_error(self, with_radius) result(largest)
     class(place_t), intent(in) :: self
+    logical, intent(in), optional :: with_radius
     real(wp) :: part(quantities)
 
     largest = 0
@@ -172,13 +182,15 @@ contains
     where (part > 0) part = &
       min(part/max(abs(self%measures(self%at)), least, tiny(1.0_wp)), most)
     largest = max(part(of_load), self%profile)
+    if (present(with_radius)) then
+      if (with_radius .and. self%at(of_radius) > 0) largest = max(largest, part(of_radius))
+    end if
     if (self%after > 0) return
     if (.not. self%searched) &
       largest = max(largest, part(merge(of_position, of_h0, product(self%drive) < 0)))
     ! At an extremum h0 or the load is stationary and the displacement is not: the position on the
     ! flat top does not change the curve, and no displacement is reported there.
     if (.not. self%turns()) largest = max(largest, part(of_displacement))
-    if (self%with_radius .and. self%at(of_radius) > 0) largest = max(largest, part(of_radius))
   end function relative_error
 
   !> All quantities of a place [SI]; under a dead load a drive has no position.

@@ -7,8 +7,7 @@ module classical_rows
     jkr_load_at_displacement, jkr_radius_at_displacement, dmt_load_at_displacement
   use convex_contact, only: hertz_like_load, jkr_like_load, jkr_like_radius, &
     detachment_radius
-  use maugis, only: maugis_load, maugis_radius_at_displacement, maugis_radius_at_load, &
-    maugis_lambda, maugis_pull_off
+  use maugis, only: maugis_t, new_maugis
   use transition_fits, only: fit_t, carpick_fit, pietrement_fit
   use theory_names, only: theories, hertz, jkr, dmt, maugis_dugdale, carpick, pietrement_troyon
   use layered_body, only: layered_body_t
@@ -69,6 +68,7 @@ contains
   contains
 
     subroutine add_parabola()
+      type(maugis_t) :: theory
       type(fit_t) :: fit
       real(wp) :: load
 
@@ -81,20 +81,21 @@ contains
         call add(dmt, dmt_load_at_displacement(delta, r, y, gamma), &
           hertz_radius_at_displacement(delta, r))
         if (.not. strength > 0) return
+        theory = new_maugis(r, y, gamma, strength)
         if (any(range%shown([maugis_dugdale, carpick]))) then
-          a = maugis_radius_at_displacement(delta, r, y, gamma, strength)
+          a = theory%radius_at_displacement(delta)
           if (.not. ieee_is_nan(a)) then
-            load = maugis_load(a, r, y, gamma, strength)
+            load = theory%load(a)
             call add(maugis_dugdale, load, a)
             ! Below the pull-off at fixed load Maugis' state is stable only at fixed displacement.
-            if (a >= maugis_radius_at_load(load, r, y, gamma, strength)*(1 - small)) then
-              fit = carpick_fit(r, y, gamma, strength)
+            if (a >= theory%radius_at_load(load)*(1 - small)) then
+              fit = carpick_fit(theory)
               call add(carpick, load, fit%radius_at_load(load))
             end if
           end if
         end if
         if (.not. range%shown(pietrement_troyon)) return
-        fit = pietrement_fit(r, y, gamma, strength)
+        fit = pietrement_fit(theory)
         load = fit%load_at_displacement(delta)
         call add(pietrement_troyon, load, fit%radius_at_load(load))
       end associate
@@ -178,11 +179,13 @@ contains
       0.5_wp*problem%stiffness*contact%load(hertz, a)/homogeneous)
   end subroutine summarise_layered
 
-  !> Adds numbers of Maugis-Dugdale theory with the law's surface energy and largest tension.
+  !> Adds numbers of Maugis-Dugdale theory with the law's surface energy and largest tension, and of
+  !> the formulas fitted to it, if they are wanted.
   subroutine summarise_classical(problem, range, summary)
     type(problem_t), intent(in) :: problem
     type(range_t), intent(in) :: range
     type(summary_t), intent(inout) :: summary
+    type(maugis_t) :: theory
     real(wp) :: gamma, strength
 
     if (is_layered(problem)) then
@@ -193,24 +196,11 @@ contains
     strength = largest_tension(problem)
     if (problem%rigid .or. .not. problem%shape%parabolic) return
     if (.not. (gamma > 0 .and. strength > 0)) return
-    call summary%set('maugis_lambda', &
-      maugis_lambda(problem%radius, problem%stiffness, gamma, strength))
-    call summary%set('maugis_pull_off', &
-      -maugis_pull_off(problem%radius, problem%stiffness, gamma, strength))
-    call summarise_fits(problem, range, gamma, strength, summary)
-  end subroutine summarise_classical
-
-  !> Adds numbers of the formulas fitted to Maugis-Dugdale theory, if they are wanted.
-  subroutine summarise_fits(problem, range, gamma, strength, summary)
-    type(problem_t), intent(in) :: problem
-    type(range_t), intent(in) :: range
-    real(wp), intent(in) :: gamma, strength
-    type(summary_t), intent(inout) :: summary
-
-    if (range%shown(carpick)) call tell('carpick', &
-      carpick_fit(problem%radius, problem%stiffness, gamma, strength))
-    if (range%shown(pietrement_troyon)) call tell('pietrement_troyon', &
-      pietrement_fit(problem%radius, problem%stiffness, gamma, strength))
+    theory = new_maugis(problem%radius, problem%stiffness, gamma, strength)
+    call summary%set('maugis_lambda', theory%lambda)
+    call summary%set('maugis_pull_off', -theory%pull_off())
+    if (range%shown(carpick)) call tell('carpick', carpick_fit(theory))
+    if (range%shown(pietrement_troyon)) call tell('pietrement_troyon', pietrement_fit(theory))
 
   contains
 
@@ -223,6 +213,6 @@ contains
       call summary%set(name//'_radius', fit%radius_at_load(0.0_wp))
     end subroutine tell
 
-  end subroutine summarise_fits
+  end subroutine summarise_classical
 
 end module classical_rows

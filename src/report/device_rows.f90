@@ -10,7 +10,7 @@ module device_rows
   use places, only: places_t, readings_t
   use path_readings, only: path_readings_t
   use results, only: results_t
-  use tables, only: cells
+  use tables, only: cells, direction_of
   use summary, only: summary_t
   implicit none
   private
@@ -106,14 +106,6 @@ contains
       end do
     end do
   end subroutine write_jumps
-
-  pure function direction_of(inward) result(direction)
-    logical, intent(in) :: inward
-    character(len=:), allocatable :: direction
-
-    direction = 'retreat'
-    if (inward) direction = 'approach'
-  end function direction_of
 
   !> Position of the drive [m].
   pure real(wp) function z_of(problem, drive, state) result(z)

@@ -5,6 +5,7 @@ module fit_rows
   use dimensionless_problem, only: adhesion_strength, tabor_parameter
   use namelist_writer, only: line_t, assignment_of
   use results, only: results_t
+  use tables, only: direction_of
   use fit_request, only: unknown_t
   use measured_jumps, only: measured_jump_t
   use curve_fit, only: fitted_t
@@ -35,8 +36,8 @@ contains
     used(outcome%curve%data%sample) = .true.
     associate (data => outcome%curve%data%measured, fitted => outcome%fitted)
       do i = 1, size(used)
-        call results%row(trim(merge('approach', 'retreat ', data%inward(i))), [data%z(i), &
-          data%signal(i), fitted%model(i), fitted%baseline(i), fitted%residual(i)], &
+        call results%row(direction_of(data%inward(i)), [data%z(i), data%signal(i), &
+          fitted%model(i), fitted%baseline(i), fitted%residual(i)], &
           [used(i), outlier(i)])
       end do
     end associate

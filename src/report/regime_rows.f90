@@ -10,7 +10,7 @@ module regime_rows
   use theory_names, only: hertz, jkr
   use classical, only: hertz_radius_at_load, hertz_displacement, jkr_radius_at_load, &
     jkr_displacement, jkr_pull_off, dmt_radius_at_load, dmt_pull_off
-  use maugis, only: maugis_lambda, maugis_pull_off, maugis_radius_at_load, maugis_displacement
+  use maugis, only: maugis_t, new_maugis
   use transition_fits, only: fit_t, carpick_fit, pietrement_fit
   use reported_place, only: place_t, units_of, of_h0, of_load, of_edge
   use places, only: places_t
@@ -46,6 +46,7 @@ contains
     type(summary_t), intent(inout) :: summary
     type(measured_t) :: solved, uncertain
     type(layered_contact_t) :: layered
+    type(maugis_t) :: cohesive
     real(wp), allocatable :: errors(:, :), spread(:, :)
     real(wp) :: load, load_error, gamma, strength
     integer :: i
@@ -70,7 +71,8 @@ contains
     associate (r => problem%radius, y => problem%stiffness)
       ! Tabor's parameter with E* = y/2 and the range gamma/strength.
       call summary%set('regime_tabor_range', (4*r*strength**3/(y**2*gamma))**(1.0_wp/3))
-      call summary%set('regime_maugis_lambda', maugis_lambda(r, y, gamma, strength))
+      cohesive = new_maugis(r, y, gamma, strength)
+      call summary%set('regime_maugis_lambda', cohesive%lambda)
       call summary%set('regime_load_number', load/(pi*gamma*r), load_error/(pi*gamma*r))
       errors = all_errors(load, solved)
       ! The errors of the solved numbers change the errors of the theories by so much.
@@ -98,7 +100,7 @@ contains
       do k = 1, size(theories)
         if (.not. is_of_layers(k)) then
           says = of_theory(trim(theories(k)), at_load, problem%radius, problem%stiffness, gamma, &
-            strength)
+            cohesive)
         else if (has_layers) then
           says = of_layers(problem, layered, trim(theories(k)), at_load)
         else
@@ -138,10 +140,11 @@ contains
     end associate
   end subroutine measure
 
-  !> The numbers of a theory at a load [N]; NaN if it has none.
-  type(measured_t) function of_theory(name, load, r, y, gamma, strength) result(says)
+  !> The numbers of a theory at a load [N]; NaN if it has none. cohesive: Maugis-Dugdale theory.
+  type(measured_t) function of_theory(name, load, r, y, gamma, cohesive) result(says)
     character(len=*), intent(in) :: name
-    real(wp), intent(in) :: load, r, y, gamma, strength
+    real(wp), intent(in) :: load, r, y, gamma
+    type(maugis_t), intent(in) :: cohesive
     type(fit_t) :: fit
 
     select case (name)
@@ -157,17 +160,14 @@ contains
       says%radius = dmt_radius_at_load(load, r, y, gamma)
       says%indentation = hertz_displacement(says%radius, r)
     case ('maugis')
-      says%pull_off = maugis_pull_off(r, y, gamma, strength)
-      says%radius = maugis_radius_at_load(load, r, y, gamma, strength)
-      says%indentation = nan
-      if (says%radius > 0) &
-        says%indentation = maugis_displacement(says%radius, r, y, gamma, strength)
+      says = measured_t(cohesive%pull_off(), cohesive%radius_at_load(load), nan)
+      if (says%radius > 0) says%indentation = cohesive%displacement(says%radius)
     case ('carpick')
-      fit = carpick_fit(r, y, gamma, strength)
+      fit = carpick_fit(cohesive)
       ! The formula gives no displacement.
       says = measured_t(fit%pull_off, fit%radius_at_load(load), nan)
     case ('pietrement')
-      fit = pietrement_fit(r, y, gamma, strength)
+      fit = pietrement_fit(cohesive)
       says = measured_t(fit%pull_off, fit%radius_at_load(load), fit%displacement_at_load(load))
     end select
   end function of_theory

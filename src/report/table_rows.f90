@@ -8,6 +8,7 @@ module table_rows
   use path_readings, only: path_readings_t
   use device, only: states_on
   use results, only: results_t
+  use tables, only: direction_of
   implicit none
   private
   public :: write_contact_table
@@ -46,10 +47,8 @@ contains
         si(4) = -state%slopes(2)/state%slopes(1)*problem%load/problem%length
       unit = maugis_units(problem%radius, problem%stiffness, surface_energy(problem))
       ! Other shapes have no radius on the axis.
-      if (.not. problem%shape%parabolic) then
-        unit = maugis_units_t(nan, nan, nan)
-      end if
-      call results%row(trim(merge('approach', 'retreat ', inward)), [si, &
+      if (.not. problem%shape%parabolic) unit = maugis_units_t(nan, nan, nan)
+      call results%row(direction_of(inward), [si, &
         si(1)/unit%displacement, si(2)/unit%load, si(3)/unit%radius, &
         si(4)*unit%displacement/unit%load])
     end subroutine add

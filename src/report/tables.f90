@@ -7,7 +7,7 @@ module tables
   use text_file, only: output_t, plain
   implicit none
   private
-  public :: table_t, cells, put_cells
+  public :: table_t, cells, put_cells, direction_of
 
   !> A table that is being written, one row a line, made with `cells`.
   type, extends(output_t) :: table_t
@@ -40,6 +40,15 @@ contains
     if (.not. allocated(error)) call self%line(text // names, error)
     if (.not. allocated(error)) call self%flush(error)
   end subroutine begin
+
+  !> The name of a direction of motion.
+  pure function direction_of(inward) result(direction)
+    logical, intent(in) :: inward
+    character(len=:), allocatable :: direction
+
+    direction = 'retreat'
+    if (inward) direction = 'approach'
+  end function direction_of
 
   !> Numbers as cells that read back as the same numbers; NaN is `NaN`.
   pure function cells(values) result(text)

@@ -2,7 +2,6 @@
 module bodies_group
   use kinds, only: wp
   use failure, only: failure_t
-  use bodies, only: composite_stiffness, compliance_shares
   use deck_keys, only: key_spec, group, real_key, list_key, logical_key
   use scene_groups, only: scene_t
   use layer_group, only: layer_bears_all
@@ -40,6 +39,7 @@ contains
     type(scene_t), intent(inout) :: scene
     type(failure_t), allocatable, intent(inout) :: error
     real(wp), allocatable :: young(:), poisson(:)
+    real(wp) :: compliance(2)
     integer :: ways
     logical :: pair
 
@@ -63,8 +63,12 @@ contains
       else if (pair) then
         bodies%young = spread_out(young)
         bodies%poisson = spread_out(poisson)
-        bodies%stiffness = composite_stiffness(bodies%young, bodies%poisson)
-        bodies%share = compliance_shares(bodies%young, bodies%poisson)
+        ! The compliances (1-nu^2)/E add, and identical bodies that deform together as much have
+        ! their mean; each body's part of the deformation is its compliance over this mean. The two
+        ! may differ by any factor.
+        compliance = (1 - bodies%poisson)*(1 + bodies%poisson)/bodies%young
+        bodies%stiffness = 2/sum(compliance)
+        bodies%share = bodies%stiffness*compliance
       else
         call deck%get('bodies', 'stiffness', bodies%stiffness)
       end if

@@ -11,16 +11,27 @@ module maugis
     scaled_displacement, scaled_load, stable_radius, zone_width
   implicit none
   private
-  public :: lennard_jones_strength, maugis_lambda
-  public :: maugis_edge_ratio, maugis_radius_at_edge_ratio
-  public :: maugis_units_t, maugis_units
-  public :: maugis_load, maugis_displacement, maugis_radius_at_displacement, maugis_pull_off
-  public :: maugis_radius_at_load
+  public :: lennard_jones_strength, maugis_units_t, maugis_units, maugis_t, new_maugis
 
   !> Maugis' units [N, m, m], in which JKR theory has no parameter.
   type :: maugis_units_t
     real(wp) :: load = 1, radius = 1, displacement = 1
   end type maugis_units_t
+
+  !> The theory of two bodies: its units, and Maugis' parameter lambda, DMT below about 0.1, JKR
+  !> above about 5.
+  type :: maugis_t
+    type(maugis_units_t) :: unit
+    real(wp) :: lambda = 0
+  contains
+    procedure :: edge_ratio
+    procedure :: radius_at_edge_ratio
+    procedure :: load
+    procedure :: displacement
+    procedure :: pull_off
+    procedure :: radius_at_displacement
+    procedure :: radius_at_load
+  end type maugis_t
 
 contains
 
@@ -33,106 +44,85 @@ contains
     strength = 16*surface_energy/(9*sqrt(3.0_wp)*z0)
   end function lennard_jones_strength
 
-  !> Maugis' parameter lambda: DMT below about 0.1, JKR above about 5.
-  elemental function maugis_lambda(radius, stiffness, surface_energy, strength) result(lambda)
-    real(wp), intent(in) :: radius, stiffness, surface_energy, strength
-    real(wp) :: lambda
+  !> Maugis' units.
+  elemental type(maugis_units_t) function maugis_units(radius, stiffness, surface_energy) &
+    result(unit)
+    real(wp), intent(in) :: radius, stiffness, surface_energy
 
-    lambda = 2*strength*(9*radius/(4*pi*surface_energy*stiffness**2))**(1.0_wp/3.0_wp)
-  end function maugis_lambda
+    unit%load = pi*surface_energy*radius
+    unit%radius = (1.5_wp*pi*surface_energy*radius**2/stiffness)**(1.0_wp/3.0_wp)
+    unit%displacement = unit%radius**2/radius
+  end function maugis_units
+
+  !> The theory of bodies with a cohesive strength [Pa].
+  elemental type(maugis_t) function new_maugis(radius, stiffness, surface_energy, strength) &
+    result(theory)
+    real(wp), intent(in) :: radius, stiffness, surface_energy, strength
+
+    theory%unit = maugis_units(radius, stiffness, surface_energy)
+    theory%lambda = &
+      2*strength*(9*radius/(4*pi*surface_energy*stiffness**2))**(1.0_wp/3.0_wp)
+  end function new_maugis
 
   !> Ratio m = c/a of cohesive zone to contact radius at a contact radius a > 0 [m]: the gap at c is
   !> surface_energy/strength.
-  elemental function maugis_edge_ratio(contact_radius, radius, stiffness, surface_energy, &
-    strength) result(m)
-    real(wp), intent(in) :: contact_radius, radius, stiffness, surface_energy, strength
-    real(wp) :: m
+  elemental real(wp) function edge_ratio(self, contact_radius) result(m)
+    class(maugis_t), intent(in) :: self
+    real(wp), intent(in) :: contact_radius
 
-    m = hypot(1.0_wp, zone_width(contact_radius/unit_length(radius, stiffness, surface_energy), &
-      maugis_lambda(radius, stiffness, surface_energy, strength)))
-  end function maugis_edge_ratio
+    m = hypot(1.0_wp, zone_width(contact_radius/self%unit%radius, self%lambda))
+  end function edge_ratio
 
-  !> Contact radius [m] at a ratio m = c/a > 1, the inverse of `maugis_edge_ratio`.
-  elemental function maugis_radius_at_edge_ratio(m, radius, stiffness, surface_energy, &
-    strength) result(contact_radius)
-    real(wp), intent(in) :: m, radius, stiffness, surface_energy, strength
-    real(wp) :: contact_radius
+  !> Contact radius [m] at a ratio m = c/a > 1, the inverse of `edge_ratio`.
+  elemental real(wp) function radius_at_edge_ratio(self, m) result(contact_radius)
+    class(maugis_t), intent(in) :: self
+    real(wp), intent(in) :: m
 
-    contact_radius = unit_length(radius, stiffness, surface_energy)* &
-      radius_at_zone_width(sqrt((m - 1)*(m + 1)), &
-      maugis_lambda(radius, stiffness, surface_energy, strength))
-  end function maugis_radius_at_edge_ratio
+    contact_radius = self%unit%radius*radius_at_zone_width(sqrt((m - 1)*(m + 1)), self%lambda)
+  end function radius_at_edge_ratio
 
   !> Load [N] at a contact radius a > 0 [m].
-  elemental function maugis_load(contact_radius, radius, stiffness, surface_energy, strength) &
-    result(load)
-    real(wp), intent(in) :: contact_radius, radius, stiffness, surface_energy, strength
-    real(wp) :: load
+  elemental real(wp) function load(self, contact_radius)
+    class(maugis_t), intent(in) :: self
+    real(wp), intent(in) :: contact_radius
 
-    load = pi*surface_energy*radius &
-      *scaled_load(contact_radius/unit_length(radius, stiffness, surface_energy), &
-      maugis_lambda(radius, stiffness, surface_energy, strength))
-  end function maugis_load
+    load = self%unit%load*scaled_load(contact_radius/self%unit%radius, self%lambda)
+  end function load
 
   !> Displacement [m] at a contact radius a > 0 [m].
-  elemental function maugis_displacement(contact_radius, radius, stiffness, surface_energy, &
-    strength) result(displacement)
-    real(wp), intent(in) :: contact_radius, radius, stiffness, surface_energy, strength
-    real(wp) :: displacement, unit
+  elemental real(wp) function displacement(self, contact_radius)
+    class(maugis_t), intent(in) :: self
+    real(wp), intent(in) :: contact_radius
 
-    unit = unit_length(radius, stiffness, surface_energy)
-    displacement = unit**2/radius*scaled_displacement(contact_radius/unit, &
-      maugis_lambda(radius, stiffness, surface_energy, strength))
-  end function maugis_displacement
+    displacement = self%unit%displacement* &
+      scaled_displacement(contact_radius/self%unit%radius, self%lambda)
+  end function displacement
 
   !> Load [N] at the pull-off under a fixed load, negative: the least load over all contact radii.
-  elemental function maugis_pull_off(radius, stiffness, surface_energy, strength) result(load)
-    real(wp), intent(in) :: radius, stiffness, surface_energy, strength
-    real(wp) :: load, lambda, a
+  elemental real(wp) function pull_off(self)
+    class(maugis_t), intent(in) :: self
+    real(wp) :: a, least
 
-    lambda = maugis_lambda(radius, stiffness, surface_energy, strength)
-    call find_least(of_load, lambda, a, load)
-    load = pi*surface_energy*radius*load
-  end function maugis_pull_off
+    call find_least(of_load, self%lambda, a, least)
+    pull_off = self%unit%load*least
+  end function pull_off
 
   !> Contact radius [m] at a displacement [m], of the state that is stable at fixed displacement:
   !> the largest contact radius. NaN below the smallest displacement of bodies in contact.
-  elemental function maugis_radius_at_displacement(displacement, radius, stiffness, &
-    surface_energy, strength) result(contact_radius)
-    real(wp), intent(in) :: displacement, radius, stiffness, surface_energy, strength
-    real(wp) :: contact_radius, unit
+  elemental real(wp) function radius_at_displacement(self, displacement) result(contact_radius)
+    class(maugis_t), intent(in) :: self
+    real(wp), intent(in) :: displacement
 
-    unit = unit_length(radius, stiffness, surface_energy)
-    contact_radius = unit*stable_radius(of_displacement, displacement*radius/unit**2, &
-      maugis_lambda(radius, stiffness, surface_energy, strength))
-  end function maugis_radius_at_displacement
+    contact_radius = self%unit%radius* &
+      stable_radius(of_displacement, displacement/self%unit%displacement, self%lambda)
+  end function radius_at_displacement
 
   !> Contact radius [m] at a load [N], of the stable state. NaN beyond the pull-off.
-  elemental function maugis_radius_at_load(load, radius, stiffness, surface_energy, strength) &
-    result(contact_radius)
-    real(wp), intent(in) :: load, radius, stiffness, surface_energy, strength
-    real(wp) :: contact_radius
+  elemental real(wp) function radius_at_load(self, load) result(contact_radius)
+    class(maugis_t), intent(in) :: self
+    real(wp), intent(in) :: load
 
-    contact_radius = unit_length(radius, stiffness, surface_energy)* &
-      stable_radius(of_load, load/(pi*surface_energy*radius), &
-      maugis_lambda(radius, stiffness, surface_energy, strength))
-  end function maugis_radius_at_load
-
-  !> Maugis' units.
-  elemental function maugis_units(radius, stiffness, surface_energy) result(units)
-    real(wp), intent(in) :: radius, stiffness, surface_energy
-    type(maugis_units_t) :: units
-
-    units%load = pi*surface_energy*radius
-    units%radius = unit_length(radius, stiffness, surface_energy)
-    units%displacement = units%radius**2/radius
-  end function maugis_units
-
-  !> Maugis' unit of contact radius [m].
-  elemental real(wp) function unit_length(radius, stiffness, surface_energy) result(unit)
-    real(wp), intent(in) :: radius, stiffness, surface_energy
-
-    unit = (1.5_wp*pi*surface_energy*radius**2/stiffness)**(1.0_wp/3.0_wp)
-  end function unit_length
+    contact_radius = self%unit%radius*stable_radius(of_load, load/self%unit%load, self%lambda)
+  end function radius_at_load
 
 end module maugis

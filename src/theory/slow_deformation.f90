@@ -71,7 +71,7 @@ contains
     type is (exponential_t)
       load = 2*pi*decay(gap)
     type is (lennard_jones_t)
-      load = 8*pi/3/gap**2*(repulsion(law, form)/gap**6/4 - law%attractive)
+      load = pi/gap**2*(repulsion(law, form)/gap**6/4 - law%attractive)
     end select
   end function slow_load
 
@@ -95,8 +95,8 @@ contains
       type is (exponential_t)
         integral = merge(-sqrt(pi), sqrt(pi), of_slope)*decay(gap)
       type is (lennard_jones_t)
-        near = 16*repulsion(law, form)/3*cosine_integral(8)/gap**8.5_wp
-        far = 16*law%attractive/3*cosine_integral(2)/gap**2.5_wp
+        near = 2*repulsion(law, form)*cosine_integral(8)/gap**8.5_wp
+        far = 2*law%attractive*cosine_integral(2)/gap**2.5_wp
         integral = near - far
         if (of_slope) integral = (2.5_wp*far - 8.5_wp*near)/gap
       end select
@@ -167,7 +167,7 @@ contains
 
   end function axis_integral
 
-  !> Weight of the repulsion in a closed form.
+  !> Factor of the repulsion in a closed form.
   elemental real(wp) function repulsion(law, form)
     type(lennard_jones_t), intent(in) :: law
     integer, intent(in) :: form

@@ -8,10 +8,10 @@
 !>     displacement = a0^2 (z^(4/3) - S z^(2 beta/3))            (Pietrement and Troyon)
 !>
 !> Both take alpha from lambda = -0.924 ln(1 - 1.02 alpha). Units and conventions are those of
-!> module classical; `strength` is that of `maugis`.
+!> module classical.
 module transition_fits
   use kinds, only: wp, nan
-  use maugis, only: maugis_lambda, maugis_units, maugis_units_t
+  use maugis, only: maugis_t
   use root_finding, only: bracket_t
   implicit none
   private
@@ -33,27 +33,23 @@ module transition_fits
 contains
 
   !> The fit of Carpick, Ogletree and Salmeron.
-  elemental type(fit_t) function carpick_fit(radius, stiffness, surface_energy, strength) &
-    result(fit)
-    real(wp), intent(in) :: radius, stiffness, surface_energy, strength
-    real(wp) :: lambda, load, width
+  elemental type(fit_t) function carpick_fit(theory) result(fit)
+    type(maugis_t), intent(in) :: theory
+    real(wp) :: load, width
 
-    lambda = maugis_lambda(radius, stiffness, surface_energy, strength)
-    load = 4.04_wp*lambda**1.4_wp
-    width = 2.28_wp*lambda**1.3_wp
-    fit = new_fit(lambda, maugis_units(radius, stiffness, surface_energy))
+    load = 4.04_wp*theory%lambda**1.4_wp
+    width = 2.28_wp*theory%lambda**1.3_wp
+    fit = new_fit(theory)
     fit%pull_off = fit%pull_off*(-1.75_wp + 0.25_wp*(load - 1)/(load + 1))
     fit%radius = fit%radius*(1.54_wp + 0.279_wp*(width - 1)/(width + 1))
   end function carpick_fit
 
   !> The fit of Pietrement and Troyon.
-  elemental type(fit_t) function pietrement_fit(radius, stiffness, surface_energy, strength) &
-    result(fit)
-    real(wp), intent(in) :: radius, stiffness, surface_energy, strength
-    real(wp) :: lambda, width
+  elemental type(fit_t) function pietrement_fit(theory) result(fit)
+    type(maugis_t), intent(in) :: theory
+    real(wp) :: width
 
-    lambda = maugis_lambda(radius, stiffness, surface_energy, strength)
-    fit = new_fit(lambda, maugis_units(radius, stiffness, surface_energy))
+    fit = new_fit(theory)
     associate (alpha => fit%alpha)
       width = 1.264_wp + alpha*(0.950_wp + alpha*(-1.365_wp + alpha*(1.417_wp - alpha*0.451_wp)))
       fit%pull_off = -fit%pull_off*(2 + alpha*(-0.767_wp + alpha*0.267_wp))
@@ -63,12 +59,13 @@ contains
   end function pietrement_fit
 
   !> A fit with the numbers of Maugis' units.
-  elemental type(fit_t) function new_fit(lambda, units) result(fit)
-    real(wp), intent(in) :: lambda
-    type(maugis_units_t), intent(in) :: units
+  elemental type(fit_t) function new_fit(theory) result(fit)
+    type(maugis_t), intent(in) :: theory
 
-    fit = fit_t((1 - exp(-lambda/0.924_wp))/1.02_wp, units%load, units%radius, &
-      units%displacement, units%load)
+    associate (unit => theory%unit)
+      fit = fit_t((1 - exp(-theory%lambda/0.924_wp))/1.02_wp, unit%load, unit%radius, &
+        unit%displacement, unit%load)
+    end associate
   end function new_fit
 
   !> z at a load [N].

@@ -112,13 +112,6 @@ def test_check_reports_every_deck_good_or_bad(snapin, decks):
     assert files_in(decks) == before
 
 
-def test_check_of_good_decks_writes_nothing(snapin, decks):
-    before = files_in(decks)
-    done = snapin("--check", "good.nml", "other.nml", cwd=decks)
-    assert (done.returncode, done.stderr) == (0, "")
-    assert files_in(decks) == before
-
-
 def test_check_minds_no_equal_names(snapin, decks):
     done = snapin("--check", "good.nml", "sub/good.nml", cwd=decks)
     assert (done.returncode, done.stdout) == (0, "good.nml: ok\nsub/good.nml: ok\n")
@@ -131,13 +124,6 @@ def test_one_bad_deck_stops_all_before_anything_is_written(snapin, decks):
     assert done.stdout == ""
     assert "bad.nml:1: " in done.stderr
     assert files_in(decks) == before
-
-
-def test_results_go_to_a_folder_named_after_the_deck(snapin, decks):
-    done = snapin("--quiet", "good.nml", "other.nml", cwd=decks)
-    assert done.returncode == 0, done.stderr
-    assert (decks / "results" / "good" / "summary.nml").is_file()
-    assert (decks / "results" / "other" / "summary.nml").is_file()
 
 
 @pytest.mark.parametrize("args", [["--out", "here/there"], ["--out=here/there"]])

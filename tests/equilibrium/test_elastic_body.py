@@ -32,7 +32,7 @@ class Outcome:
             np.array([float(row[k]) for row in rows]) for k in (1, 2, 4, 6, 10))
         self.rate = {row[1]: np.array(row[2:], float)
                      for row in csv.reader(lines) if row[0] == "rate"}
-        others = [line for line in lines if not line.startswith(("row,", "rate,"))]
+        others = [line for line in lines if not line.startswith(("row,", "rate,", "place,"))]
         self.summary = f90nml.reads("\n".join(others) + "\n")["summary"]
 
 

@@ -74,14 +74,6 @@ def test_a_very_stiff_spring_is_like_prescribed_h0(run):
         assert numbers(stiff, key)[0] == pytest.approx(numbers(prescribed, key)[0], rel=1e-6)
 
 
-@pytest.mark.parametrize("sigma", [0.87, 8.7])
-def test_positions_and_loads_are_those_of_a_far_more_accurate_path(run, sigma):
-    stiffness = [3.0, 0.1]
-    coarse, fine = (run(springs(sigma, stiffness, accuracy=x)) for x in (1e-6, 1e-9))
-    for key in KEYS:
-        np.testing.assert_allclose(numbers(coarse, key), numbers(fine, key), rtol=1e-6)
-
-
 def test_stepped_states_beside_a_jump_have_its_load_and_the_stiffness_of_the_spring(run):
     stiffness, step = 0.5, 1e-3
     jump = run(springs(0.87, [stiffness])).table("device_jumps.csv")

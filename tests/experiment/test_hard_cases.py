@@ -140,29 +140,10 @@ def test_poisson_ratio_enters_by_the_stiffness_alone(run):
     np.testing.assert_allclose(by_young["load"], by_stiffness["load"], rtol=1e-12)
 
 
-@pytest.mark.parametrize("h0", [3.0, 1.2, 0.7])
-@pytest.mark.parametrize("part", ["full", "repulsive", "attractive"])
-def test_rigid_bodies_under_lennard_jones_obey_derjaguin(run, part, h0):
-    scene = lennard_jones(1.0, part=part, loading=loading(8, h0, 0.5))
-    curve = check(run(scene.replace("stiffness = 1.0", "rigid = .true.")))
-    energy = {"full": (1, 4), "repulsive": (1, 0), "attractive": (0, 4)}[part]
-    exact = 2 * math.pi / 3 * (energy[0] * curve["h0"] ** -8 - energy[1] * curve["h0"] ** -2)
-    np.testing.assert_allclose(curve["load"], exact, rtol=1e-6, atol=1e-6 * abs(exact).max())
-    assert (curve["displacement"] == 0).all()
-
-
 def test_rigid_bodies_under_exponential_repulsion_obey_derjaguin_even_overlapping(run):
     scene = exponential(1.0, loading=loading(10, -30, 1))
     curve = check(run(scene.replace("stiffness = 1.0", "rigid = .true.")))
     np.testing.assert_allclose(curve["load"], 2 * math.pi * np.exp(-curve["h0"]), rtol=1e-6)
-
-
-def test_rigid_limit_is_that_of_stiff_bodies(run):
-    stiff = run(lennard_jones(1e-7, loading=loading(6, 0.9, 0.3))).curve
-    rigid = run(
-        lennard_jones(1e-7, loading=loading(6, 0.9, 0.3)).replace("stiffness = 1.0", "rigid = T")
-    ).curve
-    np.testing.assert_allclose(stiff["load"], rigid["load"], rtol=2e-5)
 
 
 # --- Steps and starts

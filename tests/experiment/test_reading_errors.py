@@ -1,8 +1,12 @@
 """Claims about errors of what is read from the path: springs, fixed loads, tables, regimes."""
 
+import math
+import subprocess
+
 import numpy as np
 import pytest
-from support.scenes import lennard_jones, several
+from support.processes import HANG
+from support.scenes import deck, lennard_jones, loading, several
 
 # Strength of adhesion, accuracy, stiffness over sigma, load over sigma.
 SCENES = [(0.02, 1e-4, 0.3, -1.0), (0.87, 1e-5, 3.0, 2.0), (8.7, 1e-6, 0.05, -3.0),
@@ -83,3 +87,62 @@ def test_a_table_says_what_lies_between_its_rows(pair):
             # Other rows of the branch at this indentation belong to other states.
             near = np.isclose(cubic, load[inside], rtol=0.3)
             assert (abs(cubic - load[inside])[near] <= 2 * bound).all()
+
+
+@pytest.fixture(scope="module")
+def radii(snapin_path, tmp_path_factory):
+    """radii(deck) -> the contact radii at the places of each name, and their errors."""
+    path = tmp_path_factory.mktemp("radii") / "deck.nml"
+
+    def of_places(text):
+        path.write_text(text)
+        done = subprocess.run([snapin_path.parent / "ring_image", path, "0", "1"],
+                              capture_output=True, text=True, check=True, timeout=HANG)
+        rows = [line.split(",") for line in done.stdout.splitlines() if line.startswith("place,")]
+        return {row[1]: np.split(np.array(row[3].split(), float), 2)
+                for row in rows if row[2] == "radius"}
+
+    return of_places
+
+
+CYCLE = {"loading": loading(10, -3, 0.25), "unloading": {"from": [-1.0, -3.0]}}
+
+
+def pairs():
+    """Each scene at an accuracy, and far more accurate."""
+    for sigma, accuracy, stiffness, load in SCENES:
+        yield [scene(sigma, stiffness, load, each) for each in (accuracy, 1e-10)]
+    yield [lennard_jones(8.7, **CYCLE, profiles={"h0": [2.0, -1.0]}, numerics={"accuracy": each})
+           for each in (1e-4, 1e-9)]
+
+
+@pytest.mark.parametrize("decks", pairs())
+def test_every_place_has_a_contact_radius_off_by_no_more_than_its_error(radii, decks):
+    """So that a row of `result_rows` may report the contact radius at a place of any name."""
+    found, truth = map(radii, decks)
+    for name in set(found) - {"table"}:  # The table has other rows at another accuracy.
+        (radius, error), (exact, own) = found[name], truth[name]
+        there = np.isfinite(exact)
+        assert (abs(radius - exact) <= error + 3 * own)[there].all(), name
+        assert (error <= 1e-4 * (1 + abs(radius)))[there].all(), name
+    assert found["end"][0] > 0 and found["max_tension"][0] > 0
+
+
+def test_the_contact_radius_of_rigid_bodies_is_that_of_their_shape(radii):
+    """A sphere is a parabola of the height r^2/2, cut at the level 1.1 z0."""
+    found = radii(deck(bodies={"radius": 1.0, "rigid": True},
+                       force={"law": "lennard_jones", "hamaker": 16 * math.pi, "z0": 1.0},
+                       loading=loading(4, 0.7, 0.1)))
+    radius, error = found["end"]
+    assert radius == pytest.approx(math.sqrt(2 * 0.4)) and 0 < error < 1e-10
+    # The tension is largest without contact, or at h0 = z0.
+    radius, error = found["max_tension"]
+    assert abs(radius - math.sqrt(2 * 0.1)) <= error < 1e-4
+
+
+def test_on_a_fixed_grid_a_state_has_a_contact_radius_and_a_jump_between_steps_has_none(radii):
+    found, truth = (radii(lennard_jones(1.0, **CYCLE, numerics=numerics))
+                    for numerics in ({"grid": "uniform", "nodes": 300}, {"accuracy": 1e-8}))
+    assert np.isnan(found["jump_out"]).all()
+    radius, error = found["end"]
+    assert abs(radius - truth["end"][0]) <= error < 0.1 * radius

@@ -13,6 +13,10 @@ WALL = {"van_der_waals": {"hamaker": 1e-20}, "born": {"z0": 0.3e-9}}
 TABLE = str(ROOT / "inputs" / "examples" / "tabulated.txt")
 LAWS = {
     "lennard_jones": {"force": {"law": "lennard_jones", "hamaker": 1e-19, "z0": 0.5e-9}},
+    "repulsive": {"force": {
+        "law": "lennard_jones", "hamaker": 1e-19, "z0": 0.5e-9, "part": "repulsive"}},
+    "attractive": {"force": {
+        "law": "lennard_jones", "hamaker": 1e-19, "z0": 0.5e-9, "part": "attractive"}},
     "exponential": {"force": {"law": "exponential", "p0": 2.5e8, "decay_length": 0.2e-9}},
     "morse": {"morse": {"surface_energy": 0.05, "z0": 3e-9, "decay_length": 0.2e-9}},
     "van_der_waals": {"van_der_waals": {"hamaker": 1e-19, "retardation_length": 5e-9}},

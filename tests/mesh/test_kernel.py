@@ -76,23 +76,6 @@ def test_kernel_less_its_logarithm_is_smooth_through_t_equal_r():
 # --- Quadrature
 
 
-@pytest.mark.parametrize("points", [1, 2, 3, 8, 12, 16, 24, 40, 64])
-def test_gauss_rule_is_exact_to_its_degree(points):
-    rule = snapin.gauss_rule(points)
-    assert (np.diff(rule.x) > 0).all() and 0 < rule.x[0] and rule.x[-1] < 1
-    for degree in range(2 * points):
-        assert rule.weight @ rule.x**degree == pytest.approx(1 / (degree + 1), abs=4e-15)
-
-
-@pytest.mark.parametrize("points", [1, 2, 3, 8, 12, 16, 24, 40, 64])
-def test_logarithm_rule_is_exact_to_its_degree(points):
-    rule = snapin.gauss_rule(points)
-    for degree in range(points):
-        # Integral of s^n ln(s) over [0, 1].
-        exact = -1 / (degree + 1) ** 2
-        assert rule.log_weight @ rule.x**degree == pytest.approx(exact, abs=1e-14)
-
-
 @pytest.mark.parametrize("points", [2, 8, 16, 24])
 def test_barycentric_weights_interpolate_polynomials(points):
     rule = snapin.gauss_rule(points)

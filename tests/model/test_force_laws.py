@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 import snapin
 from conftest import ROOT
-from support.law_claims import claim_energy, claim_slope
 
 # Every law there is with parameters in SI; one without an entry fails the first test.
 LAWS = {
@@ -32,18 +31,9 @@ LAWS = {
             "file": str(ROOT / "inputs" / "examples" / "tabulated.txt"), "tail_exponent": 3},
     },
 }
-# Separations at which a law is not smooth.
-KINKS = {"steric": [10e-9]}
-# Laws that end like an error function, faster than differences and quadrature can follow to the
-# last digit: what is left of them there is judged by their largest value.
-ENDING = {"depletion", "capillary", "dugdale"}
 PARTS = {"lennard_jones": ("full", "repulsive", "attractive")}
 ALL = [(law, part) for law in LAWS for part in PARTS.get(law, ("full",))]
 every_law = pytest.mark.parametrize(("law", "part"), ALL, ids=map("-".join, ALL))
-# A table is smooth between its points only (test_tabulated.py).
-FORMULAS = [pair for pair in ALL if pair[0] != "tabulated"]
-every_formula = pytest.mark.parametrize(("law", "part"), FORMULAS, ids=map("-".join, FORMULAS))
-
 Z0, HAMAKER = 0.5e-9, 1e-19
 
 
@@ -71,25 +61,6 @@ def functions(law, part):
 
 def test_every_law_is_tested():
     assert set(LAWS) == {path.stem for path in (ROOT / "src" / "model" / "laws").glob("*.f90")}
-
-
-@every_formula
-def test_slope_is_the_derivative_of_the_pressure(law, part):
-    of, gap = functions(law, part), gaps(law)
-    # Where slope or pressure pass through zero their parts still set the rounding.
-    size = sum(
-        abs(functions(law, part)(gap).slope)
-        for part in (PARTS[law][1:] if part == "full" and law in PARTS else (part,))
-    )
-    if law in ENDING:
-        size = abs(of(gap).slope).max()
-    claim_slope(of, gap, scales(law), size)
-
-
-@every_formula
-def test_energy_is_the_integral_of_the_pressure(law, part):
-    of, gap = functions(law, part), np.union1d(gaps(law), KINKS.get(law, []))
-    claim_energy(of, gap, scales(law), abs(of(gap).energy).max() if law in ENDING else None)
 
 
 @every_law

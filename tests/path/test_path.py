@@ -46,19 +46,6 @@ def test_path_has_the_folds_and_pull_off_of_the_reference_to_all_digits(run, sig
     assert f"jump_{way}_uncertainty" not in summary
 
 
-@pytest.mark.parametrize("sigma", TABLE)
-@pytest.mark.parametrize("accuracy", [1e-2, 1e-4, 1e-6, 1e-8])
-def test_path_is_as_accurate_as_asked_for(run, sigma, accuracy):
-    summary, table = run(path(sigma, accuracy)).summary, TABLE[sigma]
-    pairs = [(of(sigma, summary["max_tension"]) / JKR, table["pull-off"])]
-    for way in ("in", "out"):
-        pairs.append((summary[f"jump_{way}_h0"], table[way][0]))
-        pairs.append((of(sigma, summary[f"jump_{way}_load"]), table[way][1]))
-    for found, exact in pairs:
-        # And the last digit of the table.
-        assert found == pytest.approx(exact, rel=accuracy, abs=abs(exact) * accuracy + 1e-7)
-
-
 def test_large_sigma_has_two_more_folds_before_contact(run):
     summary = run(path(8.7)).summary
     np.testing.assert_allclose(
@@ -119,48 +106,7 @@ def test_between_the_secondary_folds_the_path_stays_unstable(run):
     assert (curve["smallest_eigenvalue"][between] < 0).all()
 
 
-@pytest.mark.parametrize("sigma", [0.1, 0.87, 8.7])
-def test_the_smallest_eigenvalue_agrees_with_the_column_stable(run, sigma):
-    curve = run(path(sigma) + "&stability /\n").curve
-    eigenvalue = curve["smallest_eigenvalue"]
-    # At a fold it vanishes.
-    away = abs(eigenvalue) > 1e-4
-    assert away.sum() > 20
-    np.testing.assert_array_equal((eigenvalue > 0)[away], (curve["stable"] == 1)[away])
-    folds = several(run(path(sigma)).summary.get("folds_h0", []))
-    for fold in folds[:1] + folds[-1:]:
-        assert abs(eigenvalue[np.argmin(abs(curve["h0"] - fold))]) < 1e-4
-
-
-# --- The cusp, and the limits of JKR and DMT
-
-
-@pytest.mark.parametrize(("sigma", "folds"), [(0.2, 0), (0.29, 0), (0.3, 2), (0.5, 2)])
-def test_the_path_folds_above_sigma_0_291(run, sigma, folds):
-    summary = run(path(sigma)).summary
-    assert len(several(summary.get("folds_h0", []))) == folds
-    assert ("jump_in_h0" in summary) == ("jump_out_h0" in summary) == (folds > 0)
-    if folds:
-        assert summary["jump_in_h0"] < summary["jump_out_h0"]
-
-
-def test_the_cusp_is_where_the_folds_meet(run):
-    """Near a cusp the distance of the folds goes as the power 3/2 of that from it."""
-    sigma = np.array([0.295, 0.3, 0.31])
-    apart = [run(path(s)).summary["folds_h0"] for s in sigma]
-    slope, value = np.polyfit(sigma, [(b - a) ** (2 / 3) for a, b in apart], 1)
-    assert -value / slope == pytest.approx(0.291, abs=1e-3)
-
-
-def test_pull_off_goes_from_dmt_to_jkr(run):
-    sigma = [1e-3, 1e-2, 0.1, 0.3, 1.0, 10.0, 100.0, 1000.0]
-    pull_off = [of(s, run(path(s)).summary["max_tension"]) / JKR for s in sigma]
-    assert (np.diff(pull_off) < 0).all()
-    # The departure from 4/3 is of the order of sigma.
-    assert pull_off[0] == pytest.approx(4 / 3, rel=2e-3)
-    assert 4 / 3 - pull_off[0] == pytest.approx(0.1 * (4 / 3 - pull_off[1]), rel=0.1)
-    assert pull_off[-1] == pytest.approx(1.000061, abs=1e-6)
-    assert all(1 < value < 4 / 3 for value in pull_off)
+# --- The summary
 
 
 def test_energy_lost_is_that_of_the_whole_cycle_or_is_not_given(run):

@@ -214,14 +214,6 @@ def test_results_have_no_other_names(full):
     assert full.files == ["classical.csv", "curve.csv", "profiles.csv", "summary.nml"]
 
 
-def test_out_puts_the_folder_elsewhere(snapin, tmp_path):
-    (tmp_path / "deck.nml").write_text(exponential(1, loading=loading(6, 4, 1)))
-    done = snapin("--out", "there/below", "deck.nml", cwd=tmp_path)
-    assert done.returncode == 0, done.stderr
-    assert (tmp_path / "there/below/deck/summary.nml").is_file()
-    assert not (tmp_path / "results").exists()
-
-
 def test_files_of_an_earlier_run_do_not_stay_beside_those_of_another(snapin, tmp_path):
     deck = tmp_path / "deck.nml"
     deck.write_text(exponential(1, loading=loading(6, 4, 1), classical={}, profiles={"h0": [5.0]}))
@@ -243,14 +235,6 @@ def test_a_wrong_deck_leaves_nothing(snapin, tmp_path, text):
     assert [path.name for path in tmp_path.iterdir()] == ["deck.nml"]
 
 
-def test_a_wrong_deck_among_good_ones_stops_all_before_anything_is_written(snapin, tmp_path):
-    (tmp_path / "good.nml").write_text(exponential(1, loading=loading(6, 4, 1)))
-    (tmp_path / "wrong.nml").write_text("&bodies radius = -1 /")
-    done = snapin("good.nml", "wrong.nml", cwd=tmp_path)
-    assert done.returncode == 2
-    assert not (tmp_path / "results").exists()
-
-
 # --- Failures
 
 
@@ -270,12 +254,6 @@ def test_what_does_not_converge_is_kept_marked_and_told(failed):
     assert failed.summary["converged"] is False
     assert any("did not converge" in warning for warning in failed.warnings)
     assert "did not converge" in failed.stderr
-
-
-def test_an_unconverged_state_is_never_called_stable(failed):
-    bad = failed.curve["residual"] > 1e-8
-    assert bad.any()
-    assert (failed.curve["stable"][bad] != 1).all()
 
 
 def test_one_failure_does_not_stop_the_other_decks(snapin, tmp_path):
@@ -303,9 +281,3 @@ def test_a_table_that_cannot_be_written_leaves_no_results(snapin, tmp_path, coun
     assert done.returncode == 1
     assert "classical.csv.partial: File too large" in done.stderr
     assert not [p for p in (tmp_path / "results/d").iterdir() if not p.name.endswith(".partial")]
-
-
-def test_quiet_says_nothing_when_all_is_well(snapin, tmp_path):
-    (tmp_path / "deck.nml").write_text(exponential(1, loading=loading(6, 4, 1)))
-    done = snapin("--quiet", "deck.nml", cwd=tmp_path)
-    assert (done.returncode, done.stdout, done.stderr) == (0, "", "")

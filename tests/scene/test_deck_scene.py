@@ -277,12 +277,6 @@ def test_resolved_deck_holds_every_value_and_default(snapin, tmp_path):
     assert "nodes" not in values["numerics"]
 
 
-def test_summary_can_be_run_again(snapin, tmp_path):
-    summary, deck, _ = resolved(snapin, tmp_path, "a.nml", CHEAP)
-    _, again, _ = resolved(snapin, tmp_path, "b.nml", summary)
-    assert again == deck
-
-
 def test_resolved_deck_of_the_other_law_reads_back(snapin, tmp_path):
     text = ("&bodies radius = 1e-2 rigid = T /\n&force law = 'exponential' p0 = 2.5e8 "
             "decay_length = 2e-10 /\n&loading h0_start = 5e-9 h0_end = 4.9e-9 h0_step = 1e-10 /\n"

@@ -5,7 +5,7 @@
 !>     2 Int exp(-depth k) J0(k r) J0(k t) dk = 4 K(m)/(pi s),  s^2 = (r + t)^2 + depth^2 ,
 !>
 !> with m = 4 r t/s^2. Prints the rows of the curve, with eigenvalues for &stability, and the
-!> summary; derivatives as comments.
+!> summary, its derivatives, and the load and the contact radius at every place with their errors.
 module ring_image_body
   use kinds, only: wp
   use elastic_body, only: elastic_body_t
@@ -113,6 +113,7 @@ program ring_image
   use scene_problem, only: problem_of
   use experiment, only: run_experiment
   use experiment_result, only: experiment_result_t
+  use reported_place, only: of_load, of_radius
   use places, only: readings_t
   use result_rows, only: row_of
   use summarise, only: summary_of
@@ -159,8 +160,26 @@ program ring_image
     if (size(found%rate) > 0) print '(3a, *(es25.16))', 'rate,', trim(told(k)), ',', &
       found%rate(:, 1)
   end do
+  do k = 1, merge(size(outcome%places%entry), 0, allocated(outcome%places%entry))
+    associate (name => outcome%places%entry(k)%name)
+      if (any(outcome%places%entry(:k - 1)%name == name)) cycle
+      call tell_place(of_load, 'load')
+      call tell_place(of_radius, 'radius')
+    end associate
+  end do
 
 contains
+
+  !> Prints the values of a quantity at the places of the name of entry k, then their errors.
+  subroutine tell_place(quantity, what)
+    integer, intent(in) :: quantity
+    character(len=*), intent(in) :: what
+
+    associate (name => outcome%places%entry(k)%name)
+      found = outcome%places%read_numbers(problem, name, quantity)
+      print '(5a, *(es25.16))', 'place,', trim(name), ',', what, ',', found%value, found%error
+    end associate
+  end subroutine tell_place
 
   subroutine give_body(to)
     type(problem_t), intent(inout) :: to

@@ -146,14 +146,14 @@ LAWS = {
 }
 
 
-def jobs(count, folder, *, seed=1):
-    """Scenes one by one, the laws in turn."""
+def jobs(count, folder, *, seed=1, study="laws", names=tuple(LAWS), strengths=STRENGTHS):
+    """Scenes of a study one by one, the laws (or bodies) of these names in turn."""
     made = []
     for number in range(count):
-        rng = random.Random(f"laws {seed} {number}")
+        rng = random.Random(f"{study} {seed} {number}")
         made.append(Scene(
-            number, seed, list(LAWS)[number % len(LAWS)],
-            float(f"{logarithmic(rng, *STRENGTHS):.4g}"),
+            number, seed, names[number % len(names)],
+            float(f"{logarithmic(rng, *strengths):.4g}"),
             rng.choice(("path", "cycle")), float(f"{logarithmic(rng, *ACCURACIES):.1g}"),
             folder / f"scene{number}"))
     return made
@@ -167,24 +167,27 @@ def logarithmic(rng, low, high):
 def examine(scene):
     """The findings of a job: one."""
     rng = random.Random(f"law {scene.seed} {scene.number}")
-    law = LAWS[scene.law](rng)
+
+    def bodies(stiffness):
+        return {"bodies": {"radius": RADIUS, "stiffness": stiffness}}
+
+    return [compared(scene, rng, LAWS[scene.law](rng), bodies)]
+
+
+def compared(scene, rng, law, bodies):
+    """The finding of a scene; bodies(stiffness): the groups of its bodies."""
     scene.folder.mkdir(parents=True, exist_ok=True)
     if scene.law == "tabulated":
         gap = np.geomspace(0.5, 60, 300) * Z0
         pressure = 1e-19 / (6 * math.pi) * (Z0**6 / gap**9 - 1 / gap**3)
         np.savetxt(scene.folder / "law.txt", np.column_stack([gap, pressure]))
-    stiffness = STIFFNESS * strength(scene, law) / scene.sigma
-    groups = {"bodies": {"radius": RADIUS, "stiffness": stiffness}, **law.groups}
+    groups = {**bodies(STIFFNESS * strength(scene, law) / scene.sigma), **law.groups}
     groups.update(driven(rng, scene, law))
     found = run(scene, "asked", {**groups, "numerics": {"accuracy": scene.accuracy}})
-    truth = run(scene, "truth", {**groups, "numerics": truth_of(scene)})
+    truth = run(scene, "truth", {**groups, "numerics": {
+        "accuracy": max(FINER * scene.accuracy, FINEST), "residual_tolerance": 1e-12}})
     shutil.rmtree(scene.folder)
-    return [judged(scene, law, found, truth)]
-
-
-def truth_of(scene):
-    """The numerics of the truth of a scene."""
-    return {"accuracy": max(FINER * scene.accuracy, FINEST), "residual_tolerance": 1e-12}
+    return judged(scene, law, found, truth)
 
 
 def driven(rng, scene, law):

@@ -4,47 +4,31 @@ The truth is the same scene at a much higher accuracy, as in `study_laws`, which
 Scene k of a seed is always the same scene.
 """
 
+import functools
 import math
 import random
-import shutil
 
-from support.study_laws import (
-    ACCURACIES, RADIUS, STIFFNESS, Law, Scene, driven, is_bad, judged, lennard_jones, logarithmic,
-    run, strength, table, truth_of)
+from support import study_laws
+from support.study_laws import RADIUS, Law, compared, is_bad, lennard_jones, logarithmic, table
 
 __all__ = ["examine", "is_bad", "jobs", "table"]
 
+# Strengths of adhesion.
 STRENGTHS = (1e-2, 1e2)
 # Thickness over the contact radius of JKR theory without load; ratios of moduli of neighbours.
 THICKNESSES, RATIOS = (0.1, 10), (1e-2, 1e2)
 Z0 = 0.5e-9
 
 
-def jobs(count, folder, *, seed=1):
-    """Scenes one by one, alternately with one layer and with several."""
-    made = []
-    for number in range(count):
-        rng = random.Random(f"layers {seed} {number}")
-        made.append(Scene(
-            number, seed, ("layer", "film", "layers")[number % 3],
-            float(f"{logarithmic(rng, *STRENGTHS):.4g}"),
-            rng.choice(("path", "cycle")), float(f"{logarithmic(rng, *ACCURACIES):.1g}"),
-            folder / f"scene{number}"))
-    return made
+jobs = functools.partial(
+    study_laws.jobs, study="layers", names=("layer", "film", "layers"), strengths=STRENGTHS)
 
 
 def examine(scene):
     """The findings of a job: one."""
     rng = random.Random(f"layer {scene.seed} {scene.number}")
-    law = Law(lennard_jones(rng), Z0, Z0)
-    scene.folder.mkdir(parents=True, exist_ok=True)
-    stiffness = STIFFNESS * strength(scene, law) / scene.sigma
-    groups = {**bodies(rng, scene, stiffness), **law.groups}
-    groups.update(driven(rng, scene, law))
-    found = run(scene, "asked", {**groups, "numerics": {"accuracy": scene.accuracy}})
-    truth = run(scene, "truth", {**groups, "numerics": truth_of(scene)})
-    shutil.rmtree(scene.folder)
-    return [judged(scene, law, found, truth)]
+    return [compared(scene, rng, Law(lennard_jones(rng), Z0, Z0),
+                     lambda stiffness: bodies(rng, scene, stiffness))]
 
 
 def bodies(rng, scene, stiffness):

@@ -79,29 +79,6 @@ def test_rows_are_the_stable_states_and_reach_to_the_least_displacement(run, sig
     assert (displacement[beyond] > rows["displacement"][0]).all()
 
 
-def difference(run, sigma, theory):
-    """Largest difference of load and of contact radius from another theory in common rows."""
-    unit = unit_of(sigma)
-    deck = classical(sigma, h0_start=-0.1 * unit**2, h0_end=-10 * unit**2)
-    table = run(deck).table("classical.csv")
-    mine, other = table.rows("maugis_dugdale"), table.rows(theory)
-    np.testing.assert_array_equal(mine["h0"], other["h0"])
-    return max(
-        abs(mine["load"] - other["load"]).max() / (math.pi * sigma),
-        abs(mine["contact_radius"] - other["contact_radius"]).max() / unit)
-
-
-def test_large_lambda_gives_the_rows_of_jkr(run):
-    far, near = difference(run, 1e3, "jkr"), difference(run, 1e5, "jkr")
-    # The difference falls as lambda^-2, that is as sigma^(-4/3).
-    assert near < 1e-5 and near < far / 200
-
-
-def test_small_lambda_gives_the_rows_of_dmt(run):
-    far, near = difference(run, 1e-6, "dmt"), difference(run, 1e-12, "dmt")
-    assert near < 2e-3 and near < far / 20
-
-
 @pytest.mark.parametrize("sigma", SIGMAS)
 def test_summary_has_maugis_parameter_and_pull_off(run, sigma):
     summary = run(classical(sigma)).summary

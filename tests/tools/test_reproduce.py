@@ -375,15 +375,6 @@ def test_a_grid_coarser_than_the_neck_makes_the_loops_of_the_paper(runs):
     assert coarse.summary["max_tension"] > 1.2 * coarse.summary["jkr_pull_off"]
 
 
-@pytest.mark.slow
-def test_the_paper_s_rule_stops_far_from_equilibrium_and_says_so(runs):
-    rule = runs["fig10a_paper"]
-    assert rule.summary["converged"] is False
-    assert rule.summary["worst_residual"] > 1
-    assert "not convergence" in str(rule.summary["warnings"])
-    assert penetrations.spread(penetrations.of_cycle(rule)) > 0.05
-
-
 def quicker(groups):
     """The deck with fewer steps, nodes and cases."""
     numerics = groups.get("numerics", {})

@@ -141,21 +141,6 @@ def test_path_without_attraction_has_no_folds():
 # --- What Python adds
 
 
-def test_curve_has_the_jumps_of_the_path(there_and_back):
-    path = snapin.equilibrium_path(-2e-9, **BODIES, law=LAW)
-    np.testing.assert_allclose(there_and_back.jumps, path.folds, rtol=1e-6)
-    assert there_and_back.max_tension == pytest.approx(path.max_tension, rel=1e-6)
-
-
-def test_hysteresis_is_between_the_jumps_and_nowhere_else(there_and_back):
-    down, up = there_and_back.h_centre[:61], there_and_back.h_centre[:60:-1]
-    (jump_in, _), (jump_out, _) = there_and_back.jumps
-    between = (jump_in < DOWN) & (DOWN < jump_out)
-    assert between.any()
-    assert (abs(up - down)[between] > 0.2e-9).all()
-    assert (abs(up - down)[~between] < 1e-6 * 0.5e-9).all()
-
-
 def test_turning_value_may_be_repeated_or_not(there_and_back):
     once = snapin.force_curve(np.r_[DOWN, DOWN[-2::-1]], **BODIES, law=LAW)
     scale = abs(there_and_back.load).max()

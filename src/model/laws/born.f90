@@ -7,17 +7,10 @@ module born
   use deck_keys, only: key_spec, group, real_key
   use force_law, only: force_law_t
   use law_reading, only: check_decades
+  use power_pair, only: power_pair_t
   implicit none
   private
   public :: keys, read_law
-
-  type, extends(force_law_t) :: born_t
-    real(wp) :: exponent = 9
-  contains
-    procedure :: pressure
-    procedure :: slope
-    procedure :: energy
-  end type born_t
 
 contains
 
@@ -39,7 +32,7 @@ contains
     type(deck_t), intent(inout) :: deck
     class(force_law_t), allocatable, intent(out) :: law
     type(failure_t), allocatable, intent(inout) :: error
-    type(born_t) :: this
+    type(power_pair_t) :: this
     real(wp) :: hamaker
 
     if (.not. deck%has_group('born')) return
@@ -53,45 +46,18 @@ contains
     if (hamaker > 0) call deck%assume('born', 'hamaker', hamaker)
     call deck%get('born', 'hamaker', hamaker)
     call deck%get('born', 'z0', this%length)
-    call deck%get('born', 'exponent', this%exponent)
+    call deck%get('born', 'exponent', this%n)
     call check_decades(deck, 'born', 'hamaker', &
       log10(hamaker) - log10(6*pi) - 3*log10(this%length), 'a pressure', ' Pa', error)
     if (allocated(error)) return
     this%pressure_unit = hamaker/(6*pi*this%length**3)
-    this%has_z0 = .true.
-    this%tail_power = this%exponent
-    ! The slope at this gap is 1e121, whose square does not overflow.
-    this%smallest_gap = 10.0_wp**(-120/(this%exponent + 1))
-    this%repulsion_length = 0.9_wp/this%exponent
-    this%closure_fraction = 2.7_wp/this%exponent
+    this%repulsive = 1
+    this%tail_power = this%n
+    call this%set_scales()
     this%group = 'born'
     this%strength_key = 'hamaker'
     this%length_key = 'z0'
     allocate (law, source=this)
   end subroutine read_law
-
-  pure function pressure(self, gap) result(value)
-    class(born_t), intent(in) :: self
-    real(wp), intent(in) :: gap(:)
-    real(wp) :: value(size(gap))
-
-    value = gap**(-self%exponent)
-  end function pressure
-
-  pure function slope(self, gap) result(value)
-    class(born_t), intent(in) :: self
-    real(wp), intent(in) :: gap(:)
-    real(wp) :: value(size(gap))
-
-    value = -self%exponent*gap**(-self%exponent - 1)
-  end function slope
-
-  pure function energy(self, gap) result(value)
-    class(born_t), intent(in) :: self
-    real(wp), intent(in) :: gap(:)
-    real(wp) :: value(size(gap))
-
-    value = gap**(1 - self%exponent)/(self%exponent - 1)
-  end function energy
 
 end module born
