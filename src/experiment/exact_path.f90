@@ -30,8 +30,9 @@ module exact_path
   integer, parameter :: most_attempts = 2
   !> Largest number of rounds of judging.
   integer, parameter :: most_rounds = 4
-  !> A finer mesh reduces errors about ten times. If errors remain above this fraction, they have
-  !> another cause, such as rounding, and a further mesh is useless.
+  !> A finer mesh reduces errors about ten times, and beside a step at least by half. If errors
+  !> remain above this fraction, they have another cause, such as rounding, and a further mesh is
+  !> useless.
   real(wp), parameter :: helped = 0.5_wp
 
 contains
@@ -57,15 +58,16 @@ contains
 
     if (request%reads_path()) farthest = farthest_wanted(request, steps%problem)
     associate (accuracy => request%numerics%accuracy, cost => steps%cost)
-      call steps%know_path(h0_high, h0_low, allocated(request%path), listener, farthest, accuracy)
-      do round = 1, most_attempts
-        if (steps%known%ending%cause /= path_lost .or. &
-          steps%meshes%digits + more_digits > most_digits) exit
-        steps%meshes = new_mesh_family(steps%problem, h0_high, h0_low, &
-          steps%meshes%digits + more_digits, store=store)
-        cost%kernel_entries = cost%kernel_entries + sum(steps%meshes%grid%kernel_entries())
+      do round = 0, most_attempts
+        if (round > 0) then
+          steps%meshes = new_mesh_family(steps%problem, h0_high, h0_low, &
+            steps%meshes%digits + more_digits, store=store)
+          cost%kernel_entries = cost%kernel_entries + sum(steps%meshes%grid%kernel_entries())
+        end if
         call steps%know_path(h0_high, h0_low, allocated(request%path), listener, farthest, &
           accuracy)
+        if (steps%known%ending%cause /= path_lost .or. &
+          steps%meshes%digits + more_digits > most_digits) exit
       end do
       call fine%lay_out(steps, h0_high, h0_low, store)
       renewed = spread(.false., 1, size(steps%meshes%grid))

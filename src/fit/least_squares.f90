@@ -51,8 +51,9 @@ module least_squares
     end subroutine lmder
   end interface
 
-  !> The search ends where the next step would change x by about this part of its standard errors:
-  !> one standard error changes the sum of squares by its mean square.
+  !> The search ends where a step changes the sum of squares by no more than a change of x by this
+  !> part of its standard errors does: one standard error changes the sum by its mean square. Along
+  !> a badly determined combination of x later steps could still go farther.
   real(wp), parameter :: of_error = 1.0e-3_wp
   !> Relative change of x at which the search ends too; length of the first step.
   real(wp), parameter :: nearer = 1.0e-10_wp, first_step = 0.3_wp

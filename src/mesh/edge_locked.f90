@@ -15,7 +15,7 @@ module edge_locked
   use mesh_rule, only: approach_shape, contact_shape, is_narrow, rim_passed_at
   use law_panels, only: about_front, about_edge
   use seen_gaps, only: seen_gaps_t
-  use step_front, only: front_leads, first_front, last_front
+  use step_front, only: front_leads, has_constant_tension, first_front, last_front
   use force_law, only: force_law_t
   use contact_scales, only: largest_radius, contact_level, cohesive_width, lost_in_rounding
   implicit none
@@ -27,9 +27,12 @@ module edge_locked
   integer, parameter :: approach = 1, contact = 2
 
   !> Largest ratio of the contact radii of one mesh: wider bands need more nodes, narrower bands
-  !> more meshes. Under a law that has a step or oscillates, short panels cover all places that the
+  !> more meshes. Under a law that oscillates or has a step, short panels cover all places that the
   !> law's special gaps have at any radius of the band.
-  real(wp), parameter :: widest_band = 30, step_band = 4, wave_band = 1.5_wp
+  real(wp), parameter :: widest_band = 30, narrow_band = 1.5_wp
+  !> Where the tension is nearly constant up to the step, the nodes outside the step hardly add to
+  !> the cost of a state, and wider bands are cheaper.
+  real(wp), parameter :: band_of_constant_tension = 4
   !> Fraction of the radius at which a front becomes sharp; above it a mesh is locked to the front.
   real(wp), parameter :: early = 0.25_wp
 
@@ -167,9 +170,8 @@ contains
 
     real(wp) :: ratio
 
-    ratio = widest_band
-    if (problem%law%step_width > 0) ratio = step_band
-    if (problem%law%period > 0) ratio = wave_band
+    ratio = merge(narrow_band, widest_band, is_narrow(problem))
+    if (has_constant_tension(problem%law)) ratio = band_of_constant_tension
     bands = ceiling(log(last/first)/log(ratio))
   end function bands_for
 

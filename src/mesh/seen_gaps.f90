@@ -101,7 +101,7 @@ contains
       radii = [moved%low]
       if (.not. moved%high > moved%low) return
       if (moved%step > 0) then
-        radii = pack((moved%step - moved%from)/offset, abs(offset) > 0)
+        radii = (moved%step - moved%from)/pack(offset, abs(offset) > 0)
         radii = [moved%low, moved%high, &
           pack(radii, radii > moved%low .and. radii < moved%high)]
       else
@@ -112,8 +112,8 @@ contains
   end function radii
 
   !> The gap of the tried state number j, moved to a radius, at offsets from the centre of a mesh at
-  !> this radius, or from the axis. Gaps outside a contact keep their distance from the edge. Inside
-  !> they keep it approximately, near the edge, and the axis stays the axis.
+  !> this radius, or from the axis. Outside a contact gaps keep their distance from the edge. Inside
+  !> they keep it approximately near the edge, and the gap on the axis stays there.
   pure function gap(self, shape, j, radius, offset)
     class(seen_gaps_t), intent(in) :: self
     class(shape_t), intent(in) :: shape
@@ -123,12 +123,12 @@ contains
 
     associate (from => self%moved(j)%from, k => self%moved(j)%state)
       r = from + radius*offset
-      where (offset < 0) r = abs(from + radius*offset/(1 - offset*(radius/from - 1)))
+      where (offset < 0) r = abs(from + radius*from*offset/(from - offset*(radius - from)))
       gap = shape%height(r)
       ! Beyond the mesh of the state deformations decrease as 1/r.
       r = r/self%scale(k)
       gap = gap + self%grid%interpolate_all(self%beside(:, k), min(r, self%last))* &
-        min(1.0_wp, self%last/r)
+        (self%last/max(r, self%last))
     end associate
   end function gap
 

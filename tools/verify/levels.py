@@ -33,9 +33,9 @@ from support.scenes import Run, exponential, lennard_jones, loading, several  # 
 # that depends on rounding: then the states agree to WITHIN (between OpenBLAS's kernels they differ
 # by 1.1e-12 at sigma 0.87 already, between compilers by 1.4e-11). Mixing stops after the last
 # change of the ratio, perhaps an iteration sooner or later: to a part of the tolerance. A fit stops
-# if a step changes the fitted values by little of their standard errors. Rounding decides where it
-# stops: between OpenBLAS's kernels the values differ by up to 0.03 of these errors. FITTED is a part
-# of the largest relative standard error.
+# where a step hardly changes the sum of squares (`least_squares`), and rounding decides which step:
+# between OpenBLAS's kernels the values differ by up to 0.03 of their standard errors. FITTED is a
+# part of the largest relative standard error.
 EXACT, WITHIN, STOPPED, FITTED = 1e-12, 3e-11, 1e-8, 0.1
 # Rows of a traced path lie at the ends of its steps. Rounding moves them along the path, which is
 # unchanged: 4.2e-7 at sigma 1000 between compilers.
