@@ -12,10 +12,10 @@ module mesh_digits
   !> Least number of digits for a path; largest number of digits that rounding allows.
   real(wp), parameter :: fewest = 4.25_wp, most_digits = 13
   !> Least number of digits for each decade of sigma: with fewer digits, folds would be missing or
-  !> wrong, since folds are closer together for stronger adhesion. For laws with a kink or a period,
-  !> and for those with a step: the number to be added to `fewest`. The last number is enough to separate folds as long
-  !> as there is a contact.
-  real(wp), parameter :: for_folds = 1.5_wp, for_folds_of_lengths = 0.5_wp, for_folds_of_steps = 1, &
+  !> wrong, since folds are closer together for stronger adhesion. For laws with a kink, and for
+  !> those with a step or a period: the number to be added to `fewest`. The last number is enough
+  !> to separate folds as long as there is a contact.
+  real(wp), parameter :: for_folds = 1.5_wp, for_folds_of_kinks = 0.5_wp, for_folds_of_lengths = 1, &
     enough_for_folds = 9
   !> Digits to be added, relative to a path under the Lennard-Jones law: for bodies without jumps;
   !> for laws with a step or a kink; for oscillating laws; for profiles, which are sensitive to the
@@ -53,7 +53,7 @@ contains
     digits = digits + lengths
     least = max(fewest, for_folds*decades)
     if (lengths > 0) least = fewest + lengths + decades* &
-      merge(for_folds_of_steps, for_folds_of_lengths, problem%law%step_width > 0)
+      merge(for_folds_of_kinks, for_folds_of_lengths, problem%law%has_kink)
     if (profiles) digits = digits + for_profiles + for_narrow_necks*decades
     if (problem%shape%smooth_from() > 0) digits = digits + for_kinks
     if (.not. problem%body%is_homogeneous()) then

@@ -267,3 +267,21 @@ def test_below_2500_nodes_the_number_of_threads_makes_no_difference_at_all(run, 
         assert tables[0] == tables[1]
         for key in ("max_tension", "jump_in_h0", "jump_out_h0", "folds_h0"):
             assert several(more.summary.get(key)) == several(one.summary.get(key))
+
+
+@pytest.mark.parametrize("stiffness,diameter,h0,accuracy", [
+    (1.4777209453e7, 3.43883312763e-9, -1.018545604e-9, 3e-4),
+    (3.8855948810e7, 2.36262059847e-9, -4.084781606e-9, 8e-5)])
+def test_a_step_beside_strong_adhesion_is_passed_on_meshes_with_digits_for_its_folds(
+        run, stiffness, diameter, h0, accuracy):
+    """Both paths were lost among folds that coarse meshes make; in the first, products read past
+    their arrays, since the path went on from states of another mesh."""
+    scene = {"bodies": {"radius": 1.5e-2, "stiffness": stiffness},
+             "force": {"law": "lennard_jones", "hamaker": 1e-19, "z0": 0.5e-9},
+             "depletion": {"osmotic_pressure": 1e5, "diameter": diameter},
+             "equilibrium_path": {"h0_end": h0}}
+    found, truth = (run(deck(**scene, numerics={"accuracy": each})) for each in (accuracy, 1e-8))
+    assert "illegal" not in found.stderr
+    assert not any("lost" in said for said in found.warnings)
+    for key in ("max_tension", "end_load"):
+        assert found.summary[key] == pytest.approx(truth.summary[key], rel=accuracy)
