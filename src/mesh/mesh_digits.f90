@@ -15,8 +15,8 @@ module mesh_digits
   !> wrong, since folds are closer together for stronger adhesion. For laws with a kink, and for
   !> those with a step or a period: the number to be added to `fewest`. The last number is enough
   !> to separate folds as long as there is a contact.
-  real(wp), parameter :: for_folds = 1.5_wp, for_folds_of_kinks = 0.5_wp, for_folds_of_lengths = 1, &
-    enough_for_folds = 9
+  real(wp), parameter :: for_folds = 1.5_wp, for_folds_of_kinks = 0.5_wp, &
+    for_folds_of_lengths = 1, enough_for_folds = 9
   !> Digits to be added, relative to a path under the Lennard-Jones law: for bodies without jumps;
   !> for laws with a step or a kink; for oscillating laws; for profiles, which are sensitive to the
   !> position of the edge; for profiles, for each decade of sigma, since the neck is narrower; for
