@@ -35,6 +35,7 @@ module shape
     procedure :: bend
     procedure :: unlike_scaling
     procedure :: indentation
+    procedure :: rough_indentation
     procedure :: indentation_load
     procedure :: contact_radius
     procedure :: opening
@@ -51,8 +52,9 @@ module shape
     end function profile_function
   end interface
 
-  !> Number of points of the quadratures, and smallest number in each piece between breaks.
-  integer, parameter :: points = 48, fewest = 4
+  !> Number of points of the quadratures, and smallest number in each piece between breaks; number
+  !> of points for estimates.
+  integer, parameter :: points = 48, fewest = 4, rough = 12
 
 contains
 
@@ -158,34 +160,33 @@ contains
     opening = ((self%indentation(a*(1 + part)) - self%indentation(a*(1 - part)))/(4*part*a))**2/a
   end function opening
 
+  !> `indentation` by the fewest points that suffice for estimates; shapes with a closed form have
+  !> the same value for both.
+  elemental real(wp) function rough_indentation(self, a) result(indentation)
+    class(shape_t), intent(in) :: self
+    real(wp), intent(in) :: a
+    real(wp) :: node(rough), weight(rough)
+
+    call gauss_legendre(node, weight)
+    indentation = 0.5_wp*pi*a*sum(weight*self%slope(a*sin(0.5_wp*pi*node)))
+  end function rough_indentation
+
   !> The gap outside a contact of radius a without adhesion, at a (1 + beyond) from the axis,
-  !> 2/pi Int_a^r [q(t) - q(a)]/sqrt(r^2 - t^2) dt; both integrals by one rule, for estimates.
+  !> 2/pi Int_a^r [q(t) - q(a)]/sqrt(r^2 - t^2) dt, for estimates.
   pure function hertz_gap(self, a, beyond) result(gap)
     class(shape_t), intent(in) :: self
     real(wp), intent(in) :: a, beyond(:)
     real(wp) :: gap(size(beyond))
-    integer, parameter :: nodes = 12
-    real(wp) :: node(nodes), weight(nodes), sines(nodes), angle(size(beyond)), of_contact
-    integer :: j, k
+    real(wp) :: node(rough), weight(rough), angle(size(beyond))
+    integer :: k
 
     call gauss_legendre(node, weight)
-    sines = sin(0.5_wp*pi*node)
-    of_contact = depth(a)
     angle = atan(sqrt(beyond*(2 + beyond)))
-    gap = 0
-    do k = 1, nodes
-      gap = gap + 2/pi*angle*weight(k)* &
-        ([(depth(a*(1 + beyond(j))*cos(angle(j)*node(k))), j=1, size(beyond))] - of_contact)
+    gap = -self%rough_indentation(a)
+    do k = 1, rough
+      gap = gap + weight(k)*self%rough_indentation(a*(1 + beyond)*cos(angle*node(k)))
     end do
-
-  contains
-
-    pure real(wp) function depth(r)
-      real(wp), intent(in) :: r
-
-      depth = 0.5_wp*pi*r*sum(weight*self%slope(r*sines))
-    end function depth
-
+    gap = 2/pi*angle*gap
   end function hertz_gap
 
   !> Position beyond which, up to its end, the body is smooth; 0 if it is smooth except on the axis.

@@ -18,6 +18,8 @@ module rounded_punch
     procedure :: slope
     procedure :: bend
     procedure :: position_of
+    procedure :: indentation
+    procedure :: rough_indentation => indentation
   end type rounded_punch_t
 
 contains
@@ -77,5 +79,14 @@ contains
 
     r = self%flat + sqrt(2*height)
   end function position_of
+
+  elemental real(wp) function indentation(self, a)
+    class(rounded_punch_t), intent(in) :: self
+    real(wp), intent(in) :: a
+
+    indentation = 0
+    if (a > self%flat) &
+      indentation = a*(sqrt((a - self%flat)*(a + self%flat)) - self%flat*acos(self%flat/a))
+  end function indentation
 
 end module rounded_punch

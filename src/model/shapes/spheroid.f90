@@ -20,6 +20,7 @@ module spheroid
     procedure :: slope
     procedure :: position_of
     procedure :: indentation
+    procedure :: rough_indentation => indentation
   end type spheroid_t
 
   !> Radius of the end of the body over the radius of the equator.
