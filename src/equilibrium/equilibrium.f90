@@ -179,7 +179,7 @@ contains
         g(n + 1) = state%axis_gap - control%value
       case (at_edge_radius, at_h0_with_edge)
         edge_gap = state%h0 + problem%shape%height(state%scale) + rise(centre_row)
-        g(n + 1) = edge_gap - equations%meshes%locked_gap(problem%law, control%mesh)
+        g(n + 1) = edge_gap - equations%meshes%locked_gap(control%mesh)
       end select
       state%residual = largest_error(g, state%gap)
     end associate

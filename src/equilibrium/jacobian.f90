@@ -35,7 +35,7 @@ contains
       allocated(equations%drainage) .or. control%compliance > 0)) least = neglected
     associate (grid => equations%meshes%grid(control%mesh), problem => equations%problem)
       call fill(problem, grid, equations%operator, equations%meshes%locked_gap( &
-        problem%law, control%mesh), control, state, least, factors, equations%cost, shift)
+        control%mesh), control, state, least, factors, equations%cost, shift)
       if (allocated(equations%besides)) call add_besides(equations%besides, control, state, &
         factors%lu)
       if (h0_is_prescribed(control) .and. control%compliance > 0) &
@@ -236,7 +236,7 @@ contains
       cost%operator_columns = cost%operator_columns + n
       product(:n) = change(:n) - rise(first_node:)
       if (m == n) return
-      call border(problem, grid, equations%operator, equations%meshes%locked_gap(problem%law, &
+      call border(problem, grid, equations%operator, equations%meshes%locked_gap( &
         control%mesh), control, state, column)
       product(:n) = product(:n) + column(:n)*change(m)
       product(m) = rise(bordered_row(control)) + column(m)*change(m)
@@ -312,7 +312,7 @@ contains
       allocate (derivative(n + 1))
       associate (problem => equations%problem, meshes => equations%meshes)
         call scale_derivative(problem, meshes%grid(control%mesh), equations%operator, &
-          meshes%locked_gap(problem%law, control%mesh), state, derivative)
+          meshes%locked_gap(control%mesh), state, derivative)
       end associate
     end select
   end function control_derivative

@@ -85,7 +85,7 @@ contains
     type(state_t) :: next
     real(wp) :: uncertainty
 
-    call fine%find(path_control(fine%problem, mesh, near%s), near%state, found)
+    call fine%find(path_control(fine%problem, fine%meshes, mesh, near%s), near%state, found)
     if (found) call tangent_along(fine%solver_t, mesh, near%s, near%state, tangent, found)
     if (.not. found) return
     near%value = [near%state%h0, near%state%load, near%state%axis_gap]

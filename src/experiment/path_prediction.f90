@@ -106,7 +106,7 @@ contains
       end if
       if (j == 0) then
         associate (past => position%past(k))
-          self%at(k) = coordinate_of(solver%problem, span%mesh, past)
+          self%at(k) = coordinate_of(solver%problem, solver%meshes, span%mesh, past)
           call span%expected(solver, self%at(k), guessed)
           self%h0(k) = past%h0 - guessed%h0
           self%scale(k) = past%scale - guessed%scale

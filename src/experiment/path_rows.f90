@@ -97,7 +97,7 @@ contains
     row%modes = steps%known%path%point(i)%modes
     row%mesh = span%mesh
     call span%expected(steps%solver_t, s, row%state)
-    call steps%correct(path_control(steps%problem, span%mesh, s), row%state, row%converged)
+    call steps%correct(path_control(steps%problem, steps%meshes, span%mesh, s), row%state, row%converged)
   end function row_for_curve
 
   !> Coordinates of a span between `from` and `to`, in order, at equal distances: the distance of
@@ -137,7 +137,7 @@ contains
       type(control_t) :: control
       type(state_t) :: state
 
-      control = path_control(solver%problem, span%mesh, s)
+      control = path_control(solver%problem, solver%meshes, span%mesh, s)
       values = [span%h0_and_load(s), control%value]
       if (control%kind /= at_axis_gap) return
       values(3) = 0

@@ -235,7 +235,7 @@ contains
         call expect(self%solver_t, self%span, self%missed, h0, s, position, state)
         call self%attempt(h0, state, mesh, event)
         if (event%converged) then
-          s = coordinate_of(self%problem, mesh, state)
+          s = coordinate_of(self%problem, self%meshes, mesh, state)
           event%converged = s >= minval(ends) - slack .and. s <= maxval(ends) + slack
         end if
       end if

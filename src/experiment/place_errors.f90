@@ -8,7 +8,6 @@ module place_errors
   use contact_state, only: state_t, gap_at, contact_radius_of
   use equilibrium, only: control_t, equations_t, residual_floor
   use solver, only: solver_t
-  use edge_locked, only: approach
   use path_coordinate, only: path_control, coordinate_of
   use path_tangent, only: h0_alone => of_h0, load_alone => of_load
   use potential_energy, only: energy_of
@@ -112,7 +111,7 @@ contains
             place%turn_of = place%drive
           end associate
         else if (place%has_state() .and. place%mesh /= nowhere) then
-          place%s = coordinate_of(steps%problem, place%mesh, place%state)
+          place%s = coordinate_of(steps%problem, steps%meshes, place%mesh, place%state)
         end if
         if (place%has_state()) call energy_of(steps%equations_t, place%mesh, place%state, &
           place%at(of_energy), place%left(of_energy))
@@ -162,7 +161,7 @@ contains
     if (.not. place%known) return
     associate (at => place%at, there => place%fine)
       there = near%read_at(distance)
-      if (place%mesh == approach) there(of_edge) = at(of_edge)
+      if (fine%meshes%is_about_axis(place%mesh)) there(of_edge) = at(of_edge)
       left = 0
       if (place%turns() .or. place%after > 0) left = tight
       ! Where bodies deform much, rounding of h0 exceeds the error of the search.
@@ -191,7 +190,7 @@ contains
     end associate
     if (.not. place%with_profile) return
     right = near%state
-    call fine%find(path_control(fine%problem, place%mesh, near%s + distance), right, found)
+    call fine%find(path_control(fine%problem, fine%meshes, place%mesh, near%s + distance), right, found)
     place%profile = 1
     if (found) place%profile = profile_error(own, fine, place, right)
   end subroutine judge_on_path

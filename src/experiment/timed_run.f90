@@ -220,6 +220,7 @@ contains
     at_rest%options = steps%options
     at_rest%cost = steps%cost
     at_rest%meshes = steps%meshes
+    at_rest%meshes%grows = .false.
     call at_rest%know_path(high, low, .true., listener, accuracy=accuracy)
     steps%meshes = at_rest%meshes
     steps%cost = at_rest%cost

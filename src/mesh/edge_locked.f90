@@ -54,14 +54,23 @@ module edge_locked
     !> Whether a mesh is laid out only when the path reaches it, for the gaps of the bodies there
     !> (`lay_out`); until then it has no kernel.
     logical, allocatable :: waits(:)
+    !> Whether a mesh was inserted while the path was traced (`insert`).
+    logical, allocatable :: inserted(:)
     !> Gap at which a law without a contact edge begins to deform the bodies.
     real(wp) :: level = -huge(1.0_wp)
-    !> Number of meshes, next to that of the approach, that are locked to the front of a step.
-    integer :: fronts = 0
+    !> The gap to which each mesh is locked: at the contact edge, at the front of a step, or outside
+    !> a minimum of the energy before contact; 0 for meshes about the axis.
+    real(wp), allocatable :: locked(:)
+    !> The gap at the contact edge.
+    real(wp) :: edge_gap = 0
+    !> Whether meshes may be inserted while the path is traced (`insert`).
+    logical :: grows = .true.
   contains
     procedure :: in_contact
-    procedure :: has_short_panels
+    procedure :: is_about_axis
     procedure :: locked_gap
+    procedure :: insert
+    procedure :: has_short_panels
     procedure :: renew
     procedure :: replace
     procedure :: refine
@@ -88,14 +97,27 @@ contains
     real(wp) :: widest
     real(wp), allocatable :: low(:), high(:)
     logical :: elastic
-    integer :: k
+    integer :: k, fronts
 
     elastic = .true.
     if (present(shape_only)) elastic = .not. shape_only
+    if (present(coarser)) then
+      meshes = coarser
+      deallocate (meshes%grid, meshes%shape)
+      allocate (meshes%grid(size(coarser%grid)), meshes%shape(size(coarser%grid)))
+      meshes%digits = digits
+      do k = merge(approach, contact, meshes%traceable), size(meshes%grid)
+        call follow(meshes, coarser, k, problem)
+        if (.not. allocated(meshes%shape(k)%order)) meshes%shape(k) = meshes%shape_for(problem, k)
+        call make_mesh(meshes%shape(k), elastic .and. .not. meshes%waits(k), meshes%grid(k), store)
+      end do
+      return
+    end if
     meshes%traceable = problem%law%adhesion > 0
     if (.not. meshes%traceable) meshes%level = contact_level(problem)
     widest = largest_radius(problem, h0_low, meshes%level)
     allocate (low(0), high(0))
+    fronts = 0
     if (.not. meshes%traceable) then
       call add_bands(1.0_wp, widest, 1, low, high)
     else if (problem%law%edge_gap > 0) then
@@ -105,21 +127,24 @@ contains
         if (front_leads(problem%law)) call add_bands(early*first_front(problem), &
           last_front(problem), bands_for(problem, early*first_front(problem), &
           last_front(problem)), low, high)
-        meshes%fronts = size(low)
+        fronts = size(low)
         call add_bands(first, widest, bands_for(problem, first, widest), low, high)
       end associate
     end if
     allocate (meshes%grid(approach + size(low)), meshes%shape(approach + size(low)), &
       meshes%reach(2, approach + size(low)))
     allocate (meshes%waits(size(meshes%grid)), source=.false.)
+    meshes%inserted = meshes%waits
     if (meshes%traceable) meshes%waits(contact:) = is_narrow(problem)
     meshes%digits = digits
     meshes%passage = [low, widest]
+    meshes%edge_gap = problem%law%edge_gap
+    meshes%locked = [0.0_wp, spread(problem%law%step_at, 1, fronts), &
+      spread(problem%law%edge_gap, 1, size(low) - fronts)]
     do k = merge(approach, contact, meshes%traceable), size(meshes%grid)
       meshes%reach(:, k) = [h0_high, 0.0_wp]
       if (k >= contact) meshes%reach(:, k) = [low(k - 1), high(k - 1)]
-      if (present(coarser)) call follow(meshes, coarser, k, problem)
-      if (.not. allocated(meshes%shape(k)%order)) meshes%shape(k) = meshes%shape_for(problem, k)
+      meshes%shape(k) = meshes%shape_for(problem, k)
       call make_mesh(meshes%shape(k), elastic .and. .not. meshes%waits(k), meshes%grid(k), store)
     end do
   end function new_mesh_family
@@ -131,7 +156,7 @@ contains
     integer, intent(in) :: mesh
     type(seen_gaps_t), intent(in), optional :: seen
 
-    if (mesh == approach) then
+    if (self%is_about_axis(mesh)) then
       shape = approach_shape(problem, max(self%reach(1, mesh), calm_gap(problem)), self%digits, &
         seen)
     else
@@ -257,18 +282,50 @@ contains
     class(mesh_family_t), intent(in) :: self
     integer, intent(in) :: mesh
 
-    in_contact = mesh >= contact + self%fronts
+    in_contact = mesh >= contact .and. mesh <= size(self%grid)
+    if (in_contact) in_contact = abs(self%locked(mesh) - self%edge_gap) <= 0
   end function in_contact
 
-  !> The gap to which a mesh in contact, or about a front, is locked.
-  pure real(wp) function locked_gap(self, law, mesh) result(gap)
+  !> Whether a mesh is about the axis: locked to nothing.
+  pure logical function is_about_axis(self, mesh)
     class(mesh_family_t), intent(in) :: self
-    class(force_law_t), intent(in) :: law
     integer, intent(in) :: mesh
 
-    gap = law%edge_gap
-    if (self%fronts > 0 .and. .not. self%in_contact(mesh)) gap = law%step_at
+    is_about_axis = .not. (self%in_contact(mesh) .or. self%locked_gap(mesh) > 0)
+  end function is_about_axis
+
+  !> The gap to which a mesh is locked; 0 for meshes about the axis or fixed in space.
+  pure real(wp) function locked_gap(self, mesh) result(gap)
+    class(mesh_family_t), intent(in) :: self
+    integer, intent(in) :: mesh
+
+    gap = 0
+    if (allocated(self%locked)) gap = self%locked(mesh)
   end function locked_gap
+
+  !> Inserts a mesh without nodes, locked to a gap (0: about the axis), for radii of this gap
+  !> between low and high, after another mesh; from that mesh the path passes to the new one at
+  !> once.
+  subroutine insert(self, after, locked, low, high)
+    class(mesh_family_t), intent(inout) :: self
+    integer, intent(in) :: after
+    real(wp), intent(in) :: locked, low, high
+    type(discretisation_t), allocatable :: grid(:)
+    integer :: k
+
+    allocate (grid(size(self%grid) + 1))
+    grid(:after) = self%grid(:after)
+    grid(after + 2:) = self%grid(after + 1:)
+    call move_alloc(grid, self%grid)
+    self%shape = self%shape([(k, k=1, after + 1), (k, k=after + 1, size(self%shape))])
+    self%locked = [self%locked(:after), locked, self%locked(after + 1:)]
+    self%waits = [self%waits(:after), .true., self%waits(after + 1:)]
+    self%inserted = [self%inserted(:after), .true., self%inserted(after + 1:)]
+    self%passage = [self%passage(:after), self%passage(after:)]
+    self%passage(after) = 0
+    self%reach = reshape([self%reach(:, :after), [low, high], self%reach(:, after + 1:)], &
+      [2, size(self%grid)])
+  end subroutine insert
 
   !> Contact radius at which the edge becomes too sharp for the mesh of the approach: a fraction of
   !> the neck, and of the radius over which the gap between rigid bodies increases from the gap at

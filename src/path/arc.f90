@@ -63,7 +63,7 @@ contains
 
     state = self%guess(solver%problem%shape, solver%meshes%grid(self%mesh), s)
     guessed = state%gap
-    associate (control => path_control(solver%problem, self%mesh, s))
+    associate (control => path_control(solver%problem, solver%meshes, self%mesh, s))
       if (present(slope_error)) then
         call solver%correct(control, state, converged)
       else

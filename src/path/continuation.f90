@@ -8,7 +8,6 @@ module continuation
   use contact_state, only: state_t, radius_of_gap, radius_of_step, felt_load
   use equilibrium, only: equations_t
   use solver, only: solver_t
-  use edge_locked, only: approach
   use seen_gaps, only: seen_gaps_t
   use regridding, only: regrid
   use path_coordinate, only: path_control, coordinate_of
@@ -26,7 +25,7 @@ module continuation
   !> three iterations correct; order of the error of an extrapolation from four states with
   !> tangents; limits of the ratio of successive steps, and the factor of which this ratio is a
   !> power.
-  real(wp), parameter :: wanted_miss = 3.0e-4_wp, growth = 2.5_wp, shrinkage = 0.3_wp, &
+  real(wp), parameter :: wanted_miss = 3.0e-3_wp, growth = 2.5_wp, shrinkage = 0.3_wp, &
     rung = 1.2_wp
   integer, parameter :: order = 8
   !> Relative error of slopes that serve only for predictions.
@@ -106,7 +105,7 @@ contains
     real(wp) :: s
     logical :: found
 
-    s = coordinate_of(solver%problem, arc%mesh, state)
+    s = coordinate_of(solver%problem, solver%meshes, arc%mesh, state)
     call tangent_along(solver, arc%mesh, s, state, tangent, found, slope_error)
     lost = .not. found
     if (found) call arc%add(s, state, tangent)
@@ -154,21 +153,27 @@ contains
   pure real(wp) function next_step(self, equations) result(step)
     class(continuation_t), intent(in) :: self
     type(equations_t), intent(in) :: equations
-    real(wp) :: s
+    real(wp) :: s, passage
+    logical :: locked
 
-    step = min(self%step, self%step_past_step(equations%problem))
-    if (.not. equations%problem%law%edge_gap > 0) return
-    s = self%coordinate(self%held)
-    associate (meshes => equations%meshes, &
-      passage => equations%meshes%passage(self%mesh)*beyond_passage)
-      if (locked_alike(equations, self%mesh, self%mesh + 1)) then
+    associate (meshes => equations%meshes, mesh => self%mesh)
+      step = min(self%step, self%step_past_step(equations%problem, meshes%is_about_axis(mesh)))
+      if (.not. equations%problem%law%edge_gap > 0) return
+      s = self%coordinate(self%held)
+      passage = beyond_passage*meshes%passage(mesh)
+      locked = mesh == size(meshes%grid)
+      if (.not. locked) locked = locked_alike(equations, mesh, mesh + 1)
+      if (meshes%inserted(mesh) .and. meshes%locked_gap(mesh) > 0) then
+        passage = beyond_passage*meshes%reach(2, mesh)
+        locked = .true.
+      end if
+      if (locked) then
         step = min(step, max(log(passage) - s, shortest_passage))
         return
       end if
       do while (step > shortest_passage)
-        if (radius_for(equations, self%mesh, self%mesh + 1, &
-          self%guess(equations%problem%shape, meshes%grid(self%mesh), &
-          s + step)) <= passage) exit
+        if (radius_for(equations, mesh, mesh + 1, self%guess(equations%problem%shape, &
+          meshes%grid(mesh), s + step)) <= passage) exit
         step = 0.6_wp*step
       end do
     end associate
@@ -176,15 +181,16 @@ contains
 
   !> The longest step where the gap on the axis passes a step of the pressure. All quantities change
   !> over the width of that step, and h0 may turn several times.
-  pure real(wp) function step_past_step(self, problem) result(longest)
+  pure real(wp) function step_past_step(self, problem, about_axis) result(longest)
     class(continuation_t), intent(in) :: self
     type(problem_t), intent(in) :: problem
+    logical, intent(in) :: about_axis
     !> Fraction of the step's width that one step of the path may pass; range about the step, in its
     !> widths.
     real(wp), parameter :: at_once = 0.25_wp, reach = 4
 
     longest = huge(longest)
-    if (self%mesh /= approach .or. .not. problem%law%step_width > 0) return
+    if (.not. (about_axis .and. problem%law%step_width > 0)) return
     associate (law => problem%law, gap => self%state(self%held)%axis_gap)
       longest = max(at_once*law%step_width, &
         0.5_wp*(abs(gap - law%step_at) - reach*law%step_width))/(gap - 0.9_wp*law%rest_gap)
@@ -224,8 +230,7 @@ contains
     lost = .false.
     if (.not. self%has_come_to_next(solver%equations_t)) return
     next%mesh = self%mesh + 1
-    if (solver%meshes%waits(next%mesh)) call lay_out(solver%equations_t, self%mesh, next%mesh, &
-      self%state(self%held))
+    if (solver%meshes%waits(next%mesh)) call lay_out(solver%equations_t, self%arc_t, next%mesh)
     do j = self%held - 1, self%held
       state = self%state(j)
       ! The two states are a step of the path apart.
@@ -242,19 +247,36 @@ contains
     self%step = 0.5_wp*self%step
   end subroutine change_mesh
 
-  !> Lays out the next mesh for the gaps of the state at which the path enters it.
-  subroutine lay_out(equations, from, to, state)
+  !> Lays out the next mesh for the gaps of the newest state of an arc or, about the axis, for those
+  !> of states extrapolated from its last two.
+  subroutine lay_out(equations, arc, to)
     type(equations_t), intent(inout), target :: equations
-    integer, intent(in) :: from, to
-    type(state_t), intent(in) :: state
+    type(arc_t), intent(in) :: arc
+    integer, intent(in) :: to
+    !> States ahead for which a mesh about the axis is laid out, in steps of the arc.
+    integer, parameter :: ahead(*) = [0, 1, 2, 3, 4, 6, 8]
     type(seen_gaps_t) :: seen
+    real(wp), allocatable :: gap(:)
+    integer :: k
 
-    associate (problem => equations%problem, meshes => equations%meshes, cost => equations%cost)
-      call seen%begin_on(meshes%grid(from), 1, 10.0_wp**(-meshes%digits))
-      call seen%add(problem%shape, state%gap, state%scale, &
-        felt_load(problem, meshes%grid(from), state))
-      call seen%try(radius_for(equations, from, to, state), meshes%reach(1, to), &
-        beyond_passage*meshes%reach(2, to), radius_of_step(problem, meshes%grid(from), state))
+    associate (problem => equations%problem, meshes => equations%meshes, cost => equations%cost, &
+      from => arc%mesh, state => arc%state(arc%held), before => arc%state(arc%held - 1), &
+      least => equations%problem%law%rest_gap)
+      call seen%begin_on(meshes%grid(from), size(ahead), 10.0_wp**(-meshes%digits))
+      do k = 1, size(ahead)
+        gap = state%gap
+        if (ahead(k) > 0) gap = gap + ahead(k)*(equations%raised(from, state) - &
+          equations%raised(from, before))
+        if (k > 1 .and. (minval(gap) < least .or. .not. meshes%is_about_axis(to))) exit
+        call seen%add(problem%shape, gap, state%scale, &
+          felt_load(problem, meshes%grid(from), state))
+        if (meshes%is_about_axis(to)) then
+          call seen%try(0.0_wp, 1.0_wp, 1.0_wp, 0.0_wp)
+        else
+          call seen%try(radius_for(equations, from, to, state), meshes%reach(1, to), &
+            beyond_passage*meshes%reach(2, to), radius_of_step(problem, meshes%grid(from), state))
+        end if
+      end do
       call meshes%renew(to, meshes%shape_for(problem, to, seen))
       cost%kernel_entries = cost%kernel_entries + meshes%grid(to)%kernel_entries()
     end associate
@@ -272,9 +294,10 @@ contains
     c = radius_for(solver%equations_t, from, to, state)
     done = c > 0
     if (.not. done) return
-    associate (problem => solver%problem, grid => solver%meshes%grid)
+    associate (problem => solver%problem, meshes => solver%meshes, grid => solver%meshes%grid)
       state = regrid(problem%shape, state, grid(from), grid(to), c)
-      call solver%correct(path_control(problem, to, coordinate_of(problem, to, state)), state, done)
+      call solver%correct(path_control(problem, meshes, to, &
+        coordinate_of(problem, meshes, to, state)), state, done)
     end associate
   end subroutine move_to_mesh
 
@@ -285,22 +308,23 @@ contains
     integer, intent(in) :: from, to
     type(state_t), intent(in) :: state
 
+    c = 1
+    if (equations%meshes%is_about_axis(to)) return
     c = state%scale
     if (locked_alike(equations, from, to)) return
     associate (problem => equations%problem, meshes => equations%meshes)
-      c = radius_of_gap(problem%shape, meshes%locked_gap(problem%law, to), meshes%grid(from), state)
+      c = radius_of_gap(problem%shape, meshes%locked_gap(to), meshes%grid(from), state)
     end associate
   end function radius_for
 
-  !> Whether two meshes are locked to the same radius: both to the contact edge, or both to the
-  !> front of a step.
+  !> Whether two meshes are locked to the same radius.
   pure logical function locked_alike(equations, from, to)
     type(equations_t), intent(in) :: equations
     integer, intent(in) :: from, to
 
-    locked_alike = min(from, to) > approach
-    if (locked_alike) locked_alike = equations%meshes%in_contact(from) .eqv. &
-      equations%meshes%in_contact(to)
+    locked_alike = .not. equations%meshes%is_about_axis(from)
+    if (locked_alike) locked_alike = abs(equations%meshes%locked_gap(from) - &
+      equations%meshes%locked_gap(to)) <= 0
   end function locked_alike
 
 end module continuation

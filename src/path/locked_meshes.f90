@@ -3,7 +3,7 @@ module locked_meshes
   use kinds, only: wp
   use shape, only: shape_t
   use equilibrium, only: control_t, at_h0_with_edge
-  use edge_locked, only: mesh_family_t, contact
+  use edge_locked, only: mesh_family_t
   use contact_scales, only: hertz_scale
   implicit none
   private
@@ -21,7 +21,7 @@ contains
     control%value = h0
     control%mesh = mesh
     control%scale = scale_at(shape, meshes, h0)
-    if (mesh >= contact .and. meshes%traceable) control%kind = at_h0_with_edge
+    if (meshes%traceable .and. .not. meshes%is_about_axis(mesh)) control%kind = at_h0_with_edge
   end function h0_control
 
   !> The scale of the mesh at h0, for meshes whose scale is not an unknown.

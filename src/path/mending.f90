@@ -13,12 +13,12 @@ module mending
   use law_panels, only: left_out
   use edge_locked, only: mesh_family_t
   use seen_gaps, only: seen_gaps_t
-  use contact_state, only: gap_at, felt_load, radius_of_step
+  use contact_state, only: state_t, gap_at, felt_load, radius_of_step
   use equilibrium, only: equations_t
   use traced_path, only: traced_path_t
   implicit none
   private
-  public :: mender_t, new_mender, left_on_path, too_much
+  public :: mender_t, new_mender, left_on_path, left_in_state, too_much
 
   !> Tolerated quadrature error, over the accuracy, where meshes cannot be refined: `left_out` is an
   !> upper bound under laws with kinks or waves. At a fold the error of the load is 7 % of the tail
@@ -37,6 +37,7 @@ module mending
     integer, allocatable :: nodes(:)
   contains
     procedure :: mend
+    procedure :: insert
   end type mender_t
 
   !> Factor of the quadrature error at kinks of the law, to which extrema are most sensitive.
@@ -104,6 +105,27 @@ contains
     equations%cost%kernel_entries = equations%cost%kernel_entries + &
       equations%meshes%grid(mesh)%kernel_entries()
   end subroutine mend
+
+  !> Makes room for a mesh that was inserted after another one.
+  pure subroutine insert(self, after)
+    class(mender_t), intent(inout) :: self
+    integer, intent(in) :: after
+
+    self%rounds = [self%rounds(:after), 0, self%rounds(after + 1:)]
+    self%left = [self%left(:after), huge(1.0_wp), self%left(after + 1:)]
+    self%nodes = [self%nodes(:after), 0, self%nodes(after + 1:)]
+  end subroutine insert
+
+  !> The part of the load that the nodes of a mesh miss in a state.
+  pure real(wp) function left_in_state(equations, mesh, state) result(left)
+    type(equations_t), intent(in) :: equations
+    integer, intent(in) :: mesh
+    type(state_t), intent(in) :: state
+
+    associate (problem => equations%problem, grid => equations%meshes%grid(mesh))
+      left = maxval(left_of(problem, grid, state%gap, state%scale, felt_load(problem, grid, state)))
+    end associate
+  end function left_in_state
 
   !> The largest part of the load that the nodes miss in any state of a path.
   real(wp) function left_on_path(equations, path) result(largest)
@@ -188,6 +210,8 @@ contains
       do i = 1, path%held
         associate (point => path%point(i))
           if (point%mesh /= mesh) cycle
+          ! The path left the mesh before this state.
+          if (i < path%held .and. .not. (point%leads_on .or. path%comes_from_before(i))) cycle
           if (grid%nodes == own%nodes) then
             gap = point%state%gap
           else

@@ -7,7 +7,6 @@ module path_span
   use contact_state, only: state_t
   use equilibrium, only: control_t, holds, residual_floor, at_h0_with_edge
   use solver, only: solver_t
-  use edge_locked, only: contact
   use path_coordinate, only: coordinate_of
   use path_tangent, only: of_h0, of_load
   use arc, only: arc_t
@@ -114,10 +113,10 @@ contains
 
     control%value = h0
     control%mesh = mesh
-    if (mesh >= contact) control%kind = at_h0_with_edge
+    if (.not. solver%meshes%is_about_axis(mesh)) control%kind = at_h0_with_edge
     trial = state
     call solver%correct(control, trial, arrived)
-    if (arrived .and. abs(coordinate_of(solver%problem, mesh, trial) - s) < same_place) &
+    if (arrived .and. abs(coordinate_of(solver%problem, solver%meshes, mesh, trial) - s) < same_place) &
       state = trial
   end subroutine finish_at_h0
 

@@ -7,7 +7,6 @@ module path_tangent
   use contact_state, only: state_t, load_reach, gap_at_end
   use equilibrium, only: control_t, equations_t, at_axis_gap, at_edge_radius
   use solver, only: solver_t
-  use edge_locked, only: approach
   use path_coordinate, only: path_control
   use jacobian, only: control_derivative, jacobian_times
   use linear_algebra, only: solve
@@ -58,10 +57,10 @@ contains
 
     allowed = solver%options%slope_error
     if (present(error)) allowed = max(allowed, error)
-    call tangent_at(solver%equations_t, path_control(solver%problem, mesh, s), state, allowed, &
+    call tangent_at(solver%equations_t, path_control(solver%problem, solver%meshes, mesh, s), state, allowed, &
       solver%frozen, tangent, found)
-    ! On the mesh of the approach the control's value is exp(-s) plus a constant, on others exp(s).
-    if (found) call scale(tangent, merge(-exp(-s), exp(s), mesh == approach))
+    ! On a mesh about the axis the control's value is exp(-s) plus a constant, on others exp(s).
+    if (found) call scale(tangent, merge(-exp(-s), exp(s), solver%meshes%is_about_axis(mesh)))
   end subroutine tangent_along
 
   !> The derivatives by the value of the control. Factors of a state too far from this one are

@@ -13,7 +13,6 @@ module place_sensitivity
   use solver_options, only: solver_options_t, tightened
   use anderson, only: solve_anderson
   use frozen_jacobian, only: frozen_jacobian_t
-  use edge_locked, only: approach
   use path_coordinate, only: path_control
   use potential_energy, only: energy_of
   use undeformed, only: load_undeformed, load_slope_undeformed, energy_undeformed
@@ -126,7 +125,7 @@ contains
     if (.not. radius > 0) return
     rate(of_radius) = -rate(of_radius)/steepness(equations, place, x)
     ! The mesh scales with the path's coordinate.
-    if (place%mesh /= approach) rate(of_radius) = rate(of_radius) + &
+    if (.not. equations%meshes%is_about_axis(place%mesh)) rate(of_radius) = rate(of_radius) + &
       radius*own%lateral*sum(varied%weight*varied%shift)
   end subroutine measure
 
@@ -190,7 +189,7 @@ contains
         near%state%h0 = near%state%h0 + moved(n + 1)
       end associate
       call solve_anderson(equations, tightened(options), frozen, &
-        path_control(equations%problem, near%mesh, near%s), near%state, found)
+        path_control(equations%problem, equations%meshes, near%mesh, near%s), near%state, found)
       found = found .or. near%state%residual <= options%tolerance
       if (found) call find_local(equations, near, frozen, varied, there, found)
       if (.not. found) return

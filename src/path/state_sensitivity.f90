@@ -11,6 +11,7 @@ module state_sensitivity
   use kinds, only: wp
   use dimensionless_problem, only: problem_t
   use contact_state, only: state_t, far_gap
+  use edge_locked, only: mesh_family_t
   use equilibrium, only: control_t, equations_t, residual, at_edge_radius
   use frozen_jacobian, only: frozen_jacobian_t, freeze
   use linear_algebra, only: solve
@@ -57,7 +58,7 @@ contains
     logical, intent(out) :: found
     integer :: i
 
-    call freeze(equations, path_control(equations%problem, place%mesh, place%s), place%state, &
+    call freeze(equations, path_control(equations%problem, equations%meshes, place%mesh, place%s), place%state, &
       frozen, exact=.true.)
     found = frozen%factors%valid
     do i = 1, size(varied)
@@ -153,13 +154,14 @@ contains
     n = size(place%state%gap)
     call equations%become_those_of(varied%problem(k))
     associate (problem => varied%problem(k), law => varied%problem(k)%law)
-      control = control_of(own, problem, place%mesh, place%s + varied%shift(k))
+      control = control_of(own, problem, equations%meshes, place%mesh, place%s + varied%shift(k))
       call residual(equations, control, law%gap_of(own%law%separation_of([place%state%gap, &
         place%state%h0]) + varied%offset(k)*line%separation), left, moved)
       if (control%kind == at_edge_radius) then
         ! The equation of the edge keeps the separation, not the gap in the law's lengths.
-        left(n + 1) = left(n + 1) + law%edge_gap - law%gap_of(own%law%separation_of( &
-          own%law%edge_gap))
+        associate (gap => equations%meshes%locked(place%mesh))
+          left(n + 1) = left(n + 1) + gap - law%gap_of(own%law%separation_of(gap))
+        end associate
       end if
       left = problem%length*left
     end associate
@@ -167,12 +169,13 @@ contains
 
   !> The control that prescribes a coordinate of the path of problem `own`, in the units of problem
   !> `other`.
-  pure type(control_t) function control_of(own, other, mesh, s) result(control)
+  pure type(control_t) function control_of(own, other, meshes, mesh, s) result(control)
     type(problem_t), intent(in) :: own, other
+    type(mesh_family_t), intent(in) :: meshes
     integer, intent(in) :: mesh
     real(wp), intent(in) :: s
 
-    control = path_control(own, mesh, s)
+    control = path_control(own, meshes, mesh, s)
     if (control%kind == at_edge_radius) then
       control%value = control%value*own%lateral/other%lateral
     else

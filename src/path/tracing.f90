@@ -17,6 +17,7 @@ module tracing
   use ending, only: ending_t, beyond_rounding, no_equilibrium, path_lost
   use traced_path, only: traced_path_t
   use path_growth, only: append, add_extrema
+  use further_meshes, only: insert_mesh
   use mending, only: mender_t, new_mender, left_on_path
   implicit none
   private
@@ -65,7 +66,7 @@ contains
     type(continuation_t) :: walker
     type(mender_t) :: mender
     character(len=40) :: so_far
-    logical :: lost, blind, finished, mended
+    logical :: lost, blind, finished, mended, inserted
     type(ending_t) :: going_on
     real(wp) :: tolerance
     logical :: guarded
@@ -91,7 +92,12 @@ contains
         call listener%hear(trim(so_far))
       end if
       mended = .false.
-      if (guarded .and. .not. lost) then
+      inserted = .false.
+      if (guarded .and. .not. lost) call insert_mesh(solver%equations_t, walker%arc_t, &
+        accuracy, inserted)
+      if (inserted) then
+        call mender%insert(walker%mesh)
+      else if (guarded .and. .not. lost) then
         if (walker%has_come_to_next(solver%equations_t)) &
           call mender%mend(solver%equations_t, known%path, walker%mesh, .false., mended)
       end if
@@ -275,7 +281,7 @@ contains
         state = regrid(solver%problem%shape, point%state, before, grid, point%state%scale)
         call solver%frozen%forget()
         ! An experiment may begin at the h0 of the first point.
-        control = path_control(solver%problem, mesh, point%coordinate)
+        control = path_control(solver%problem, solver%meshes, mesh, point%coordinate)
         if (i == 1) control = h0_control(solver%problem%shape, solver%meshes, mesh, point%state%h0)
         call solver%correct(control, state, done)
         lost = .not. done

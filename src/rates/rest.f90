@@ -96,8 +96,8 @@ contains
       steps%meshes%grid(at%mesh), steps%meshes%grid(at%mesh), control%scale)
     call steps%solve(control, state, found)
     if (found .and. allocated(at%state%gap) .and. steps%meshes%traceable) found = &
-      abs(coordinate_of(steps%problem, at%mesh, state) - &
-      coordinate_of(steps%problem, at%mesh, at%state)) < steps%farthest
+      abs(coordinate_of(steps%problem, steps%meshes, at%mesh, state) - &
+      coordinate_of(steps%problem, steps%meshes, at%mesh, at%state)) < steps%farthest
     if (.not. found) return
     at%state = state
     at%position = position

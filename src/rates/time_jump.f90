@@ -6,7 +6,6 @@ module time_jump
   use kinds, only: wp
   use contact_state, only: state_t
   use equilibrium, only: control_t, at_edge_radius
-  use edge_locked, only: approach
   use path_coordinate, only: path_control, coordinate_of
   use regridding, only: regrid
   use root_finding, only: root_search_t, new_root_search
@@ -69,7 +68,7 @@ contains
 
     done = .false.
     to = from
-    s = coordinate_of(steps%problem, to%mesh, to%state)
+    s = coordinate_of(steps%problem, steps%meshes, to%mesh, to%state)
     call solve_at(steps, s, to, found)
     if (.not. found) return
     last = to
@@ -94,7 +93,7 @@ contains
       call change_mesh(steps, mesh, to, found)
       if (.not. found) cycle
       last = to
-      s = coordinate_of(steps%problem, to%mesh, to%state)
+      s = coordinate_of(steps%problem, steps%meshes, to%mesh, to%state)
       s_last = s
       missing_last = missing
       missing = off(steps, to, position)
@@ -135,7 +134,7 @@ contains
     type(control_t) :: control
     type(state_t) :: state
 
-    control = path_control(steps%problem, at%mesh, s)
+    control = path_control(steps%problem, steps%meshes, at%mesh, s)
     call steps%place_rise(at%mesh, scale_of(control))
     state = at%state
     call steps%solve(control, state, found)
@@ -209,8 +208,7 @@ contains
     type(instant_t) :: moved
     real(wp) :: scale
 
-    scale = 1
-    if (mesh > approach) scale = radius_for(steps%equations_t, at%mesh, mesh, at%state)
+    scale = radius_for(steps%equations_t, at%mesh, mesh, at%state)
     done = scale > 0
     if (.not. done) return
     moved = at
@@ -218,7 +216,7 @@ contains
     moved%state = regrid(steps%problem%shape, at%state, steps%meshes%grid(at%mesh), &
       steps%meshes%grid(mesh), scale)
     call steps%frozen%forget()
-    call solve_at(steps, coordinate_of(steps%problem, mesh, moved%state), moved, done)
+    call solve_at(steps, coordinate_of(steps%problem, steps%meshes, mesh, moved%state), moved, done)
     if (done) at = moved
   end subroutine change_mesh
 

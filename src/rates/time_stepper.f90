@@ -74,8 +74,8 @@ contains
           to%state, done)
       end if
       if (done .and. self%meshes%traceable) done = &
-        abs(coordinate_of(self%problem, to%mesh, to%state) - &
-        coordinate_of(self%problem, from%mesh, from%state)) < self%farthest
+        abs(coordinate_of(self%problem, self%meshes, to%mesh, to%state) - &
+        coordinate_of(self%problem, self%meshes, from%mesh, from%state)) < self%farthest
       if (.not. done) exit
       if (abs(to%state%scale - expected) <= merge(far_off_fluid, far_off, &
         allocated(self%drainage))*self%finest(expected)) exit
@@ -177,8 +177,7 @@ contains
     real(wp) :: scale
     logical :: done
 
-    scale = 1
-    if (mesh > approach) scale = radius_for(self%equations_t, at%mesh, mesh, at%state)
+    scale = radius_for(self%equations_t, at%mesh, mesh, at%state)
     if (.not. scale > 0) return
     state = regrid(self%problem%shape, at%state, self%meshes%grid(at%mesh), &
       self%meshes%grid(mesh), scale)

@@ -12,7 +12,7 @@ module regime_rows
     jkr_displacement, jkr_pull_off, dmt_radius_at_load, dmt_pull_off
   use maugis, only: maugis_t, new_maugis
   use transition_fits, only: fit_t, carpick_fit, pietrement_fit
-  use reported_place, only: place_t, units_of, of_h0, of_load, of_edge
+  use reported_place, only: place_t, units_of, of_h0, of_load, of_radius, of_edge
   use places, only: places_t
   use summary, only: summary_t
   implicit none
@@ -129,7 +129,7 @@ contains
 
     lowest = places%place_of('path_tension')
     finish = places%place_of('path_end')
-    there = finish%mesh > approach .and. lowest%at(of_load) < 0
+    there = finish%mesh > approach .and. finish%at(of_radius) > 0 .and. lowest%at(of_load) < 0
     load = finish%at(of_load)*problem%load
     solved = measured_t(lowest%at(of_load)*problem%load, finish%at(of_edge)*problem%lateral, &
       (problem%law%rest_gap - finish%at(of_h0))*problem%length)
