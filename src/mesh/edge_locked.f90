@@ -68,6 +68,7 @@ module edge_locked
   contains
     procedure :: in_contact
     procedure :: is_about_axis
+    procedure :: is_in_outer_contact
     procedure :: locked_gap
     procedure :: insert
     procedure :: has_short_panels
@@ -160,7 +161,8 @@ contains
       shape = approach_shape(problem, max(self%reach(1, mesh), calm_gap(problem)), self%digits, &
         seen)
     else
-      shape = contact_shape(problem, merge(about_edge, about_front, self%in_contact(mesh)), &
+      shape = contact_shape(problem, merge(about_front, about_edge, &
+        abs(self%locked_gap(mesh) - problem%law%step_at) <= 0), &
         self%reach(1, mesh), self%reach(2, mesh), self%level, self%digits, seen)
     end if
   end function shape_for
@@ -293,6 +295,14 @@ contains
 
     is_about_axis = .not. (self%in_contact(mesh) .or. self%locked_gap(mesh) > 0)
   end function is_about_axis
+
+  !> Whether a mesh is locked to the edge of a contact in an outer minimum.
+  pure logical function is_in_outer_contact(self, mesh)
+    class(mesh_family_t), intent(in) :: self
+    integer, intent(in) :: mesh
+
+    is_in_outer_contact = self%inserted(mesh) .and. self%locked_gap(mesh) > 0
+  end function is_in_outer_contact
 
   !> The gap to which a mesh is locked; 0 for meshes about the axis or fixed in space.
   pure real(wp) function locked_gap(self, mesh) result(gap)

@@ -163,7 +163,7 @@ contains
       passage = beyond_passage*meshes%passage(mesh)
       locked = mesh == size(meshes%grid)
       if (.not. locked) locked = locked_alike(equations, mesh, mesh + 1)
-      if (meshes%inserted(mesh) .and. meshes%locked_gap(mesh) > 0) then
+      if (meshes%is_in_outer_contact(mesh)) then
         passage = beyond_passage*meshes%reach(2, mesh)
         locked = .true.
       end if

@@ -114,7 +114,8 @@ contains
       associate (last => known%path%point(known%path%held))
         finished = last%modes == 0 .and. last%state%h0 <= h0_low .and. &
           last%tangent%h0 < 0 .and. &
-          (solver%meshes%in_contact(last%mesh) .or. .not. into_contact)
+          (solver%meshes%in_contact(last%mesh) .or. .not. into_contact .or. &
+          solver%meshes%is_in_outer_contact(last%mesh))
       end associate
       if (guarded .and. .not. mended .and. (finished .or. known%ending%early())) &
         call mender%mend(solver%equations_t, known%path, walker%mesh, lost, mended)
