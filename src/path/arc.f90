@@ -33,6 +33,7 @@ module arc
     procedure :: drop_first
     procedure :: guess
     procedure :: guess_from
+    procedure, private :: guess_outside
     procedure :: curve
     procedure :: slope
     procedure :: curvature
@@ -62,6 +63,9 @@ contains
     real(wp), allocatable :: guessed(:)
 
     state = self%guess(solver%problem%shape, solver%meshes%grid(self%mesh), s)
+    if (present(slope_error) .and. solver%problem%law%period > 0 .and. &
+      .not. solver%meshes%is_about_axis(self%mesh)) &
+      call self%guess_outside(solver%problem%shape, solver%meshes%grid(self%mesh), s, state)
     guessed = state%gap
     associate (control => path_control(solver%problem, solver%meshes, self%mesh, s))
       if (present(slope_error)) then
@@ -184,6 +188,49 @@ contains
       expected%pressure = expected%pressure + shape%height(scale*grid%x)
     call take_if_sound(h0, scale, expected)
   end subroutine guess_from
+
+  !> Guesses the gaps outside the edge to which a mesh is locked by polynomials of s at constant
+  !> distance from the edge. Where an oscillating pressure makes rings, these keep their distance
+  !> approximately, while they pass many nodes.
+  pure subroutine guess_outside(self, shape, grid, s, expected)
+    class(arc_t), intent(in) :: self
+    class(shape_t), intent(in) :: shape
+    type(discretisation_t), intent(in) :: grid
+    real(wp), intent(in) :: s
+    type(state_t), intent(inout) :: expected
+    !> Part of the distance over which a derivative is taken.
+    real(wp), parameter :: part = 1.0e-4_wp
+    integer :: nodes(most_hermite_nodes), n, j, from
+    real(wp), dimension(most_hermite_nodes) :: of_value, of_slope
+    real(wp), allocatable :: away(:), raised(:), rate(:), here(:), gap(:)
+
+    call self%support(s, nodes, n)
+    call hermite_weights(self%coordinate(nodes(:n)), s, of_value(:n), of_slope(:n))
+    from = count(grid%x <= grid%centre) + 1
+    gap = shape%height(expected%scale*grid%x(from:))
+    do j = 1, n
+      associate (state => self%state(nodes(j)), tangent => self%tangent(nodes(j)))
+        raised = state%gap - shape%height(state%scale*grid%x)
+        rate = tangent%gap - tangent%scale*grid%x*shape%slope(state%scale*grid%x)
+        away = (grid%x(from:) - grid%centre)*expected%scale/state%scale
+        if (grid%is_bounded()) away = min(away, grid%x(grid%nodes) - grid%centre)
+        here = grid%interpolate_all(rate, grid%centre + away) - &
+          tangent%scale/state%scale*(at_distance(1 + part) - at_distance(1 - part))/(2*part)
+        gap = gap + of_value(j)*at_distance(1.0_wp) + of_slope(j)*here
+      end associate
+    end do
+    if (minval(gap) > 0.5_wp*minval(expected%gap)) expected%gap(from:) = gap
+
+  contains
+
+    pure function at_distance(times) result(value)
+      real(wp), intent(in) :: times
+      real(wp) :: value(size(away))
+
+      value = grid%interpolate_all(raised, grid%centre + times*away)
+    end function at_distance
+
+  end subroutine guess_outside
 
   !> The polynomial through states at the given values of a coordinate, evaluated at s.
   pure type(state_t) function between(coordinate, states, s) result(expected)
