@@ -21,7 +21,7 @@ module edge_locked
   implicit none
   private
   public :: mesh_family_t, new_mesh_family
-  public :: approach, contact
+  public :: approach, contact, narrow_band
 
   !> The mesh before contact, and the first of those in contact or about a front.
   integer, parameter :: approach = 1, contact = 2
@@ -29,7 +29,7 @@ module edge_locked
   !> Largest ratio of the contact radii of one mesh: wider bands need more nodes, narrower bands
   !> more meshes. Under a law that oscillates or has a step, short panels cover all places that the
   !> law's special gaps have at any radius of the band.
-  real(wp), parameter :: widest_band = 30, narrow_band = 1.5_wp
+  real(wp), parameter :: widest_band = 30, narrow_band = 2.0_wp
   !> Where the tension is nearly constant up to the step, the nodes outside the step hardly add to
   !> the cost of a state, and wider bands are cheaper.
   real(wp), parameter :: band_of_constant_tension = 4

@@ -8,6 +8,7 @@ module further_meshes
   use force_law, only: force_law_t
   use contact_state, only: radius_of_gap
   use equilibrium, only: equations_t
+  use edge_locked, only: narrow_band
   use arc, only: arc_t
   use path_coordinate, only: axis_coordinate
   use mending, only: left_in_state
@@ -19,8 +20,6 @@ module further_meshes
   real(wp), parameter :: faster = 2
   !> Largest change of the gap on the axis over that of h0 in a contact that grows in a minimum.
   real(wp), parameter :: resting = 0.2_wp
-  !> Ratio of the largest to the least radius of an inserted mesh.
-  real(wp), parameter :: band = 1.5_wp
   !> States of an arc, of which two are from the mesh before, after which a mesh is inserted.
   integer, parameter :: enough = 4
   !> Part of the period by which gaps differ among which an edge is looked for.
@@ -64,7 +63,7 @@ contains
       end associate
       if (.not. inserted) return
       if (level > 0) then
-        call meshes%insert(mesh, level, radius(1), band*radius(2))
+        call meshes%insert(mesh, level, radius(1), narrow_band*radius(2))
       else
         call meshes%insert(mesh, level, meshes%reach(1, 1), 0.0_wp)
       end if
