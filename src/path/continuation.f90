@@ -255,20 +255,14 @@ contains
     integer, intent(in) :: to
     !> States ahead for which a mesh about the axis is laid out, in steps of the arc.
     integer, parameter :: ahead(*) = [0, 1, 2, 3, 4, 6, 8]
-    !> Digits that panels outside a contact need less, since `left_out` counts waves in full.
-    real(wp), parameter :: less_for_waves = 2
-    real(wp) :: digits
     type(seen_gaps_t) :: seen
     real(wp), allocatable :: gap(:)
     integer :: k
 
-    digits = equations%meshes%digits
-    if (equations%problem%law%period > 0 .and. .not. equations%meshes%is_about_axis(to)) &
-      digits = digits - less_for_waves
     associate (problem => equations%problem, meshes => equations%meshes, cost => equations%cost, &
       from => arc%mesh, state => arc%state(arc%held), before => arc%state(arc%held - 1), &
       least => equations%problem%law%rest_gap)
-      call seen%begin_on(meshes%grid(from), size(ahead), 10.0_wp**(-digits))
+      call seen%begin_on(meshes%grid(from), size(ahead), 10.0_wp**(-meshes%digits))
       do k = 1, size(ahead)
         gap = state%gap
         if (ahead(k) > 0) gap = gap + ahead(k)*(equations%raised(from, state) - &
