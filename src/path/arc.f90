@@ -1,7 +1,7 @@
 !> Neighbouring states of the equilibrium path and their tangents. Between and beyond them the gap
 !> at each node is a Hermite polynomial of the path's coordinate.
 module arc
-  use kinds, only: wp
+  use kinds, only: wp, pi
   use interpolation, only: polynomial_weights, hermite_weights, hermite_t, hermite_through, &
     most_hermite_nodes, find_nodes_about
   use shape, only: shape_t
@@ -49,8 +49,8 @@ contains
   !> The state at the coordinate s, with its tangent. The guess from the arc is corrected to
   !> rounding or, where rounding is not reached, to the tolerance of the options, so that load and
   !> position on the path are both exact. slope_error: if present, the options' tolerance is enough,
-  !> and the tangent may have this relative error. miss: the largest change of a gap by the
-  !> correction, relative or in the law's lengths.
+  !> and the tangent may have this relative error. miss: the largest change of a gap, relative or
+  !> in the law's lengths, or of the load, by the correction.
   subroutine state_at(self, solver, s, state, tangent, converged, slope_error, miss)
     class(arc_t), intent(in) :: self
     class(solver_t), intent(inout) :: solver
@@ -61,6 +61,7 @@ contains
     real(wp), intent(in), optional :: slope_error
     real(wp), intent(out), optional :: miss
     real(wp), allocatable :: guessed(:)
+    type(hermite_t) :: load
 
     state = self%guess(solver%problem%shape, solver%meshes%grid(self%mesh), s)
     if (present(slope_error) .and. solver%problem%law%period > 0 .and. &
@@ -75,7 +76,11 @@ contains
         converged = converged .or. state%residual <= solver%options%tolerance
       end if
     end associate
-    if (present(miss)) miss = maxval(abs(state%gap - guessed)/(1 + abs(guessed)))
+    if (present(miss)) then
+      load = self%curve([0.0_wp, 1.0_wp], s)
+      miss = max(maxval(abs(state%gap - guessed)/(1 + abs(guessed))), &
+        abs(state%load - load%value(s))/(abs(state%load) + pi*solver%problem%law%adhesion))
+    end if
     if (converged) call tangent_along(solver, self%mesh, s, state, tangent, converged, slope_error)
   end subroutine state_at
 
