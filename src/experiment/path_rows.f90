@@ -97,7 +97,8 @@ contains
     row%modes = steps%known%path%point(i)%modes
     row%mesh = span%mesh
     call span%expected(steps%solver_t, s, row%state)
-    call steps%correct(path_control(steps%problem, steps%meshes, span%mesh, s), row%state, row%converged)
+    call steps%correct(path_control(steps%problem, steps%meshes, span%mesh, s), &
+      row%state, row%converged)
   end function row_for_curve
 
   !> Coordinates of a span between `from` and `to`, in order, at equal distances: the distance of

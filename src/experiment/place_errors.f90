@@ -190,7 +190,8 @@ contains
     end associate
     if (.not. place%with_profile) return
     right = near%state
-    call fine%find(path_control(fine%problem, fine%meshes, place%mesh, near%s + distance), right, found)
+    call fine%find(path_control(fine%problem, fine%meshes, place%mesh, near%s + distance), &
+      right, found)
     place%profile = 1
     if (found) place%profile = profile_error(own, fine, place, right)
   end subroutine judge_on_path

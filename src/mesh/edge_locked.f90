@@ -156,13 +156,16 @@ contains
     type(problem_t), intent(in) :: problem
     integer, intent(in) :: mesh
     type(seen_gaps_t), intent(in), optional :: seen
+    integer :: about
 
     if (self%is_about_axis(mesh)) then
       shape = approach_shape(problem, max(self%reach(1, mesh), calm_gap(problem)), self%digits, &
         seen)
     else
-      shape = contact_shape(problem, merge(about_front, about_edge, &
-        abs(self%locked_gap(mesh) - problem%law%step_at) <= 0), &
+      about = about_edge
+      if (problem%law%step_width > 0 .and. abs(self%locked_gap(mesh) - problem%law%step_at) <= 0) &
+        about = about_front
+      shape = contact_shape(problem, about, &
         self%reach(1, mesh), self%reach(2, mesh), self%level, self%digits, seen)
     end if
   end function shape_for
@@ -285,7 +288,7 @@ contains
     integer, intent(in) :: mesh
 
     in_contact = mesh >= contact .and. mesh <= size(self%grid)
-    if (in_contact) in_contact = abs(self%locked(mesh) - self%edge_gap) <= 0
+    if (in_contact) in_contact = .not. abs(self%locked(mesh) - self%edge_gap) > 0
   end function in_contact
 
   !> Whether a mesh is about the axis: locked to nothing.

@@ -116,7 +116,8 @@ contains
     if (.not. solver%meshes%is_about_axis(mesh)) control%kind = at_h0_with_edge
     trial = state
     call solver%correct(control, trial, arrived)
-    if (arrived .and. abs(coordinate_of(solver%problem, solver%meshes, mesh, trial) - s) < same_place) &
+    if (.not. arrived) return
+    if (abs(coordinate_of(solver%problem, solver%meshes, mesh, trial) - s) < same_place) &
       state = trial
   end subroutine finish_at_h0
 

@@ -57,8 +57,8 @@ contains
 
     allowed = solver%options%slope_error
     if (present(error)) allowed = max(allowed, error)
-    call tangent_at(solver%equations_t, path_control(solver%problem, solver%meshes, mesh, s), state, allowed, &
-      solver%frozen, tangent, found)
+    call tangent_at(solver%equations_t, path_control(solver%problem, solver%meshes, &
+      mesh, s), state, allowed, solver%frozen, tangent, found)
     ! On a mesh about the axis the control's value is exp(-s) plus a constant, on others exp(s).
     if (found) call scale(tangent, merge(-exp(-s), exp(s), solver%meshes%is_about_axis(mesh)))
   end subroutine tangent_along

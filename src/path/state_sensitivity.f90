@@ -58,8 +58,8 @@ contains
     logical, intent(out) :: found
     integer :: i
 
-    call freeze(equations, path_control(equations%problem, equations%meshes, place%mesh, place%s), place%state, &
-      frozen, exact=.true.)
+    call freeze(equations, path_control(equations%problem, equations%meshes, place%mesh, &
+      place%s), place%state, frozen, exact=.true.)
     found = frozen%factors%valid
     do i = 1, size(varied)
       if (.not. found) return
