@@ -247,8 +247,9 @@ contains
     self%step = 0.5_wp*self%step
   end subroutine change_mesh
 
-  !> Lays out the next mesh for the gaps of the newest state of an arc or, about the axis, for those
-  !> of states extrapolated from its last two.
+  !> Lays out the next mesh for the gaps of the newest state of an arc; for an inserted mesh for the
+  !> one before, since the nodes may miss too much of the newest, and about the axis also for states
+  !> extrapolated from it.
   subroutine lay_out(equations, arc, to)
     type(equations_t), intent(inout), target :: equations
     type(arc_t), intent(in) :: arc
@@ -257,10 +258,11 @@ contains
     integer, parameter :: ahead(*) = [0, 1, 2, 3, 4, 6, 8]
     type(seen_gaps_t) :: seen
     real(wp), allocatable :: gap(:)
-    integer :: k
+    integer :: i, k
 
+    i = arc%held - merge(1, 0, equations%meshes%inserted(to))
     associate (problem => equations%problem, meshes => equations%meshes, cost => equations%cost, &
-      from => arc%mesh, state => arc%state(arc%held), before => arc%state(arc%held - 1), &
+      from => arc%mesh, state => arc%state(i), before => arc%state(i - 1), &
       least => equations%problem%law%rest_gap)
       call seen%begin_on(meshes%grid(from), size(ahead), 10.0_wp**(-meshes%digits))
       do k = 1, size(ahead)

@@ -51,6 +51,7 @@ contains
         if (minval(radius) > 0) wider = log(radius(2)/radius(1))
         if (meshes%is_about_axis(mesh)) then
           inserted = level > law%edge_gap .and. wider > faster*nearer .and. &
+            wider < log(narrow_band) .and. &
             abs(now%axis_gap - before%axis_gap) < resting*abs(now%h0 - before%h0)
           if (.not. inserted) level = 0
           inserted = inserted .or. left_in_state(equations, mesh, now) > most

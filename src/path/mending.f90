@@ -73,17 +73,17 @@ contains
 
   !> Refines a mesh whose end the path has reached, or on which the path is lost, if the nodes miss
   !> too much. mended: the path is to be continued from its entry into the mesh.
-  subroutine mend(self, equations, path, mesh, lost, mended)
+  subroutine mend(self, equations, path, mesh, leaving, lost, mended)
     class(mender_t), intent(inout) :: self
     type(equations_t), intent(inout) :: equations
     type(traced_path_t), intent(in) :: path
     integer, intent(in) :: mesh
-    logical, intent(in) :: lost
+    logical, intent(in) :: leaving, lost
     logical, intent(out) :: mended
     type(mapped_shape_t) :: shape
     real(wp) :: left
 
-    left = maxval(left_on_mesh(equations, path, mesh, equations%meshes%grid(mesh)))
+    left = maxval(left_on_mesh(equations, path, mesh, equations%meshes%grid(mesh), leaving))
     mended = self%rounds(mesh) < most_rounds .and. left > self%most
     associate (nodes => equations%meshes%grid(mesh)%nodes)
       if (left < helped*self%left(mesh)) then
@@ -197,17 +197,22 @@ contains
 
   !> The largest part of the load that the nodes of each panel miss over all states of a mesh; grid:
   !> the mesh itself or a finer one, at whose nodes the gaps are interpolated.
-  pure function left_on_mesh(equations, path, mesh, grid) result(left)
+  pure function left_on_mesh(equations, path, mesh, grid, leaving) result(left)
     type(equations_t), intent(in) :: equations
     type(traced_path_t), intent(in) :: path
     integer, intent(in) :: mesh
     type(discretisation_t), intent(in) :: grid
+    logical, intent(in), optional :: leaving
     real(wp) :: left(size(grid%panel)), gap(grid%nodes)
-    integer :: i, j
+    integer :: i, j, last
 
     left = 0
+    last = path%held
+    if (present(leaving)) then
+      if (leaving) last = last - 1
+    end if
     associate (own => equations%meshes%grid(mesh), problem => equations%problem)
-      do i = 1, path%held
+      do i = 1, last
         associate (point => path%point(i))
           if (point%mesh /= mesh) cycle
           ! The path left the mesh before this state.

@@ -99,7 +99,7 @@ contains
         call mender%insert(walker%mesh)
       else if (guarded .and. .not. lost) then
         if (walker%has_come_to_next(solver%equations_t)) &
-          call mender%mend(solver%equations_t, known%path, walker%mesh, .false., mended)
+          call mender%mend(solver%equations_t, known%path, walker%mesh, .true., .false., mended)
       end if
       if (.not. (lost .or. mended)) call pass_on(known%path, walker, solver, lost)
       known%fallen = collapsed(solver%problem, known%path)
@@ -118,7 +118,7 @@ contains
           solver%meshes%is_in_outer_contact(last%mesh))
       end associate
       if (guarded .and. .not. mended .and. (finished .or. known%ending%early())) &
-        call mender%mend(solver%equations_t, known%path, walker%mesh, lost, mended)
+        call mender%mend(solver%equations_t, known%path, walker%mesh, .false., lost, mended)
       if (.not. mended) cycle
       known%ending = going_on
       finished = .false.
