@@ -59,14 +59,15 @@ contains
   end function load_reach
 
   !> The load over 2 pi to which errors of a state are relative: its own load or, if larger, the
-  !> adhesion, but at most the load of the absolute pressures.
+  !> adhesion, but at most the load of the absolute pressures. Errors below the rounding of the
+  !> adhesion are not felt.
   pure real(wp) function felt_load(problem, grid, state) result(load)
     type(problem_t), intent(in) :: problem
     type(discretisation_t), intent(in) :: grid
     type(state_t), intent(in) :: state
 
     load = max(abs(state%load)/(2*pi), min(problem%law%adhesion, &
-      state%scale**2*sum(grid%weight*abs(state%pressure))))
+      state%scale**2*sum(grid%weight*abs(state%pressure))), epsilon(1.0_wp)*problem%law%adhesion)
   end function felt_load
 
   !> The gap at the end of a bounded mesh, with the deformation at the last node.
