@@ -49,8 +49,8 @@ contains
   !> The state at the coordinate s, with its tangent. The guess from the arc is corrected to
   !> rounding or, where rounding is not reached, to the tolerance of the options, so that load and
   !> position on the path are both exact. slope_error: if present, the options' tolerance is enough,
-  !> and the tangent may have this relative error. miss: the largest change of a gap, relative or
-  !> in the law's lengths, or of the load, by the correction.
+  !> and the tangent may have this relative error. miss: the largest change of a gap by the correction,
+  !> relative or in the law's lengths, and the same of h0 and load.
   subroutine state_at(self, solver, s, state, tangent, converged, slope_error, miss)
     class(arc_t), intent(in) :: self
     class(solver_t), intent(inout) :: solver
@@ -59,8 +59,9 @@ contains
     type(tangent_t), intent(out) :: tangent
     logical, intent(out) :: converged
     real(wp), intent(in), optional :: slope_error
-    real(wp), intent(out), optional :: miss
+    real(wp), intent(out), optional :: miss(2)
     real(wp), allocatable :: guessed(:)
+    real(wp) :: h0
     type(hermite_t) :: load
 
     state = self%guess(solver%problem%shape, solver%meshes%grid(self%mesh), s)
@@ -68,6 +69,7 @@ contains
       .not. solver%meshes%is_about_axis(self%mesh)) &
       call self%guess_outside(solver%problem%shape, solver%meshes%grid(self%mesh), s, state)
     guessed = state%gap
+    h0 = state%h0
     associate (control => path_control(solver%problem, solver%meshes, self%mesh, s))
       if (present(slope_error)) then
         call solver%correct(control, state, converged)
@@ -78,8 +80,9 @@ contains
     end associate
     if (present(miss)) then
       load = self%curve([0.0_wp, 1.0_wp], s)
-      miss = max(maxval(abs(state%gap - guessed)/(1 + abs(guessed))), &
-        abs(state%load - load%value(s))/(abs(state%load) + pi*solver%problem%law%adhesion))
+      miss(1) = maxval(abs(state%gap - guessed)/(1 + abs(guessed)))
+      miss(2) = max(abs(state%h0 - h0)/(1 + abs(h0)), abs(state%load - load%value(s))/ &
+        (abs(state%load) + pi*solver%problem%law%adhesion))
     end if
     if (converged) call tangent_along(solver, self%mesh, s, state, tangent, converged, slope_error)
   end subroutine state_at

@@ -22,16 +22,16 @@ module continuation
   integer, parameter :: memory = 4
   real(wp), parameter :: first_step = 0.04_wp, shortest_step = 1.0e-6_wp, longest_step = 0.5_wp
   !> Largest distance between the guess and the state, relative or in the law's lengths, that two or
-  !> three iterations correct; order of the error of an extrapolation from four states with
-  !> tangents; limits of the ratio of successive steps, and the factor of which this ratio is a
-  !> power.
+  !> three iterations correct, and the same of h0 and load; order of the error of an extrapolation
+  !> from four states with tangents; limits of the ratio of successive steps, and the factor of which
+  !> this ratio is a power.
   real(wp), parameter :: wanted_miss = 3.0e-3_wp, growth = 2.5_wp, shrinkage = 0.3_wp, &
     rung = 1.2_wp
   integer, parameter :: order = 8
   !> Relative error of slopes that serve only for predictions.
   real(wp), parameter :: slope_error = 1.0e-7_wp
-  !> Distance between guess and state, and longest step, on a path whose points define a smooth
-  !> curve.
+  !> Distance between guess and state in h0 and load, and longest step, on a path whose points define
+  !> a smooth curve.
   real(wp), parameter :: miss_of_curve = 1.0e-7_wp, step_of_curve = 0.12_wp
   !> Least contact radius, over that of a passage, at which a state is transferred to the next mesh;
   !> the largest radius that a step may reach on a mesh, which is not accurate beyond; and the least
@@ -40,7 +40,7 @@ module continuation
 
   !> The last states on the current mesh, newest last.
   type, extends(arc_t) :: continuation_t
-    real(wp) :: step = first_step, longest_step = longest_step, wanted_miss = wanted_miss, &
+    real(wp) :: step = first_step, longest_step = longest_step, miss_of_curve = wanted_miss, &
       slope_error = slope_error
   contains
     procedure :: follow_closely
@@ -61,7 +61,7 @@ contains
     class(continuation_t), intent(inout) :: self
 
     self%longest_step = step_of_curve
-    self%wanted_miss = miss_of_curve
+    self%miss_of_curve = miss_of_curve
     self%slope_error = 0
   end subroutine follow_closely
 
@@ -118,7 +118,7 @@ contains
     logical, intent(out) :: lost
     type(state_t) :: state
     type(tangent_t) :: tangent
-    real(wp) :: s, miss
+    real(wp) :: s, miss(2)
     logical :: converged
 
     lost = .false.
@@ -134,7 +134,7 @@ contains
       if (lost) return
     end do
     self%step = min(self%longest_step, abs(s - self%coordinate(self%held))* &
-      factor_for(self%wanted_miss/max(miss, tiny(1.0_wp))))
+      factor_for(minval([wanted_miss, self%miss_of_curve]/max(miss, tiny(1.0_wp)))))
     if (self%is_full()) call self%drop_first()
     call self%add(s, state, tangent)
   end subroutine advance
