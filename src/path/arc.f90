@@ -49,8 +49,8 @@ contains
   !> The state at the coordinate s, with its tangent. The guess from the arc is corrected to
   !> rounding or, where rounding is not reached, to the tolerance of the options, so that load and
   !> position on the path are both exact. slope_error: if present, the options' tolerance is enough,
-  !> and the tangent may have this relative error. miss: the largest change of a gap by the correction,
-  !> relative or in the law's lengths, and the same of h0 and load.
+  !> and the tangent may have this relative error. miss: the largest change of a gap by the
+  !> correction, relative or in the law's lengths, and the same of h0 and load.
   subroutine state_at(self, solver, s, state, tangent, converged, slope_error, miss)
     class(arc_t), intent(in) :: self
     class(solver_t), intent(inout) :: solver

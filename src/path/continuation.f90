@@ -23,15 +23,15 @@ module continuation
   real(wp), parameter :: first_step = 0.04_wp, shortest_step = 1.0e-6_wp, longest_step = 0.5_wp
   !> Largest distance between the guess and the state, relative or in the law's lengths, that two or
   !> three iterations correct, and the same of h0 and load; order of the error of an extrapolation
-  !> from four states with tangents; limits of the ratio of successive steps, and the factor of which
-  !> this ratio is a power.
+  !> from four states with tangents; limits of the ratio of successive steps, and the factor of
+  !> which this ratio is a power.
   real(wp), parameter :: wanted_miss = 3.0e-3_wp, growth = 2.5_wp, shrinkage = 0.3_wp, &
     rung = 1.2_wp
   integer, parameter :: order = 8
   !> Relative error of slopes that serve only for predictions.
   real(wp), parameter :: slope_error = 1.0e-7_wp
-  !> Distance between guess and state in h0 and load, and longest step, on a path whose points define
-  !> a smooth curve.
+  !> Distance between guess and state in h0 and load, and longest step, on a path whose points
+  !> define a smooth curve.
   real(wp), parameter :: miss_of_curve = 1.0e-7_wp, step_of_curve = 0.12_wp
   !> Least contact radius, over that of a passage, at which a state is transferred to the next mesh;
   !> the largest radius that a step may reach on a mesh, which is not accurate beyond; and the least
