@@ -137,10 +137,10 @@ contains
     end do
     allocate (spectrum(grid%nodes, size(k)), source=0.0_wp)
     do p = 1, size(grid%panel)
-      associate (own => first_node - 1 + grid%first(p) - 1 + &
-        [(i, i=1, size(grid%local(grid%which(p))%node))])
+      associate (row => first_node - 1 + grid%first(p), local => grid%local(grid%which(p)))
+        i = row + size(local%node) - 1
         call add_spectrum(self%bessel, grid, p, k, &
-          count(k <= from_of_place*minval(last_of(own))), rows(:, own), spectrum)
+          count(k <= from_of_place*minval(last_of(row:i))), rows(:, row:i), spectrum)
       end associate
     end do
     allocate (blocks(size(self%block) + 1))
@@ -326,7 +326,7 @@ contains
   subroutine find_wave(bessel, x, last, from, k, wave)
     type(bessel_t), intent(in) :: bessel
     real(wp), intent(in) :: x, last, from, k(:)
-    real(wp), intent(out) :: wave(:)
+    real(wp), intent(out), contiguous :: wave(:)
     real(wp) :: u
     integer :: i, n
 
