@@ -38,7 +38,7 @@ module mesh_waves
   !> phase changes by less than `crossing` per digit between the axis and the position; the smooth
   !> transition begins at this fraction. With a smaller constant the end of a path on a coat five
   !> times as stiff as its base needs another mesh.
-  real(wp), parameter :: passing_place(2) = [6.0_wp, 1.0_wp], crossing = 2.4_wp, &
+  real(wp), parameter :: passing_place(2) = [8.0_wp, 1.0_wp], crossing = 2.4_wp, &
     from_of_place = 0.25_wp
   !> Largest change of phase over one panel of wave numbers; number of nodes of a panel over which
   !> the phase does not change, and of a panel over which it changes by `swing` (`wave_rule`), as a
