@@ -111,19 +111,18 @@ contains
     integer, intent(in) :: n
     real(wp), intent(in) :: z(:)
     real(wp), intent(out) :: value(:), slope(:)
-    real(wp), dimension(size(z)) :: before, next
-    real(wp) :: forward
+    real(wp) :: other(size(z)), forward(2)
     integer :: m
 
-    before = 0
-    value = 1
-    do m = 1, n
-      forward = (2*m - 1)*(1.0_wp/m)
-      next = forward*z*value - (forward - 1)*before
-      before = value
-      value = next
+    ! Two degrees at a time, so that no array is copied.
+    other = modulo(n, 2)
+    value = z**modulo(n, 2)
+    do m = 1 + modulo(n, 2), n - 1, 2
+      forward = (2*[m, m + 1] - 1)*(1.0_wp/[m, m + 1])
+      other = forward(1)*z*value - (forward(1) - 1)*other
+      value = forward(2)*z*other - (forward(2) - 1)*value
     end do
-    slope = n*(z*value - before)/(z**2 - 1)
+    slope = n*(z*value - other)/(z**2 - 1)
   end subroutine legendre
 
 end module quadrature

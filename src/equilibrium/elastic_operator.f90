@@ -10,6 +10,7 @@
 module elastic_operator
   use kinds, only: wp
   use linear_algebra, only: multiply
+  use mesh_digits, only: digits_of_layers
   use mesh_waves, only: mesh_waves_t, new_mesh_waves
   use dimensionless_problem, only: problem_t
   use discretisation, only: discretisation_t
@@ -139,7 +140,8 @@ contains
     if (.not. allocated(self%waves_of)) allocate (self%waves_of(most_meshes))
     same = self%waves_of(self%now)%belong_to(grid)
     if (same .and. .not. abs(self%scale - scale) > 0) return
-    range = scale*problem%body%wave_range()
+    ! More digits of the mesh for stiff layers need no shorter waves.
+    range = scale*problem%body%wave_range(grid%digits - digits_of_layers(problem, scale))
     if (.not. same) call find(self%waves_of, grid, self%now, same)
     associate (waves => self%waves_of(self%now))
       if (same) same = range(1) >= waves%range(1)

@@ -7,7 +7,7 @@ module mesh_digits
   use dimensionless_problem, only: problem_t, adhesion_strength, coupling_over
   implicit none
   private
-  public :: digits_for, most_digits
+  public :: digits_for, digits_of_layers, most_digits
 
   !> Least number of digits for a path; largest number of digits that rounding allows.
   real(wp), parameter :: fewest = 4.25_wp, most_digits = 13
@@ -40,7 +40,7 @@ contains
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: widest, accuracy
     logical, intent(in) :: profiles
-    real(wp) :: sigma, decades, least, left, lengths, away, wider, softer
+    real(wp) :: sigma, decades, least, left, lengths, away
 
     sigma = adhesion_strength(problem)
     decades = log10(1 + sigma)
@@ -56,11 +56,7 @@ contains
       merge(for_folds_of_kinks, for_folds_of_lengths, problem%law%has_kink)
     if (profiles) digits = digits + for_profiles + for_narrow_necks*decades
     if (problem%shape%smooth_from() > 0) digits = digits + for_kinks
-    if (.not. problem%body%is_homogeneous()) then
-      wider = log10(hypot(1.0_wp, widest*maxval(problem%body%wave_range())/waves_in_layer))
-      softer = log10(coupling_over(problem, widest)/problem%coupling)
-      digits = digits + for_softer*wider**2*max(0.0_wp, softer)
-    end if
+    digits = digits + digits_of_layers(problem, widest)
     away = abs(log(max(sigma, tiny(1.0_wp))/onset))/log(about_onset)
     digits = digits + at_onset*max(0.0_wp, min(1.0_wp, 1.5_wp*(1 - away)))
     if (away < near_onset) least = max(least, enough_for_folds)
@@ -70,6 +66,20 @@ contains
     digits = max(fewest, min(digits, left, most_digits))
     if (left > fewest) digits = max(digits, min(enough_for_folds, least))
   end function digits_for
+
+  !> Digits added at a contact radius for stiff layers.
+  pure real(wp) function digits_of_layers(problem, radius) result(digits)
+    type(problem_t), intent(in) :: problem
+    real(wp), intent(in) :: radius
+    real(wp) :: wider, softer
+
+    digits = 0
+    if (problem%body%is_homogeneous()) return
+    wider = log10(hypot(1.0_wp, &
+      radius*maxval(problem%body%wave_range(most_digits))/waves_in_layer))
+    softer = log10(coupling_over(problem, radius)/problem%coupling)
+    digits = for_softer*wider**2*max(0.0_wp, softer)
+  end function digits_of_layers
 
   !> Digits for the load alone, for a number of decimal places of accuracy.
   pure real(wp) function of_load(places) result(digits)

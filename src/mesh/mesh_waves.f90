@@ -34,10 +34,12 @@ module mesh_waves
   !> omitted only farther out.
   real(wp), parameter :: steep = 6
   !> The displacement of a position outside the centre includes waves whose phase changes by less
-  !> than `passing_place` from node to node, and all waves whose phase changes by less than
-  !> `crossing` between the axis and the position, both per digit; the smooth transition begins at
-  !> this fraction.
-  real(wp), parameter :: passing_place = 1.4_wp, crossing = 2.4_wp, from_of_place = 0.25_wp
+  !> than `passing_place` from node to node, a constant and a number per digit, and all waves whose
+  !> phase changes by less than `crossing` per digit between the axis and the position; the smooth
+  !> transition begins at this fraction. With a smaller constant the end of a path on a coat five
+  !> times as stiff as its base needs another mesh.
+  real(wp), parameter :: passing_place(2) = [8.0_wp, 1.0_wp], crossing = 2.4_wp, &
+    from_of_place = 0.25_wp
   !> Largest change of phase over one panel of wave numbers; number of nodes of a panel over which
   !> the phase does not change, and of a panel over which it changes by `swing` (`wave_rule`), as a
   !> constant and per digit. The number is too small for a product of two waves at one position far
@@ -118,7 +120,7 @@ contains
     do p = 1, size(grid%panel)
       associate (first => first_node - 1 + grid%first(p), local => grid%local(grid%which(p)))
         last_of(first:first + size(local%node) - 1) = &
-          last_on(grid, p, local%node, passing_place*grid%digits)
+          last_on(grid, p, local%node, passing_place(1) + passing_place(2)*grid%digits)
       end associate
     end do
     where (x > 0) last_of = max(last_of, crossing*grid%digits/x)
@@ -135,10 +137,10 @@ contains
     end do
     allocate (spectrum(grid%nodes, size(k)), source=0.0_wp)
     do p = 1, size(grid%panel)
-      associate (own => first_node - 1 + grid%first(p) - 1 + &
-        [(i, i=1, size(grid%local(grid%which(p))%node))])
+      associate (row => first_node - 1 + grid%first(p), local => grid%local(grid%which(p)))
+        i = row + size(local%node) - 1
         call add_spectrum(self%bessel, grid, p, k, &
-          count(k <= from_of_place*minval(last_of(own))), rows(:, own), spectrum)
+          count(k <= from_of_place*minval(last_of(row:i))), rows(:, row:i), spectrum)
       end associate
     end do
     allocate (blocks(size(self%block) + 1))
@@ -324,7 +326,7 @@ contains
   subroutine find_wave(bessel, x, last, from, k, wave)
     type(bessel_t), intent(in) :: bessel
     real(wp), intent(in) :: x, last, from, k(:)
-    real(wp), intent(out) :: wave(:)
+    real(wp), intent(out), contiguous :: wave(:)
     real(wp) :: u
     integer :: i, n
 

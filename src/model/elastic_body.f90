@@ -51,10 +51,11 @@ module elastic_body
     end function average
 
     !> Two wave numbers: up to the first L is a polynomial of low degree, as it is between k and 3 k
-    !> from there on; beyond the second L - 1 is negligible.
-    pure function bound(self) result(k)
+    !> from there on; beyond the second L - 1 is negligible for loads of some number of digits.
+    pure function bound(self, digits) result(k)
       import :: elastic_body_t, wp
       class(elastic_body_t), intent(in) :: self
+      real(wp), intent(in) :: digits
       real(wp) :: k(2)
     end function bound
   end interface
@@ -108,8 +109,9 @@ contains
     mean_beside = 0
   end function mean_beside
 
-  pure function wave_range(self) result(k)
+  pure function wave_range(self, digits) result(k)
     class(half_space_t), intent(in) :: self
+    real(wp), intent(in) :: digits
     real(wp) :: k(2)
 
     k = 0

@@ -14,8 +14,9 @@ module layered_body
   public :: layered_body_t, new_layered_body
 
   !> Largest k times twice the top layer's thickness: L - 1 is then exp(-28) (28)^2 = 5e-10, and so
-  !> short a wave has still less of a pressure.
-  real(wp), parameter :: last_wave = 28
+  !> short a wave has still less of a pressure. For fewer digits the largest product is a constant
+  !> and a number for each digit: waves beyond 20 change loads by 1e-8 or less, beyond 24 by 1e-10.
+  real(wp), parameter :: last_wave = 28, last_at_none = 8.8_wp, last_a_digit = 1.6_wp
   !> Degree of L - 1 on a panel of waves; largest number of halvings of a panel.
   integer, parameter :: degree = 16, halvings = 60
   !> Largest turn of a wave over a panel of waves, and numbers of nodes of a panel (`wave_rule`).
@@ -200,12 +201,14 @@ contains
     end do
   end function on_panels
 
-  pure function wave_range(self) result(k)
+  pure function wave_range(self, digits) result(k)
     class(layered_body_t), intent(in) :: self
+    real(wp), intent(in) :: digits
     real(wp) :: k(2)
 
     k = 0
-    if (.not. self%plain) k = [self%ends(2), self%ends(size(self%ends))]
+    if (.not. self%plain) k = [self%ends(2), &
+      min(last_wave, last_at_none + last_a_digit*digits)/(2*self%thinnest)]
   end function wave_range
 
   !> sums(i, j) = 2 Int (L - 1) cos(k x(i)) cos(k y(j)) dk.
@@ -219,7 +222,7 @@ contains
 
     sums = 0
     if (self%plain) return
-    range = self%wave_range()
+    range = self%wave_range(huge(1.0_wp))
     call wave_rule([max(maxval(x), maxval(y))], [huge(1.0_wp)], swing, nodes, 0.0_wp, range(1), &
       range(2), k, weight)
     weight = 2*weight*self%beside_half_space(k)

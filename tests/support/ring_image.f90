@@ -55,8 +55,9 @@ contains
     mean_beside = self%strength*(1 - exp(-self%depth*k))/(self%depth*k)
   end function mean_beside
 
-  pure function wave_range(self) result(k)
+  pure function wave_range(self, digits) result(k)
     class(ring_image_t), intent(in) :: self
+    real(wp), intent(in) :: digits
     real(wp) :: k(2)
 
     k = [1, 32]/self%depth
