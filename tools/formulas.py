@@ -11,10 +11,9 @@ from typing import Callable, NamedTuple
 import numpy as np
 import pages
 
-sys.path[:0] = [str(pages.ROOT / folder) for folder in
-                ("tools/reproduce", "pywrap", "build/pywrap", "pywrap/plots")]
+sys.path.append(str(pages.ROOT / "tools" / "reproduce"))
 
-import spheres  # noqa: E402 (found through the lines above)
+import spheres  # noqa: E402 (found through the line above)
 import style  # noqa: E402
 from others import ciavarella_2017, indentation_of_layers, wu_2010, zheng_yu_2007  # noqa: E402
 
@@ -131,17 +130,17 @@ def _short(value):
 
 def table(found):
     """Return the lines of the table."""
-    lines = ["| quantity | formula | largest error | typical | within 1 % | within 5 % |",
-             "|---|---|---|---|---|---|"]
+    rows = []
     for one in found:
         errors = np.array([one.error(x) for x in one.grid])
         at = int(np.nanargmax(abs(errors)))
-        lines.append(
-            f"| {one.quantity} | {one.name} | {_percent(errors[at])} at {one.symbol} = "
-            f"{_short(one.grid[at])} | {100 * np.median(abs(errors)):.2g} % | "
-            f"{good(errors, one.grid, one.symbol, 0.01)} | "
-            f"{good(errors, one.grid, one.symbol, 0.05)} |")
-    return lines
+        rows.append((
+            one.quantity, one.name,
+            f"{_percent(errors[at])} at {one.symbol} = {_short(one.grid[at])}",
+            f"{100 * np.median(abs(errors)):.2g} %",
+            *(good(errors, one.grid, one.symbol, within) for within in (0.01, 0.05))))
+    return pages.table(("quantity", "formula", "largest error", "typical", "within 1 %",
+                        "within 5 %"), rows)
 
 
 def _percent(error):

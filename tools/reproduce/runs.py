@@ -13,16 +13,16 @@ import time
 
 import draws
 import numpy as np
+from pages import ROOT
 from snapin.results import read_summary, read_table
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
 INPUTS = ROOT / "inputs"
 # The folder of the plots' curves and colours.
 sys.path.insert(0, str(ROOT / "pywrap" / "plots"))
 
-
 # After this number of seconds without a message, the running decks are named.
 _HEARTBEAT = 10.0
+_TABLES = ("curve", "profiles", "approximations", "sweep")
 
 
 class RunError(Exception):
@@ -40,30 +40,12 @@ class Results:
         """The group &summary as a dict."""
         return read_summary(self.folder)
 
-    @functools.cached_property
-    def curve(self):
-        """The columns of curve.csv."""
-        return read_table(self.folder, "curve.csv")
-
-    @functools.cached_property
-    def profiles(self):
-        """The columns of profiles.csv."""
-        return read_table(self.folder, "profiles.csv")
-
-    @functools.cached_property
-    def classical(self):
-        """The columns of classical.csv."""
-        return read_table(self.folder, "classical.csv")
-
-    @functools.cached_property
-    def approximations(self):
-        """The columns of approximations.csv."""
-        return read_table(self.folder, "approximations.csv")
-
-    @functools.cached_property
-    def sweep(self):
-        """The columns of sweep.csv."""
-        return read_table(self.folder, "sweep.csv")
+    def __getattr__(self, name):
+        """The columns of a table, by its name without `.csv`; read once."""
+        if name not in _TABLES:
+            raise AttributeError(name)
+        setattr(self, name, read_table(self.folder, f"{name}.csv"))
+        return getattr(self, name)
 
     def last(self, key):
         """Return a number of the summary; for an array, the value of the last turning point."""
