@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 from support.known import PUNCH, PUNCH_ON_FILM, SPHERE_ON_FILM
-from support.scenes import deck
+from support.scenes import deck, lennard_jones
 
 SIGMA = 25.0
 # Contact radius of JKR theory without load, by which thicknesses are measured.
@@ -20,10 +20,10 @@ def theory(thickness, nu, base=None, sigma=SIGMA, h0_end=-20.0, count=40, **grou
     if base:
         bodies = {"radius": 1.0, "young": young / (1 + nu) * (1 + base[1]) / base[0],
                   "poisson": base[1]}
-    return deck(bodies=bodies,
-                layer={"thickness": thickness, "young": young, "poisson": nu, "partner": "rigid"},
-                force={"law": "lennard_jones", "hamaker": 16 * math.pi * sigma, "z0": 1.0},
-                classical={"h0_start": 20.0, "h0_end": h0_end, "count": count}, **groups)
+    return lennard_jones(
+        sigma, bodies=bodies,
+        layer={"thickness": thickness, "young": young, "poisson": nu, "partner": "rigid"},
+        classical={"h0_start": 20.0, "h0_end": h0_end, "count": count}, **groups)
 
 
 @pytest.mark.parametrize("chi, ratio", SPHERE_ON_FILM)
@@ -65,9 +65,7 @@ def test_pull_off_of_jkr_theory(run, part, nu, base, pull_off):
 @pytest.mark.parametrize("nu, base", [(0.5, None), (0.3, (5, 0.3)), (0.45, (0.2, 0.2))])
 def test_lennard_jones_forces_pull_as_much_over_jkr_as_on_a_half_space(run, part, nu, base):
     found = run(theory(part * RADIUS, nu, base, equilibrium_path={"h0_end": -2.0})).summary
-    half = run(deck(bodies={"radius": 1.0, "stiffness": 1.0}, force={
-        "law": "lennard_jones", "hamaker": 16 * math.pi * SIGMA, "z0": 1.0},
-        equilibrium_path={"h0_end": -2.0})).summary
+    half = run(lennard_jones(SIGMA, equilibrium_path={"h0_end": -2.0})).summary
     plain = half["max_tension"] / half["jkr_pull_off"]
     assert found["max_tension"] / found["jkr_pull_off"] == pytest.approx(plain, abs=3e-4)
     assert abs(plain - 1) > 3e-3
@@ -77,9 +75,7 @@ def test_lennard_jones_forces_pull_as_much_over_jkr_as_on_a_half_space(run, part
 def test_equal_moduli_are_hertz_and_jkr(run, shape):
     # The cone, of no radius, makes wide contacts in these units.
     scene = theory(100.0 if shape else 2.0, 0.3, base=(1.0, 0.3))
-    plain = deck(bodies={"radius": 1.0, "stiffness": 1.0},
-                 force={"law": "lennard_jones", "hamaker": 16 * math.pi * SIGMA, "z0": 1.0},
-                 classical={"h0_start": 20.0, "h0_end": -20.0, "count": 40})
+    plain = lennard_jones(SIGMA, classical={"h0_start": 20.0, "h0_end": -20.0, "count": 40})
     if shape:
         scene, plain = (text.replace("  radius = 1.0\n", "") + deck(shape=shape)
                         for text in (scene, plain))
