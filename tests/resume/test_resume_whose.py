@@ -8,8 +8,8 @@ import subprocess
 import time
 
 import pytest
-from support.interrupted import (
-    environment, frames, heading, linked_id, owner, sweep, SWEEP)  # noqa: F401
+from support.interrupted import frames, heading, linked_id, owner, sweep, SWEEP  # noqa: F401
+from support.processes import threaded
 from support.scenes import lennard_jones, loading
 
 
@@ -143,7 +143,7 @@ def test_a_run_whose_folder_is_gone_publishes_nothing_and_touches_no_other(
     folder = tmp_path / "results/deck"
     folder.mkdir(parents=True)
     (folder / "summary.nml").write_text("of an earlier run")
-    with subprocess.Popen([snapin_path, "deck.nml"], cwd=tmp_path, env=environment(1),
+    with subprocess.Popen([snapin_path, "deck.nml"], cwd=tmp_path, env=threaded(),
                           stderr=subprocess.PIPE, text=True) as process:
         while not (folder / "curve.csv.partial").exists():
             assert process.poll() is None, process.communicate()[1]

@@ -4,8 +4,8 @@ import os
 import subprocess
 
 import pytest
-from support.interrupted import Bench, environment, frames, rows, short, sweep  # noqa: F401
-from support.processes import limited
+from support.interrupted import Bench, frames, rows, short, sweep  # noqa: F401
+from support.processes import limited, threaded
 from support.scenes import lennard_jones, loading
 
 
@@ -129,7 +129,7 @@ def test_a_closed_pipe_or_a_full_terminal_log_does_not_end_a_run(short):
             short.emptied()
             done = subprocess.run(
                 [short.path, "--out", "cut", "--resume", "deck.nml"], cwd=short.folder,
-                env=environment(1), stderr=stream, check=False)
+                env=threaded(), stderr=stream, check=False)
             assert done.returncode == 0
             assert short.files("cut") == short.whole
     finally:

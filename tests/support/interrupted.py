@@ -1,6 +1,5 @@
 """Runs that are stopped or killed and then continued, and their journals as bytes."""
 
-import os
 import random
 import signal
 import struct
@@ -9,6 +8,7 @@ import time
 
 import pytest
 from conftest import ROOT
+from support.processes import threaded
 from support.scenes import lennard_jones, loading
 
 WORD = 8
@@ -76,10 +76,6 @@ def rows(lines):
     return [line for line in lines if not line.startswith(b"#")][1:]
 
 
-def environment(threads):
-    return dict(os.environ, OMP_NUM_THREADS=str(threads), OPENBLAS_NUM_THREADS=str(threads))
-
-
 class Bench:
     """One deck, run to the end without interruption, and once more with the journal kept."""
 
@@ -97,7 +93,7 @@ class Bench:
 
     def run(self, out, *options, **kwargs):
         return self.snapin(
-            "--out", out, *options, "deck.nml", cwd=self.folder, env=environment(self.threads),
+            "--out", out, *options, "deck.nml", cwd=self.folder, env=threaded(self.threads),
             **kwargs)
 
     def files(self, out):
@@ -146,7 +142,7 @@ class Bench:
         """Starts the program and kills it after a delay [s]."""
         with subprocess.Popen(
                 [self.path, "--out", "cut", *options, "deck.nml"], cwd=self.folder,
-                env=environment(self.threads), stderr=subprocess.DEVNULL) as process:
+                env=threaded(self.threads), stderr=subprocess.DEVNULL) as process:
             time.sleep(delay)
             process.send_signal(signal.SIGKILL)
 

@@ -17,6 +17,11 @@ def python(*arguments, seconds=HANG, **environment):
         capture_output=True, text=True, timeout=seconds, check=False)
 
 
+def threaded(count=1, **more):
+    """The environment of a program on so many threads."""
+    return dict(os.environ, OMP_NUM_THREADS=str(count), OPENBLAS_NUM_THREADS=str(count), **more)
+
+
 def limited(kind, size):
     """What limits a process that is about to start, such as the size of its files (FSIZE)."""
     return lambda: resource.setrlimit(getattr(resource, f"RLIMIT_{kind}"), (size, size))

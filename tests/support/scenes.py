@@ -5,13 +5,12 @@ the paper is gamma itself, h0 is in units of z0, and loads are in units of sigma
 """
 
 import math
-import os
 import re
 from typing import NamedTuple
 
 import f90nml
 from snapin import deck_text, results
-from support.processes import HANG
+from support.processes import HANG, threaded
 
 JKR = 1.5 * math.pi  # Pull-off of JKR theory in units of gamma R.
 
@@ -172,9 +171,7 @@ def runner(snapin, folder):
         if key not in done:
             name = f"d{len(done)}"
             (folder / f"{name}.nml").write_text(text)
-            environment = dict(os.environ)
-            environment["OMP_NUM_THREADS"] = environment["OPENBLAS_NUM_THREADS"] = str(threads)
-            result = snapin(f"{name}.nml", cwd=folder, timeout=timeout, env=environment)
+            result = snapin(f"{name}.nml", cwd=folder, timeout=timeout, env=threaded(threads))
             done[key] = Run(result.returncode, result.stderr, folder / "results" / name)
         assert status in (None, done[key].status), done[key].stderr + text
         return done[key]
