@@ -141,7 +141,6 @@ def _line(reading):
 
 
 def numbers(runs):
-    """Return the numbers in the text of the page."""
     nearest = {letter: _all()[NEAREST, letter, turns, 0] for letter, turns in _CASES.items()}
     contact = [(branch, _contact(branch)) for branch in nearest["c"]]
     table = pages.table(("reading", "loading", "unloading", "scatter", "left [z0]", "iterations",
