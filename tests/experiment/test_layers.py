@@ -107,13 +107,6 @@ def test_equal_moduli_are_a_half_space(run, pieces):
     assert same["top_modulus"] == pytest.approx(same["bottom_modulus"], rel=1e-14)
 
 
-def test_two_layers_of_one_material_are_one(run):
-    one, two = (run(layered(COAT, pieces=n, accuracy=1e-6, equilibrium_path=PATH)).summary
-                for n in (1, 2))
-    for key in ("max_tension", "jump_in_h0", "jump_out_load", "end_load"):
-        assert two[key] == pytest.approx(one[key], rel=1e-12)
-
-
 def test_a_thick_layer_is_its_half_space_and_a_thin_one_nothing(run):
     half = run(lennard_jones(1.0, equilibrium_path=PATH)).summary
     apart = []

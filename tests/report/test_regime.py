@@ -10,21 +10,6 @@ def regime(sigma, h0_end):
     return lennard_jones(sigma, equilibrium_path={"h0_end": h0_end}, regime={})
 
 
-def test_large_sigma_is_a_case_for_jkr_theory(run):
-    summary = run(regime(1000.0, -300.0)).summary
-    assert summary["regime_recommended"] in ("jkr", "maugis")
-    assert max(map(abs, summary["regime_error_jkr"])) < 0.01
-    assert max(map(abs, summary["regime_error_dmt"])) > 0.3
-
-
-def test_small_sigma_is_no_case_for_jkr_theory(run):
-    summary = run(regime(0.01, -60.0)).summary
-    # Rigid spheres part at 2 pi gamma R.
-    assert abs(summary["regime_error_dmt"][0]) < 0.02
-    assert summary["regime_error_jkr"][0] == pytest.approx(-0.25, abs=0.02)
-    assert summary["regime_recommended"] in ("dmt", "maugis")
-
-
 def test_errors_of_pull_off_are_those_against_the_largest_tension(run):
     found = run(regime(0.87, -2.0))
     summary = found.summary
