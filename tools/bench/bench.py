@@ -70,7 +70,7 @@ def main():
             began = time.perf_counter()
             _say(name)
             rows = _PARTS[name][0](runner, quick, lambda text: _say(f"  {text}"))
-            sources = f"sources {_digest(build)}"
+            sources = f"sources {pages.digest(build.parent / 'src')}"
             if name in _COMPARED and path.is_file() and _sources(path) not in ("", sources):
                 path.replace(_before(path))
             tables.write(path, rows, [f"./bench --only {name}{' --quick' if quick else ''}",
@@ -121,11 +121,6 @@ def _versions(folder):
 def _sources(path):
     """Return the note of a table about its sources; empty without one."""
     return next((note for note in tables.notes(path) if note.startswith("sources ")), "")
-
-
-def _digest(build):
-    """Return the digest of the sources of a build folder."""
-    return pages.digest(build.parent / "src")
 
 
 def _before(path):

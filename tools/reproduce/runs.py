@@ -12,6 +12,7 @@ import threading
 import time
 
 import draws
+import f90nml
 import numpy as np
 from pages import ROOT
 from snapin.results import read_summary, read_table
@@ -80,10 +81,6 @@ class Runs:
         self._results, self._written, self._writing = {}, {}, threading.Lock()
         self._program_digest = None
 
-    def __getitem__(self, stem):
-        """Return the results of a deck in inputs/, after a run if necessary."""
-        return self.run(stem)
-
     def run(self, deck):
         """Run a deck, given by its stem or path, unless its results are valid; return the
         results."""
@@ -93,6 +90,8 @@ class Runs:
                 self.execute(path)
             self._results[path.stem] = Results(self.root / path.stem)
         return self._results[path.stem]
+
+    __getitem__ = run
 
     def draws(self, stem):
         """Return the results of a deck with the paper's rule, one for each of its runs."""
@@ -117,7 +116,7 @@ class Runs:
         """Return the path of a changed copy of a deck of inputs/."""
         with self._writing:
             if name not in self._written:
-                groups = draws.changed(draws.read(path), number)
+                groups = draws.changed(f90nml.read(path), number)
                 if self._change is not None:
                     self._change(groups)
                 self._written[name] = self.root / "decks" / f"{name}.nml"
@@ -187,7 +186,7 @@ class Runs:
         `say(text)` is called for each deck that ends.
         """
         decks = list(dict.fromkeys(decks))
-        waiting = [deck for deck in decks if not self._is_done_or_missing(deck)]
+        waiting = [deck for deck in decks if not (self.path_of(deck).is_file() and self.is_done(deck))]
         if len(waiting) < len(decks):
             say(f"{len(decks) - len(waiting)} of {len(decks)} runs are there already")
         # Long decks first, so that none runs alone at the end.
@@ -219,9 +218,6 @@ class Runs:
             problems[path_name(deck)] = str(problem)
             return f"FAILED: {problem}"
         return f"{self.record(deck)['seconds']:.1f} s"
-
-    def _is_done_or_missing(self, deck):
-        return self.path_of(deck).is_file() and self.is_done(deck)
 
     def _likely_seconds(self, deck):
         known = self.record(deck).get("seconds")
