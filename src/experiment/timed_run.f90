@@ -227,8 +227,8 @@ contains
     at_rest%meshes = steps%meshes
     ! Without the pieces of the path and their landings, which `know_path` solves too.
     call at_rest%begin_afar(high, afar, event)
-    if (.not. event%ending%early()) call trace(at_rest%solver_t, afar%state, low, .true., listener, &
-      traced, accuracy=accuracy)
+    if (.not. event%ending%early()) call trace(at_rest%solver_t, afar%state, low, .true., &
+      listener, traced, accuracy=accuracy)
     steps%meshes = at_rest%meshes
     steps%cost = at_rest%cost
     associate (meshes => steps%meshes)

@@ -35,7 +35,8 @@ def layered(layer, sigma=1.0, pieces=1, accuracy=1e-8, **groups):
             bodies["young"] = [bodies["young"], 1 - base**2]
     else:
         bodies["rigid"] = True
-    return lennard_jones(sigma, bodies=bodies, layer=keys, numerics={"accuracy": accuracy}, **groups)
+    return lennard_jones(
+        sigma, bodies=bodies, layer=keys, numerics={"accuracy": accuracy}, **groups)
 
 
 PATH = {"h0_end": -1.0}
@@ -100,8 +101,9 @@ def test_equal_moduli_are_a_half_space(run, pieces):
     bodies = {"radius": 1.0, "young": 0.91, "poisson": 0.3}
     layers = {"thickness": [1.0] * pieces, "young": [0.91] * pieces, "poisson": [0.3] * pieces,
               "body": "both"}
-    plain, same = (run(lennard_jones(1.0, bodies=bodies, layer=layer, equilibrium_path=PATH)).summary
-                   for layer in (None, layers))
+    plain, same = (
+        run(lennard_jones(1.0, bodies=bodies, layer=layer, equilibrium_path=PATH)).summary
+        for layer in (None, layers))
     for key in ("max_tension", "jump_in_h0", "jump_out_load", "end_load"):
         assert same[key] == plain[key]
     assert same["top_modulus"] == pytest.approx(same["bottom_modulus"], rel=1e-14)

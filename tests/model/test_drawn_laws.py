@@ -53,8 +53,8 @@ def claim_slope(of, gap, unit, size):
 
 
 def claim_energy(of, gap, unit, size):
-    """The energy is the integral of the pressure, by quadrature between neighbouring separations, and
-    vanishes at large ones; size: its parts, which set the rounding; None: the integrand."""
+    """The energy is the integral of the pressure, by quadrature between neighbouring separations,
+    and vanishes at large ones; size: its parts, which set the rounding; None: the integrand."""
     x, w = np.polynomial.legendre.leggauss(30)
     low, high = gap[:-1], gap[1:]
     at = low[:, None] + (high - low)[:, None] * (x + 1) / 2
