@@ -4,12 +4,12 @@
     ./run inputs/table_lennard_jones.nml && .venv/bin/python tools/asymptotics.py
 """
 
-import csv
 import math
 import pathlib
 import sys
 
 import pages
+from snapin.results import read_table
 
 DOCS = pages.ROOT / "docs"
 EVERY = 8
@@ -17,14 +17,6 @@ EVERY = 8
 RADIUS, Z0 = 1.5e-2, 0.5e-9
 HEADER = ("σ", "pull-off/JKR", "jump-in h0", "load", "jump-out h0", "load", "energy lost/(γ R z0)",
           "error estimate")
-
-
-def rows(path):
-    """Return the rows of a sweep, each as a dict of numbers; the reason of a failure is left out."""
-    lines = [line for line in path.read_text(encoding="utf-8").splitlines()
-             if not line.startswith("#")]
-    return [{key: float(value) for key, value in row.items() if key != "failure"}
-            for row in csv.DictReader(lines)]
 
 
 def cells(row):
@@ -47,12 +39,13 @@ def main():
     file = pathlib.Path(sys.argv[1]) if len(sys.argv) > 1 else default
     if not file.is_file():
         sys.exit(f"no {file}; first: ./run inputs/table_lennard_jones.nml")
-    found = rows(file)
-    if not all(row["converged"] == 1 for row in found):
+    columns = read_table(file.parent, file.name)
+    if not (columns["converged"] == 1).all():
         sys.exit(f"{file}: not every case converged")
     (DOCS / "table_lennard_jones.csv").write_bytes(file.read_bytes())
+    rows = list(zip(*columns.values()))[::EVERY]
     pages.insert(DOCS / "asymptotics.md", "table",
-                 pages.table(HEADER, [cells(row) for row in found[::EVERY]]))
+                 pages.table(HEADER, [cells(dict(zip(columns, row))) for row in rows]))
 
 
 if __name__ == "__main__":

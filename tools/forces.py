@@ -4,20 +4,16 @@
     .venv/bin/python tools/forces.py [NAME ...]
 """
 
-import os
 import pathlib
 import sys
 import tempfile
 
-# To be set before a module loads OpenMP.
-os.environ.setdefault("OMP_NUM_THREADS", "1")
+import f90nml
+import pages
+import snapin
 
-import pages  # noqa: E402
+sys.path.append(str(pages.ROOT / "pywrap" / "plots"))
 
-sys.path[:0] = [str(pages.ROOT / folder) for folder in ("pywrap", "build/pywrap", "pywrap/plots")]
-
-import f90nml  # noqa: E402
-import snapin  # noqa: E402
 from law_and_curve import draw_law_and_curve  # noqa: E402
 
 EXAMPLES = pages.ROOT / "inputs" / "examples"

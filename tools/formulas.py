@@ -11,10 +11,9 @@ from typing import Callable, NamedTuple
 import numpy as np
 import pages
 
-sys.path[:0] = [str(pages.ROOT / folder) for folder in
-                ("tools/reproduce", "pywrap", "build/pywrap", "pywrap/plots")]
+sys.path.append(str(pages.ROOT / "tools" / "reproduce"))
 
-import spheres  # noqa: E402 (found through the lines above)
+import spheres  # noqa: E402 (found through the line above)
 import style  # noqa: E402
 from others import ciavarella_2017, indentation_of_layers, wu_2010, zheng_yu_2007  # noqa: E402
 
@@ -41,10 +40,6 @@ def _of_contact(theory, number, load):
     return lambda tabor: float(spheres.contact(tabor, load).errors[theory][number])
 
 
-def _of_pull_off(theory):
-    return _of_contact(theory, 0, 0.0)
-
-
 @functools.lru_cache(maxsize=None)
 def _wu():
     """Return the factor of mu^(3/7) that fits at large mu."""
@@ -65,7 +60,7 @@ def _loss(found):
 
 def formulas():
     """Return all formulas of the page, in its order."""
-    found = [Formula("pull-off", NAMES[name], _of_pull_off(name))
+    found = [Formula("pull-off", NAMES[name], _of_contact(name, 0, 0.0))
              for name in ("dmt", "jkr", "maugis", "carpick", "pietrement")]
     for load, title in ((0.0, "without load"), (LOADED, f"under {LOADED:g} πwR")):
         found += [Formula(f"contact radius {title}", NAMES[name], _of_contact(name, 1, load))
@@ -85,21 +80,14 @@ def formulas():
         Formula("energy lost in a cycle", "the same − (4π/3) wR h0, h0 of the jump in",
                 _loss(ciavarella_2017._solved), JUMPING[2:])]
     found += [Formula("pull-off of bodies f = B rⁿ", f"JKR, n = {n:g}",
-                      functools.partial(_of_power, n), zheng_yu_2007._MANY, "μn")
+                      lambda tabor, n=n: 1 / zheng_yu_2007.ratio(n, tabor) - 1,
+                      zheng_yu_2007._MANY, "μn")
               for n in zheng_yu_2007.EXPONENTS if n != 2]
     chis = tuple(float(each) for each in np.arange(0.05, 2.001, 0.05))
-    found += [Formula("load on a thin layer, ν = 0.5", name, functools.partial(_of_layer, key), chis,
-                      "χ")
+    found += [Formula("load on a thin layer, ν = 0.5", name,
+                      lambda chi, key=key: indentation_of_layers.error(key, chi) / 100, chis, "χ")
               for key, name in (("dimitriadis", "Dimitriadis et al."), ("garcia", "García and García"))]
     return found
-
-
-def _of_power(exponent, tabor):
-    return 1 / zheng_yu_2007.ratio(exponent, tabor) - 1
-
-
-def _of_layer(name, chi):
-    return indentation_of_layers.error(name, chi) / 100
 
 
 def good(errors, grid, symbol, within):
@@ -131,17 +119,17 @@ def _short(value):
 
 def table(found):
     """Return the lines of the table."""
-    lines = ["| quantity | formula | largest error | typical | within 1 % | within 5 % |",
-             "|---|---|---|---|---|---|"]
+    rows = []
     for one in found:
         errors = np.array([one.error(x) for x in one.grid])
         at = int(np.nanargmax(abs(errors)))
-        lines.append(
-            f"| {one.quantity} | {one.name} | {_percent(errors[at])} at {one.symbol} = "
-            f"{_short(one.grid[at])} | {100 * np.median(abs(errors)):.2g} % | "
-            f"{good(errors, one.grid, one.symbol, 0.01)} | "
-            f"{good(errors, one.grid, one.symbol, 0.05)} |")
-    return lines
+        rows.append((
+            one.quantity, one.name,
+            f"{_percent(errors[at])} at {one.symbol} = {_short(one.grid[at])}",
+            f"{100 * np.median(abs(errors)):.2g} %",
+            *(good(errors, one.grid, one.symbol, within) for within in (0.01, 0.05))))
+    return pages.table(("quantity", "formula", "largest error", "typical", "within 1 %",
+                        "within 5 %"), rows)
 
 
 def _percent(error):

@@ -5,18 +5,10 @@
 """
 
 import math
-import os
-import sys
 import warnings
 
-# To be set before a module loads OpenMP.
-os.environ.setdefault("OMP_NUM_THREADS", "1")
-
-import pages  # noqa: E402
-
-sys.path[:0] = [str(pages.ROOT / folder) for folder in ("pywrap", "build/pywrap")]
-
-import snapin  # noqa: E402
+import pages
+import snapin
 
 PAGE = pages.ROOT / "docs" / "forces.md"
 # Work of adhesion, radius and separation at rest are 1.

@@ -8,27 +8,18 @@ two minutes.
 
 import dataclasses
 import math
-import os
 import sys
 import tempfile
 import warnings
 
-# To be set before a module loads OpenMP.
-os.environ.setdefault("OMP_NUM_THREADS", "1")
+import numpy as np
+import pages
+import snapin
+from matplotlib.figure import Figure
 
-import pages  # noqa: E402
+sys.path.append(str(pages.ROOT / "tools" / "bench"))
 
-sys.path[:0] = [str(pages.ROOT / folder) for folder in ("pywrap", "build/pywrap", "tools/bench")]
-
-import matplotlib  # noqa: E402
-
-matplotlib.use("Agg")
-
-import matplotlib.pyplot as plt  # noqa: E402
-import numpy as np  # noqa: E402
 import problems  # noqa: E402
-import snapin  # noqa: E402
-import tables  # noqa: E402
 from program import Program  # noqa: E402
 
 TABLE = pages.ROOT / "docs" / "layers_indentation.csv"
@@ -102,7 +93,8 @@ def write_table():
 
 def draw(table):
     """Draw load over Hertz's load, and pull-off against thickness."""
-    figure, (left, right) = plt.subplots(1, 2, figsize=(10, 4.2), layout="constrained")
+    figure = Figure((10, 4.2), layout="constrained")
+    (left, right) = figure.subplots(1, 2)
     for nu in BONDED:
         left.plot(CHI, table[f"rigid_base_nu_{nu:g}"], label=f"rigid base, ν = {nu:g}")
     left.plot(CHI, table["dimitriadis_2002_nu_0.5"], "k--", label="Dimitriadis 2002, ν = 0.5")
@@ -130,7 +122,8 @@ def draw(table):
 def draw_films():
     """Draw load against indentation for rubber films on glass under a sphere of glass: the solved
     paths, and JKR theory of layers."""
-    figure, axes = plt.subplots(figsize=(6.4, 4.4), layout="constrained")
+    figure = Figure((6.4, 4.4), layout="constrained")
+    axes = figure.subplots()
     axes.axhline(0, color="0.8", linewidth=0.8)
     for micrometres, thickness in ((0.5, 0.5e-6), (1, 1e-6), (2, 2e-6), (5, 5e-6), (None, None)):
         glass, rubber = {"young": 70e9, "poisson": 0.2}, {"young": 3e6, "poisson": 0.49}
@@ -193,7 +186,7 @@ def write_prices():
 
     rows = [[str(thin), str(sigma), *(cell(sigma, thin, coat) for coat in COATS)]
             for thin in THIN for sigma in STRENGTHS]
-    tables.insert(PAGE, "prices", tables.markdown(["t/a₀", "σ", *COATS], rows))
+    pages.insert(PAGE, "prices", pages.table(["t/a₀", "σ", *COATS], rows), measured=False)
 
 
 if __name__ == "__main__":

@@ -11,11 +11,14 @@ determine numbers. A command that renews a whole page marks the page; after a me
 
 import argparse
 import hashlib
+import os
 import pathlib
 import re
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
+# Tools that make pages compute on one thread; to be set before a module loads OpenMP.
+os.environ.setdefault("OMP_NUM_THREADS", "1")
 
 # Page, and the command that renews its figures.
 PAGES = {
@@ -71,19 +74,26 @@ def mark(page):
     page.write_text(text, encoding="utf-8")
 
 
-def table(columns, rows):
-    """Return the lines of a Markdown table."""
+def table(columns, rows, shown=str):
+    """Return the lines of a Markdown table; `shown` makes the text of a cell."""
     return ["| " + " | ".join(columns) + " |", "|" + "---|" * len(columns),
-            *("| " + " | ".join(row) + " |" for row in rows)]
+            *("| " + " | ".join(map(shown, row)) + " |" for row in rows)]
 
 
-def insert(page, name, lines):
-    """Put lines between the marks <!-- name --> and <!-- /name --> of a page, and mark it measured."""
-    text = page.read_text(encoding="utf-8")
-    new = re.sub(rf"(<!-- {name} -->\n).*?(<!-- /{name} -->)",
-                 lambda match: match[1] + "\n".join(lines) + "\n" + match[2], text, flags=re.S)
-    page.write_text(new, encoding="utf-8")
-    mark(page)
+def replaced(text, name, lines):
+    """Return the text of a page with lines between its marks <!-- name --> and <!-- /name -->."""
+    new, count = re.subn(rf"(<!-- {name} -->\n).*?(<!-- /{name} -->)", lambda match: "".join(
+        [match[1], *(f"{line}\n" for line in lines), match[2]]), text, flags=re.S)
+    if count != 1:
+        raise ValueError(f"the page has no marks for {name}")
+    return new
+
+
+def insert(page, name, lines, measured=True):
+    """Put lines between the marks of a page, and mark it measured."""
+    page.write_text(replaced(page.read_text(encoding="utf-8"), name, lines), encoding="utf-8")
+    if measured:
+        mark(page)
 
 
 def measured_at(page):

@@ -11,20 +11,13 @@ import os
 import sys
 import warnings
 
-# To be set before a module loads OpenMP.
-os.environ.setdefault("OMP_NUM_THREADS", "1")
+import pages
+import snapin
+from matplotlib.figure import Figure
 
-import pages  # noqa: E402
-
-sys.path[:0] = [str(pages.ROOT / folder) for folder in ("pywrap", "build/pywrap", "tools/bench")]
-
-import matplotlib  # noqa: E402
-
-matplotlib.use("Agg")
+sys.path.append(str(pages.ROOT / "tools" / "bench"))
 
 import gauge  # noqa: E402
-import matplotlib.pyplot as plt  # noqa: E402
-import snapin  # noqa: E402
 
 DOCS = pages.ROOT / "docs"
 # Instantaneous adhesion strength, and the velocities of the bell curve in law's lengths over the
@@ -51,7 +44,8 @@ def driven(ratio, velocity, accuracy=1e-3, **drive):
 
 def draw_bell():
     """Draw pull-off against velocity."""
-    figure, axes = plt.subplots(figsize=(6.4, 4.2), layout="constrained")
+    figure = Figure((6.4, 4.2), layout="constrained")
+    axes = figure.subplots()
     for ratio in RATIOS:
         tension = [driven(ratio, v).summary["max_tension"] / (1.5 * math.pi * SIGMA) for v in SPEEDS]
         axes.semilogx(SPEEDS, tension, "o-", ms=3, label=f"$E_0/E_\\infty$ = {ratio:g}")
@@ -64,7 +58,8 @@ def draw_bell():
 
 def draw_cycles():
     """Draw load against h0 at several velocities."""
-    figure, axes = plt.subplots(figsize=(6.4, 4.2), layout="constrained")
+    figure = Figure((6.4, 4.2), layout="constrained")
+    axes = figure.subplots()
     for velocity in (0.002, 0.2, 2.0, 20.0, 200.0, 2.0e5):
         curve = driven(10.0, velocity).curve
         axes.plot(curve["h0"], curve["load"] / (math.pi * SIGMA), lw=1.2, label=f"{velocity:g}")
@@ -124,7 +119,8 @@ def drained(slip, accuracy=1e-3, viscosity=VISCOSITY, **drive):
 def draw_drainage():
     """Draw load against separation with and without slip, and the results of Reynolds and
     Vinogradova."""
-    figure, panels = plt.subplots(1, 2, figsize=(9.6, 4.2), layout="constrained")
+    figure = Figure((9.6, 4.2), layout="constrained")
+    panels = figure.subplots(1, 2)
     h = [10 ** (-9.2 + 3.2 * k / 200) for k in range(201)]
     for slip, colour in ((0, "C0"), (5e-9, "C1"), (20e-9, "C2"), (100e-9, "C3")):
         curve = drained(slip).curve

@@ -7,13 +7,13 @@ file, column and entry of results. A page has the tables between two marks,
 """
 
 import os
-import pathlib
 import re
 import subprocess
 from typing import NamedTuple
 
-ROOT = pathlib.Path(__file__).resolve().parent.parent
-PROGRAM = pathlib.Path(os.environ.get("SNAPIN", ROOT / "build" / "snapin"))
+import pages
+
+PROGRAM = os.environ.get("SNAPIN", pages.ROOT / "build" / "snapin")
 
 # Page, and the option that prints its tables.
 PAGES = {"docs/decks.md": "--keys", "docs/results.md": "--results"}
@@ -76,32 +76,19 @@ def results_as_markdown(sections):
     return text
 
 
-def page_with(page, block):
-    """Return the text of a page with its tables replaced by `block`."""
-    option = PAGES[page]
-    old = (ROOT / page).read_text(encoding="utf-8")
-    between = re.compile(f"(?<=<!-- {option} -->\n).*?(?=<!-- /{option} -->)", re.S)
-    new, count = between.subn(lambda _: block, old)
-    if count != 1:
-        raise ValueError(f"{page} has no marks for {option}")
-    return new
-
-
-def block_of(page, output):
-    """Return the text between the marks of a page."""
+def page_with(page, output):
+    """Return the text of a page with the tables of the program's output."""
     option = PAGES[page]
     make = {"--keys": keys_as_markdown, "--results": results_as_markdown}[option]
-    return make(sections_of(output))
+    lines = make(sections_of(output)).splitlines()
+    return pages.replaced((pages.ROOT / page).read_text(encoding="utf-8"), option, lines)
 
 
 def _table(head, rows):
     """Return a Markdown table without empty columns; nothing without rows."""
     kept = [i for i in range(len(head)) if any(row[i] for row in rows)]
-    if not kept:
-        return ""
-    lines = [head, ["---"] * len(head), *rows]
-    return "".join(
-        "| " + " | ".join(_cell(line[i]) for i in kept) + " |\n" for line in lines) + "\n"
+    columns, *cells = ([line[i] for i in kept] for line in (head, *rows))
+    return "\n".join([*pages.table(columns, cells, _cell), "", ""]) if kept else ""
 
 
 def _cell(text):
@@ -115,7 +102,7 @@ def main():
     for page, option in PAGES.items():
         output = subprocess.run(
             [PROGRAM, option], check=True, capture_output=True, text=True).stdout
-        (ROOT / page).write_text(page_with(page, block_of(page, output)), encoding="utf-8")
+        (pages.ROOT / page).write_text(page_with(page, output), encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -14,6 +14,8 @@ module timed_run
   use journal, only: journal_t
   use listener, only: listener_t
   use path_stepper, only: path_stepper_t
+  use stepper, only: branch_point_t, step_result_t
+  use tracing, only: trace, tracing_t
   use numerics_choice, only: choice_t, fixed_choice, fixed_mesh, panels
   use experiment_request, only: request_t, numerics_t
   use path_demand, only: h0_in_contact
@@ -214,6 +216,9 @@ contains
     class(listener_t), intent(inout) :: listener
     type(time_stepper_t), intent(inout) :: steps
     type(path_stepper_t) :: at_rest
+    type(branch_point_t) :: afar
+    type(step_result_t) :: event
+    type(tracing_t) :: traced
     integer :: k
 
     at_rest%problem = relaxed
@@ -221,7 +226,10 @@ contains
     at_rest%cost = steps%cost
     at_rest%meshes = steps%meshes
     at_rest%meshes%grows = .false.
-    call at_rest%know_path(high, low, .true., listener, accuracy=accuracy)
+    ! Without the pieces of the path and their landings, which `know_path` solves too.
+    call at_rest%begin_afar(high, afar, event)
+    if (.not. event%ending%early()) call trace(at_rest%solver_t, afar%state, low, .true., &
+      listener, traced, accuracy=accuracy)
     steps%meshes = at_rest%meshes
     steps%cost = at_rest%cost
     associate (meshes => steps%meshes)

@@ -94,12 +94,14 @@ def test_a_file_is_read_in_pieces_whatever_its_line_ends(run, folder):
     assert len(set(tables[0]["end_load"])) == count
 
 
-def test_an_interrupted_file_of_cases_goes_on_to_the_same_bytes(snapin, snapin_path, tmp_path):
+@pytest.mark.parametrize("sweep", [GRID, {"file": "cases.csv"}], ids=["keys", "file"])
+def test_an_interrupted_map_goes_on_to_the_same_bytes(snapin, snapin_path, tmp_path, sweep):
     rows = "".join(f"{stiffness!r}, {hamaker!r}\n" for stiffness, hamaker in CASES)
     (tmp_path / "cases.csv").write_text("bodies.stiffness, force.hamaker\n" + rows)
-    bench = Bench(snapin, snapin_path, tmp_path, scene({"file": "cases.csv"}), threads=2)
+    bench = Bench(snapin, snapin_path, tmp_path, scene(sweep), threads=2)
     first, *parts = frames(bench.journal)
-    for some in (parts[:5], parts[::2], parts[6:]):
+    assert len(parts) == len(CASES)
+    for some in ([], parts, parts[:5], parts[::2], parts[6:]):
         bench.check(first + b"".join(some))
 
 
@@ -142,14 +144,6 @@ def test_two_threads_hardly_wait_for_each_other(snapin_path, tmp_path):
             time.sleep(0.02)
     assert run.returncode == 0
     assert sum(sorted(busy.values())[-2:]) > 0.95 * 2 * took
-
-
-def test_an_interrupted_map_goes_on_to_the_same_bytes(snapin, snapin_path, tmp_path):
-    bench = Bench(snapin, snapin_path, tmp_path, scene(GRID), threads=2)
-    parts = frames(bench.journal)
-    assert len(parts) == 1 + len(CASES)
-    for count in (1, 6, len(parts)):
-        bench.check(b"".join(parts[:count]))
 
 
 def test_a_case_that_fails_is_a_row_that_says_why(run):

@@ -1,19 +1,15 @@
 """Claims about what is said of a run before it begins, and about runs that do not fit."""
 
 import re
-import resource
 
 import pytest
+from support.processes import limited
 from support.scenes import lennard_jones, loading
 
 SMALL = lennard_jones(1.0, loading=loading(6, 4, 1), numerics={"grid": "uniform", "nodes": 100})
 LARGE = SMALL.replace("nodes = 100", "nodes = 20000")
-
-
-def limited():
-    """Two gigabytes of addresses."""
-    limit = 2 * 1024**3
-    resource.setrlimit(resource.RLIMIT_AS, (limit, limit))
+# Two gigabytes of addresses.
+LITTLE = limited("AS", 2 * 1024**3)
 
 
 def test_what_does_not_fit_leaves_older_results_and_can_be_resumed(snapin, tmp_path):
@@ -24,7 +20,7 @@ def test_what_does_not_fit_leaves_older_results_and_can_be_resumed(snapin, tmp_p
               if path.is_file()}
     deck.write_text(LARGE)
     for options in ((), ("--resume",)):
-        refused = snapin(*options, "d.nml", cwd=tmp_path, preexec_fn=limited)
+        refused = snapin(*options, "d.nml", cwd=tmp_path, preexec_fn=LITTLE)
         assert refused.returncode == 1
         assert "not computed: matrices for 20000 nodes need" in refused.stderr
         after = {path: path.read_bytes() for path in (tmp_path / "results").rglob("*")
@@ -38,14 +34,14 @@ def test_what_does_not_fit_leaves_older_results_and_can_be_resumed(snapin, tmp_p
 
 def test_what_does_not_fit_makes_no_folder(snapin, tmp_path):
     (tmp_path / "d.nml").write_text(LARGE)
-    assert snapin("d.nml", cwd=tmp_path, preexec_fn=limited).returncode == 1
+    assert snapin("d.nml", cwd=tmp_path, preexec_fn=LITTLE).returncode == 1
     assert not (tmp_path / "results").exists()
 
 
 def test_a_sweep_whose_last_case_does_not_fit_is_not_begun(snapin, tmp_path):
     (tmp_path / "d.nml").write_text(
         SMALL + "&sweep key = 'numerics.nodes', values = 100, 20000 /\n")
-    refused = snapin("d.nml", cwd=tmp_path, preexec_fn=limited)
+    refused = snapin("d.nml", cwd=tmp_path, preexec_fn=LITTLE)
     assert refused.returncode == 1 and "20000 nodes need" in refused.stderr
     assert not (tmp_path / "results").exists()
 
@@ -56,7 +52,7 @@ def test_check_says_what_does_not_fit_and_what_fills_the_disk(snapin, tmp_path):
         lennard_jones(0.87, loading=loading(4, -2, 1e-6), unloading={}))
     (tmp_path / "short.nml").write_text(SMALL)
     done = snapin("--check", "large.nml", "long.nml", "short.nml", cwd=tmp_path,
-                  preexec_fn=limited)
+                  preexec_fn=LITTLE)
     assert done.returncode == 0
     assert "large.nml: not computed: matrices for 20000 nodes" in done.stderr
     size = re.search(r"long\.nml: its results take about ([\d.]+) GB on the disk", done.stderr)

@@ -61,12 +61,6 @@ def test_what_came_before_the_fall_is_kept(run):
         assert result.summary["jump_in_h0"] > 2 and "jump_out_h0" not in result.summary
 
 
-def test_a_path_without_repulsion_says_how_it_ends(run):
-    result = run(lennard_jones(0.87, part="attractive", equilibrium_path={"h0_end": -2.0}))
-    assert "fall onto each other" in result.warnings[0]
-    assert result.curve["h_centre"].min() > 0
-
-
 def test_repulsion_alone_that_does_not_converge_says_so(run):
     starved = exponential(10, loading=loading(6, -6, 1), numerics={"max_iterations": 1})
     result = run(starved, status=1)

@@ -1,25 +1,20 @@
 """error_estimate is honest: between the true error and a hundred times it."""
 
-import f90nml
 import pytest
-from support.scenes import exponential, lennard_jones, read_table, several
+from support.scenes import exponential, lennard_jones, several
 
 # Below this the reference is no better than the run.
 KNOWN = 3e-11
 
 
-def measured(snapin, folder, name, deck):
-    """What a deck reports, the end of its curve included, and its error estimate."""
-    (folder / f"{name}.nml").write_text(deck)
-    done = snapin(f"{name}.nml", cwd=folder)
-    assert done.returncode == 0, done.stderr
-    summary = f90nml.read(folder / "results" / name / "summary.nml")["summary"]
+def measured(result):
+    """What a run reports, the end of its curve included, and its error estimate."""
+    summary, curve = result.summary, result.curve
     found = {
         key: summary[key]
         for key in ("max_tension", "jump_in_h0", "jump_out_h0")
         if key in summary
     }
-    curve = read_table(folder / "results" / name / "curve.csv")
     rows = [k for k, branch in enumerate(curve["branch"]) if branch.startswith(("loading", "path"))]
     found["displacement at the end"] = curve["displacement"][rows[-1]]
     found["load at the end"] = curve["load"][rows[-1]]
@@ -68,10 +63,10 @@ def scene(kind, strength, accuracy):
         ("path", 0.01), ("path", 0.87), ("path", 8.7), ("path", 1000.0), ("cycle", 0.1),
         ("cycle", 0.87), ("cycle", 8.7), ("exponential", 1.0), ("exponential", 216.0)],
 )
-def test_the_estimate_bounds_the_error_within_a_hundred(snapin, tmp_path, kind, strength):
-    exact, exact_beside, _ = measured(snapin, tmp_path, "reference", scene(kind, strength, 1e-10))
+def test_the_estimate_bounds_the_error_within_a_hundred(run, kind, strength):
+    exact, exact_beside, _ = measured(run(scene(kind, strength, 1e-10)))
     for accuracy in (1e-3, 1e-4, 1e-6, 1e-8):
-        found, beside, estimate = measured(snapin, tmp_path, "run", scene(kind, strength, accuracy))
+        found, beside, estimate = measured(run(scene(kind, strength, accuracy)))
         error = difference(found, exact)
         widest = max(error, difference(beside, exact_beside))
         assert error <= accuracy
@@ -79,11 +74,9 @@ def test_the_estimate_bounds_the_error_within_a_hundred(snapin, tmp_path, kind, 
             assert error <= estimate <= 100 * widest, (accuracy, error, widest, estimate)
 
 
-def test_the_energy_lost_is_known_where_the_bodies_land_under_the_largest_tension(snapin, tmp_path):
+def test_the_energy_lost_is_known_where_the_bodies_land_under_the_largest_tension(run):
     """A landing is judged behind the fold that its jump starts from, whichever is found first."""
     deck = lennard_jones(8.7, loading={"h0_start": 24.0, "h0_end": -20.0, "h0_step": 0.5},
                          unloading={"from": [2.0, -20.0], "h0_end": 24.0, "h0_step": 0.5})
-    (tmp_path / "landing.nml").write_text(deck)
-    assert snapin("landing.nml", cwd=tmp_path).returncode == 0
-    summary = f90nml.read(tmp_path / "results" / "landing" / "summary.nml")["summary"]
+    summary = run(deck).summary
     assert summary["energy_lost_uncertainty"] < 1e-3 * summary["energy_lost"]

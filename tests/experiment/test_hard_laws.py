@@ -8,7 +8,7 @@ inverse of sigma but for a factor near 1.
 import math
 
 import pytest
-from support.scenes import deck, several
+from support.scenes import deck, lennard_jones, several
 
 # Pull-off over pi R w of Maugis' theory (1992), from a solver of its own.
 MAUGIS = {0.3: 1.815556, 1.0: 1.600735, 2.0: 1.534603}
@@ -156,10 +156,8 @@ def test_mesh_has_short_panels_only_where_the_step_is(run):
 
 
 def oscillating(accuracy):
-    return deck(
-        bodies={"radius": 1.0, "stiffness": 1.0},
-        force={"law": "lennard_jones", "hamaker": 16 * math.pi, "z0": 1.0},
-        structural={"amplitude": 0.6, "period": 3.0, "decay_length": 3.0},
+    return lennard_jones(
+        1.0, structural={"amplitude": 0.6, "period": 3.0, "decay_length": 3.0},
         equilibrium_path={"h0_end": -4.0}, numerics={"accuracy": accuracy})
 
 

@@ -6,7 +6,7 @@ import math
 import numpy as np
 import pytest
 from support.half_space import path_by_axis
-from support.scenes import deck, loading
+from support.scenes import changed, deck, lennard_jones, loading, value_in
 
 AXIS = (*np.linspace(12, 3, 12), *np.linspace(2.8, 1.1, 18), *np.linspace(1.09, 0.98, 16))
 ENDS = (*np.arange(0, 3.6, 0.15), 3.8, 4.4, *np.geomspace(6, 150, 7))
@@ -35,9 +35,8 @@ def layered(layer, sigma=1.0, pieces=1, accuracy=1e-8, **groups):
             bodies["young"] = [bodies["young"], 1 - base**2]
     else:
         bodies["rigid"] = True
-    return deck(bodies=bodies, layer=keys,
-                force={"law": "lennard_jones", "hamaker": 16 * math.pi * sigma, "z0": 1.0},
-                numerics={"accuracy": accuracy}, **groups)
+    return lennard_jones(
+        sigma, bodies=bodies, layer=keys, numerics={"accuracy": accuracy}, **groups)
 
 
 PATH = {"h0_end": -1.0}
@@ -99,30 +98,19 @@ def test_a_cone_over_a_layer_has_the_load_that_is_asked_for(run):
 
 @pytest.mark.parametrize("pieces", [1, 3])
 def test_equal_moduli_are_a_half_space(run, pieces):
-    plain = run(deck(bodies={"radius": 1.0, "young": 0.91, "poisson": 0.3},
-                        force={"law": "lennard_jones", "hamaker": 16 * math.pi, "z0": 1.0},
-                        equilibrium_path=PATH)).summary
-    same = run(deck(bodies={"radius": 1.0, "young": 0.91, "poisson": 0.3},
-                       layer={"thickness": [1.0] * pieces, "young": [0.91] * pieces,
-                              "poisson": [0.3] * pieces, "body": "both"},
-                       force={"law": "lennard_jones", "hamaker": 16 * math.pi, "z0": 1.0},
-                       equilibrium_path=PATH)).summary
+    bodies = {"radius": 1.0, "young": 0.91, "poisson": 0.3}
+    layers = {"thickness": [1.0] * pieces, "young": [0.91] * pieces, "poisson": [0.3] * pieces,
+              "body": "both"}
+    plain, same = (
+        run(lennard_jones(1.0, bodies=bodies, layer=layer, equilibrium_path=PATH)).summary
+        for layer in (None, layers))
     for key in ("max_tension", "jump_in_h0", "jump_out_load", "end_load"):
         assert same[key] == plain[key]
     assert same["top_modulus"] == pytest.approx(same["bottom_modulus"], rel=1e-14)
 
 
-def test_two_layers_of_one_material_are_one(run):
-    one, two = (run(layered(COAT, pieces=n, accuracy=1e-6, equilibrium_path=PATH)).summary
-                for n in (1, 2))
-    for key in ("max_tension", "jump_in_h0", "jump_out_load", "end_load"):
-        assert two[key] == pytest.approx(one[key], rel=1e-12)
-
-
 def test_a_thick_layer_is_its_half_space_and_a_thin_one_nothing(run):
-    half = run(deck(bodies={"radius": 1.0, "stiffness": 1.0},
-                       force={"law": "lennard_jones", "hamaker": 16 * math.pi, "z0": 1.0},
-                       equilibrium_path=PATH)).summary
+    half = run(lennard_jones(1.0, equilibrium_path=PATH)).summary
     apart = []
     for thickness in (300.0, 3000.0):
         thick = run(layered((thickness, *COAT[1:]), accuracy=1e-6,
@@ -159,15 +147,8 @@ NUMBERS = ["layer.thickness(1)", "layer.thickness(2)", "layer.young(1)", "layer.
 
 def coated(key=None, factor=1.0, **groups):
     """The deck of two layers with one of its numbers changed."""
-    changed = {name: dict(keys) for name, keys in (COATED | groups).items()}
-    if key:
-        group, name = key.split(".")
-        name, _, item = name.rstrip(")").partition("(")
-        held = changed[group][name]
-        changed[group][name] = [
-            value * factor if i == int(item) else value for i, value in enumerate(held, 1)
-        ] if item else held * factor
-    return deck(**changed)
+    groups = COATED | groups
+    return deck(**changed(groups, {key: factor * value_in(groups, key)} if key else {}))
 
 
 @pytest.mark.parametrize("key", NUMBERS)

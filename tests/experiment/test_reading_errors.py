@@ -6,7 +6,7 @@ import subprocess
 import numpy as np
 import pytest
 from support.processes import HANG
-from support.scenes import deck, lennard_jones, loading, several
+from support.scenes import lennard_jones, loading, several
 
 # Strength of adhesion, accuracy, stiffness over sigma, load over sigma.
 SCENES = [(0.02, 1e-4, 0.3, -1.0), (0.87, 1e-5, 3.0, 2.0), (8.7, 1e-6, 0.05, -3.0),
@@ -130,9 +130,8 @@ def test_every_place_has_a_contact_radius_off_by_no_more_than_its_error(radii, d
 
 def test_the_contact_radius_of_rigid_bodies_is_that_of_their_shape(radii):
     """A sphere is a parabola of the height r^2/2, cut at the level 1.1 z0."""
-    found = radii(deck(bodies={"radius": 1.0, "rigid": True},
-                       force={"law": "lennard_jones", "hamaker": 16 * math.pi, "z0": 1.0},
-                       loading=loading(4, 0.7, 0.1)))
+    found = radii(lennard_jones(1.0, bodies={"radius": 1.0, "rigid": True},
+                                loading=loading(4, 0.7, 0.1)))
     radius, error = found["end"]
     assert radius == pytest.approx(math.sqrt(2 * 0.4)) and 0 < error < 1e-10
     # The tension is largest without contact, or at h0 = z0.

@@ -7,7 +7,7 @@ import pytest
 import snapin
 from conftest import ROOT
 from support import derjaguin
-from support.scenes import deck, loading, several
+from support.scenes import deck, lennard_jones, loading, several
 
 WALL = {"van_der_waals": {"hamaker": 1e-20}, "born": {"z0": 0.3e-9}}
 TABLE = str(ROOT / "inputs" / "examples" / "tabulated.txt")
@@ -235,10 +235,8 @@ def test_a_short_force_leaves_a_large_body_whole(run):
 def test_elastic_bodies_tend_to_rigid_ones_as_they_get_stiff(run, shape):
     """In proportion to sigma, at every h0 of a cycle and at its largest tension."""
     def found(**bodies):
-        result = run(deck(
-            bodies=bodies, shape=shape,
-            force={"law": "lennard_jones", "hamaker": 16 * math.pi, "z0": 1.0},
-            loading=loading(6, 0.9, 0.3), numerics={"accuracy": 1e-9}))
+        result = run(lennard_jones(1.0, bodies=bodies, shape=shape, loading=loading(6, 0.9, 0.3),
+                                   numerics={"accuracy": 1e-9}))
         return np.append(result.curve["load"], result.summary["max_tension"])
 
     exact = found(rigid=True)

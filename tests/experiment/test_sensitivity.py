@@ -7,7 +7,7 @@ import re
 import numpy as np
 import pytest
 import snapin as python
-from support.scenes import deck, lennard_jones, several
+from support.scenes import changed, deck, lennard_jones, several, value_in
 
 LAW = {"law": "lennard_jones", "hamaker": 1.0e-20, "z0": 0.5e-9}
 PARABOLA = {"radius": 1.5e-2, "stiffness": 1.0e10}
@@ -125,24 +125,6 @@ CASES = {
 }
 
 
-def with_numbers(groups, changes):
-    """The deck's groups with keys replaced, 'group.key' or 'group.key(term)'."""
-    changed = {name: dict(keys) for name, keys in groups.items()}
-    for name, value in changes.items():
-        group, key, term = re.fullmatch(r"(\w+)\.(\w+)(?:\((\d+)\))?", name).groups()
-        if term:
-            changed[group][key] = list(changed[group][key])
-            changed[group][key][int(term) - 1] = value
-        else:
-            changed[group][key] = value
-    return changed
-
-
-def number_in(groups, name):
-    group, key, term = re.fullmatch(r"(\w+)\.(\w+)(?:\((\d+)\))?", name).groups()
-    return groups[group][key][int(term) - 1] if term else groups[group][key]
-
-
 # On other shapes the meshes of accuracy 1e-9 are large.
 LONG = ["Morse law on a power of r", "Morse law on a sphere"]
 
@@ -159,14 +141,14 @@ def test_derivatives_are_those_of_whole_runs(run, case):
     step = 4e-3
 
     def moved(steps):
-        return run(deck(**with_numbers(groups, {
-            name: number_in(groups, name) * (1 + steps * step * part)
+        return run(deck(**changed(groups, {
+            name: value_in(groups, name) * (1 + steps * step * part)
             for name, part in direction.items()})))
 
     runs = [moved(steps) for steps in (-2, -1, 1, 2)]
     tried = 0
     for quantity, rate in derivatives(found, "derivative").items():
-        expected = sum(rate[name] * number_in(groups, name) * part
+        expected = sum(rate[name] * value_in(groups, name) * part
                        for name, part in direction.items())
         values = [value_of(one, quantity) for one in runs]
         if not np.isfinite(values).all():

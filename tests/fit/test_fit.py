@@ -19,6 +19,7 @@ from support.measured import (
     states_of_device,
     write,
 )
+from support.scenes import changed
 
 # A noise that data without any are said to have, so that the sum of squares has a scale.
 FINE = {"noise": 1e-13}
@@ -65,20 +66,6 @@ SCENES = {
 }
 
 
-def with_values(groups, values):
-    """Groups with other values of keys."""
-    changed = {name: dict(keys) for name, keys in groups.items()}
-    for key, value in values.items():
-        group, name = key.split(".")
-        name, _, item = name.rstrip(")").partition("(")
-        if item:
-            changed[group][name] = [*changed[group][name]]
-            changed[group][name][int(item) - 1] = value
-        else:
-            changed[group][name] = value
-    return changed
-
-
 def values_of(result, group="fit"):
     found = result.fitted[group]
     return dict(zip(found["parameters"], found["estimate"]))
@@ -107,7 +94,7 @@ def exact(tmp_path_factory):
 @pytest.mark.parametrize("name", SCENES)
 def test_data_without_noise_give_the_values_back(exact, name):
     groups, truth = SCENES[name]
-    start = with_values(groups, {key: 1.07 * value for key, value in truth.items()})
+    start = changed(groups, {key: 1.07 * value for key, value in truth.items()})
     result = run(fit_deck(start, exact(name), [*truth, POINT], FINE))
     found = values_of(result)
     assert result.converged
@@ -137,7 +124,7 @@ def test_errors_are_those_of_the_profile_of_the_sum_of_squares(branches, tmp_pat
         # On either side: the model is not linear, which shows in the difference of the two.
         for off in (-0.5, 0.5):
             value = values_of(free)[key] + off * errors_of(free)[key]
-            held = run(fit_deck(with_values(LENNARD_JONES, {key: value}), file, others, quiet,
+            held = run(fit_deck(changed(LENNARD_JONES, {key: value}), file, others, quiet,
                                 **accurate)).fitted["fit"]
             gained.append(held["chi_squared"][0] - free.fitted["fit"]["chi_squared"][0])
         assert np.mean(gained) == pytest.approx(0.25, rel=0.01)
@@ -165,13 +152,13 @@ def test_errors_and_correlations_are_those_of_differences_between_curves(branche
 
     # A measured jump lies between samples, and so the solution is a little off the truth.
     found = values_of(result)
-    solution = with_values(LENNARD_JONES, {key: found[key] for key in truth})
+    solution = changed(LENNARD_JONES, {key: found[key] for key in truth})
     z = z - found[POINT]
     columns = []
     for key in truth:
         value = found[key]
         off = 1e-3 * value
-        near, far = (with_values(solution, {key: value + side}) for side in (-off, off))
+        near, far = (changed(solution, {key: value + side}) for side in (-off, off))
         columns.append((model(far, Branches(far)) - model(near, Branches(near))) / (2 * off))
     off = 1e-12
     curve = Branches(solution)

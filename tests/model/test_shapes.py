@@ -4,15 +4,13 @@ import math
 
 import numpy as np
 import pytest
-from support.scenes import deck, loading
+from support.scenes import lennard_jones, loading
 
 
 def scene(shape, sigma=1.0, **groups):
     """A deck in units of z0 and of E/(1-nu^2), or of rigid bodies where sigma is 0."""
-    return deck(
-        bodies={"stiffness": 1.0} if sigma else {"rigid": True}, shape=shape,
-        force={"law": "lennard_jones", "hamaker": 16 * math.pi * (sigma or 1.0), "z0": 1.0},
-        **groups)
+    bodies = {"stiffness": 1.0} if sigma else {"rigid": True}
+    return lennard_jones(sigma or 1.0, bodies=bodies, shape=shape, **groups)
 
 
 def write_profile(folder, r, f):

@@ -2,18 +2,9 @@
 
 import numpy as np
 import pytest
+from support.known import BY_SIGMA
 from support.scenes import JKR, exponential, lennard_jones, loading, several
 
-# The reference table: an independent high-order solution. Loads in units of gamma R.
-TABLE = {
-    0.87: {
-        "pull-off": 1.07953786, "pull-off h0": 2.2284576, "in": (3.0886872, -1.5330549),
-        "out": (3.4834324, -2.9986585)},
-    8.7: {
-        "pull-off": 1.01124487, "pull-off h0": 6.2758749, "in": (5.9728350, -0.4076839),
-        "out": (11.9352327, -2.6534864)},
-}
-# The table is of two independent solutions that agree to within one unit of its last digit.
 EIGHT = {"rel": 1e-8}
 SEVEN = {"abs": 1.05e-7}
 
@@ -25,25 +16,19 @@ def path(sigma, accuracy=None, part="full", **keys):
         sigma, part=part, equilibrium_path={"h0_end": -2.0, **keys}, numerics=numerics)
 
 
-def of(sigma, value):
-    """A load in units of gamma R."""
-    return value / sigma
-
-
 # --- The table
 
 
-@pytest.mark.parametrize("sigma", TABLE)
+@pytest.mark.parametrize("sigma", BY_SIGMA)
 def test_path_has_the_folds_and_pull_off_of_the_reference_to_all_digits(run, sigma):
-    summary, table = run(path(sigma, 1e-10)).summary, TABLE[sigma]
+    summary, (tension, h0, *jumps) = run(path(sigma, 1e-10)).summary, BY_SIGMA[sigma]
     assert summary["sigma"] == pytest.approx(sigma, rel=1e-14)
-    assert of(sigma, summary["max_tension"]) / JKR == pytest.approx(table["pull-off"], **EIGHT)
-    assert summary["max_tension_h0"] == pytest.approx(table["pull-off h0"], **SEVEN)
-    for way in ("in", "out"):
-        h0, load = table[way]
+    assert summary["max_tension"] / (sigma * JKR) == pytest.approx(tension, **EIGHT)
+    assert summary["max_tension_h0"] == pytest.approx(h0, **SEVEN)
+    for way, h0, load in (("in", *jumps[:2]), ("out", *jumps[2:])):
         assert summary[f"jump_{way}_h0"] == pytest.approx(h0, **SEVEN)
-        assert of(sigma, summary[f"jump_{way}_load"]) == pytest.approx(load, **SEVEN)
-    assert f"jump_{way}_uncertainty" not in summary
+        assert summary[f"jump_{way}_load"] / sigma == pytest.approx(load, **SEVEN)
+        assert f"jump_{way}_uncertainty" not in summary
 
 
 def test_large_sigma_has_two_more_folds_before_contact(run):

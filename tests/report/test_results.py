@@ -3,12 +3,12 @@
 import math
 import random
 import re
-import resource
 import sys
 
 import f90nml
 import pytest
 from conftest import ROOT
+from support.processes import limited
 from support.scenes import deck, exponential, lennard_jones, loading, runner
 
 sys.path.append(str(ROOT / "tools"))
@@ -273,11 +273,7 @@ def test_a_table_that_cannot_be_written_leaves_no_results(snapin, tmp_path, coun
     """A deck of theories alone has no states for a journal, and a summary of 1500 bytes."""
     classical = {"h0_start": 1.0, "h0_end": -1.0, "count": count}
     (tmp_path / "d.nml").write_text(lennard_jones(1.0, classical=classical))
-
-    def limited():
-        resource.setrlimit(resource.RLIMIT_FSIZE, (2200, 2200))
-
-    done = snapin("d.nml", cwd=tmp_path, preexec_fn=limited)
+    done = snapin("d.nml", cwd=tmp_path, preexec_fn=limited("FSIZE", 2200))
     assert done.returncode == 1
     assert "classical.csv.partial: File too large" in done.stderr
     assert not [p for p in (tmp_path / "results/d").iterdir() if not p.name.endswith(".partial")]

@@ -6,7 +6,7 @@ import time
 
 import f90nml
 import pytest
-from support.interrupted import Bench, frames, sealed, SHORT, WORD
+from support.interrupted import Bench, frames, sealed, short, SHORT, WORD  # noqa: F401
 from support.scenes import deck, exponential, lennard_jones, loading
 
 UNIFORM = {"grid": "uniform", "nodes": 120, "r_max": 12.0}
@@ -59,15 +59,7 @@ def test_a_cycle_goes_on_from_any_record(cycle):
 
 
 def test_a_killed_cycle_goes_on_again_and_again(cycle):
-    rng = random.Random(4)
-    assert cycle.resume(b"").returncode == cycle.status
-    target = cycle.folder / "cut/deck"
-    for path in target.iterdir():
-        path.unlink()
-    for _ in range(4):
-        cycle.kill(rng.uniform(0.02, 0.15), "--resume")
-    assert cycle.run("cut", "--resume").returncode == cycle.status
-    assert cycle.files("cut") == cycle.whole
+    cycle.check_killed(4, 0.02, 0.15)
 
 
 def test_a_cycle_adds_only_what_its_journal_lacks(cycle):
@@ -77,11 +69,6 @@ def test_a_cycle_adds_only_what_its_journal_lacks(cycle):
     assert ended.startswith(begun)
     # The same records but for the times they were made at.
     assert [len(part) for part in frames(ended)] == [len(part) for part in parts]
-
-
-@pytest.fixture(scope="module")
-def short(snapin, snapin_path, tmp_path_factory):
-    return Bench(snapin, snapin_path, tmp_path_factory.mktemp("short"), SHORT)
 
 
 def test_another_number_of_threads_is_refused_in_a_cycle(snapin, snapin_path, tmp_path):

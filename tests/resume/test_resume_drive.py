@@ -40,11 +40,4 @@ def test_a_drive_goes_on_from_anywhere(drive):
 
 
 def test_a_killed_drive_goes_on_again_and_again(drive):
-    rng = random.Random(4)
-    drive.resume(b"")
-    for path in (drive.folder / "cut/deck").iterdir():
-        path.unlink()
-    for _ in range(3):
-        drive.kill(rng.uniform(0.05, 0.5), "--resume")
-    assert drive.run("cut", "--resume").returncode == 0
-    assert drive.files("cut") == drive.whole
+    drive.check_killed(3, 0.05, 0.5)

@@ -3,13 +3,7 @@
 import random
 import struct
 
-import pytest
-from support.interrupted import Bench, frames, rows, sealed, SWEEP, WORD
-
-
-@pytest.fixture(scope="module")
-def sweep(snapin, snapin_path, tmp_path_factory):
-    return Bench(snapin, snapin_path, tmp_path_factory.mktemp("sweep"), SWEEP, threads=2)
+from support.interrupted import frames, rows, sealed, sweep, WORD  # noqa: F401
 
 
 def test_a_sweep_goes_on_from_any_record(sweep):
@@ -60,10 +54,4 @@ def test_the_number_of_threads_may_change_between_the_parts_of_a_sweep(sweep):
 
 
 def test_a_killed_sweep_goes_on_again_and_again(sweep):
-    rng = random.Random(2)
-    (sweep.folder / "cut/deck/journal.partial").unlink(missing_ok=True)
-    (sweep.folder / "cut/deck/summary.nml").unlink(missing_ok=True)
-    for _ in range(6):
-        sweep.kill(rng.uniform(0.0, 0.15), "--resume")
-    assert sweep.run("cut", "--resume").returncode == 0
-    assert sweep.files("cut") == sweep.whole
+    sweep.check_killed(6, 0.0, 0.15)

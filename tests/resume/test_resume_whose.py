@@ -8,13 +8,14 @@ import subprocess
 import time
 
 import pytest
-from support.interrupted import Bench, environment, frames, heading, linked_id, owner, SWEEP
+from support.interrupted import frames, heading, linked_id, owner, sweep, SWEEP  # noqa: F401
+from support.processes import threaded
 from support.scenes import lennard_jones, loading
 
 
-@pytest.fixture(scope="module")
-def sweep(snapin, snapin_path, tmp_path_factory):
-    return Bench(snapin, snapin_path, tmp_path_factory.mktemp("sweep"), SWEEP, threads=2)
+def state_of(folder):
+    """Contents and times of the files of a folder."""
+    return {path.name: (path.read_bytes(), path.stat().st_mtime_ns) for path in folder.iterdir()}
 
 
 def changes(text):
@@ -78,12 +79,11 @@ def test_resume_without_anything_to_resume_begins_at_the_beginning_and_says_so(s
 
 def test_resume_leaves_finished_results_as_they_are(sweep):
     target = sweep.folder / "whole/deck"
-    before = {path.name: (path.read_bytes(), path.stat().st_mtime_ns) for path in target.iterdir()}
+    before = state_of(target)
     done = sweep.run("whole", "--resume")
     assert done.returncode == 0
     assert "complete since an earlier run" in done.stderr
-    after = {path.name: (path.read_bytes(), path.stat().st_mtime_ns) for path in target.iterdir()}
-    assert after == before
+    assert state_of(target) == before
 
 
 def test_resume_keeps_the_exit_status_of_a_finished_run_that_failed(snapin, tmp_path):
@@ -107,10 +107,7 @@ def test_resume_runs_a_deck_whose_results_are_of_another(snapin, tmp_path):
 
 
 def test_without_resume_what_was_interrupted_is_dropped_and_that_is_said(sweep):
-    target = sweep.folder / "cut/deck"
-    for path in target.iterdir():
-        path.unlink()
-    (target / "journal.partial").write_bytes(b"".join(frames(sweep.journal)[:3]))
+    sweep.emptied(b"".join(frames(sweep.journal)[:3]))
     done = sweep.run("cut")
     assert done.returncode == 0
     assert "starting over" in done.stderr
@@ -122,12 +119,9 @@ def test_without_resume_what_was_interrupted_is_dropped_and_that_is_said(sweep):
 
 @pytest.mark.parametrize("options", [[], ["--resume"]])
 def test_a_second_run_is_refused_and_touches_nothing(sweep, options):
-    target = sweep.folder / "cut/deck"
-    for path in target.iterdir():
-        path.unlink()
-    (target / "journal.partial").write_bytes(b"".join(frames(sweep.journal)[:3]))
+    target = sweep.emptied(b"".join(frames(sweep.journal)[:3]))
     (target / "curve.csv.partial").write_text("x")
-    before = {path.name: (path.read_bytes(), path.stat().st_mtime_ns) for path in target.iterdir()}
+    before = state_of(target)
     folder = os.open(target, os.O_RDONLY)
     try:
         fcntl.flock(folder, fcntl.LOCK_EX)
@@ -137,8 +131,7 @@ def test_a_second_run_is_refused_and_touches_nothing(sweep, options):
     assert done.returncode == 1
     assert "another run is writing" in done.stderr
     assert "--out" in done.stderr
-    after = {path.name: (path.read_bytes(), path.stat().st_mtime_ns) for path in target.iterdir()}
-    assert after == before
+    assert state_of(target) == before
     # The lock is gone with its holder.
     assert sweep.run("cut", *options).returncode == 0
 
@@ -150,7 +143,7 @@ def test_a_run_whose_folder_is_gone_publishes_nothing_and_touches_no_other(
     folder = tmp_path / "results/deck"
     folder.mkdir(parents=True)
     (folder / "summary.nml").write_text("of an earlier run")
-    with subprocess.Popen([snapin_path, "deck.nml"], cwd=tmp_path, env=environment(1),
+    with subprocess.Popen([snapin_path, "deck.nml"], cwd=tmp_path, env=threaded(),
                           stderr=subprocess.PIPE, text=True) as process:
         while not (folder / "curve.csv.partial").exists():
             assert process.poll() is None, process.communicate()[1]

@@ -1,31 +1,15 @@
 """Claims about runs whose files cannot be written, or whose messages nobody hears."""
 
 import os
-import resource
 import subprocess
 
 import pytest
-from support.interrupted import Bench, environment, frames, rows, SHORT, SWEEP
+from support.interrupted import Bench, frames, rows, short, sweep  # noqa: F401
+from support.processes import limited, threaded
 from support.scenes import lennard_jones, loading
 
 
-@pytest.fixture(scope="module")
-def sweep(snapin, snapin_path, tmp_path_factory):
-    return Bench(snapin, snapin_path, tmp_path_factory.mktemp("sweep"), SWEEP, threads=2)
-
-
-@pytest.fixture(scope="module")
-def short(snapin, snapin_path, tmp_path_factory):
-    return Bench(snapin, snapin_path, tmp_path_factory.mktemp("short"), SHORT)
-
-
 # --- Where files cannot be written
-
-def empty(folder):
-    folder.mkdir(parents=True, exist_ok=True)
-    for path in folder.iterdir():
-        path.unlink()
-
 
 def check_stopped(bench, done, folder, words):
     """A run that could not write: told, partial by name, and nothing that looks complete."""
@@ -39,17 +23,12 @@ def check_stopped(bench, done, folder, words):
 @pytest.mark.parametrize("name", ["short", "sweep"])
 def test_a_limit_on_the_size_of_files_stops_a_run_that_then_goes_on(name, request):
     bench = request.getfixturevalue(name)
-    folder = bench.folder / "cut/deck"
     whole = bench.folder / "whole/deck"
     (table,) = [*whole.glob("curve.csv"), *whole.glob("sweep.csv")]
     largest = table.stat().st_size
     for limit in (0, 100, 1500, 2500, largest // 2, largest - 1):
-        empty(folder)
-
-        def limited(limit=limit):
-            resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))
-
-        done = bench.run("cut", preexec_fn=limited)
+        folder = bench.emptied()
+        done = bench.run("cut", preexec_fn=limited("FSIZE", limit))
         check_stopped(bench, done, folder, "File too large; raise the limit")
         if limit == largest // 2:
             # What could not be kept is not computed either.
@@ -63,15 +42,11 @@ def test_a_limit_on_the_size_of_files_stops_a_run_that_then_goes_on(name, reques
 def test_a_journal_that_cannot_grow_stops_a_run_that_then_goes_on(snapin, snapin_path, tmp_path):
     # Some ten times as long as what is gathered before it is handed over.
     long = Bench(snapin, snapin_path, tmp_path, lennard_jones(0.2, loading=loading(4, 1, 2e-4)))
-    folder = tmp_path / "cut/deck"
     table = (tmp_path / "whole/deck/curve.csv").stat().st_size
     assert len(long.journal) > 4 * table
-    empty(folder)
-
-    def limited():
-        resource.setrlimit(resource.RLIMIT_FSIZE, (2 * table, 2 * table))
-
-    check_stopped(long, long.run("cut", preexec_fn=limited), folder, "File too large; raise")
+    folder = long.emptied()
+    done = long.run("cut", preexec_fn=limited("FSIZE", 2 * table))
+    check_stopped(long, done, folder, "File too large; raise")
     done = long.run("cut", "--resume")
     assert done.returncode == 0
     assert "continuing" in done.stderr
@@ -95,14 +70,9 @@ def test_a_full_disk_stops_a_run_that_then_goes_on(short, tmp_path):
 
 
 def test_results_of_an_earlier_run_outlive_one_that_cannot_write(short):
-    folder = short.folder / "cut/deck"
-    empty(folder)
+    short.emptied()
     assert short.run("cut").returncode == 0
-
-    def limited():
-        resource.setrlimit(resource.RLIMIT_FSIZE, (9000, 9000))
-
-    done = short.run("cut", preexec_fn=limited)
+    done = short.run("cut", preexec_fn=limited("FSIZE", 9000))
     assert done.returncode == 1
     found = short.files("cut")
     assert {name: found[name] for name in short.whole} == short.whole
@@ -140,12 +110,11 @@ def close(*descriptors):
 
 @pytest.mark.parametrize("closed", [(2,), (1, 2), (0, 1, 2)], ids=str)
 def test_messages_never_end_up_in_results_when_streams_are_closed(short, closed):
-    folder = short.folder / "cut/deck"
-    empty(folder)
+    short.emptied()
     # There is something to say while files are open.
     begun = b"".join(frames(short.journal)[:9])
     for options in [("--resume",), ()]:
-        (folder / "journal.partial").write_bytes(begun)
+        (short.folder / "cut/deck/journal.partial").write_bytes(begun)
         done = short.run("cut", *options, preexec_fn=close(*closed))
         assert done.returncode == 0
         assert short.files("cut") == short.whole
@@ -157,10 +126,10 @@ def test_a_closed_pipe_or_a_full_terminal_log_does_not_end_a_run(short):
     full = os.open("/dev/full", os.O_WRONLY)
     try:
         for stream in (writer, full):
-            empty(short.folder / "cut/deck")
+            short.emptied()
             done = subprocess.run(
                 [short.path, "--out", "cut", "--resume", "deck.nml"], cwd=short.folder,
-                env=environment(1), stderr=stream, check=False)
+                env=threaded(), stderr=stream, check=False)
             assert done.returncode == 0
             assert short.files("cut") == short.whole
     finally:

@@ -8,49 +8,41 @@ import re
 import pytest
 from conftest import ROOT
 from support.decks import (
-    BODIES, FORCE, GOOD, LAYERED, LOADING, assert_refused, with_bodies, with_extra)
+    BODIES, FORCE, GOOD, LAYERED, LOADING, assert_refused, body, extra, with_bodies, with_extra)
 
 # --- Refused
 
 # name: (deck, line, group, key, phrase)
 REFUSED = {
     # ranges of single keys
-    "negative radius": (with_bodies("radius = -1, stiffness = 1 /"), 1, "bodies", "radius",
-                        "-1 is out of range; allowed: a number > 0 m"),
-    "zero stiffness": (with_bodies("radius = 1, stiffness = 0 /"), 1, "bodies", "stiffness",
-                       "> 0 Pa"),
-    "poisson too large": (with_bodies("radius = 1, young = 1, poisson = 0.51 /"), 1, "bodies",
-                          "poisson", "<= 0.5"),
-    "poisson at -1": (with_bodies("radius = 1, young = 1, poisson = -1 /"), 1, "bodies", "poisson",
-                      "> -1"),
-    "accuracy too small": (with_extra("&numerics accuracy = 1e-11 /"), 4, "numerics", "accuracy",
-                           "out of range"),
-    "mixing limit zero": (with_extra("&numerics mixing_limit = 0 /"), 4, "numerics",
-                          "mixing_limit", "> 0 and <= 1"),
+    "negative radius": body("radius = -1, stiffness = 1 /", "radius",
+                            "-1 is out of range; allowed: a number > 0 m"),
+    "zero stiffness": body("radius = 1, stiffness = 0 /", "stiffness", "> 0 Pa"),
+    "poisson too large": body("radius = 1, young = 1, poisson = 0.51 /", "poisson", "<= 0.5"),
+    "poisson at -1": body("radius = 1, young = 1, poisson = -1 /", "poisson", "> -1"),
+    "accuracy too small": extra("&numerics accuracy = 1e-11 /", "accuracy", "out of range"),
+    "mixing limit zero": extra("&numerics mixing_limit = 0 /", "mixing_limit", "> 0 and <= 1"),
     "negative step": (GOOD.replace("0.05e-9", "-0.05e-9"), 3, "loading", "h0_step", "> 0 m"),
-    "negative spring": (with_extra("&equilibrium_path /\n&device stiffness = 1, -1 /"), 5, "device",
-                        "stiffness", ">= 0 N/m"),
+    "negative spring": extra("&equilibrium_path /\n&device stiffness = 1, -1 /", "stiffness",
+                             ">= 0 N/m", line=5),
     # keys against each other
-    "device without a path": (with_extra("&device stiffness = 1 /"), 4, "device", "",
-                              "needs &equilibrium_path"),
+    "device without a path": extra("&device stiffness = 1 /", "", "needs &equilibrium_path"),
     "regime of rigid bodies": (
         GOOD.replace("stiffness = 1.0e10", "rigid = T") + "&equilibrium_path /\n&regime /", 5,
         "regime", "", "elastic bodies"),
     "table of bodies that repel": (
         GOOD.replace("/\n&load", ", part = 'repulsive' /\n&load") + "&equilibrium_path /\n&table /",
         5, "table", "", "a force that attracts"),
-    "device upwards": (
-        with_extra("&equilibrium_path /\n&device z_start = 1e-9,\n z_end = 2e-9 /"), 5, "device",
-        "z_start", "not above z_end"),
-    "derivative by an accuracy": (
-        with_extra("&equilibrium_path /\n&sensitivity parameters = 'numerics.accuracy' /"), 5,
-        "sensitivity", "parameters", "bodies.radius, bodies.stiffness, force.hamaker, force.z0"),
-    "derivative by a range": (
-        with_extra("&equilibrium_path /\n&sensitivity parameters = 'loading.h0_end' /"), 5,
-        "sensitivity", "parameters", "not a number of bodies, shape or forces"),
-    "derivative by a word": (
-        with_extra("&equilibrium_path /\n&sensitivity parameters = 'force.part' /"), 5,
-        "sensitivity", "parameters", "not a number of bodies, shape or forces"),
+    "device upwards": extra("&equilibrium_path /\n&device z_start = 1e-9,\n z_end = 2e-9 /",
+                            "z_start", "not above z_end", line=5),
+    "derivative by an accuracy": extra(
+        "&equilibrium_path /\n&sensitivity parameters = 'numerics.accuracy' /", "parameters",
+        "bodies.radius, bodies.stiffness, force.hamaker, force.z0", line=5),
+    "derivative by a range": extra(
+        "&equilibrium_path /\n&sensitivity parameters = 'loading.h0_end' /", "parameters",
+        "not a number of bodies, shape or forces", line=5),
+    "derivative by a word": extra("&equilibrium_path /\n&sensitivity parameters = 'force.part' /",
+                                  "parameters", "not a number of bodies, shape or forces", line=5),
     "derivative by no term of a list": (
         with_bodies("radius = 1, young = 1, 2, poisson = 0.3 /") + "&equilibrium_path /\n"
         "&sensitivity parameters = 'bodies.young' /", 5, "sensitivity", "parameters",
@@ -64,15 +56,14 @@ REFUSED = {
         with_extra("&equilibrium_path /\n&sensitivity parameters = 'force.z0' /\n"
                    "&sweep key = 'force.z0', values = 1e-9 /"), 5, "sensitivity", "",
         "not together with &sweep"),
-    "derivatives without a path": (with_extra("&sensitivity parameters = 'force.z0' /"), 4,
-                                   "sensitivity", "", "needs &equilibrium_path"),
-    "derivatives by nothing": (with_extra("&equilibrium_path /\n&sensitivity /"), 5, "sensitivity",
-                               "parameters", "missing"),
-    "two names in one": (
-        with_extra("&equilibrium_path /\n&sensitivity parameters = 'force.z0, bodies.radius' /"), 5,
-        "sensitivity", "parameters", "is not one name"),
-    "no load": (with_extra("&equilibrium_path /\n&fixed_load /"), 5, "fixed_load", "load",
-                "missing"),
+    "derivatives without a path": extra("&sensitivity parameters = 'force.z0' /", "",
+                                        "needs &equilibrium_path"),
+    "derivatives by nothing": extra("&equilibrium_path /\n&sensitivity /", "parameters", "missing",
+                                    line=5),
+    "two names in one": extra(
+        "&equilibrium_path /\n&sensitivity parameters = 'force.z0, bodies.radius' /", "parameters",
+        "is not one name", line=5),
+    "no load": extra("&equilibrium_path /\n&fixed_load /", "load", "missing", line=5),
     "layer of no thickness": (LAYERED.replace("1e-6,", "0,"), 2, "layer", "thickness", "> 0 m"),
     # Once it was at work for ever.
     "layer of next to no thickness": (LAYERED.replace("1e-6,", "1e-14,"), 2, "layer", "thickness",
@@ -109,17 +100,14 @@ REFUSED = {
         "both bodies have layers"),
     "approximations of layers": (LAYERED + "&approximations /", 5, "approximations", "",
                                  "half-spaces"),
-    "no stiffness": (with_bodies("radius = 1 /"), 1, "bodies", "stiffness", "give one of"),
-    "rigid false alone": (with_bodies("radius = 1, rigid = .false. /"), 1, "bodies", "stiffness",
-                          "give one of"),
-    "stiffness and young": (with_bodies("radius = 1, stiffness = 1,\n young = 1, poisson = 0 /"),
-                            2, "bodies", "young", "more than one way"),
-    "rigid and stiffness": (with_bodies("radius = 1, stiffness = 1,\n rigid = .true. /"), 2,
-                            "bodies", "rigid", "more than one way"),
-    "young alone": (with_bodies("radius = 1,\n young = 1 /"), 1, "bodies", "poisson",
-                    "go together"),
-    "poisson alone": (with_bodies("radius = 1, poisson = 0 /"), 1, "bodies", "young",
-                      "go together"),
+    "no stiffness": body("radius = 1 /", "stiffness", "give one of"),
+    "rigid false alone": body("radius = 1, rigid = .false. /", "stiffness", "give one of"),
+    "stiffness and young": body("radius = 1, stiffness = 1,\n young = 1, poisson = 0 /", "young",
+                                "more than one way", line=2),
+    "rigid and stiffness": body("radius = 1, stiffness = 1,\n rigid = .true. /", "rigid",
+                                "more than one way", line=2),
+    "young alone": body("radius = 1,\n young = 1 /", "poisson", "go together"),
+    "poisson alone": body("radius = 1, poisson = 0 /", "young", "go together"),
     "parameter missing": (GOOD.replace(", z0 = 0.5e-9", ""), 2, "force", "z0",
                           "law 'lennard_jones' needs it"),
     "parameter of another law": (GOOD.replace("z0 =", "\n p0 = 1, z0 ="), 3, "force", "p0",
@@ -137,72 +125,65 @@ REFUSED = {
                                        3, "loading", "h0_step", "10 million"),
     "unloading without loading": (BODIES + FORCE + "&equilibrium_path h0_end = 0 /\n&unloading /",
                                   4, "unloading", "", "needs &loading"),
-    "unloading from outside": (with_extra("&unloading\n from = 1e-9, -3e-9 /"), 5, "unloading",
-                               "from", "outside the range of &loading"),
-    "unloading downwards": (with_extra("&unloading from = 1e-9\n h0_end = 0.5e-9 /"), 5,
-                            "unloading", "h0_end", "not above the turning point"),
-    "too many unloading steps": (with_extra("&unloading h0_step = 1e-18 /"), 4, "unloading",
-                                 "h0_step", "10 million"),
+    "unloading from outside": extra("&unloading\n from = 1e-9, -3e-9 /", "from",
+                                    "outside the range of &loading", line=5),
+    "unloading downwards": extra("&unloading from = 1e-9\n h0_end = 0.5e-9 /", "h0_end",
+                                 "not above the turning point", line=5),
+    "too many unloading steps": extra("&unloading h0_step = 1e-18 /", "h0_step", "10 million"),
     "path without an end": (BODIES + FORCE + "&equilibrium_path /", 3, "equilibrium_path",
                             "h0_end", "missing"),
-    "path upwards": (with_extra("&equilibrium_path h0_start = -3e-9 /"), 4, "equilibrium_path",
-                     "h0_start", "not above h0_end"),
+    "path upwards": extra("&equilibrium_path h0_start = -3e-9 /", "h0_start", "not above h0_end"),
     "profiles of nothing": (BODIES + FORCE + "&classical h0_start = 1, h0_end = 0 /\n"
                             "&profiles h0 = 0.5 /", 4, "profiles", "", "needs &loading"),
-    "profiles without h0": (with_extra("&profiles /"), 4, "profiles", "h0", "missing"),
-    "profile outside": (with_extra("&profiles h0 = 1e-9, 8e-9 /"), 4, "profiles", "h0",
-                        "outside the range"),
+    "profiles without h0": extra("&profiles /", "h0", "missing"),
+    "profile outside": extra("&profiles h0 = 1e-9, 8e-9 /", "h0", "outside the range"),
     "classical without a range": (BODIES + FORCE + "&classical /", 3, "classical", "h0_start",
                                   "&equilibrium_path to take the range from"),
     "approximations without an end": (BODIES + FORCE + "&approximations h0_start = 1 /", 3,
                                       "approximations", "h0_end", "take the range from"),
-    "a theory that there is not": (with_extra("&classical theories = 'carpik' /"), 4, "classical",
-                                   "theories", 'did you mean "carpick"'),
+    "a theory that there is not": extra("&classical theories = 'carpik' /", "theories",
+                                        'did you mean "carpick"'),
     "a theory of half-spaces beside layers": (
         LAYERED + "&classical theories = 'jkr', 'carpick' /", 5, "classical",
         "theories", "half-spaces"),
-    "a theory of the parabola beside a shape": (
-        with_extra("&shape kind = 'sphere' /\n&classical theories = 'dmt' /"), 5, "classical",
-        "theories", "parabola"),
-    "classical upwards": (with_extra("&classical h0_end = 8e-9 /"), 4, "classical", "h0_end",
-                          "not below h0_start"),
+    "a theory of the parabola beside a shape": extra(
+        "&shape kind = 'sphere' /\n&classical theories = 'dmt' /", "theories", "parabola", line=5),
+    "classical upwards": extra("&classical h0_end = 8e-9 /", "h0_end", "not below h0_start"),
     "stability of nothing": (BODIES + FORCE + "&classical h0_start = 1, h0_end = 0 /\n"
                              "&stability /", 4, "stability", "", "needs &loading"),
     "nothing to compute": (BODIES + FORCE, 1, "", "", "nothing to compute"),
     # sweeps
-    "sweep of an unknown key": (with_extra("&sweep key = 'force.hamacker', values = 1 /"), 4,
-                                "sweep", "key", 'did you mean "force.hamaker"'),
-    "sweep of a group": (with_extra("&sweep key = 'force', values = 1 /"), 4, "sweep", "key",
-                         "not a key that holds a number"),
-    "sweep of a word": (with_extra("&sweep key = 'force.law', values = 1 /"), 4, "sweep", "words",
-                        "holds a word"),
-    "sweep of itself": (with_extra("&sweep key = 'sweep.count', values = 1 /"), 4, "sweep",
-                        "key", "no &sweep"),
-    "sweep of an absent group": (with_extra("&sweep key = 'unloading.h0_end', values = 1 /"), 4,
-                                 "sweep", "key", "no &unloading"),
+    "sweep of an unknown key": extra("&sweep key = 'force.hamacker', values = 1 /", "key",
+                                     'did you mean "force.hamaker"'),
+    "sweep of a group": extra("&sweep key = 'force', values = 1 /", "key",
+                              "not a key that holds a number"),
+    "sweep of a word": extra("&sweep key = 'force.law', values = 1 /", "words", "holds a word"),
+    "sweep of itself": extra("&sweep key = 'sweep.count', values = 1 /", "key", "no &sweep"),
+    "sweep of an absent group": extra("&sweep key = 'unloading.h0_end', values = 1 /", "key",
+                                      "no &unloading"),
     "sweep of a term too many": (
         with_bodies("radius = 1, young = 1, 2, poisson = 0.3 /")
         + "&sweep key = 'bodies.young(3)', values = 1 /", 4, "sweep", "key", "no such term"),
-    "sweep out of range": (with_extra("&sweep key = 'bodies.radius',\n values = 1, -1 /"), 5,
-                           "sweep", "values", "out of range"),
+    "sweep out of range": extra("&sweep key = 'bodies.radius',\n values = 1, -1 /", "values",
+                                "out of range", line=5),
     "sweep to a wrong deck": (with_extra("&sweep key = 'loading.h0_end',\n from = 0, to = 9e-9, "
                                          "count = 3 /"), 5, "sweep", "from", "not below h0_start"),
-    "sweep of a missing parameter's rival": (
-        with_extra("&sweep key = 'force.p0', values = 1 /"), 4, "sweep", "values", "belongs to"),
-    "sweep by halves": (with_extra("&sweep key = 'bodies.radius', from = 1, to = 2 /"), 4, "sweep",
-                        "count", "missing"),
-    "sweep both ways": (with_extra("&sweep key = 'bodies.radius', values = 1, 2\n from = 1 /"), 5,
-                        "sweep", "from", "not together with values"),
-    "scale beside values": (with_extra("&sweep key = 'bodies.radius', values = 1 scale = 'log' /"),
-                            4, "sweep", "scale", "not together with values"),
+    "sweep of a missing parameter's rival": extra("&sweep key = 'force.p0', values = 1 /", "values",
+                                                  "belongs to"),
+    "sweep by halves": extra("&sweep key = 'bodies.radius', from = 1, to = 2 /", "count",
+                             "missing"),
+    "sweep both ways": extra("&sweep key = 'bodies.radius', values = 1, 2\n from = 1 /", "from",
+                             "not together with values", line=5),
+    "scale beside values": extra("&sweep key = 'bodies.radius', values = 1 scale = 'log' /",
+                                 "scale", "not together with values"),
     "log sweep to zero": (with_extra("&sweep key = 'bodies.radius', from = 1, to = 0, count = 3,"
                                      " scale = 'log' /"), 4, "sweep", "to", "> 0"),
     "log sweep from zero": (with_extra("&sweep key = 'bodies.radius', from = 0, to = 1, count = 3,"
                                        " scale = 'log' /"), 4, "sweep", "from", "> 0"),
-    "sweep of one value": (with_extra("&sweep key = 'bodies.radius' from = 1 to = 1 count = 3 /"),
-                           4, "sweep", "to", "the same as from"),
-    "fractional whole number": (with_extra("&sweep key = 'numerics.nodes', values = 100, 100.5 /"),
-                                4, "sweep", "values", "out of range"),
+    "sweep of one value": extra("&sweep key = 'bodies.radius' from = 1 to = 1 count = 3 /", "to",
+                                "the same as from"),
+    "fractional whole number": extra("&sweep key = 'numerics.nodes', values = 100, 100.5 /",
+                                     "values", "out of range"),
 }
 
 

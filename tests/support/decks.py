@@ -117,6 +117,16 @@ def with_extra(text):
     return GOOD + text
 
 
+def body(text, key, phrase, line=1):
+    """The case of a mistake in &bodies: the deck, line, group, key and a phrase of the message."""
+    return with_bodies(text), line, "bodies", key, phrase
+
+
+def extra(text, key, phrase, line=4):
+    """The case of a mistake in the last of the groups that follow a good deck."""
+    return with_extra(text), line, re.findall(r"&(\w+)", text)[-1], key, phrase
+
+
 def assert_refused(check, text, line, group, key, phrase):
     """The deck is refused, and the first mistake is that of this key of a group in this line."""
     status, out, err = check(text)

@@ -8,6 +8,7 @@ import subprocess
 from typing import NamedTuple
 
 import f90nml
+from support.processes import threaded
 from support.scenes import deck, read_table, several
 
 LOADS = (
@@ -80,22 +81,25 @@ def program_path():
     return pathlib.Path(os.environ.get("SNAPIN", root / "build" / "snapin")).resolve()
 
 
-def report(sigma, groups, folder, name="deck", *, rows=False, seconds=120, units=PLAIN):
-    """Runs a deck of these groups in a folder and reads its results, in z0 and gamma R."""
+def run_deck(folder, name, text, seconds):
+    """Runs a deck in a folder on one thread: its status, its standard error, and the folder of its
+    results; status None if it takes longer."""
     folder.mkdir(parents=True, exist_ok=True)
-    (folder / f"{name}.nml").write_text(units.deck(sigma, groups))
-    environment = dict(os.environ, OMP_NUM_THREADS="1", OPENBLAS_NUM_THREADS="1")
-    command = [str(program_path()), "--quiet", f"{name}.nml"]
+    (folder / f"{name}.nml").write_text(text)
     try:
         done = subprocess.run(
-            command, cwd=folder, capture_output=True, text=True, errors="replace",
-            timeout=seconds, check=False, env=environment,
-        )  # fmt: skip
+            [str(program_path()), "--quiet", f"{name}.nml"], cwd=folder, capture_output=True,
+            text=True, errors="replace", timeout=seconds, check=False, env=threaded())
     except subprocess.TimeoutExpired:
-        return Report(-1, {}, {}, 0.0, [], f"more than {seconds} s", None)
-    results = folder / "results" / name
-    if not (results / "summary.nml").exists():
-        return Report(done.returncode, {}, {}, 0.0, [], done.stderr, None)
+        return None, f"more than {seconds} s", None
+    return done.returncode, done.stderr, folder / "results" / name
+
+
+def report(sigma, groups, folder, name="deck", *, rows=False, seconds=120, units=PLAIN):
+    """Runs a deck of these groups in a folder and reads its results, in z0 and gamma R."""
+    status, stderr, results = run_deck(folder, name, units.deck(sigma, groups), seconds)
+    if status is None or not (results / "summary.nml").exists():
+        return Report(-1 if status is None else status, {}, {}, 0.0, [], stderr, None)
     summary = f90nml.read(results / "summary.nml")["summary"]
     table = read_table(results / "curve.csv") if rows else None
     if rows:
@@ -113,4 +117,4 @@ def report(sigma, groups, folder, name="deck", *, rows=False, seconds=120, units
                 found[key] = values if isinstance(summary[name_of], list) else values[0]
     warnings = several(summary.get("warnings", []))
     estimate = summary.get("error_estimate", 0.0)
-    return Report(done.returncode, numbers, errors, estimate, warnings, done.stderr, table)
+    return Report(status, numbers, errors, estimate, warnings, stderr, table)

@@ -12,7 +12,6 @@ import argparse
 import collections
 import concurrent.futures
 import math
-import os
 import pathlib
 import random
 import re
@@ -23,7 +22,8 @@ import sys
 
 import f90nml
 import numpy as np
-from support.processes import HANG
+from support.decks_in_units import program_path
+from support.processes import HANG, threaded
 from support.scenes import deck, read_table, several
 
 # --- Decks
@@ -175,13 +175,12 @@ def run_deck(program, text, folder, name, seconds):
     limit is independent of the load of the machine."""
     folder.mkdir(parents=True, exist_ok=True)
     (folder / f"{name}.nml").write_text(text)
-    environment = dict(os.environ, OMP_NUM_THREADS="1", OPENBLAS_NUM_THREADS="1")
     limits = (resource.RLIMIT_CPU, (math.ceil(seconds), math.ceil(seconds) + 5))
     before = processor_seconds()
     try:
         done = subprocess.run(
             [str(program), f"{name}.nml"], cwd=folder, capture_output=True, text=True,
-            errors="replace", timeout=HANG, check=False, env=environment,
+            errors="replace", timeout=HANG, check=False, env=threaded(),
             preexec_fn=lambda: resource.setrlimit(*limits))
     except subprocess.TimeoutExpired:
         raise Broken("hangs") from None
@@ -270,8 +269,7 @@ def main():
     parser.add_argument("--seconds", type=float, default=60.0)
     parser.add_argument("--out", type=pathlib.Path, required=True)
     arguments = parser.parse_args()
-    root = pathlib.Path(__file__).resolve().parents[2]
-    program = pathlib.Path(os.environ.get("SNAPIN", root / "build" / "snapin")).resolve()
+    program = program_path()
     statuses, broken, slowest = collections.Counter(), 0, (0.0, -1)
     with concurrent.futures.ThreadPoolExecutor(arguments.jobs) as pool:
         numbers = range(arguments.first, arguments.first + arguments.count)

@@ -8,7 +8,6 @@ import ctypes
 import ctypes.util
 import functools
 import json
-import os
 import pathlib
 import subprocess
 import sys
@@ -16,7 +15,7 @@ import sys
 import numpy as np
 from numpy.polynomial import chebyshev
 from support.dlvo import Dlvo
-from support.processes import HANG
+from support.processes import HANG, threaded
 
 
 def agm_k(complement):
@@ -277,10 +276,9 @@ def carried_out(task):
 
     It runs in a process with one thread: NumPy's threads stall each other on a busy machine.
     """
-    environment = dict(os.environ, OPENBLAS_NUM_THREADS="1", OMP_NUM_THREADS="1")
     done = subprocess.run(
         [sys.executable, "-m", "support.half_space"], cwd=pathlib.Path(__file__).parents[1],
-        input=json.dumps(task), capture_output=True, text=True, check=True, env=environment,
+        input=json.dumps(task), capture_output=True, text=True, check=True, env=threaded(),
         timeout=HANG)
     return json.loads(done.stdout)
 

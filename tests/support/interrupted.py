@@ -1,12 +1,14 @@
 """Runs that are stopped or killed and then continued, and their journals as bytes."""
 
-import os
+import random
 import signal
 import struct
 import subprocess
 import time
 
+import pytest
 from conftest import ROOT
+from support.processes import threaded
 from support.scenes import lennard_jones, loading
 
 WORD = 8
@@ -74,10 +76,6 @@ def rows(lines):
     return [line for line in lines if not line.startswith(b"#")][1:]
 
 
-def environment(threads):
-    return dict(os.environ, OMP_NUM_THREADS=str(threads), OPENBLAS_NUM_THREADS=str(threads))
-
-
 class Bench:
     """One deck, run to the end without interruption, and once more with the journal kept."""
 
@@ -95,7 +93,7 @@ class Bench:
 
     def run(self, out, *options, **kwargs):
         return self.snapin(
-            "--out", out, *options, "deck.nml", cwd=self.folder, env=environment(self.threads),
+            "--out", out, *options, "deck.nml", cwd=self.folder, env=threaded(self.threads),
             **kwargs)
 
     def files(self, out):
@@ -106,14 +104,20 @@ class Bench:
             found[path.name] = [line for line in lines if b"_seconds" not in line]
         return found
 
-    def resume(self, journal, out="cut"):
-        """The run that continues from a journal."""
+    def emptied(self, journal=None, out="cut"):
+        """The folder of results, in which there is nothing, or a journal."""
         target = self.folder / out / "deck"
         target.mkdir(parents=True, exist_ok=True)
         for path in target.iterdir():
             path.unlink()
-        (target / "journal.partial").write_bytes(journal)
-        return self.run(out, "--resume")
+        if journal is not None:
+            (target / "journal.partial").write_bytes(journal)
+        return target
+
+    def resume(self, journal):
+        """The run that continues from a journal."""
+        self.emptied(journal)
+        return self.run("cut", "--resume")
 
     def stop(self, journal):
         """The journal of a run that continues from a journal and is stopped at its end."""
@@ -138,9 +142,19 @@ class Bench:
         """Starts the program and kills it after a delay [s]."""
         with subprocess.Popen(
                 [self.path, "--out", "cut", *options, "deck.nml"], cwd=self.folder,
-                env=environment(self.threads), stderr=subprocess.DEVNULL) as process:
+                env=threaded(self.threads), stderr=subprocess.DEVNULL) as process:
             time.sleep(delay)
             process.send_signal(signal.SIGKILL)
+
+    def check_killed(self, times, shortest, longest):
+        """Kills a run again and again; the last run ends with the files of an undisturbed one."""
+        rng = random.Random(4)
+        self.emptied()
+        for _ in range(times):
+            self.kill(rng.uniform(shortest, longest), "--resume")
+        assert self.run("cut", "--resume").returncode == self.status
+        assert self.files("cut") == self.whole
+
 
 SWEEP = lennard_jones(
     0.2, loading=loading(6, 0, 0.5), unloading={},
@@ -149,3 +163,15 @@ SWEEP = lennard_jones(
 
 # The shortest of the decks with a cycle.
 SHORT = (ROOT / "inputs/first.nml").read_text()
+
+
+@pytest.fixture(scope="module")
+def sweep(snapin, snapin_path, tmp_path_factory):
+    """A sweep on two threads, for the modules that import it."""
+    return Bench(snapin, snapin_path, tmp_path_factory.mktemp("sweep"), SWEEP, threads=2)
+
+
+@pytest.fixture(scope="module")
+def short(snapin, snapin_path, tmp_path_factory):
+    """The shortest cycle, for the modules that import it."""
+    return Bench(snapin, snapin_path, tmp_path_factory.mktemp("short"), SHORT)

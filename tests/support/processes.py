@@ -1,6 +1,7 @@
 """Python in a separate process, for claims about code that may end or stop a process."""
 
 import os
+import resource
 import subprocess
 import sys
 
@@ -14,6 +15,16 @@ def python(*arguments, seconds=HANG, **environment):
         [sys.executable, *arguments],
         env={**os.environ, "PYTHONPATH": os.pathsep.join(sys.path), **environment},
         capture_output=True, text=True, timeout=seconds, check=False)
+
+
+def threaded(count=1, **more):
+    """The environment of a program on so many threads."""
+    return dict(os.environ, OMP_NUM_THREADS=str(count), OPENBLAS_NUM_THREADS=str(count), **more)
+
+
+def limited(kind, size):
+    """What limits a process that is about to start, such as the size of its files (FSIZE)."""
+    return lambda: resource.setrlimit(getattr(resource, f"RLIMIT_{kind}"), (size, size))
 
 
 def answer(script, **options):

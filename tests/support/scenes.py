@@ -5,14 +5,17 @@ the paper is gamma itself, h0 is in units of z0, and loads are in units of sigma
 """
 
 import math
-import os
+import re
 from typing import NamedTuple
 
 import f90nml
 from snapin import deck_text, results
-from support.processes import HANG
+from support.processes import HANG, threaded
 
 JKR = 1.5 * math.pi  # Pull-off of JKR theory in units of gamma R.
+
+# Bodies in whose decks lengths are in units of the law's length.
+UNIT = {"radius": 1.0, "stiffness": 1.0}
 
 # --- Decks
 
@@ -28,10 +31,10 @@ def deck(**groups):
     })
 
 
-def lennard_jones(sigma, *, part="full", **groups):
+def lennard_jones(sigma, *, part="full", bodies=UNIT, **groups):
     """A deck in units of z0 and of E/(1-nu^2); loads are then in units of sigma."""
     return deck(
-        bodies={"radius": 1.0, "stiffness": 1.0},
+        bodies=bodies,
         force={"law": "lennard_jones", "hamaker": 16 * math.pi * sigma, "z0": 1.0, "part": part},
         **groups)
 
@@ -39,8 +42,32 @@ def lennard_jones(sigma, *, part="full", **groups):
 def exponential(big_lambda, **groups):
     """A deck in units of the decay length; Lambda at h0 = 0 is p0."""
     return deck(
-        bodies={"radius": 1.0, "stiffness": 1.0},
-        force={"law": "exponential", "p0": float(big_lambda), "decay_length": 1.0}, **groups)
+        bodies=UNIT, force={"law": "exponential", "p0": float(big_lambda), "decay_length": 1.0},
+        **groups)
+
+
+def changed(groups, values):
+    """Groups with other values of keys: {'group.key': value} or, of a list, 'group.key(number)'."""
+    found = {name: dict(keys) for name, keys in groups.items()}
+    for name, value in values.items():
+        group, key, item = _parts(name)
+        if item:
+            found[group][key] = [*found[group][key]]
+            found[group][key][item - 1] = value
+        else:
+            found[group][key] = value
+    return found
+
+
+def value_in(groups, name):
+    """The value of a key, or of an item of its list."""
+    group, key, item = _parts(name)
+    return groups[group][key][item - 1] if item else groups[group][key]
+
+
+def _parts(name):
+    group, key, item = re.fullmatch(r"(\w+)\.(\w+)(?:\((\d+)\))?", name).groups()
+    return group, key, item and int(item)
 
 
 def loading(start, end, step):
@@ -144,9 +171,7 @@ def runner(snapin, folder):
         if key not in done:
             name = f"d{len(done)}"
             (folder / f"{name}.nml").write_text(text)
-            environment = dict(os.environ)
-            environment["OMP_NUM_THREADS"] = environment["OPENBLAS_NUM_THREADS"] = str(threads)
-            result = snapin(f"{name}.nml", cwd=folder, timeout=timeout, env=environment)
+            result = snapin(f"{name}.nml", cwd=folder, timeout=timeout, env=threaded(threads))
             done[key] = Run(result.returncode, result.stderr, folder / "results" / name)
         assert status in (None, done[key].status), done[key].stderr + text
         return done[key]

@@ -7,16 +7,15 @@ seed is always the same scene.
 
 import collections
 import math
-import os
 import random
 import shutil
-import subprocess
 from typing import NamedTuple
 
 import f90nml
 import numpy as np
-from support.decks_in_units import LENGTHS, LOADS, program_path
+from support.decks_in_units import LENGTHS, LOADS, run_deck
 from support.scenes import deck, several
+from support.study_cycles import logarithmic
 
 ACCURACIES = (1e-3, 1e-8)
 STRENGTHS = (1e-4, 1e4)
@@ -159,11 +158,6 @@ def jobs(count, folder, *, seed=1, study="laws", names=tuple(LAWS), strengths=ST
     return made
 
 
-def logarithmic(rng, low, high):
-    """A number whose logarithm is uniform."""
-    return math.exp(rng.uniform(math.log(low), math.log(high)))
-
-
 def examine(scene):
     """The findings of a job: one."""
     rng = random.Random(f"law {scene.seed} {scene.number}")
@@ -212,22 +206,15 @@ def strength(scene, law):
 
 def run(scene, name, groups):
     """The summary of a deck and the reason of a failure, if it failed."""
-    (scene.folder / f"{name}.nml").write_text(deck(**groups))
-    environment = dict(os.environ, OMP_NUM_THREADS="1", OPENBLAS_NUM_THREADS="1")
-    try:
-        done = subprocess.run(
-            [str(program_path()), "--quiet", f"{name}.nml"], cwd=scene.folder, check=False,
-            capture_output=True, text=True, errors="replace", timeout=SECONDS, env=environment,
-        )
-    except subprocess.TimeoutExpired:
-        return {}, f"more than {SECONDS} s"
-    path = scene.folder / "results" / name / "summary.nml"
-    if not path.exists():
-        return {}, f"status {done.returncode}: {done.stderr.strip()[-200:]}"
-    results = f90nml.read(path)
+    status, stderr, found = run_deck(scene.folder, name, deck(**groups), SECONDS)
+    if status is None:
+        return {}, stderr
+    if not (found / "summary.nml").exists():
+        return {}, f"status {status}: {stderr.strip()[-200:]}"
+    results = f90nml.read(found / "summary.nml")
     summary = {**results["summary"], "wall_seconds": results["cost"]["wall_seconds"]}
     said = " | ".join(several(summary.get("warnings", [])))
-    return summary, f"status {done.returncode}: {said[:200]}" if done.returncode else ""
+    return summary, f"status {status}: {said[:200]}" if status else ""
 
 
 def judged(scene, law, found, truth):

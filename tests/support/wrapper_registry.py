@@ -12,9 +12,7 @@ import math
 import numpy as np
 import snapin
 from snapin import numerics
-
-# Bodies for which lengths are in units of the law's length.
-UNIT = {"radius": 1.0, "stiffness": 1.0}
+from support.scenes import UNIT  # noqa: F401 (tests import it from here too)
 
 
 def law_of(sigma, part="full"):

@@ -9,16 +9,14 @@ import math
 
 import numpy as np
 import pytest
-from support.scenes import deck
+from support.scenes import deck, lennard_jones
 
 STIFFNESS, E_STAR = 1.0, 0.5
 
 
 def adhesive(shape, work, **groups):
     """A deck of the Lennard-Jones law with z0 = 1 and this work of adhesion."""
-    return deck(
-        bodies={"stiffness": STIFFNESS}, shape=shape,
-        force={"law": "lennard_jones", "hamaker": 16 * math.pi * work, "z0": 1.0}, **groups)
+    return lennard_jones(work, bodies={"stiffness": STIFFNESS}, shape=shape, **groups)
 
 
 def power(n):

@@ -4,7 +4,8 @@ import math
 
 import numpy as np
 import pytest
-from support.scenes import deck
+from support.known import PUNCH, PUNCH_ON_FILM, SPHERE_ON_FILM
+from support.scenes import deck, lennard_jones
 
 SIGMA = 25.0
 # Contact radius of JKR theory without load, by which thicknesses are measured.
@@ -19,32 +20,19 @@ def theory(thickness, nu, base=None, sigma=SIGMA, h0_end=-20.0, count=40, **grou
     if base:
         bodies = {"radius": 1.0, "young": young / (1 + nu) * (1 + base[1]) / base[0],
                   "poisson": base[1]}
-    return deck(bodies=bodies,
-                layer={"thickness": thickness, "young": young, "poisson": nu, "partner": "rigid"},
-                force={"law": "lennard_jones", "hamaker": 16 * math.pi * sigma, "z0": 1.0},
-                classical={"h0_start": 20.0, "h0_end": h0_end, "count": count}, **groups)
+    return lennard_jones(
+        sigma, bodies=bodies,
+        layer={"thickness": thickness, "young": young, "poisson": nu, "partner": "rigid"},
+        classical={"h0_start": 20.0, "h0_end": h0_end, "count": count}, **groups)
 
 
-# F/F_Hertz against sqrt(R delta)/t of an incompressible film on something rigid, from a solution of
-# the integral equation that shares nothing with the program.
-SPHERE = [(0.18507, 1.26977), (0.41721, 1.85712), (0.62011, 2.68406), (0.74794, 3.37110),
-          (1.05444, 5.56319), (1.34893, 8.46801)]
-
-
-@pytest.mark.parametrize("chi, ratio", SPHERE)
+@pytest.mark.parametrize("chi, ratio", SPHERE_ON_FILM)
 def test_a_sphere_on_an_incompressible_film(run, chi, ratio):
     found = run(theory(1 / chi, 0.5, sigma=1.0, h0_end=-1.0)).summary
     assert found["effective_modulus"] / found["top_modulus"] == pytest.approx(ratio, rel=2e-5)
 
 
-# F/(2 E* a delta) of a flat punch on a film on something rigid against a/t, for Poisson's ratios
-# 0.5 and 0.3, from the same solution (Hayes et al. 1972 print 1.281, 1.683, 2.211, 2.855, 3.609).
-PUNCH = [0.2, 0.4, 0.6, 0.8, 1.0, 1.5, 2.0]
-STIFFER = {0.5: [1.2806, 1.6837, 2.2129, 2.8602, 3.6187, 6.003, 9.150],
-           0.3: [1.2066, 1.4726, 1.7848, 2.1260, 2.4835, 3.4090, 4.3532]}
-
-
-@pytest.mark.parametrize("nu", STIFFER)
+@pytest.mark.parametrize("nu", PUNCH_ON_FILM)
 def test_a_flat_punch_on_a_film(run, nu):
     """Bodies that do not adhere move on by a flat punch of the radius that they have."""
     rows = run(theory(1.0, nu, h0_end=-3.0, sigma=1.0, count=1000)).table("classical.csv")
@@ -57,7 +45,7 @@ def test_a_flat_punch_on_a_film(run, nu):
     slope = ((3 * at**2 * load(at) + at**3 * load.deriv()(at))
              / (2 * at * depth(at) + at**2 * depth.deriv()(at)))
     # E* is one half in these units; four digits are printed.
-    assert slope / at == pytest.approx(STIFFER[nu], rel=7e-5)
+    assert slope / at == pytest.approx(PUNCH_ON_FILM[nu], rel=7e-5)
 
 
 # Pull-off over pi R w, from the same solution: incompressible films on something rigid, and films
@@ -77,9 +65,7 @@ def test_pull_off_of_jkr_theory(run, part, nu, base, pull_off):
 @pytest.mark.parametrize("nu, base", [(0.5, None), (0.3, (5, 0.3)), (0.45, (0.2, 0.2))])
 def test_lennard_jones_forces_pull_as_much_over_jkr_as_on_a_half_space(run, part, nu, base):
     found = run(theory(part * RADIUS, nu, base, equilibrium_path={"h0_end": -2.0})).summary
-    half = run(deck(bodies={"radius": 1.0, "stiffness": 1.0}, force={
-        "law": "lennard_jones", "hamaker": 16 * math.pi * SIGMA, "z0": 1.0},
-        equilibrium_path={"h0_end": -2.0})).summary
+    half = run(lennard_jones(SIGMA, equilibrium_path={"h0_end": -2.0})).summary
     plain = half["max_tension"] / half["jkr_pull_off"]
     assert found["max_tension"] / found["jkr_pull_off"] == pytest.approx(plain, abs=3e-4)
     assert abs(plain - 1) > 3e-3
@@ -89,9 +75,7 @@ def test_lennard_jones_forces_pull_as_much_over_jkr_as_on_a_half_space(run, part
 def test_equal_moduli_are_hertz_and_jkr(run, shape):
     # The cone, of no radius, makes wide contacts in these units.
     scene = theory(100.0 if shape else 2.0, 0.3, base=(1.0, 0.3))
-    plain = deck(bodies={"radius": 1.0, "stiffness": 1.0},
-                 force={"law": "lennard_jones", "hamaker": 16 * math.pi * SIGMA, "z0": 1.0},
-                 classical={"h0_start": 20.0, "h0_end": -20.0, "count": 40})
+    plain = lennard_jones(SIGMA, classical={"h0_start": 20.0, "h0_end": -20.0, "count": 40})
     if shape:
         scene, plain = (text.replace("  radius = 1.0\n", "") + deck(shape=shape)
                         for text in (scene, plain))

@@ -2,7 +2,6 @@
 
 import math
 
-import f90nml
 import numpy as np
 import pytest
 from conftest import ROOT
@@ -16,14 +15,6 @@ def table():
     return [dict(zip(columns, row)) for row in rows]
 
 
-def summary(snapin, folder, deck):
-    """The summary of a deck that must succeed."""
-    (folder / "case.nml").write_text(deck)
-    done = snapin("case.nml", cwd=folder)
-    assert done.returncode == 0, done.stderr
-    return f90nml.read(folder / "results" / "case" / "summary.nml")["summary"]
-
-
 def test_the_table_covers_seven_decades_and_every_case_converged():
     rows = table()
     assert len(rows) >= 40
@@ -34,12 +25,12 @@ def test_the_table_covers_seven_decades_and_every_case_converged():
 
 
 @pytest.mark.parametrize("row", [0, 20, 32, 48])
-def test_rows_of_the_table_are_what_the_program_computes(snapin, tmp_path, row):
+def test_rows_of_the_table_are_what_the_program_computes(run, row):
     expected = table()[row]
     deck = (ROOT / "inputs" / "table_lennard_jones.nml").read_text()
     kept = "".join(line for line in deck.splitlines(True) if not line.startswith("&sweep"))
     kept = kept.replace("hamaker = 1.0e-20", f"hamaker = {expected['force.hamaker']!r}")
-    found = summary(snapin, tmp_path, kept)
+    found = run(kept).summary
     # The table's own error, and the interpolation of the curve for the energy.
     for key in ("max_tension", "jump_in_h0", "jump_out_h0", "jump_in_load", "energy_lost"):
         if not math.isnan(expected[key]):
@@ -58,14 +49,13 @@ def test_jump_out_is_that_of_jkr_theory_at_large_sigma():
     assert last["jump_out_load"] == pytest.approx(-5 / 9 * last["jkr_pull_off"], rel=1e-5)
 
 
-def test_jumps_begin_at_the_cusp(snapin, tmp_path):
+def test_jumps_begin_at_the_cusp(run):
     """Near a cusp the folds part as the power 3/2 of the distance to it."""
     sigmas = [0.2925, 0.293, 0.294, 0.296, 0.298]
     gaps = []
     for sigma in sigmas:
-        found = summary(
-            snapin, tmp_path,
-            lennard_jones(sigma, equilibrium_path={"h0_end": -2.0}, numerics={"accuracy": 1e-10}))
+        found = run(lennard_jones(sigma, equilibrium_path={"h0_end": -2.0},
+                                  numerics={"accuracy": 1e-10})).summary
         gaps.append((found["folds_h0"][1] - found["folds_h0"][0]) ** (2 / 3))
     cusp = np.polynomial.polynomial.polyfit(gaps, sigmas, 4)[0]
     assert cusp == pytest.approx(0.291085, abs=5e-7)

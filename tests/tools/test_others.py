@@ -6,32 +6,24 @@ import math
 import numpy as np
 import pytest
 from conftest import ROOT
+from support.known import BY_TABOR, ERRORS, PUNCH, PUNCH_ON_FILM, SPHERE_ON_FILM
 
 pytest.importorskip("matplotlib")
 import formulas  # noqa: E402 (needs matplotlib)
 import spheres  # noqa: E402
 from report import Comparison, module as chapter  # noqa: E402
 
-# From another program: Tabor's parameter, pull-off over pi w R and its h0; h0 and tension of both
-# jumps; energy lost over w R z0.
-SPHERES = [
-    (0.1, 1.968956, 1.0586, None, None, 0),
-    (0.8, 1.706360, 1.7087, (2.37954, 0.85003), (2.40423, 1.08670), 0.0336),
-    (1, 1.670665, 1.8734, (2.62922, 0.68109), (2.74343, 1.03243), 0.2507),
-    (5, 1.525718, 4.9594, (5.26358, 0.16712), (9.18977, 0.85177), 16.2459),
-]
 
-
-@pytest.mark.parametrize("tabor, tension, h0, jump_in, jump_out, lost", SPHERES)
-def test_spheres_are_those_of_another_program(tabor, tension, h0, jump_in, jump_out, lost):
-    found = spheres.sphere(float(tabor))
-    assert found.tension == pytest.approx(tension, abs=1e-6)
-    assert found.tension_h0 == pytest.approx(h0, abs=6e-5)
-    for mine, theirs in ((found.jump_in, jump_in), (found.jump_out, jump_out)):
-        assert (mine is None) == (theirs is None)
-        if mine:
-            assert mine == pytest.approx(theirs, abs=6e-6)
-    assert found.lost == pytest.approx(lost, abs=1e-4)
+@pytest.mark.parametrize("tabor", BY_TABOR)
+def test_spheres_are_those_of_another_program(tabor):
+    found = spheres.sphere(tabor)
+    mine = [found.tension, found.tension_h0]
+    if found.jump_in:
+        (in_h0, in_tension), (out_h0, out_tension) = found.jump_in, found.jump_out
+        mine += [in_h0, -in_tension, out_h0, -out_tension, found.lost]
+    assert len(mine) == len(BY_TABOR[tabor])
+    for one, other, error in zip(mine, BY_TABOR[tabor], ERRORS):
+        assert one == pytest.approx(other, abs=error)
 
 
 def test_curves_are_s_shaped_from_the_cusp_on():
@@ -47,8 +39,7 @@ def test_radius_of_a_contact_is_jkr_theory_s_when_the_range_is_short():
         assert abs(errors[1]) < 2e-3 and abs(errors[1]) < abs(errors[0])
 
 
-@pytest.mark.parametrize("chi, ratio", [(0.18507, 1.26977), (0.41721, 1.85712), (0.62011, 2.68406),
-                                        (1.05444, 5.56319), (1.34893, 8.46801)])
+@pytest.mark.parametrize("chi, ratio", SPHERE_ON_FILM)
 def test_loads_on_layers_are_those_of_another_program(chi, ratio):
     assert chapter("indentation_of_layers").solved(chi) == pytest.approx(ratio, rel=2e-5)
 
@@ -61,13 +52,11 @@ def test_errors_of_the_formulas_for_layers():
         assert layers.error(name, chi) == pytest.approx(percent, abs=0.6)
 
 
-@pytest.mark.parametrize("nu, values", [
-    (0.5, (1.2806, 1.6837, 2.2129, 2.8602, 3.6187, 6.003, 9.150)),
-    (0.3, (1.2066, 1.4726, 1.7848, 2.1260, 2.4835, 3.4090, 4.3532))])
+@pytest.mark.parametrize("nu, values", PUNCH_ON_FILM.items())
 def test_stiffness_of_a_sphere_is_that_of_a_flat_punch(nu, values):
     """kappa of another program's punches, by an equation of their own."""
     hayes = chapter("hayes_1972")
-    assert [hayes.kappa(nu, ratio) for ratio in hayes.RATIOS] == pytest.approx(values, abs=7e-4)
+    assert [hayes.kappa(nu, ratio) for ratio in PUNCH] == pytest.approx(values, abs=7e-4)
 
 
 def test_loss_of_jkr_theory_is_the_known_one():

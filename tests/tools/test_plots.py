@@ -12,6 +12,7 @@ from conftest import ROOT
 from support.processes import HANG
 
 pytest.importorskip("matplotlib")
+from drawing import scale, smooth  # noqa: E402 (needs matplotlib)
 
 SCRIPTS = ROOT / "pywrap" / "plots"
 BODIES = "&bodies radius = 1.5e-2, stiffness = 1.0e10 /\n"
@@ -177,10 +178,7 @@ def test_what_is_missing_is_said_in_one_line(plot, results, args, phrase):
     assert re.fullmatch(rf"{args[0]}: .*{phrase}.*\n", done.stderr), done.stderr
 
 
-def test_a_curve_is_smoothed_through_its_points(monkeypatch):
-    monkeypatch.syspath_prepend(SCRIPTS)
-    from drawing import smooth
-
+def test_a_curve_is_smoothed_through_its_points():
     angle = np.linspace(0, np.pi, 9)
     circle = np.column_stack([np.cos(angle), 2 * np.sin(angle)])
     curve = smooth(circle)
@@ -190,10 +188,7 @@ def test_a_curve_is_smoothed_through_its_points(monkeypatch):
     assert abs(np.hypot(curve[:, 0], curve[:, 1] / 2) - 1).max() < 5e-3
 
 
-def test_a_corner_stays_a_corner(monkeypatch):
-    monkeypatch.syspath_prepend(SCRIPTS)
-    from drawing import smooth
-
+def test_a_corner_stays_a_corner():
     zigzag = np.array([[0, 0], [1, 1], [2, 0], [3, 1.0]])
     np.testing.assert_array_equal(smooth(zigzag), zigzag)
 
@@ -202,10 +197,7 @@ def test_a_corner_stays_a_corner(monkeypatch):
     ("largest", "factor", "unit"),
     [(6e-5, 1e-6, "µN"), (8e-10, 1e-9, "nN"), (3e-10, 1e-12, "pN"), (0, 1, "N"), (2, 1, "N")],
 )
-def test_units_keep_numbers_short(monkeypatch, largest, factor, unit):
-    monkeypatch.syspath_prepend(SCRIPTS)
-    from drawing import scale
-
+def test_units_keep_numbers_short(largest, factor, unit):
     assert scale([-largest, np.nan], "N") == (factor, unit)
 
 
@@ -231,10 +223,7 @@ def test_a_law_is_drawn_beside_its_curve(plot, tmp_path):
     assert done.returncode == 1 and "nowhere.nml" in done.stderr
 
 
-def test_a_curve_does_not_swing_between_uneven_steps(monkeypatch):
-    monkeypatch.syspath_prepend(SCRIPTS)
-    from drawing import smooth
-
+def test_a_curve_does_not_swing_between_uneven_steps():
     # A load near its maximum and, after a much longer step, at a fold.
     h0 = np.array([60.0, 30.0, 10.0, 1.5, 1.25, 1.0, 0.84])
     load = np.array([0.0, 0.1, 4.2, 57.7, 59.0, 58.2, 45.4])

@@ -9,6 +9,7 @@ import math
 import numpy as np
 import pytest
 from support.abel import Mesh
+from support.known import BY_SIGMA, BY_TABOR, ERRORS
 from support.reference import CUSP, Path, path
 from support.scenes import JKR
 from support.series import FINE, USUAL
@@ -37,27 +38,11 @@ def test_hertz_pressure_flattens_a_parabola():
     np.testing.assert_allclose((mesh.operator @ p)[inside], exact, atol=1e-5)
 
 
-# Solutions of others on other meshes: max tension/JKR, h0 there, and each jump's h0 and load.
-KNOWN = {
-    0.87: (1.07953786, 2.2284576, 3.0886872, -1.5330549, 3.4834324, -2.9986585),
-    8.7: (1.01124487, 6.2758749, 5.9728350, -0.4076839, 11.9352327, -2.6534864)}
-# By Tabor's parameter: tension/(pi R w), h0 there, loads/(pi R w) at the jumps, loss/(w R z0).
-KNOWN_BY_TABOR = {
-    0.01: (1.998969, 1.0019),
-    0.1: (1.968956, 1.0586),
-    0.5: (1.787483, 1.4470),
-    0.8: (1.706360, 1.7087, 2.37954, -0.85003, 2.40423, -1.08670, 0.0336),
-    1.0: (1.670665, 1.8734, 2.62922, -0.68109, 2.74343, -1.03243, 0.2507),
-    2.0: (1.583595, 2.6581, 3.55191, -0.36778, 4.38170, -0.90971, 2.8983),
-    5.0: (1.525718, 4.9594, 5.26358, -0.16712, 9.18977, -0.85177, 16.2459),
-}
-
-
-@pytest.mark.parametrize("sigma", sorted(KNOWN))
+@pytest.mark.parametrize("sigma", BY_SIGMA)
 def test_what_another_solution_found_is_found_to_its_last_digit(sigma):
     # A unit of the last digit, the other solution's own uncertainty.
     near = {"abs": 1e-7}
-    tension, h0, in_h0, in_load, out_h0, out_load = KNOWN[sigma]
+    tension, h0, in_h0, in_load, out_h0, out_load = BY_SIGMA[sigma]
     found = path(sigma)
     assert found.pull_off.load == pytest.approx(-tension * JKR, abs=1e-8 * JKR)
     assert found.pull_off.h0 == pytest.approx(h0, **near)
@@ -67,19 +52,17 @@ def test_what_another_solution_found_is_found_to_its_last_digit(sigma):
     assert found.jump_out.load == pytest.approx(out_load, **near)
 
 
-@pytest.mark.parametrize("tabor", sorted(KNOWN_BY_TABOR))
+@pytest.mark.parametrize("tabor", BY_TABOR)
 def test_published_parameters_give_the_known_table(tabor):
-    known = KNOWN_BY_TABOR[tabor]
+    known = BY_TABOR[tabor]
     found = path(math.sqrt(tabor**3 / 4))
     mine = [-found.pull_off.load / math.pi, found.pull_off.h0]
     if found.folds:
         mine += [found.jump_in.h0, found.jump_in.load / math.pi]
         mine += [found.jump_out.h0, found.jump_out.load / math.pi, found.energy_lost]
     assert len(mine) == len(known)
-    # A unit of the last digit: some are cut off, not rounded.
-    tolerances = (1e-6, 1e-4, 1e-5, 1e-5, 1e-5, 1e-5, 1e-4)
-    for one, other, tolerance in zip(mine, known, tolerances):
-        assert one == pytest.approx(other, abs=tolerance)
+    for one, other, error in zip(mine, known, ERRORS):
+        assert one == pytest.approx(other, abs=error)
 
 
 @pytest.mark.parametrize("sigma", [1e-3, 0.35, 30.0])

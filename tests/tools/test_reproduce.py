@@ -11,7 +11,6 @@ import numpy as np
 import pytest
 from conftest import ROOT
 from support.processes import HANG
-from support.scenes import deck
 
 pytest.importorskip("matplotlib")
 import curves  # noqa: E402 (needs matplotlib)
@@ -27,10 +26,6 @@ import style  # noqa: E402
 from runs import RunError, Runs  # noqa: E402
 
 INPUTS = ROOT / "inputs"
-BODIES = {"radius": 1.5e-2, "stiffness": 1e10}
-Z0 = 0.5e-9
-# sigma of these bodies over the Hamaker constant [1/J].
-PER_HAMAKER = np.sqrt(BODIES["radius"] / Z0**3) / (16 * np.pi * Z0**2 * BODIES["stiffness"])
 CYCLES = ("fig10a_converged", "fig10b_converged", "fig10c_converged")
 DECK = """&bodies radius = 1.5e-2, rigid = .true. /
 &force law = 'exponential', p0 = 1e7, decay_length = 1e-9 /
@@ -163,8 +158,8 @@ def test_what_differs_between_runs_is_a_range_and_what_rounding_leaves_is_no_num
 
 
 def test_a_cell_does_not_break_its_markdown_table():
-    lines = report.markdown(["a", "b"], [["1/|r-t|", "a_b*c"]])
-    assert lines[2].replace("\\|", "").count("|") == lines[0].count("|")
+    assert report.escaped("1/|r-t|") == "1/\\|r-t\\|"
+    assert report.escaped("a_b*c") == "a\\_b\\*c"
 
 
 def test_every_row_of_the_paper_s_page_has_a_cell_for_each_column():
@@ -244,15 +239,7 @@ def test_the_command_writes_report_table_and_picture_and_fails_on_a_bad_name(sna
     assert run("-j", "0", "fig03").returncode == 2
 
 
-# --- Figs. 1 to 6
-
-
-def test_figure_1_pulls_off_7_9_percent_above_jkr(runs):
-    summary = runs["fig01_lennard_jones"].summary
-    # Known independently for sigma = 0.87; the deck's is 0.8717, and the ratio falls with sigma at
-    # 0.07, which makes 1.1e-4.
-    assert summary["max_tension"] == pytest.approx(1.07953786 * 56.25e-6, rel=2e-4)
-    assert summary["max_tension"] < 1.07953786 * 56.25e-6
+# --- Figs. 3 to 6
 
 
 @pytest.mark.parametrize(("big_lambda", "percent"), [(0.01, -88.4), (1, -45.5), (1e4, -13.7)])
@@ -290,27 +277,6 @@ def test_the_printed_kernel_is_a_misprint(runs):
 # --- Figs. 7 to 9
 
 
-@pytest.fixture(scope="module")
-def sweep(runs, tmp_path_factory):
-    """A sweep over sigma as in the decks of Figs. 7 and 9, with fewer cases."""
-    path = tmp_path_factory.mktemp("decks") / "sigma.nml"
-    path.write_text(deck(
-        bodies=BODIES, force={"law": "lennard_jones", "hamaker": 1e-20, "z0": Z0},
-        equilibrium_path={"h0_end": -1e-9}, approximations={},
-        sweep={"key": "force.hamaker", "from_": 1e-3 / PER_HAMAKER, "to": 1e2 / PER_HAMAKER,
-               "count": 16, "scale": "log"}))
-    return runs.run(path).sweep
-
-
-def test_pull_off_goes_smoothly_from_dmt_to_jkr(sweep):
-    ratio = sweep["max_tension"] / sweep["jkr_pull_off"]
-    assert (np.diff(ratio) < 0).all()
-    assert 4 / 3 - 2e-3 < ratio[0] < 4 / 3
-    assert 1 < ratio[-1] < 1.001
-    # A third of a decade apart: a kink or a scattered value would show in third differences.
-    assert abs(np.diff(ratio, 3)).max() < 0.02
-
-
 @pytest.mark.parametrize("stem", CYCLES)
 def test_pull_off_is_one_value_and_the_contact_one_branch_whatever_the_penetration(runs, stem):
     pulls = penetrations.of_cycle(runs[stem])
@@ -324,37 +290,13 @@ def test_pull_off_is_one_value_and_the_contact_one_branch_whatever_the_penetrati
     assert fig11.least_excess(runs[stem]) > -1e-8
 
 
-def test_pull_off_and_jumps_are_those_of_an_independent_solution(runs):
-    columns = runs["fig07_exact_sigma"].sweep
-    np.testing.assert_allclose(columns["sigma"], [0.87, 8.7], rtol=1e-14)
-    unit = columns["surface_energy"] * BODIES["radius"]
-    for name, values in {
-            "max_tension": (1.07953786 * 1.5 * np.pi, 1.01124487 * 1.5 * np.pi),
-            "jump_in_load": (-1.5330549, -0.4076839),
-            "jump_out_load": (-2.9986585, -2.6534864)}.items():
-        np.testing.assert_allclose(columns[name] / unit, values, rtol=2e-7, atol=0)
-    # One unit of the last digit given.
-    for name, values in {"max_tension_h0": (2.2284576, 6.2758749),
-                         "jump_in_h0": (3.0886872, 5.9728350),
-                         "jump_out_h0": (3.4834324, 11.9352327)}.items():
-        np.testing.assert_allclose(columns[name] / Z0, values, atol=1.1e-7, rtol=0)
-    # Evaluated independently.
+def test_estimates_of_jumps_are_those_that_were_evaluated_independently(runs):
     found = fig08.exact(runs)
     for name, value, unit in (
             ("jump_criterion_29_h0", 6.3203, 1e-4), ("jump_criterion_29_load", -0.37286, 1e-5),
             ("jump_equation_37_gap", 4.7403, 1e-4), ("fold_closed_form_h0", 6.2995, 1e-4),
             ("fold_closed_form_load", -0.4138, 1e-4)):
         assert found[name] == pytest.approx(value, abs=unit)
-
-
-def test_criterion_29_gives_somewhat_too_little_tension(sweep):
-    both = np.isfinite(sweep["jump_in_load"])
-    assert both.sum() >= 6
-    ratio = sweep["jump_criterion_29_load"][both] / sweep["jump_in_load"][both]
-    assert (ratio > 0.85).all() and (ratio < 0.93).all()
-    large = sweep["sigma"][both] > 1
-    np.testing.assert_allclose(sweep["jump_equation_37_load"][both][large],
-                               sweep["jump_criterion_29_load"][both][large], rtol=5e-3)
 
 
 # --- Figs. 10 and 11, and chapters as a whole

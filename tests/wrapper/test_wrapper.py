@@ -99,10 +99,7 @@ def test_options_are_those_of_the_deck(run, options):
 
 
 def test_rigid_bodies_give_the_program_s_curve(run):
-    scene = deck(
-        bodies={"radius": 1.0, "rigid": True},
-        force={"law": "lennard_jones", "hamaker": 16 * math.pi, "z0": 1.0},
-        loading=loading(6, 0.5, 0.25))
+    scene = lennard_jones(1.0, bodies={"radius": 1.0, "rigid": True}, loading=loading(6, 0.5, 0.25))
     curve = snapin.force_curve(np.linspace(6, 0.5, 23), radius=1.0, rigid=True, law=law_of(1.0))
     assert_same(curve, run(scene).curve)
     # As near the largest as the accuracy: the step at which it is met is searched.
@@ -153,28 +150,3 @@ def test_the_second_of_two_calls_does_not_know_of_the_first(there_and_back):
     snapin.force_curve([3.0, -1.0], **UNIT, law=law_of(3.0), method="newton")
     again = snapin.force_curve(np.r_[DOWN, DOWN[::-1]], **BODIES, law=LAW)
     np.testing.assert_array_equal(again.load, there_and_back.load)
-
-
-@pytest.mark.parametrize(
-    "of",
-    [
-        list, tuple, lambda h0: np.repeat(h0, 2)[::2], lambda h0: np.array([h0, h0]).T[:, 0],
-        lambda h0: h0[::-1].copy()[::-1], lambda h0: h0.astype(">f8")],
-)
-def test_h0_may_be_any_sequence_of_numbers(of):
-    h0 = np.array([4.0, 3.0, 2.0, 1.0])
-    plain = snapin.force_curve(h0, **UNIT, law=law_of(0.1))
-    other = snapin.force_curve(of(h0), **UNIT, law=law_of(0.1))
-    np.testing.assert_array_equal(plain.load, other.load)
-
-
-def test_h0_of_whole_numbers_is_taken():
-    curve = snapin.force_curve([4, 3, 2], **UNIT, law=law_of(0.1))
-    assert curve.load.shape == (3,)
-
-
-def test_the_result_does_not_share_memory_with_the_argument():
-    h0 = np.array([4.0, 3.0])
-    curve = snapin.force_curve(h0, **UNIT, law=law_of(0.1))
-    h0[:] = 0
-    assert curve.h0.tolist() == [4.0, 3.0]

@@ -19,20 +19,20 @@ import sys
 import tempfile
 import time
 
-import accuracy
-import hot_spots
-import laws
-import program
-import ratios
-import scaling
-import tables
-import work_precision
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[1]))
 
-sys.path.append(str(program.ROOT / "tools"))
-
+import accuracy  # noqa: E402
+import hot_spots  # noqa: E402
+import laws  # noqa: E402
 import pages  # noqa: E402 (found through the line above)
+import program  # noqa: E402
+import ratios  # noqa: E402
+import scaling  # noqa: E402
+import tables  # noqa: E402
+import work_precision  # noqa: E402
+from pages import ROOT  # noqa: E402
 
-_GUIDE = program.ROOT / "docs" / "accuracy.md"
+_GUIDE = ROOT / "docs" / "accuracy.md"
 
 # Functions that measure, that draw, and that make the guide's tables.
 _PARTS = {
@@ -57,7 +57,7 @@ def main():
     options = _options()
     build = options.build.resolve()
     quick = options.quick
-    folder = (options.out or program.ROOT / ("results/bench" if quick else "docs/bench")).resolve()
+    folder = (options.out or ROOT / ("results/bench" if quick else "docs/bench")).resolve()
     with tempfile.TemporaryDirectory() as scratch:
         runner = program.Program(build, scratch)
         version = subprocess.run([str(runner.snapin), "--version"], check=True,
@@ -70,7 +70,7 @@ def main():
             began = time.perf_counter()
             _say(name)
             rows = _PARTS[name][0](runner, quick, lambda text: _say(f"  {text}"))
-            sources = f"sources {_digest(build)}"
+            sources = f"sources {pages.digest(build.parent / 'src')}"
             if name in _COMPARED and path.is_file() and _sources(path) not in ("", sources):
                 path.replace(_before(path))
             tables.write(path, rows, [f"./bench --only {name}{' --quick' if quick else ''}",
@@ -97,12 +97,13 @@ def _present(folder, in_guide):
     if (folder / "accuracy.csv").is_file():
         found.update(accuracy.honesty(folder))
     if in_guide:
-        tables.insert(_GUIDE, "version", _versions(folder))
+        pages.insert(_GUIDE, "version", _versions(folder), measured=False)
     for name, (header, lines) in found.items():
+        table = pages.table(header, lines, tables.short)
         if in_guide:
-            tables.insert(_GUIDE, name, tables.markdown(header, lines))
+            pages.insert(_GUIDE, name, table, measured=False)
         else:
-            print(f"\n{name}\n\n{tables.markdown(header, lines)}")
+            print("\n".join(["", name, "", *table]))
 
 
 def _versions(folder):
@@ -113,18 +114,13 @@ def _versions(folder):
         if path.is_file():
             sources = _sources(path) or "sources before these, in seconds"
             by_sources.setdefault((sources, tables.notes(path)[-1]), []).append(name)
-    return "\n".join(f"Measured with {sources} ({machine}): {', '.join(names)}."
-                     for (sources, machine), names in by_sources.items())
+    return [f"Measured with {sources} ({machine}): {', '.join(names)}."
+            for (sources, machine), names in by_sources.items()]
 
 
 def _sources(path):
     """Return the note of a table about its sources; empty without one."""
     return next((note for note in tables.notes(path) if note.startswith("sources ")), "")
-
-
-def _digest(build):
-    """Return the digest of the sources of a build folder."""
-    return pages.digest(build.parent / "src")
 
 
 def _before(path):
@@ -142,7 +138,7 @@ def _options():
                         help="leave out parts measured since the program was built")
     parser.add_argument("--draw", action="store_true", help="measure nothing, only draw")
     parser.add_argument("--out", type=pathlib.Path, help="folder for tables and pictures")
-    parser.add_argument("--build", type=pathlib.Path, default=program.ROOT / "build",
+    parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build",
                         help="build folder of the program; default: build")
     return parser.parse_args()
 

@@ -18,11 +18,11 @@ import time
 import warnings
 
 import numpy as np
+import snapin
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
-sys.path[:0] = [str(ROOT / "tests"), str(ROOT / "pywrap")]
+sys.path.append(str(ROOT / "tests"))
 
-import snapin  # noqa: E402
 from support.measured import write  # noqa: E402
 from support.reference_curves import RADIUS, Z0, Driven, measure, truth  # noqa: E402
 

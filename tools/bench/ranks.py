@@ -15,9 +15,11 @@ import tempfile
 import time
 from pathlib import Path
 
-import tables
-
 ROOT = Path(__file__).resolve().parents[2]
+sys.path.append(str(ROOT / "tools"))
+
+import pages  # noqa: E402 (found through the line above)
+
 PAGE = ROOT / "docs/clusters.md"
 DECK = """&bodies radius = 1e-6, stiffness = 1e10 /
 &force law = 'lennard_jones', hamaker = 1e-19, z0 = 3e-10 /
@@ -132,32 +134,34 @@ def main():
     with tempfile.TemporaryDirectory() as scratch:
         bench = Bench(options.build, options.mpirun, scratch)
         if "computed" in options.only:
-            tables.insert(PAGE, "computed", tables.markdown(
-                ("", "seconds", "cases a second", "over one thread",
-                 "seconds of processors"), computed(bench)))
+            renew("computed", ("", "seconds", "cases a second", "over one thread",
+                               "seconds of processors"), computed(bench))
         if "dispatcher" in options.only:
             show_limits(limits(bench))
         if "slept" in options.only:
             shares = slept(bench)
-            tables.insert(PAGE, "slept", tables.markdown(
-                ("a case takes", *(f"{n} processes" for n in SLEEPERS)),
-                [(f"{ms} ms", *(f"{100 * shares[ms, n]:.1f} %" for n in SLEEPERS))
-                 for ms in DURATIONS]))
+            renew("slept", ("a case takes", *(f"{n} processes" for n in SLEEPERS)),
+                  [(f"{ms} ms", *(f"{100 * shares[ms, n]:.1f} %" for n in SLEEPERS))
+                   for ms in DURATIONS])
+
+
+def renew(name, columns, rows):
+    """Renew a table of the page."""
+    pages.insert(PAGE, name, pages.table(columns, rows), measured=False)
 
 
 def show_limits(found):
     """Write the dispatcher's limits and the plan that follows from them."""
-    tables.insert(PAGE, "dispatcher", tables.markdown(
-        ("", "cases", "seconds", "messages a second", "rows a second"),
-        [(what, f"{cases:,}", f"{seconds:.2f}",
-          f"{messages / seconds:,.0f}" if messages else "", f"{cases / seconds:,.0f}")
-         for what, (cases, seconds, messages) in found.items()]))
+    renew("dispatcher", ("", "cases", "seconds", "messages a second", "rows a second"),
+          [(what, f"{cases:,}", f"{seconds:.2f}",
+            f"{messages / seconds:,.0f}" if messages else "", f"{cases / seconds:,.0f}")
+           for what, (cases, seconds, messages) in found.items()])
     _, messages_took, messages = found["no rows, one case a message"]
     cases, rows_took, _ = found["rows and journal, long batches"]
-    tables.insert(PAGE, "planned", tables.markdown(
-        ("a case takes", "saturated at", *(f"{n:,}" for n in PLANNED)),
-        [(f"{ms} ms", f"{most:,.0f} processes", *(f"{100 * share:.0f} %" for share in row.values()))
-         for ms, most, row in planned(cases / rows_took, messages / messages_took)]))
+    renew("planned", ("a case takes", "saturated at", *(f"{n:,}" for n in PLANNED)),
+          [(f"{ms} ms", f"{most:,.0f} processes",
+            *(f"{100 * share:.0f} %" for share in row.values()))
+           for ms, most, row in planned(cases / rows_took, messages / messages_took)])
 
 
 if __name__ == "__main__":

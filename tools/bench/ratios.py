@@ -72,10 +72,6 @@ def tables(rows, before):
     return {"ratios": (
         ["", "", "measured", "limit", "before", "goal", "holds"],
         [[row["quantity"], row["case"], row["measured"], row["limit"],
-          earlier.get((row["quantity"], row["case"]), math.nan), _goal(row),
-          row["holds"]] for row in rows])}
-
-
-def _goal(row):
-    """Return the goal in words; some figures have none."""
-    return "–" if math.isnan(row["goal"]) else f"at most {row['goal']:g}"
+          earlier.get((row["quantity"], row["case"]), math.nan),
+          "–" if math.isnan(row["goal"]) else f"at most {row['goal']:g}", row["holds"]]
+         for row in rows])}

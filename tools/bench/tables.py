@@ -1,9 +1,8 @@
-"""Tables of measurements: CSV files, and Markdown for the guide."""
+"""Tables of measurements: CSV files, and cells for the guide."""
 
 import csv
 import os
 import platform
-import re
 
 
 def machine():
@@ -40,13 +39,6 @@ def notes(path):
         return [line[1:].strip() for line in file if line.startswith("#")]
 
 
-def markdown(header, rows):
-    """Return a Markdown table; numbers are shortened."""
-    lines = ["| " + " | ".join(header) + " |", "|" + "---|" * len(header)]
-    lines += ["| " + " | ".join(short(cell) for cell in row) + " |" for row in rows]
-    return "\n".join(lines)
-
-
 def short(value):
     """Return a number in few characters, 'none' for NaN; text as it is."""
     if isinstance(value, str):
@@ -59,13 +51,6 @@ def short(value):
         return f"{value:.0f}" if abs(value) >= 100 else f"{value:.2g}"
     mantissa, exponent = f"{value:.1e}".split("e")
     return f"{mantissa}e{int(exponent)}"
-
-
-def insert(path, name, text):
-    """Put text between the marks <!-- name --> and <!-- /name --> of a document."""
-    document = path.read_text(encoding="utf-8")
-    pattern = re.compile(rf"(<!-- {name} -->\n).*?(<!-- /{name} -->)", re.DOTALL)
-    path.write_text(pattern.sub(lambda m: f"{m[1]}{text}\n{m[2]}", document), encoding="utf-8")
 
 
 def _cell(value):

@@ -147,10 +147,6 @@ def tables(rows, before):
             good = [row for row in rows if row["problem"] == problem.name
                     and row["method"] == method and not row["failure"] and row["error"] <= 1e-3]
             best = min(good, key=lambda row: row["price"], default=None)
-            cells.append(f"{_time(best['price'])}" if best else "–")
+            cells.append(f"{best['price']:.2g}" if best else "–")
         text.append(cells)
     return {"work_precision": (["G", *(p.label for p in problems.ALL)], text)}
-
-
-def _time(price):
-    return f"{price:.2g}"

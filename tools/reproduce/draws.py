@@ -5,7 +5,6 @@ Each run has the Hamaker constant changed in its twelfth digit, which changes th
 equations equally little. Another build, kernel of the linear algebra or processor has the same effect.
 """
 
-import f90nml
 import numpy as np
 
 # Number of runs of a deck; fewer for a deck that takes minutes.
@@ -42,11 +41,6 @@ def changed(groups, number):
             sweep[key] = ([each * factor for each in value] if isinstance(value, list)
                           else value * factor)
     return groups
-
-
-def read(path):
-    """Return a deck as a namelist that can be changed."""
-    return f90nml.read(path)
 
 
 def ranged(values, digits=2, form="f"):

@@ -10,7 +10,6 @@ _STIFFNESS, _PUBLISHED = 1e10, 59e-6
 
 
 def numbers(runs):
-    """Return the numbers in the text of the page."""
     summary, grid = (runs[deck].summary for deck in ("fig01_lennard_jones", "fig06_uniform"))
     repulsion, rules = runs["fig01_hertz_exponential"].curve, runs.draws("fig06_paper")
     # Figs. 1 and 6 are one problem, sigma = 0.87, with all loads ten times larger in Fig. 6.

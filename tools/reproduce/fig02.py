@@ -39,7 +39,6 @@ def numbers(runs):
 
 
 def draw(runs):
-    """Return the picture."""
     page, panel = style.figure(height=4.6)
     inset = panel.inset_axes((0.625, 0.1, 0.37, 0.35))
     load = np.linspace(0, 1, 1000) ** 2 * 1.2e-3

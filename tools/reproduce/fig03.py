@@ -59,7 +59,6 @@ def numbers(runs):
 
 
 def draw(runs):
-    """Return the picture."""
     page, panel = style.figure(height=4.7)
     found = errors(runs)
     panel.axhspan(-20, -10, color=style.ORANGE, alpha=0.25, linewidth=0)

@@ -9,7 +9,6 @@ _WITHIN = 0.1 * np.sqrt(curves.RADIUS * 1e-9)
 
 
 def numbers(runs):
-    """Return the numbers in the text of the page."""
     states, curve = curves.states(runs["fig04"]), runs["fig04"].curve
     first, last = states[0], states[-1]
     steady = all((np.diff(state["pressure"]) <= 0).all() for state in states)
@@ -22,7 +21,6 @@ def numbers(runs):
 
 
 def draw(runs):
-    """Return the picture."""
     page, (gaps, pressures) = style.figure(1, 2, height=4.2)
     states = curves.states(runs["fig04"])
     colors = style.profiles(gaps, states, "separation", 1e-9)

@@ -48,7 +48,6 @@ def _tolerances(runs):
 
 
 def numbers(runs):
-    """Return the numbers in the text of the page."""
     results, grid, rule = runs["fig06_converged"], runs["fig06_uniform"], runs.draws("fig06_paper")
     summary, states = results.summary, curves.states(results)
     # The last profile before contact, and the last of all profiles.

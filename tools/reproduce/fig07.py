@@ -35,7 +35,6 @@ def _converged(runs, deck="fig07_converged"):
 
 
 def numbers(runs):
-    """Return the numbers in the text of the page."""
     (sigma, ratio), (_, exact) = _converged(runs), _converged(runs, "fig07_exact_sigma")
     paper, rule, cycles = _paper(runs), penetrations.of_rule(runs), penetrations.converged(runs)
     coarse = penetrations.of_cycle(runs["fig10c_uniform"])

@@ -52,7 +52,6 @@ def exact(runs):
 
 
 def numbers(runs):
-    """Return the numbers in the text of the page."""
     summary, path, full = runs["fig08"].summary, _path(runs), _form(runs, "closed_form")
     part, paper, at = _form(runs, "attractive_only"), runs.draws("fig10c_paper"), full["h0"][-1]
     jumps = draws.ranged([run.summary["jump_in_h0"] * 1e9 for run in paper])
@@ -75,7 +74,6 @@ def numbers(runs):
 
 
 def draw(runs):
-    """Return the picture."""
     page, panels = style.figure(1, 2, height=4.0, sharex=True)
     summary, before, fold = runs["fig08"].summary, _before(runs), _path(runs)
     closed = runs["fig08"].branch("fold_closed_form", "approximations")

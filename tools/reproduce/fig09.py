@@ -32,7 +32,6 @@ def _at_jumps_of_the_rule(rule, exact):
 
 
 def numbers(runs):
-    """Return the numbers in the text of the page."""
     exact = _columns(runs["fig09_converged"])
     jumps = [_at_jumps_of_the_rule(_columns(results), exact)
              for results in runs.draws("fig09_paper")]
@@ -66,7 +65,6 @@ def numbers(runs):
 
 
 def draw(runs):
-    """Return the picture."""
     page, panel = style.figure(height=4.3)
     exact = _columns(runs["fig09_converged"])
     rules = [_columns(results) for results in runs.draws("fig09_paper")]

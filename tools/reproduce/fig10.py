@@ -41,7 +41,6 @@ def _loading_over_unloading(results):
 
 
 def numbers(runs):
-    """Return the numbers in the text of the page."""
     rule, true = penetrations.of_rule(runs), penetrations.converged(runs)
     uniform, coarse = (penetrations.of_cycle(runs[f"fig10c_{kind}"]) for kind in ("uniform", "coarse"))
     some = {letter: runs.draws(f"fig10{letter}_paper") for letter in rule}
@@ -88,7 +87,6 @@ def numbers(runs):
 
 
 def draw(runs):
-    """Return the picture."""
     page, panels = style.figure(4, 2, height=10.6, sharex="row", sharey="row")
     for pair, (letter, sigma) in zip(panels, penetrations.FIG10.items()):
         ranges = _LIMITS[letter]

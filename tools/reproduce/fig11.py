@@ -59,7 +59,6 @@ def least_excess(results):
 
 
 def numbers(runs):
-    """Return the numbers in the text of the page."""
     converged, coarse = runs["fig10c_converged"], runs["fig10c_coarse"]
     held, count = _brackets(tuple(FRACTIONS)), FRACTIONS.size
     if held != count:

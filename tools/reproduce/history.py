@@ -49,7 +49,6 @@ def _shown(percent):
 
 
 def numbers(runs):
-    """Return the numbers in the text of the page."""
     found, apart = {}, {"coarse": [], "two": [], "one": [], "fine": []}
     factors, scatter = [], []
     for letter, turns in _CASES.items():

@@ -36,14 +36,11 @@ def of_sweep(results, turns):
                                        columns["jkr_pull_off"]))
 
 
-def of_runs(runs):
-    """Return, for each unloading of a deck, the Pulls of all its runs."""
-    return list(zip(*(of_cycle(results) for results in runs)))
-
-
 def of_rule(runs):
-    """Return, for each cycle of Fig. 10, the Pulls of all runs by the paper's rule."""
-    return {letter: of_runs(runs.draws(f"fig10{letter}_paper")) for letter in FIG10}
+    """Return, for each cycle of Fig. 10 and each unloading, the Pulls of all runs by the paper's
+    rule."""
+    return {letter: list(zip(*map(of_cycle, runs.draws(f"fig10{letter}_paper"))))
+            for letter in FIG10}
 
 
 def converged(runs):

@@ -10,6 +10,7 @@ import curves
 import draws
 import mixing
 import numpy as np
+import pages
 import penetrations
 import report
 import style
@@ -140,13 +141,12 @@ def _line(reading):
 
 
 def numbers(runs):
-    """Return the numbers in the text of the page."""
     nearest = {letter: _all()[NEAREST, letter, turns, 0] for letter, turns in _CASES.items()}
     contact = [(branch, _contact(branch)) for branch in nearest["c"]]
-    table = report.markdown(("reading", "loading", "unloading", "scatter", "left [z0]",
-                             "iterations", "of 5"), list(map(_line, _readings())))
+    table = pages.table(("reading", "loading", "unloading", "scatter", "left [z0]", "iterations",
+                         "of 5"), map(_line, _readings()), report.escaped)
     found = {"runs": _RUNS, "turns": penetrations.listed(_TURNS, 0), "smooth": _SMOOTH,
-             "much": 1 - _MUCH, "table": "\n".join(table).strip(), "passes": NEAREST.passes,
+             "much": 1 - _MUCH, "table": "\n".join(table), "passes": NEAREST.passes,
              "between": between(nearest["c"], sigma_of("c")),
              "ratio": float(np.median(np.concatenate([one.ratio[rows] for one, rows in contact]))),
              "left": draws.ranged([np.median(one.residual[rows]) for one, rows in contact

@@ -18,6 +18,7 @@ import re
 from typing import NamedTuple, Union
 
 import draws
+import pages
 from runs import path_name
 
 Value = Union[float, str, None]
@@ -73,7 +74,7 @@ REPORTS = {
 _CHAPTER = re.compile(r"^## (\w+): (.*)\n", re.MULTILINE)
 
 
-def pages():
+def texts():
     """Return the text of each report: its beginning, and title and text of each chapter."""
     found = {}
     for key in REPORTS:
@@ -86,18 +87,18 @@ def pages():
 
 def names(which=tuple(REPORTS)):
     """Return the names of the chapters of some reports, by default of all."""
-    return [name for key in which for name in pages()[key][1]]
+    return [name for key in which for name in texts()[key][1]]
 
 
 def module(name):
     """Return the module of a chapter."""
-    (package,) = (REPORTS[key].package for key, (_, chapters) in pages().items() if name in chapters)
+    (package,) = (REPORTS[key].package for key, (_, chapters) in texts().items() if name in chapters)
     return importlib.import_module(package + name)
 
 
 def filled(name, runs):
     """Return the text of a chapter and the cells of its rows."""
-    ((_, text),) = (chapters[name] for _, chapters in pages().values() if name in chapters)
+    ((_, text),) = (chapters[name] for _, chapters in texts().values() if name in chapters)
     chapter = module(name)
     text = text.format(**chapter.numbers(runs) if hasattr(chapter, "numbers") else {})
     lines = text.split("\n")
@@ -114,14 +115,9 @@ def shown(value):
     return "" if value is None else value if isinstance(value, str) else f"{float(value):.6g}"
 
 
-def markdown(columns, rows):
-    """Return rows of cells as the lines of a Markdown table, with an empty line after it."""
-    if not rows:
-        return []
-    lines = ["| " + " | ".join(columns) + " |", "|" + "---|" * len(columns)]
-    lines += ["| " + " | ".join(re.sub(r"([\\|*_<])", r"\\\1", cell) for cell in row) + " |"
-              for row in rows]
-    return [*lines, ""]
+def escaped(cell):
+    """Return a cell that Markdown does not change."""
+    return re.sub(r"([\\|*_<])", r"\\\1", cell)
 
 
 def write(folder, key, part, made, runs, version):
@@ -133,7 +129,7 @@ def write(folder, key, part, made, runs, version):
     rows = [row for chapter in made for row in chapter["rows"]]
     csv.writer(text, lineterminator="\n").writerows([book.columns, *rows])
     write_whole(folder / table, text.getvalue())
-    lines = [pages()[key][0].format(table=table, count=draws.COUNT,
+    lines = [texts()[key][0].format(table=table, count=draws.COUNT,
                                     fewer=len(draws.names("history_c_paper")))]
     lines += [f"- [{each['title']}](#{_anchor(each['title'])})" for each in made]
     for each in made:
@@ -143,7 +139,9 @@ def write(folder, key, part, made, runs, version):
             continue
         if each["picture"]:
             lines += [f"![{each['title']}]({each['name']}.png)", ""]
-        lines += [each["caption"], "", *markdown(book.columns, each["rows"])][:-1]
+        lines.append(each["caption"])
+        if each["rows"]:
+            lines += ["", *pages.table(book.columns, each["rows"], escaped)]
     write_whole(folder / f"{book.page}{part}.md",
                 "\n".join([*lines, "", *_ending(made, runs, version)]) + "\n")
     return len(rows)

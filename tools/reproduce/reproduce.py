@@ -21,13 +21,13 @@ import sys
 import time
 import traceback
 
-import report
-from runs import ROOT, Runs
-
-sys.path.append(str(ROOT / "tools"))
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[1]))
 
 import pages  # noqa: E402 (found through the line above)
+import report  # noqa: E402
 import style  # noqa: E402
+from pages import ROOT  # noqa: E402
+from runs import Runs  # noqa: E402
 
 
 def main():
@@ -44,7 +44,7 @@ def main():
     version = subprocess.run([str(runs.program), "--version"], check=False, capture_output=True,
                              text=True).stdout.strip()
     whole = []
-    for key, (_, chapters) in report.pages().items():
+    for key, (_, chapters) in report.texts().items():
         chosen = [name for name in chapters if name in modules]
         if not chosen:
             continue

@@ -12,17 +12,18 @@ import threading
 import time
 
 import draws
+import f90nml
 import numpy as np
+from pages import ROOT
 from snapin.results import read_summary, read_table
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
 INPUTS = ROOT / "inputs"
 # The folder of the plots' curves and colours.
 sys.path.insert(0, str(ROOT / "pywrap" / "plots"))
 
-
 # After this number of seconds without a message, the running decks are named.
 _HEARTBEAT = 10.0
+_TABLES = ("curve", "profiles", "approximations", "sweep")
 
 
 class RunError(Exception):
@@ -40,30 +41,12 @@ class Results:
         """The group &summary as a dict."""
         return read_summary(self.folder)
 
-    @functools.cached_property
-    def curve(self):
-        """The columns of curve.csv."""
-        return read_table(self.folder, "curve.csv")
-
-    @functools.cached_property
-    def profiles(self):
-        """The columns of profiles.csv."""
-        return read_table(self.folder, "profiles.csv")
-
-    @functools.cached_property
-    def classical(self):
-        """The columns of classical.csv."""
-        return read_table(self.folder, "classical.csv")
-
-    @functools.cached_property
-    def approximations(self):
-        """The columns of approximations.csv."""
-        return read_table(self.folder, "approximations.csv")
-
-    @functools.cached_property
-    def sweep(self):
-        """The columns of sweep.csv."""
-        return read_table(self.folder, "sweep.csv")
+    def __getattr__(self, name):
+        """The columns of a table, by its name without `.csv`; read once."""
+        if name not in _TABLES:
+            raise AttributeError(name)
+        setattr(self, name, read_table(self.folder, f"{name}.csv"))
+        return getattr(self, name)
 
     def last(self, key):
         """Return a number of the summary; for an array, the value of the last turning point."""
@@ -98,10 +81,6 @@ class Runs:
         self._results, self._written, self._writing = {}, {}, threading.Lock()
         self._program_digest = None
 
-    def __getitem__(self, stem):
-        """Return the results of a deck in inputs/, after a run if necessary."""
-        return self.run(stem)
-
     def run(self, deck):
         """Run a deck, given by its stem or path, unless its results are valid; return the
         results."""
@@ -111,6 +90,8 @@ class Runs:
                 self.execute(path)
             self._results[path.stem] = Results(self.root / path.stem)
         return self._results[path.stem]
+
+    __getitem__ = run
 
     def draws(self, stem):
         """Return the results of a deck with the paper's rule, one for each of its runs."""
@@ -135,7 +116,7 @@ class Runs:
         """Return the path of a changed copy of a deck of inputs/."""
         with self._writing:
             if name not in self._written:
-                groups = draws.changed(draws.read(path), number)
+                groups = draws.changed(f90nml.read(path), number)
                 if self._change is not None:
                     self._change(groups)
                 self._written[name] = self.root / "decks" / f"{name}.nml"
@@ -205,7 +186,7 @@ class Runs:
         `say(text)` is called for each deck that ends.
         """
         decks = list(dict.fromkeys(decks))
-        waiting = [deck for deck in decks if not self._is_done_or_missing(deck)]
+        waiting = [deck for deck in decks if not (self.path_of(deck).is_file() and self.is_done(deck))]
         if len(waiting) < len(decks):
             say(f"{len(decks) - len(waiting)} of {len(decks)} runs are there already")
         # Long decks first, so that none runs alone at the end.
@@ -237,9 +218,6 @@ class Runs:
             problems[path_name(deck)] = str(problem)
             return f"FAILED: {problem}"
         return f"{self.record(deck)['seconds']:.1f} s"
-
-    def _is_done_or_missing(self, deck):
-        return self.path_of(deck).is_file() and self.is_done(deck)
 
     def _likely_seconds(self, deck):
         known = self.record(deck).get("seconds")

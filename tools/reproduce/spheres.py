@@ -7,19 +7,13 @@ h0 in z0.
 
 import functools
 import math
-import os
-import sys
 import warnings
 from typing import NamedTuple
 
 import numpy as np
-from runs import ROOT
-
-# To be set before a module loads OpenMP.
-os.environ.setdefault("OMP_NUM_THREADS", "1")
-sys.path.append(str(ROOT / "build" / "pywrap"))
-
-import snapin  # noqa: E402
+import pages  # noqa: F401 (one thread)
+import runs  # noqa: F401 (makes the pictures' style importable)
+import snapin
 
 ACCURACY = 1e-8
 # Largest tension of the law over w/z0, at h = 3^(1/6) z0.

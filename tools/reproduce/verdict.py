@@ -15,7 +15,6 @@ def _over_jkr(results):
 
 
 def numbers(runs):
-    """Return the numbers in the text of the page."""
     weak, adhesion = runs[fig05.DECKS[2]].summary, fig05.numbers(runs)
     low, grid = (runs[f"fig06_{kind}"].summary["max_tension"] for kind in ("converged", "uniform"))
     converged, uniform = (_over_jkr(runs[f"fig10c_{kind}"]) for kind in ("converged", "uniform"))

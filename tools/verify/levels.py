@@ -26,6 +26,7 @@ import numpy as np
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 sys.path.insert(0, str(ROOT / "tests"))
 
+from support.processes import threaded  # noqa: E402
 from support.scenes import Run, exponential, lennard_jones, loading, several  # noqa: E402
 
 # Limits of differences. EXACT is promised for Newton's method and for a residual_tolerance of
@@ -131,12 +132,10 @@ def run(program, name, deck, threads, folder, kernel=None):
     if isinstance(deck, str):
         file = folder / "deck.nml"
         file.write_text(deck)
-    environment = dict(os.environ, OMP_NUM_THREADS=str(threads), OPENBLAS_NUM_THREADS=str(threads))
-    if kernel is not None:
-        environment["OPENBLAS_CORETYPE"] = kernel
+    chosen = {"OPENBLAS_CORETYPE": kernel} if kernel else {}
     done = subprocess.run(
-        [program, "--quiet", "--out", folder, file], env=environment, capture_output=True,
-        text=True, check=False)
+        [program, "--quiet", "--out", folder, file], env=threaded(threads, **chosen),
+        capture_output=True, text=True, check=False)
     if done.returncode:
         sys.exit(f"{name}: status {done.returncode}\n{done.stderr}")
     return Run(done.returncode, done.stderr, folder / file.stem)

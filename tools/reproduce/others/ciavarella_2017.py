@@ -46,7 +46,6 @@ def _solved(tabor):
 
 
 def numbers(_):
-    """Return the numbers in the text of the page."""
     def error(found, tabor):
         return 100 * abs(found(tabor) / _loss(tabor) - 1)
 
@@ -58,7 +57,6 @@ def numbers(_):
 
 
 def draw(_):
-    """Return the picture."""
     page, panel = style.figure(height=3.8)
     for found, look, name in ((_loss, {"color": style.BLACK}, "solved"),
                               (_solved, {"color": style.BLUE, "dashes": (5, 1.5)},
@@ -75,7 +73,6 @@ def draw(_):
 
 
 def rows(_):
-    """Return theory and formula beside the solution."""
     unit = "(R^4 w^5/E*^2)^(1/3)"
     found = []
     for tabor in TABORS:

@@ -68,7 +68,6 @@ def draw(theory, name, _):
 
 
 def rows(theory, source, _):
-    """Return the formula beside Maugis' theory and the solved law."""
     found = []
     for lam in LAMBDAS:
         tabor = spheres.tabor_of(lam)

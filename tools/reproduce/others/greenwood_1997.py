@@ -22,7 +22,6 @@ def cusp():
 
 
 def numbers(_):
-    """Return the numbers in the text of the page."""
     first = cusp()
     above = spheres.sphere(first * 1.0001)
     bradley = spheres.where(lambda tabor: spheres.sphere(tabor).tension < 1.98, 0.01, 0.5, 1e-3)
@@ -33,7 +32,6 @@ def numbers(_):
 
 
 def draw(_):
-    """Return the picture."""
     page, (left, right) = style.figure(1, 2, height=3.9)
     for tabor, color in zip(_SHOWN, _COLORS):
         h0, load = spheres.curve(tabor)
@@ -74,7 +72,6 @@ def _stable(h0, load, found):
 
 
 def rows(_):
-    """Return theory beside the converged numbers."""
     bradley = "Bradley (1932), DMT (1975): rigid spheres"
     jkr = "Johnson, Kendall and Roberts (1971): mu to infinity"
     found = [

@@ -33,12 +33,10 @@ def kappa(nu, ratio):
 
 
 def numbers(_):
-    """Return the numbers in the text of the page."""
     return {"half": kappa(0.5, 1.0), "third": kappa(0.3, 1.0)}
 
 
 def draw(_):
-    """Return the picture."""
     page, panel = style.figure(height=3.8)
     for nu, color in zip(POISSON, _COLORS):
         radius, values = curve(nu)
@@ -51,7 +49,6 @@ def draw(_):
 
 
 def rows(_):
-    """Return kappa over radius and Poisson's ratio."""
     return [Comparison(f"kappa at nu = {nu:g}, a/t = {ratio:g}", "not read", None, kappa(nu, ratio),
                        "", "Hayes et al. (1972), their table of kappa for flat punches")
             for nu in POISSON for ratio in RATIOS]

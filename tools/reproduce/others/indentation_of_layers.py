@@ -31,7 +31,6 @@ def good_to(name, percent):
 
 
 def numbers(_):
-    """Return the numbers in the text of the page."""
     found = {}
     for name in _SOURCES:
         letter = name[0]
@@ -41,7 +40,6 @@ def numbers(_):
 
 
 def draw(_):
-    """Return the picture."""
     page, (left, right) = style.figure(1, 2, height=3.6)
     chis = [float(each) for each in np.arange(0.05, 2.001, 0.05)]
     left.semilogy(chis, [solved(chi) for chi in chis], color=style.BLACK, label="solved")
@@ -60,7 +58,6 @@ def draw(_):
 
 
 def rows(_):
-    """Return the formulas beside the solution."""
     return [Comparison(f"chi = {chi:g}, load over that on a half-space, nu = 0.5", "formula",
                        getattr(layers, name)(chi), solved(chi), "", source)
             for name, source in _SOURCES.items() for chi in CHI]

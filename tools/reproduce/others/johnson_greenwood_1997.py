@@ -41,7 +41,6 @@ def _pull(theory, lam):
 
 
 def numbers(_):
-    """Return the numbers in the text of the page."""
     at = min(LAMBDAS, key=lambda lam: abs(lam - 1))
     hertz = next(load for load in spheres.LOADS if worst("hertz", at, load) <= _GOOD)
     peak = max(LAMBDAS, key=lambda lam: _pull("maugis", lam))
@@ -60,7 +59,6 @@ def numbers(_):
 
 
 def draw(_):
-    """Return the picture."""
     page, panel = style.figure(height=4.4)
     loads = spheres.LOADS[1:]
     held = np.array([[simplest(lam, load) for lam in LAMBDAS] for load in loads])
@@ -76,7 +74,6 @@ def draw(_):
 
 
 def rows(_):
-    """Return the ranges in which theories hold."""
     found = numbers(_)
     lines = [("Hertz, radius and indentation within 5 %, least load at lambda = 1", found["hertz"],
               "pi w R"),

@@ -20,7 +20,6 @@ def pull_offs(tabor):
 
 
 def numbers(_):
-    """Return the numbers in the text of the page."""
     spreads, below = [], []
     for tabor in TABORS:
         laws, theory = pull_offs(tabor)
@@ -31,7 +30,6 @@ def numbers(_):
 
 
 def draw(_):
-    """Return the picture."""
     page, (left, right) = style.figure(1, 2, height=3.6)
     theory = np.array([pull_offs(tabor)[1] for tabor in TABORS])
     left.semilogx(TABORS, theory, color=style.VERMILION, dashes=(5, 1.5), label="Maugis-Dugdale")
@@ -49,7 +47,6 @@ def draw(_):
 
 
 def rows(_):
-    """Return the theory beside each law."""
     return [Comparison(f"{name.replace(', ', '-')} at Tabor's parameter {tabor:g} by range, pull-off",
                        "theory", pull_offs(tabor)[1], tension, "pi w R",
                        "Maugis-Dugdale theory with the same w and largest tension")

@@ -36,7 +36,6 @@ def _error(lam, number=0):
 
 
 def numbers(_):
-    """Return the numbers in the text of the page."""
     pull = [_error(lam) for lam in _MANY]
     left = [100 * (solved / theory - 1) for solved, theory, _ in
             (dugdale(1.0, smoothing) for smoothing in SMOOTHINGS)]
@@ -50,7 +49,6 @@ def numbers(_):
 
 
 def draw(_):
-    """Return the picture."""
     page, (left, right) = style.figure(1, 2, height=3.6)
     pull, radius = np.transpose([spheres.theory("maugis", lam) for lam in _MANY])
     tabors = [spheres.tabor_of(lam) for lam in _MANY]
@@ -72,7 +70,6 @@ def draw(_):
 
 
 def rows(_):
-    """Return the theory beside the solved laws."""
     found = []
     for lam in LAMBDAS:
         tabor = spheres.tabor_of(lam)

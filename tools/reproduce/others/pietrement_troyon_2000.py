@@ -24,7 +24,6 @@ def _fitted(lam):
 
 
 def numbers(runs):
-    """Return the numbers in the text of the page."""
     pull, radius = np.max([np.abs(_fitted(lam)) for lam in spheres.spaced(0.01, 100, 33)], axis=0)
     indentation = max(abs(spheres.contact(spheres.tabor_of(lam), 0.0).errors["pietrement"][2])
                       for lam in spheres.spaced(_LOW, 100, 31))
@@ -37,7 +36,6 @@ def numbers(runs):
 
 
 def rows(runs):
-    """Return the formula beside theory and solution."""
     found = _rows(runs)
     for lam in fits.LAMBDAS:
         one = spheres.contact(spheres.tabor_of(lam), 0.0)

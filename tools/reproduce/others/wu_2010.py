@@ -33,7 +33,6 @@ def _errors():
 
 
 def numbers(_):
-    """Return the numbers in the text of the page."""
     errors = _errors()
     worst = int(np.argmax(abs(errors[:, 0])))
     top = _MANY[-1]
@@ -51,7 +50,6 @@ def numbers(_):
 
 
 def draw(_):
-    """Return the picture."""
     page, (left, right) = style.figure(1, 2, height=3.6)
     solved, printed = (np.array(each) for each in zip(*map(jump, _MANY)))
     errors = _errors()
@@ -67,7 +65,6 @@ def draw(_):
 
 
 def rows(_):
-    """Return (37) beside the solution."""
     found = []
     for tabor in TABORS:
         solved, printed = jump(tabor)

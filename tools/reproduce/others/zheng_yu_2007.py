@@ -69,13 +69,11 @@ def _good(exponent):
 
 
 def numbers(_):
-    """Return the numbers in the text of the page."""
     return {"goods": ", ".join(map(_good, EXPONENTS)),
             "exponents": ", ".join(f"{n:g}" for n in EXPONENTS)}
 
 
 def draw(_):
-    """Return the picture."""
     page, panel = style.figure(height=4.0)
     panel.axhspan(0.99, 1.01, color=style.GREY, alpha=0.2, linewidth=0)
     for exponent, color in zip(EXPONENTS, _COLORS):
@@ -88,7 +86,6 @@ def draw(_):
 
 
 def rows(_):
-    """Return the formula beside the solution."""
     found = []
     for exponent in EXPONENTS:
         for tabor in _TABORS:
