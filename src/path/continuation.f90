@@ -25,7 +25,7 @@ module continuation
   !> three iterations correct, and the same of h0 and load; order of the error of an extrapolation
   !> from four states with tangents; limits of the ratio of successive steps, and the factor of
   !> which this ratio is a power.
-  real(wp), parameter :: wanted_miss = 3.0e-3_wp, growth = 2.5_wp, shrinkage = 0.3_wp, &
+  real(wp), parameter :: wanted_miss = 1.5e-3_wp, growth = 2.5_wp, shrinkage = 0.3_wp, &
     rung = 1.2_wp
   integer, parameter :: order = 8
   !> Relative error of slopes that serve only for predictions.

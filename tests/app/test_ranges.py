@@ -59,9 +59,9 @@ def test_adhesion_beyond_rounding_is_refused_at_once_on_a_fixed_grid_too(run, me
 
 
 def test_no_residual_above_a_thousandth_is_put_down_to_rounding(run):
-    """At depths of a million million lengths rounding leaves a hundredth, too much for a state."""
+    """At depths of 10^13 lengths rounding leaves a hundredth, too much for a state."""
     for scene in (
-            lennard_jones(1, loading=loading(6, -1e12, 1e12), numerics={"accuracy": 1e-3}),
+            lennard_jones(1, loading=loading(6, -1e13, 1e13), numerics={"accuracy": 1e-3}),
             exponential(1, loading=loading(0, -1e13, 1e13), numerics={"accuracy": 1e-3})):
         result = run(scene, status=1)
         assert (result.curve["residual"][result.curve["converged"] == 1] <= 1e-3).all()
