@@ -21,7 +21,7 @@ module edge_locked
   implicit none
   private
   public :: mesh_family_t, new_mesh_family
-  public :: approach, contact, narrow_band
+  public :: approach, contact, band_of_waves
 
   !> The mesh before contact, and the first of those in contact or about a front.
   integer, parameter :: approach = 1, contact = 2
@@ -29,7 +29,7 @@ module edge_locked
   !> Largest ratio of the contact radii of one mesh: wider bands need more nodes, narrower bands
   !> more meshes. Under a law that oscillates or has a step, short panels cover all places that the
   !> law's special gaps have at any radius of the band.
-  real(wp), parameter :: widest_band = 30, narrow_band = 2.0_wp
+  real(wp), parameter :: widest_band = 30, band_of_waves = 2, band_of_steps = 1.5_wp
   !> Where the tension is nearly constant up to the step, the nodes outside the step hardly add to
   !> the cost of a state, and wider bands are cheaper.
   real(wp), parameter :: band_of_constant_tension = 4
@@ -200,7 +200,9 @@ contains
 
     real(wp) :: ratio
 
-    ratio = merge(narrow_band, widest_band, is_narrow(problem))
+    ratio = widest_band
+    if (problem%law%period > 0) ratio = band_of_waves
+    if (problem%law%step_width > 0) ratio = band_of_steps
     if (has_constant_tension(problem%law)) ratio = band_of_constant_tension
     bands = ceiling(log(last/first)/log(ratio))
   end function bands_for

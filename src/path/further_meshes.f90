@@ -8,7 +8,7 @@ module further_meshes
   use force_law, only: force_law_t
   use contact_state, only: radius_of_gap
   use equilibrium, only: equations_t
-  use edge_locked, only: narrow_band
+  use edge_locked, only: band_of_waves
   use arc, only: arc_t
   use path_coordinate, only: axis_coordinate
   use mending, only: left_in_state
@@ -51,7 +51,7 @@ contains
         if (minval(radius) > 0) wider = log(radius(2)/radius(1))
         if (meshes%is_about_axis(mesh)) then
           inserted = level > law%edge_gap .and. wider > faster*nearer .and. &
-            wider < log(narrow_band) .and. &
+            wider < log(band_of_waves) .and. &
             abs(now%axis_gap - before%axis_gap) < resting*abs(now%h0 - before%h0)
           if (.not. inserted) level = 0
           inserted = inserted .or. left_in_state(equations, mesh, now) > most
@@ -64,7 +64,7 @@ contains
       end associate
       if (.not. inserted) return
       if (level > 0) then
-        call meshes%insert(mesh, level, radius(1), narrow_band*radius(2))
+        call meshes%insert(mesh, level, radius(1), band_of_waves*radius(2))
       else
         call meshes%insert(mesh, level, meshes%reach(1, 1), 0.0_wp)
       end if
