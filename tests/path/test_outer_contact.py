@@ -1,0 +1,82 @@
+"""Claims about soft bodies in contact in an outer minimum of an oscillating force: layers of liquid
+remain between them, the contact has an edge of its own and grows while the axis rests."""
+
+import functools
+
+import numpy as np
+import pytest
+import snapin
+from support.half_space import HalfSpace
+
+RADIUS, STIFFNESS, HAMAKER, Z0 = 0.94e-6, 42e6, 3.3e-21, 0.37e-9
+AMPLITUDE, PERIOD, DECAY = 18e6, 0.53e-9, 0.42e-9
+SCENE = {
+    "bodies": {"radius": RADIUS, "stiffness": STIFFNESS},
+    "van_der_waals": {"hamaker": HAMAKER},
+    "born": {"z0": Z0},
+    "structural": {"amplitude": AMPLITUDE, "period": PERIOD, "decay_length": DECAY},
+}
+# Panels to beyond the last ring that deforms the bodies.
+ENDS = (*np.arange(0, 7.01, 0.1), *np.arange(7.4, 14, 0.4), *np.geomspace(14, 300, 12))
+
+
+def force(gap):
+    """Pressure, slope and energy of the scene's force in units of z0 and of the surface energy of
+    its Lennard-Jones part over z0."""
+    energy = HAMAKER / (16 * np.pi * Z0**2)
+    amplitude, rate = AMPLITUDE * Z0 / energy, -Z0 / DECAY + 2j * np.pi * Z0 / PERIOD
+    wave = -amplitude * np.exp(rate * gap)
+    return (
+        8 / 3 * (gap**-9 - gap**-3) + wave.real,
+        8 * (gap**-4 - 3 * gap**-10) + (rate * wave).real,
+        gap**-8 / 3 - 4 / 3 * gap**-2 - (wave / rate).real)
+
+
+@functools.cache
+def found(accuracy):
+    """The path with an accuracy."""
+    return snapin.run({**SCENE, "numerics": {"accuracy": accuracy},
+                       "equilibrium_path": {"h0_end": -4e-9}})
+
+
+def test_the_path_goes_through_two_outer_contacts():
+    summary = found(1e-6).summary
+    assert not summary.get("warnings")
+    assert summary["error_estimate"] < 1e-6
+    assert len(summary["folds_h0"]) == 6
+    # The axis rests in the second and in the first minimum outside the contact proper.
+    axis = found(1e-6).curve["h_centre"]
+    for minimum in (1.4e-9, 0.9e-9):
+        assert (abs(axis - minimum) < 0.06e-9).sum() > 20
+    assert found(1e-6).curve["contact_radius"].max() == 0
+
+
+@pytest.mark.parametrize("name", ["folds_h0", "folds_load", "max_tension", "end_load"])
+def test_numbers_of_outer_contacts_are_within_their_errors(name):
+    near, exact = found(1e-6).summary, found(1e-9).summary
+    assert (abs(np.subtract(near[name], exact[name])) <= np.array(near[name + "_error"])).all()
+
+
+@pytest.mark.parametrize("h0", [1e-9, -1e-9, -2e-9])
+def test_outer_contacts_are_those_of_independent_states(h0):
+    """Newton's method from the program's gaps, for equations that share nothing with it."""
+    states = snapin.run({**SCENE, "numerics": {"accuracy": 1e-8}, "profiles": {"h0": h0},
+                         "loading": {"h0_start": 4e-9, "h0_end": h0, "h0_step": 4e-9 - h0}})
+    profile, lateral = states.profiles, np.sqrt(RADIUS * Z0)
+    raised = profile["separation"] - h0 - profile["r"]**2 / (2 * RADIUS)
+    energy = HAMAKER / (16 * np.pi * Z0**2)
+    s = energy * lateral / (STIFFNESS * Z0**2)
+    bodies = HalfSpace(ENDS, order=10)
+    r = np.concatenate([[0.0], bodies.r])
+    undeformed = h0 / Z0 + r**2 / 2
+    gap = undeformed + np.interp(r * lateral, profile["r"], raised) / Z0
+    for _ in range(12):
+        pressure, slope, _ = force(gap[1:])
+        jacobian = np.eye(len(r))
+        jacobian[:, 1:] -= 2 * s * bodies.matrix * slope
+        step = np.linalg.solve(jacobian, undeformed - gap + 2 * s * bodies.matrix @ pressure)
+        gap += step
+    assert abs(step).max() < 1e-9
+    assert states.curve["h_centre"][-1] == pytest.approx(gap[0] * Z0, rel=1e-7)
+    load = bodies.load(force, s, gap) * energy * RADIUS / s
+    assert states.curve["load"][-1] == pytest.approx(load, rel=1e-6)
