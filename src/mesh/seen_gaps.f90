@@ -39,7 +39,7 @@ module seen_gaps
   end type moved_t
 
   !> Ratio of successive tried radii, if the law has no step.
-  real(wp), parameter :: ratio = 1.05_wp
+  real(wp), parameter :: ratio = 1.1_wp
 
 contains
 
