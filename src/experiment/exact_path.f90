@@ -14,6 +14,7 @@ module exact_path
   use traced_path, only: traced_path_t
   use mending, only: too_much
   use path_stepper, only: path_stepper_t
+  use tracing, only: longest
   use experiment_request, only: request_t
   use path_demand, only: farthest_wanted
   use path, only: find_finish
@@ -66,7 +67,8 @@ contains
         end if
         call steps%know_path(h0_high, h0_low, allocated(request%path), listener, farthest, &
           accuracy)
-        if (steps%known%ending%cause /= path_lost .or. &
+        ! A path of too many states would have as many again.
+        if (steps%known%ending%cause /= path_lost .or. steps%known%path%held >= longest .or. &
           steps%meshes%digits + more_digits > most_digits) exit
       end do
       call fine%lay_out(steps, h0_high, h0_low, store)

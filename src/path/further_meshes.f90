@@ -20,6 +20,8 @@ module further_meshes
   real(wp), parameter :: faster = 2
   !> Largest change of the gap on the axis over that of h0 in a contact that grows in a minimum.
   real(wp), parameter :: resting = 0.2_wp
+  !> Depth for which a mesh about the axis is made, over the depth where it begins.
+  real(wp), parameter :: deeper = 1.5_wp
   !> States of an arc, of which two are from the mesh before, after which a mesh is inserted.
   integer, parameter :: enough = 4
   !> Part of the period by which gaps differ among which an edge is looked for.
@@ -66,7 +68,9 @@ contains
       if (level > 0) then
         call meshes%insert(mesh, level, radius(1), band_of_waves*radius(2))
       else
-        call meshes%insert(mesh, level, meshes%reach(1, 1), 0.0_wp)
+        ! The poles of the pressure are as far from the axis at h0 as at -h0.
+        call meshes%insert(mesh, level, max(meshes%reach(1, 1), &
+          deeper*abs(arc%state(arc%held)%h0)), 0.0_wp)
       end if
     end associate
     call equations%operator%forget()

@@ -21,7 +21,7 @@ module tracing
   use mending, only: mender_t, new_mender, left_on_path
   implicit none
   private
-  public :: tracing_t, trace, trace_again
+  public :: tracing_t, trace, trace_again, longest
 
   !> A traced path, its ending, and whether it ends in a collapse of the bodies; left_out: the
   !> largest part of the load that the nodes miss, except in a collapse.
@@ -33,7 +33,7 @@ module tracing
   end type tracing_t
 
   !> Number of points beyond which a path is given up.
-  integer, parameter :: longest = 5000
+  integer, parameter :: longest = 3000
   !> Contact radius, over the largest expected, that no path reaches.
   real(wp), parameter :: too_large = 5
   !> Number of steps between messages to the listener: a message takes a tenth of the time of a
