@@ -53,8 +53,10 @@ def test_the_path_goes_through_two_outer_contacts():
 
 @pytest.mark.parametrize("name", ["folds_h0", "folds_load", "max_tension", "end_load"])
 def test_numbers_of_outer_contacts_are_within_their_errors(name):
+    """Or a thousandth of the accuracy: a finer mesh with the same panels sees no less."""
     near, exact = found(1e-6).summary, found(1e-9).summary
-    assert (abs(np.subtract(near[name], exact[name])) <= np.array(near[name + "_error"])).all()
+    allowed = np.maximum(near[name + "_error"], 1e-9 * np.abs(near[name]))
+    assert (abs(np.subtract(near[name], exact[name])) <= allowed).all()
 
 
 @pytest.mark.parametrize("h0", [1e-9, -1e-9, -2e-9])
