@@ -95,25 +95,35 @@ contains
     type(mesh_store_t), intent(inout), optional :: store
     type(mesh_family_t), intent(in), optional :: coarser
     type(mesh_family_t) :: meshes
-    real(wp) :: widest
-    real(wp), allocatable :: low(:), high(:)
     logical :: elastic
-    integer :: k, fronts
+    integer :: k
 
     elastic = .true.
     if (present(shape_only)) elastic = .not. shape_only
     if (present(coarser)) then
       meshes = coarser
       deallocate (meshes%grid, meshes%shape)
-      allocate (meshes%grid(size(coarser%grid)), meshes%shape(size(coarser%grid)))
-      meshes%digits = digits
-      do k = merge(approach, contact, meshes%traceable), size(meshes%grid)
-        call follow(meshes, coarser, k, problem)
-        if (.not. allocated(meshes%shape(k)%order)) meshes%shape(k) = meshes%shape_for(problem, k)
-        call make_mesh(meshes%shape(k), elastic .and. .not. meshes%waits(k), meshes%grid(k), store)
-      end do
-      return
+    else
+      call plan(problem, h0_high, h0_low, meshes)
     end if
+    allocate (meshes%grid(size(meshes%locked)), meshes%shape(size(meshes%locked)))
+    meshes%digits = digits
+    do k = merge(approach, contact, meshes%traceable), size(meshes%grid)
+      if (present(coarser)) call follow(meshes, coarser, k, problem)
+      if (.not. allocated(meshes%shape(k)%order)) meshes%shape(k) = meshes%shape_for(problem, k)
+      call make_mesh(meshes%shape(k), elastic .and. .not. meshes%waits(k), meshes%grid(k), store)
+    end do
+  end function new_mesh_family
+
+  !> Plans the meshes for H0 from h0_high down to h0_low: their bands, and to what they are locked.
+  subroutine plan(problem, h0_high, h0_low, meshes)
+    type(problem_t), intent(in) :: problem
+    real(wp), intent(in) :: h0_high, h0_low
+    type(mesh_family_t), intent(inout) :: meshes
+    real(wp) :: widest
+    real(wp), allocatable :: low(:), high(:)
+    integer :: k, fronts
+
     meshes%traceable = problem%law%adhesion > 0
     if (.not. meshes%traceable) meshes%level = contact_level(problem)
     widest = largest_radius(problem, h0_low, meshes%level)
@@ -132,23 +142,16 @@ contains
         call add_bands(first, widest, bands_for(problem, first, widest), low, high)
       end associate
     end if
-    allocate (meshes%grid(approach + size(low)), meshes%shape(approach + size(low)), &
-      meshes%reach(2, approach + size(low)))
-    allocate (meshes%waits(size(meshes%grid)), source=.false.)
-    meshes%inserted = meshes%waits
-    if (meshes%traceable) meshes%waits(contact:) = is_narrow(problem)
-    meshes%digits = digits
     meshes%passage = [low, widest]
+    meshes%reach = reshape([h0_high, 0.0_wp, (low(k), high(k), k=1, size(low))], &
+      [2, approach + size(low)])
     meshes%edge_gap = problem%law%edge_gap
     meshes%locked = [0.0_wp, spread(problem%law%step_at, 1, fronts), &
       spread(problem%law%edge_gap, 1, size(low) - fronts)]
-    do k = merge(approach, contact, meshes%traceable), size(meshes%grid)
-      meshes%reach(:, k) = [h0_high, 0.0_wp]
-      if (k >= contact) meshes%reach(:, k) = [low(k - 1), high(k - 1)]
-      meshes%shape(k) = meshes%shape_for(problem, k)
-      call make_mesh(meshes%shape(k), elastic .and. .not. meshes%waits(k), meshes%grid(k), store)
-    end do
-  end function new_mesh_family
+    allocate (meshes%inserted(size(meshes%locked)), source=.false.)
+    meshes%waits = meshes%inserted
+    if (meshes%traceable) meshes%waits(contact:) = is_narrow(problem)
+  end subroutine plan
 
   !> The shape of a mesh. seen: gaps of computed states on it.
   type(mapped_shape_t) function shape_for(self, problem, mesh, seen) result(shape)
@@ -289,7 +292,7 @@ contains
     class(mesh_family_t), intent(in) :: self
     integer, intent(in) :: mesh
 
-    in_contact = mesh >= contact .and. mesh <= size(self%grid)
+    in_contact = mesh >= contact .and. allocated(self%locked)
     if (in_contact) in_contact = .not. abs(self%locked(mesh) - self%edge_gap) > 0
   end function in_contact
 

@@ -24,7 +24,7 @@ module law_panels
   real(wp), parameter :: more_nodes = 3
   !> Panels shorter than twice `shortest` are not halved. Number of gaps on the axis, or of radii,
   !> for which the pressure is evaluated: `tried`, or `often` where waves move with them.
-  real(wp), parameter :: shortest = 0.002_wp
+  real(wp), parameter :: shortest = 0.01_wp
   integer, parameter :: tried = 9, often = 33
   !> Factors by which the number of nodes is increased in turn. A panel that needs no more nodes
   !> than its halves is not halved: waves need more nodes, steps need shorter panels.

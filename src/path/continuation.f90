@@ -256,6 +256,9 @@ contains
     integer, intent(in) :: to
     !> States ahead for which a mesh about the axis is laid out, in steps of the arc.
     integer, parameter :: ahead(*) = [0, 1, 2, 3, 4, 6, 8]
+    !> Digits of seen gaps: the polynomials of neighbouring panels meet in kinks, which no panel of
+    !> another mesh resolves.
+    real(wp), parameter :: most_seen = 10
     type(seen_gaps_t) :: seen
     real(wp), allocatable :: gap(:)
     integer :: i, k
@@ -264,7 +267,7 @@ contains
     associate (problem => equations%problem, meshes => equations%meshes, cost => equations%cost, &
       from => arc%mesh, state => arc%state(i), before => arc%state(i - 1), &
       least => equations%problem%law%rest_gap)
-      call seen%begin_on(meshes%grid(from), size(ahead), 10.0_wp**(-meshes%digits))
+      call seen%begin_on(meshes%grid(from), size(ahead), 10.0_wp**(-min(meshes%digits, most_seen)))
       do k = 1, size(ahead)
         gap = state%gap
         if (ahead(k) > 0) gap = gap + ahead(k)*(equations%raised(from, state) - &
