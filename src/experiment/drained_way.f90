@@ -2,8 +2,8 @@
 !> motion is instantaneous: where bodies jump together or apart, the time steps resolve the jump.
 module drained_way
   use kinds, only: wp, pi
-  use edge_locked, only: approach
-  use continuation, only: radius_for
+  use mesh_plan, only: approach
+  use next_mesh, only: radius_for
   use motion, only: motion_t
   use time_instant, only: instant_t
   use time_stepper, only: time_stepper_t

@@ -6,7 +6,7 @@ module locked_stepper
   use kinds, only: wp
   use dimensionless_problem, only: calm_gap
   use contact_state, only: state_t, state_from
-  use edge_locked, only: approach, contact
+  use mesh_plan, only: approach, contact
   use locked_meshes, only: h0_control, scale_at
   use ending, only: ending_t, nothing_afar
   use stepper, only: stepper_t, branch_point_t, step_result_t, remember

@@ -161,7 +161,10 @@ contains
     if (.not. place%known) return
     associate (at => place%at, there => place%fine)
       there = near%read_at(distance)
-      if (fine%meshes%is_about_axis(place%mesh)) there(of_edge) = at(of_edge)
+      if (fine%meshes%is_about_axis(place%mesh)) then
+        at(of_edge) = 0
+        there(of_edge) = 0
+      end if
       left = 0
       if (place%turns() .or. place%after > 0) left = tight
       ! Where bodies deform much, rounding of h0 exceeds the error of the search.

@@ -4,7 +4,7 @@
 module timed_pass
   use kinds, only: wp, pi
   use dimensionless_problem, only: problem_t
-  use edge_locked, only: contact
+  use mesh_plan, only: contact
   use listener, only: listener_t
   use experiment_request, only: request_t
   use motion, only: motion_t

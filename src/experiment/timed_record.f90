@@ -3,7 +3,7 @@ module timed_record
   use kinds, only: wp
   use dimensionless_problem, only: spacing_over_neck
   use equilibrium, only: holds
-  use edge_locked, only: approach
+  use mesh_plan, only: approach
   use records, only: record_t, extent_t, record_of, stable_unasked
   use motion, only: names_of_ways
   use time_instant, only: instant_t

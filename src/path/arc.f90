@@ -9,7 +9,7 @@ module arc
   use contact_state, only: state_t
   use solver, only: solver_t
   use solver_options, only: tightened
-  use edge_locked, only: approach
+  use mesh_plan, only: approach
   use path_coordinate, only: path_control
   use path_tangent, only: tangent_t, tangent_along
   implicit none
@@ -210,7 +210,7 @@ contains
     real(wp), parameter :: part = 1.0e-4_wp
     integer :: nodes(most_hermite_nodes), n, j, from
     real(wp), dimension(most_hermite_nodes) :: of_value, of_slope
-    real(wp), allocatable :: away(:), raised(:), rate(:), here(:), gap(:)
+    real(wp), allocatable :: away(:), raised(:), rate(:), gap(:)
 
     call self%support(s, nodes, n)
     call hermite_weights(self%coordinate(nodes(:n)), s, of_value(:n), of_slope(:n))
@@ -222,9 +222,10 @@ contains
         rate = tangent%gap - tangent%scale*grid%x*shape%slope(state%scale*grid%x)
         away = (grid%x(from:) - grid%centre)*expected%scale/state%scale
         if (grid%is_bounded()) away = min(away, grid%x(grid%nodes) - grid%centre)
-        here = grid%interpolate_all(rate, grid%centre + away) - &
-          tangent%scale/state%scale*(at_distance(1 + part) - at_distance(1 - part))/(2*part)
-        gap = gap + of_value(j)*at_distance(1.0_wp) + of_slope(j)*here
+        ! With the distance constant, a position on the mesh moves as the scale grows.
+        gap = gap + of_value(j)*at_distance(1.0_wp) + of_slope(j)*( &
+          grid%interpolate_all(rate, grid%centre + away) - &
+          tangent%scale/state%scale*(at_distance(1 + part) - at_distance(1 - part))/(2*part))
       end associate
     end do
     if (minval(gap) > 0.5_wp*minval(expected%gap)) expected%gap(from:) = gap

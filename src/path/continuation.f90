@@ -5,17 +5,17 @@
 module continuation
   use kinds, only: wp
   use dimensionless_problem, only: problem_t
-  use contact_state, only: state_t, radius_of_gap, radius_of_step, felt_load
+  use contact_state, only: state_t
   use equilibrium, only: equations_t
   use solver, only: solver_t
-  use seen_gaps, only: seen_gaps_t
   use regridding, only: regrid
+  use next_mesh, only: radius_for, locked_alike, lay_out_next, beyond_passage
   use path_coordinate, only: path_control, coordinate_of
   use path_tangent, only: tangent_t, tangent_along
   use arc, only: arc_t
   implicit none
   private
-  public :: continuation_t, radius_for
+  public :: continuation_t
 
   !> States kept for the extrapolation; the first, the shortest and the longest step (changes of the
   !> coordinate).
@@ -34,9 +34,8 @@ module continuation
   !> define a smooth curve.
   real(wp), parameter :: miss_of_curve = 1.0e-7_wp, step_of_curve = 0.12_wp
   !> Least contact radius, over that of a passage, at which a state is transferred to the next mesh;
-  !> the largest radius that a step may reach on a mesh, which is not accurate beyond; and the least
-  !> step for which steps are shortened because of this limit.
-  real(wp), parameter :: nearly_passed = 0.8_wp, beyond_passage = 1.1_wp, shortest_passage = 0.05_wp
+  !> and the least step for which steps are shortened so that they end on the mesh.
+  real(wp), parameter :: nearly_passed = 0.8_wp, shortest_passage = 0.05_wp
 
   !> The last states on the current mesh, newest last.
   type, extends(arc_t) :: continuation_t
@@ -153,27 +152,23 @@ contains
   pure real(wp) function next_step(self, equations) result(step)
     class(continuation_t), intent(in) :: self
     type(equations_t), intent(in) :: equations
-    real(wp) :: s, passage
+    real(wp) :: s
     logical :: locked
 
     associate (meshes => equations%meshes, mesh => self%mesh)
       step = min(self%step, self%step_past_step(equations%problem, meshes%is_about_axis(mesh)))
       if (.not. equations%problem%law%edge_gap > 0) return
       s = self%coordinate(self%held)
-      passage = beyond_passage*meshes%passage(mesh)
-      locked = mesh == size(meshes%grid)
+      ! Does the coordinate end where the mesh does?
+      locked = mesh == size(meshes%grid) .or. meshes%is_in_outer_contact(mesh)
       if (.not. locked) locked = locked_alike(equations, mesh, mesh + 1)
-      if (meshes%is_in_outer_contact(mesh)) then
-        passage = beyond_passage*meshes%reach(2, mesh)
-        locked = .true.
-      end if
       if (locked) then
-        step = min(step, max(log(passage) - s, shortest_passage))
+        step = min(step, max(log(beyond_passage*meshes%reach(2, mesh)) - s, shortest_passage))
         return
       end if
       do while (step > shortest_passage)
         if (radius_for(equations, mesh, mesh + 1, self%guess(equations%problem%shape, &
-          meshes%grid(mesh), s + step)) <= passage) exit
+          meshes%grid(mesh), s + step)) <= beyond_passage*meshes%passage(mesh)) exit
         step = 0.6_wp*step
       end do
     end associate
@@ -230,7 +225,7 @@ contains
     lost = .false.
     if (.not. self%has_come_to_next(solver%equations_t)) return
     next%mesh = self%mesh + 1
-    if (solver%meshes%waits(next%mesh)) call lay_out(solver%equations_t, self%arc_t, next%mesh)
+    if (solver%meshes%waits(next%mesh)) call lay_out_next(solver%equations_t, self%arc_t)
     do j = self%held - 1, self%held
       state = self%state(j)
       ! The two states are a step of the path apart.
@@ -246,46 +241,6 @@ contains
     self%arc_t = next
     self%step = 0.5_wp*self%step
   end subroutine change_mesh
-
-  !> Lays out the next mesh for the gaps of the newest state of an arc; for an inserted mesh for the
-  !> one before, since the nodes may miss too much of the newest, and about the axis also for states
-  !> extrapolated from it.
-  subroutine lay_out(equations, arc, to)
-    type(equations_t), intent(inout), target :: equations
-    type(arc_t), intent(in) :: arc
-    integer, intent(in) :: to
-    !> States ahead for which a mesh about the axis is laid out, in steps of the arc.
-    integer, parameter :: ahead(*) = [0, 1, 2, 3, 4, 6, 8]
-    !> Digits of seen gaps: the polynomials of neighbouring panels meet in kinks, which no panel of
-    !> another mesh resolves.
-    real(wp), parameter :: most_seen = 10
-    type(seen_gaps_t) :: seen
-    real(wp), allocatable :: gap(:)
-    integer :: i, k
-
-    i = arc%held - merge(1, 0, equations%meshes%inserted(to))
-    associate (problem => equations%problem, meshes => equations%meshes, cost => equations%cost, &
-      from => arc%mesh, state => arc%state(i), before => arc%state(i - 1), &
-      least => equations%problem%law%rest_gap)
-      call seen%begin_on(meshes%grid(from), size(ahead), 10.0_wp**(-min(meshes%digits, most_seen)))
-      do k = 1, size(ahead)
-        gap = state%gap
-        if (ahead(k) > 0) gap = gap + ahead(k)*(equations%raised(from, state) - &
-          equations%raised(from, before))
-        if (k > 1 .and. (minval(gap) < least .or. .not. meshes%is_about_axis(to))) exit
-        call seen%add(problem%shape, gap, state%scale, &
-          felt_load(problem, meshes%grid(from), state))
-        if (meshes%is_about_axis(to)) then
-          call seen%try(0.0_wp, 1.0_wp, 1.0_wp, 0.0_wp)
-        else
-          call seen%try(radius_for(equations, from, to, state), meshes%reach(1, to), &
-            beyond_passage*meshes%reach(2, to), radius_of_step(problem, meshes%grid(from), state))
-        end if
-      end do
-      call meshes%renew(to, meshes%shape_for(problem, to, seen))
-      cost%kernel_entries = cost%kernel_entries + meshes%grid(to)%kernel_entries()
-    end associate
-  end subroutine lay_out
 
   !> Solves a state of one mesh on another mesh, at the same contact radius or axis gap. done =
   !> .false.: the state has no contact edge for the locked mesh, or the iteration did not converge.
@@ -305,31 +260,5 @@ contains
         coordinate_of(problem, meshes, to, state)), state, done)
     end associate
   end subroutine move_to_mesh
-
-  !> Radius, in lateral units, to which mesh `to` would be locked for a state on mesh `from`; 0 if
-  !> the state has no such radius.
-  pure real(wp) function radius_for(equations, from, to, state) result(c)
-    type(equations_t), intent(in) :: equations
-    integer, intent(in) :: from, to
-    type(state_t), intent(in) :: state
-
-    c = 1
-    if (equations%meshes%is_about_axis(to)) return
-    c = state%scale
-    if (locked_alike(equations, from, to)) return
-    associate (problem => equations%problem, meshes => equations%meshes)
-      c = radius_of_gap(problem%shape, meshes%locked_gap(to), meshes%grid(from), state)
-    end associate
-  end function radius_for
-
-  !> Whether two meshes are locked to the same radius.
-  pure logical function locked_alike(equations, from, to)
-    type(equations_t), intent(in) :: equations
-    integer, intent(in) :: from, to
-
-    locked_alike = .not. equations%meshes%is_about_axis(from)
-    if (locked_alike) locked_alike = abs(equations%meshes%locked_gap(from) - &
-      equations%meshes%locked_gap(to)) <= 0
-  end function locked_alike
 
 end module continuation

@@ -72,7 +72,8 @@ contains
   end function new_mender
 
   !> Refines a mesh whose end the path has reached, or on which the path is lost, if the nodes miss
-  !> too much. mended: the path is to be continued from its entry into the mesh.
+  !> too much. leaving: the path passes to the next mesh, which takes over its newest state. mended:
+  !> the path is to be continued from its entry into the mesh.
   subroutine mend(self, equations, path, mesh, leaving, lost, mended)
     class(mender_t), intent(inout) :: self
     type(equations_t), intent(inout) :: equations
@@ -83,7 +84,8 @@ contains
     type(mapped_shape_t) :: shape
     real(wp) :: left
 
-    left = maxval(left_on_mesh(equations, path, mesh, equations%meshes%grid(mesh), leaving))
+    left = maxval(left_on_mesh(equations, path, mesh, equations%meshes%grid(mesh), &
+      path%held - merge(1, 0, leaving)))
     mended = self%rounds(mesh) < most_rounds .and. left > self%most
     associate (nodes => equations%meshes%grid(mesh)%nodes)
       if (left < helped*self%left(mesh)) then
@@ -136,7 +138,7 @@ contains
     largest = 0
     do mesh = 1, size(equations%meshes%grid)
       largest = max(largest, maxval(left_on_mesh(equations, path, mesh, &
-        equations%meshes%grid(mesh))))
+        equations%meshes%grid(mesh), path%held)))
     end do
   end function left_on_path
 
@@ -186,7 +188,7 @@ contains
     shape = equations%meshes%shape(mesh)
     grid = equations%meshes%grid(mesh)
     do halving = 1, most_halvings
-      associate (long => left_on_mesh(equations, path, mesh, grid) > most)
+      associate (long => left_on_mesh(equations, path, mesh, grid, path%held) > most)
         if (.not. any(long) .or. &
           grid%nodes > most_growth*size(equations%meshes%grid(mesh)%x)) exit
         shape = shape%halved(long)
@@ -195,22 +197,18 @@ contains
     end do
   end function with_short_panels
 
-  !> The largest part of the load that the nodes of each panel miss over all states of a mesh; grid:
-  !> the mesh itself or a finer one, at whose nodes the gaps are interpolated.
-  pure function left_on_mesh(equations, path, mesh, grid, leaving) result(left)
+  !> The largest part of the load that the nodes of each panel miss over the states of a mesh up to
+  !> the `last` point; grid: the mesh itself or a finer one, at whose nodes gaps are interpolated.
+  pure function left_on_mesh(equations, path, mesh, grid, last) result(left)
     type(equations_t), intent(in) :: equations
     type(traced_path_t), intent(in) :: path
     integer, intent(in) :: mesh
     type(discretisation_t), intent(in) :: grid
-    logical, intent(in), optional :: leaving
+    integer, intent(in) :: last
     real(wp) :: left(size(grid%panel)), gap(grid%nodes)
-    integer :: i, j, last
+    integer :: i, j
 
     left = 0
-    last = path%held
-    if (present(leaving)) then
-      if (leaving) last = last - 1
-    end if
     associate (own => equations%meshes%grid(mesh), problem => equations%problem)
       do i = 1, last
         associate (point => path%point(i))

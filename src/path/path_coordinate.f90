@@ -1,7 +1,7 @@
 !> The coordinate s of the equilibrium path, in which the path has no folds and which increases
 !> inward. On meshes about the axis s is minus the logarithm of the gap on the axis, less nine
 !> tenths of the gap at rest; on other meshes it is the logarithm of the radius of the edge or
-!> front to which they are locked (`edge_locked`).
+!> front to which they are locked (`mesh_plan`).
 module path_coordinate
   use kinds, only: wp
   use force_law, only: force_law_t

@@ -16,9 +16,9 @@ module reported_place
   public :: least
 
   !> Quantities that are read at a state: h0, load, displacement, energy of the bodies, contact
-  !> radius, radius to which the mesh is locked; and quantities that follow from these: position of
-  !> the drive, tension, error of the profile. At a place, `of_energy` is the energy of bodies and
-  !> drive.
+  !> radius, radius to which the mesh is locked (0: about the axis); and quantities that follow from
+  !> these: position of the drive, tension, error of the profile. At a place, `of_energy` is the
+  !> energy of bodies and drive.
   integer, parameter :: read_of_states = 6, of_h0 = 1, of_load = 2, of_displacement = 3, &
     of_energy = 4, of_radius = 5, of_edge = 6, of_position = 7, of_tension = 8, of_profile = 9, &
     quantities = 9

@@ -159,7 +159,7 @@ contains
         place%state%h0]) + varied%offset(k)*line%separation), left, moved)
       if (control%kind == at_edge_radius) then
         ! The equation of the edge keeps the separation, not the gap in the law's lengths.
-        associate (gap => equations%meshes%locked(place%mesh))
+        associate (gap => equations%meshes%locked_gap(place%mesh))
           left(n + 1) = left(n + 1) + gap - law%gap_of(own%law%separation_of(gap))
         end associate
       end if

@@ -8,7 +8,7 @@ module traced_path
   use interpolation, only: hermite_t, hermite_through, most_hermite_nodes, find_nodes_about
   use contact_state, only: state_t
   use undeformed, only: load_undeformed, load_slope_undeformed
-  use edge_locked, only: approach
+  use mesh_plan, only: approach
   use path_tangent, only: tangent_t
   use arc, only: arc_t
   implicit none

@@ -9,7 +9,7 @@ module tracing
   use regridding, only: regrid
   use equilibrium, only: control_t, equations_t
   use solver, only: solver_t
-  use edge_locked, only: approach
+  use mesh_plan, only: approach
   use contact_scales, only: largest_radius, lost_in_rounding
   use locked_meshes, only: h0_control
   use path_coordinate, only: path_control

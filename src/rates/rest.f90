@@ -4,7 +4,7 @@ module rest
   use dimensionless_problem, only: calm_gap
   use contact_state, only: state_t, state_from
   use equilibrium, only: control_t
-  use edge_locked, only: approach, contact
+  use mesh_plan, only: approach, contact
   use locked_meshes, only: scale_at
   use path_coordinate, only: coordinate_of
   use regridding, only: regrid

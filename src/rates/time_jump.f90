@@ -9,7 +9,7 @@ module time_jump
   use path_coordinate, only: path_control, coordinate_of
   use regridding, only: regrid
   use root_finding, only: root_search_t, new_root_search
-  use continuation, only: radius_for
+  use next_mesh, only: radius_for
   use time_instant, only: instant_t, extrapolate
   use time_stepper, only: time_stepper_t
   implicit none

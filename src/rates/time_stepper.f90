@@ -4,11 +4,11 @@ module time_stepper
   use kinds, only: wp
   use contact_state, only: state_t
   use equilibrium, only: control_t, at_h0_with_edge
-  use edge_locked, only: approach
+  use mesh_plan, only: approach
   use contact_scales, only: cohesive_width
   use locked_meshes, only: h0_control
   use path_coordinate, only: coordinate_of
-  use continuation, only: radius_for
+  use next_mesh, only: radius_for
   use regridding, only: regrid
   use anderson, only: solve_anderson
   use solver_options, only: newton_of

@@ -4,7 +4,6 @@ module regime_rows
   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
   use kinds, only: wp, pi, nan
   use dimensionless_problem, only: problem_t, surface_energy, largest_tension, tabor_parameter
-  use edge_locked, only: approach
   use layered_body, only: layered_body_t
   use layered_contact, only: layered_contact_t, new_layered_contact
   use theory_names, only: hertz, jkr
@@ -129,7 +128,7 @@ contains
 
     lowest = places%place_of('path_tension')
     finish = places%place_of('path_end')
-    there = finish%mesh > approach .and. finish%at(of_radius) > 0 .and. lowest%at(of_load) < 0
+    there = min(finish%at(of_edge), finish%at(of_radius)) > 0 .and. lowest%at(of_load) < 0
     load = finish%at(of_load)*problem%load
     solved = measured_t(lowest%at(of_load)*problem%load, finish%at(of_edge)*problem%lateral, &
       (problem%law%rest_gap - finish%at(of_h0))*problem%length)

@@ -1,0 +1,86 @@
+!> The mesh after that of an arc of the path: the radius that a state has on it, and its layout for
+!> the gaps with which the path comes to it.
+module next_mesh
+  use kinds, only: wp
+  use contact_state, only: state_t, radius_of_gap, radius_of_step, felt_load
+  use equilibrium, only: equations_t
+  use seen_gaps, only: seen_gaps_t
+  use arc, only: arc_t
+  implicit none
+  private
+  public :: radius_for, locked_alike, lay_out_next, beyond_passage
+
+  !> The largest radius that the path may reach on a mesh, over the largest of its band.
+  real(wp), parameter :: beyond_passage = 1.1_wp
+  !> States ahead for which a mesh about the axis is laid out, in steps of the arc.
+  integer, parameter :: ahead(*) = [0, 1, 2, 3, 4, 6, 8]
+  !> Largest number of digits of a layout for seen gaps: the polynomials of neighbouring panels meet
+  !> in kinks, which no panel of another mesh resolves.
+  real(wp), parameter :: most_digits_seen = 10
+
+contains
+
+  !> Lays out the mesh after that of an arc for the gaps of its newest state. An inserted mesh is
+  !> for the state before, since the old nodes may miss too much of the newest one; about the axis
+  !> it is also for states extrapolated from that state.
+  subroutine lay_out_next(equations, arc)
+    type(equations_t), intent(inout), target :: equations
+    type(arc_t), intent(in) :: arc
+    type(seen_gaps_t) :: seen
+    real(wp), allocatable :: gap(:)
+    real(wp) :: load
+    integer :: to, i, k
+
+    to = arc%mesh + 1
+    i = arc%held
+    if (equations%meshes%inserted(to)) i = i - 1
+    associate (problem => equations%problem, meshes => equations%meshes, &
+      grid => equations%meshes%grid(arc%mesh), state => arc%state(i), before => arc%state(i - 1))
+      call seen%begin_on(grid, size(ahead), 10.0_wp**(-min(meshes%digits, most_digits_seen)))
+      load = felt_load(problem, grid, state)
+      if (meshes%is_about_axis(to)) then
+        do k = 1, size(ahead)
+          gap = state%gap + ahead(k)*(equations%raised(arc%mesh, state) - &
+            equations%raised(arc%mesh, before))
+          if (minval(gap) < problem%law%rest_gap .and. k > 1) exit
+          call seen%add(problem%shape, gap, state%scale, load)
+          call seen%try(0.0_wp, 1.0_wp, 1.0_wp, 0.0_wp)
+        end do
+      else
+        call seen%add(problem%shape, state%gap, state%scale, load)
+        call seen%try(radius_for(equations, arc%mesh, to, state), meshes%reach(1, to), &
+          beyond_passage*meshes%reach(2, to), radius_of_step(problem, grid, state))
+      end if
+      call meshes%renew(to, meshes%shape_for(problem, to, seen))
+      equations%cost%kernel_entries = equations%cost%kernel_entries + &
+        meshes%grid(to)%kernel_entries()
+    end associate
+  end subroutine lay_out_next
+
+  !> Radius, in lateral units, to which mesh `to` would be locked for a state on mesh `from`; 0 if
+  !> the state has no such radius.
+  pure real(wp) function radius_for(equations, from, to, state) result(c)
+    type(equations_t), intent(in) :: equations
+    integer, intent(in) :: from, to
+    type(state_t), intent(in) :: state
+
+    c = 1
+    if (equations%meshes%is_about_axis(to)) return
+    c = state%scale
+    if (locked_alike(equations, from, to)) return
+    associate (problem => equations%problem, meshes => equations%meshes)
+      c = radius_of_gap(problem%shape, meshes%locked_gap(to), meshes%grid(from), state)
+    end associate
+  end function radius_for
+
+  !> Whether two meshes are locked to the same radius.
+  pure logical function locked_alike(equations, from, to)
+    type(equations_t), intent(in) :: equations
+    integer, intent(in) :: from, to
+
+    locked_alike = .not. equations%meshes%is_about_axis(from)
+    if (locked_alike) locked_alike = abs(equations%meshes%locked_gap(from) - &
+      equations%meshes%locked_gap(to)) <= 0
+  end function locked_alike
+
+end module next_mesh
