@@ -1,6 +1,6 @@
 !> The shape of a mapped mesh: number and position of the nodes for a given number of digits of load
-!> and h0 along a part of the equilibrium path. The rule is fitted to the errors of whole bands of
-!> states, at adhesion strengths from 1e-4 to 1e5 (tools/bench/mesh_study.py).
+!> and h0 along a part of the equilibrium path. The rule was fitted to the errors of whole bands of
+!> states, at adhesion strengths from 1e-4 to 1e5.
 module mesh_rule
   use kinds, only: wp, pi
   use root_finding, only: bracket_t
