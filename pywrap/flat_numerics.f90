@@ -92,7 +92,7 @@ contains
     use discretisation, only: discretisation_t
     character(len=*), intent(in) :: kind
     integer(c_int), intent(in) :: nodes, l, m, orders(m)
-    real(c_double), intent(in) :: centre, lengths(l), map(3)
+    real(c_double), intent(in) :: centre, lengths(l), map(4)
     real(c_double), intent(out) :: x(nodes), weight(nodes), spacing
     type(discretisation_t) :: mesh
 
@@ -107,7 +107,7 @@ contains
     use discretisation, only: discretisation_t
     character(len=*), intent(in) :: kind
     integer(c_int), intent(in) :: nodes, l, m, orders(m)
-    real(c_double), intent(in) :: centre, lengths(l), map(3)
+    real(c_double), intent(in) :: centre, lengths(l), map(4)
     real(c_double), intent(out) :: matrix(nodes + 2, nodes)
     type(discretisation_t) :: mesh
 
@@ -122,7 +122,7 @@ contains
     use discretisation, only: discretisation_t
     character(len=*), intent(in) :: kind
     integer(c_int), intent(in) :: nodes, n, l, m, orders(m)
-    real(c_double), intent(in) :: centre, lengths(l), map(3), values(nodes), at(n)
+    real(c_double), intent(in) :: centre, lengths(l), map(4), values(nodes), at(n)
     real(c_double), intent(out) :: found(n)
     type(discretisation_t) :: mesh
     integer :: i
@@ -149,7 +149,7 @@ contains
     character(len=*), intent(in) :: deck, kind, method
     integer(c_int), intent(in) :: nodes, l, m, orders(m)
     integer(c_int), intent(in) :: most_iterations, depth, patience, stop_on_change
-    real(c_double), intent(in) :: coupling, centre, lengths(l), map(3), scale, h0, start(nodes)
+    real(c_double), intent(in) :: coupling, centre, lengths(l), map(4), scale, h0, start(nodes)
     real(c_double), intent(in) :: tolerance, mixing_limit, displacement_tolerance
     real(c_double), intent(out) :: gap(nodes), pressure(nodes), numbers(3)
     integer(c_int), intent(out) :: counts(4), stat
@@ -188,7 +188,7 @@ contains
     use panels, only: new_panel_grid
     use uniform_grid, only: new_uniform_grid
     character(len=*), intent(in) :: kind
-    real(c_double), intent(in) :: centre, lengths(:), map(3)
+    real(c_double), intent(in) :: centre, lengths(:), map(4)
     integer(c_int), intent(in) :: orders(:)
     logical, intent(in) :: elastic
     type(discretisation_t) :: mesh
@@ -201,7 +201,8 @@ contains
     case ('mapped')
       associate (panels => size(lengths))
         mesh = new_mapped_mesh(mapped_shape_t(centre, map(1), merge(1, 0, centre > 0), &
-          orders(:panels), lengths, orders(panels + 1), map(2), map(3)), elastic)
+          orders(:panels), lengths, orders(panels + 1), map(2), map(3), axis_power=nint(map(4))), &
+          elastic)
       end associate
     end select
   end function mesh_of

@@ -5,7 +5,7 @@ module graded_kernel
   use elastic_kernel, only: kernel
   use linear_algebra, only: multiply_transposed
   use quadrature, only: legendre_values
-  use panel_map, only: panel_map_t, sinh_map
+  use panel_map, only: panel_map_t, sinh_map, power_map
   use graded_rule, only: graded_rule_t
   implicit none
   private
@@ -118,6 +118,8 @@ contains
       points = points_along_sinh(panel%d, exp(sign(1.0_wp, length)*z), growth, chord)
       points%t = centre + panel%d*sinh(z) + sign(1.0_wp, length)*points%distance
       points%weight = points%weight*panel%z_length*abs(length)*rule%step_weight*points%t
+    else if (panel%kind == power_map) then
+      points = points_of_power(panel, from, length*rule%step, abs(length)*rule%step_weight)
     else
       points = points_of_tail(panel, from, length*rule%step, abs(length)*rule%step_weight)
     end if
@@ -152,6 +154,25 @@ contains
     middle = middle*growth
     points%weight = 0.5_wp*d*(middle + 1/middle)
   end function points_along_sinh
+
+  !> Points on a power panel from s to s + by (by of either sign). The distance is a sum of positive
+  !> terms: a**n - b**n = (a - b) (a**(n - 1) + a**(n - 2) b + ... + b**(n - 1)).
+  pure function points_of_power(panel, s, by, weight) result(points)
+    type(panel_map_t), intent(in) :: panel
+    real(wp), intent(in) :: s, by(:), weight(:)
+    type(points_t) :: points
+    integer :: k
+
+    associate (to => s + by, long => panel%right - panel%left, n => panel%power)
+      points%t = long*to**n
+      points%distance = 0*by
+      do k = 0, n - 1
+        points%distance = points%distance + s**(n - 1 - k)*to**k
+      end do
+      points%distance = long*abs(by)*points%distance
+      points%weight = weight*n*long*to**(n - 1)*points%t
+    end associate
+  end function points_of_power
 
   !> Points in the tail from s to s + by (by of either sign): position = begin/(1 - s).
   pure function points_of_tail(panel, s, by, weight) result(points)

@@ -11,7 +11,7 @@ module mapped_kernel
   use linear_algebra, only: multiply_transposed
   use logarithm_defect, only: logarithm_defects, feels_logarithm
   use quadrature, only: gauss_legendre, legendre_values
-  use panel_map, only: panel_map_t, sinh_map
+  use panel_map, only: panel_map_t, sinh_map, power_map
   use graded_rule, only: new_graded_rule
   use graded_kernel, only: add_graded
   implicit none
@@ -21,6 +21,8 @@ module mapped_kernel
   !> Distance from the axis, in z, up to which points are graded; and fraction of a panel above
   !> which the whole panel gets graded points.
   real(wp), parameter :: about_axis = 1.8_wp, nearly_all = 0.8_wp
+  !> Length in z of a sinh panel that needs as many graded points as a power panel.
+  real(wp), parameter :: length_of_power = 8
 
 contains
 
@@ -34,11 +36,16 @@ contains
     integer, intent(in) :: own
     real(wp), intent(out) :: matrix(:, :)
     ! Integrals against Legendre polynomials, (order, targets); local coordinates of the targets.
-    real(wp) :: moments(size(node), size(target)), place(size(target)), part
+    real(wp) :: moments(size(node), size(target)), place(size(target)), part, z_length
     integer :: k
 
     part = 1
     place = 0
+    z_length = panel%z_length
+    if (panel%kind == power_map) then
+      place = panel%local(target)
+      z_length = length_of_power
+    end if
     if (panel%kind == sinh_map) then
       place = panel%local(target)
       place(own:own + size(node) - 1) = node
@@ -49,7 +56,7 @@ contains
       end if
     end if
     moments = 0
-    call add_graded(panel, node, new_graded_rule(size(node), part, part*panel%z_length, digits), &
+    call add_graded(panel, node, new_graded_rule(size(node), part, part*z_length, digits), &
       centre, target, place, own, moments)
     if (part < 1) call add_rest(panel, part, digits, centre, target, place, moments)
     call multiply_transposed(moments, lagrange(node, weight), matrix)

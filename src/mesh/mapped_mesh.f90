@@ -5,7 +5,7 @@
 module mapped_mesh
   use kinds, only: wp
   use discretisation, only: discretisation_t, gauss_nodes, axis_row, centre_row, first_node
-  use panel_map, only: sinh_panel, algebraic_panel
+  use panel_map, only: sinh_panel, power_panel, algebraic_panel, power_map
   use mapped_kernel, only: add_panel
   implicit none
   private
@@ -31,6 +31,8 @@ module mapped_mesh
     real(wp) :: digits = 14
     !> Whether functions are even in the distance from the axis.
     logical :: even = .true.
+    !> Exponent of the power panel that replaces the innermost panel; 1: none.
+    integer :: axis_power = 1
   contains
     procedure :: halved
     procedure :: enriched
@@ -75,7 +77,7 @@ contains
     type(mapped_shape_t), intent(in) :: a, b
 
     same = size(a%order) == size(b%order) .and. a%inner == b%inner .and. &
-      a%tail_order == b%tail_order .and. (a%even .eqv. b%even)
+      a%tail_order == b%tail_order .and. a%axis_power == b%axis_power .and. (a%even .eqv. b%even)
     if (same) same = all(a%order == b%order) .and. all(abs(a%z_length - b%z_length) <= 0) .and. &
       all(abs([a%centre, a%d, a%decay, a%digits] - [b%centre, b%d, b%decay, b%digits]) <= 0)
   end function same_shape
@@ -124,6 +126,8 @@ contains
       z = z + shape%z_length(k)
     end do
     grid%panel(1)%left = -shape%centre
+    if (shape%axis_power > 1) &
+      grid%panel(1) = power_panel(shape%centre, grid%panel(1)%right, shape%axis_power)
     outermost = grid%panel(panels)%right
     grid%end = shape%centre + outermost
     if (shape%tail_order == 0) return
@@ -156,7 +160,8 @@ contains
         associate (local => grid%local(k))
           at = panel%offset(local%node)
           grid%weight(grid%first(k):last) = local%weight*panel%speed(local%node)*(grid%centre + at)
-          grid%spacing = min(grid%spacing, minval(panel%speed(local%node))/size(local%node))
+          if (panel%kind /= power_map) &
+            grid%spacing = min(grid%spacing, minval(panel%speed(local%node))/size(local%node))
         end associate
       end associate
     end do

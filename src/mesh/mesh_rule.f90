@@ -31,6 +31,9 @@ module mesh_rule
   real(wp), parameter :: longest_film = 3
   !> Such a pressure ends at the law's range or at this many of its lengths.
   real(wp), parameter :: farthest = 60
+  !> The panel on the axis of shapes that are not smooth there: its length in z, and the least power
+  !> of its local coordinate that is not smooth.
+  real(wp), parameter :: at_axis = 0.35_wp, smoothness = 4
   !> Short panels: their length in z, their number of nodes, and nodes per digit.
   real(wp), parameter :: short = 0.7_wp, short_order = 4, short_orders = 0.9_wp
   !> Largest radius of a flat face, in widths of the cohesive zone, for which the edge passes the
@@ -82,7 +85,7 @@ contains
     shape%even = problem%shape%is_even()
     call add_panels(problem, shape, about_axis, 1, asinh(reach/shape%d), density, digits, 0.0_wp, &
       0.0_wp, seen)
-    call refine_axis(problem, digits, 3.0_wp, shape)
+    call refine_axis(problem, digits, 2.0_wp, shape)
     shape%digits = kernel_digits(problem, digits, 1.0_wp)
   end function approach_shape
 
@@ -122,7 +125,7 @@ contains
     if (about == about_front) shape%d = finer*front_width(problem, high)
     call add_panels(problem, shape, about, -1, asinh(1/shape%d), inner, digits, low, high, &
       seen)
-    call refine_axis(problem, digits, 1.0_wp, shape)
+    call refine_axis(problem, digits, 0.0_wp, shape)
     shape%inner = size(shape%order)
     ! Panels with an integer number of nodes are slightly longer; d is chosen so that they end on
     ! the axis.
@@ -143,10 +146,9 @@ contains
     if (problem%law%tail_power < huge(1.0_wp)) then
       shape%tail_order = ceiling(1.5_wp + 0.6_wp*digits)
       shape%decay = problem%shape%growth*problem%law%tail_power
-      ! For other shapes the pressure over its power need not be a polynomial in the inverse
-      ! position.
-      if (.not. problem%shape%is_even() .or. problem%shape%ends < huge(1.0_wp)) &
-        shape%tail_order = 2*shape%tail_order
+      ! For some shapes the pressure over its power is not a polynomial in the inverse position.
+      if (abs(problem%shape%growth - nint(problem%shape%growth)) > 0 .or. &
+        problem%shape%ends < huge(1.0_wp)) shape%tail_order = 2*shape%tail_order
       reach = max(reach, problem%shape%position_of(problem%law%power_from), &
         beyond_poles*problem%shape%smooth_from())
       if (problem%shape%ends < near_end*reach) reach = max(reach, beyond_poles*problem%shape%ends)
@@ -179,8 +181,8 @@ contains
   end function fading_gap
 
   !> Adds sinh panels over z_length: one panel, which gets more nodes or is halved where the
-  !> pressure needs this, as under laws with lengths of their own. Laws with a kink, and shapes that
-  !> are not parabolas near the axis, have short panels from the beginning. about, side, low, high,
+  !> pressure needs this, as under laws with lengths of their own. Laws with a kink, and
+  !> shapes with kinks, have short panels from the beginning. about, side, low, high,
   !> seen: see `fit_panels`.
   subroutine add_panels(problem, shape, about, side, z_length, density, digits, low, high, seen)
     type(problem_t), intent(in) :: problem
@@ -200,7 +202,7 @@ contains
       (shape%centre + shape%d*sinh(z_length))*merge(high, 1.0_wp, shape%centre > 0), high)
     fewest = ceiling(short_order + short_orders*digits)
     associate (law => problem%law)
-      if (law%has_kink .or. broken .or. problem%shape%exponent > 2) then
+      if (law%has_kink .or. broken) then
         lengths = short_panels(z_length)
         if (about == about_axis .and. broken) lengths = ending_at_breaks(problem, shape%d, z_length)
       else
@@ -307,33 +309,26 @@ contains
     end associate
   end function end_matters
 
-  !> Halves the panel on the axis repeatedly for shapes that are not smooth there. The pressure of a
-  !> contact near the axis contains r^(n-1), with a logarithm if n is odd, and the error of the
-  !> panel is a part r^(n+1) of the load: `beyond` n is 1. Before contact the power is higher by
-  !> two. On a panel as long as its distance from the axis, each node reduces the error by 3 +
-  !> sqrt(8), so each halving needs `fewer` nodes less. The panel on the axis determines the gap
-  !> there.
+  !> Gives a mesh a power panel on the axis, for shapes that are not smooth there. The pressure of a
+  !> contact contains r**(n-1) near the axis, with a logarithm if n is odd, and the gap on the axis
+  !> has a part Int r**(n-1) dr; before contact the powers are higher by `beyond`, which is 2. On the
+  !> panel, this part is proportional to a power of the local coordinate of at least `smoothness`.
   pure subroutine refine_axis(problem, digits, beyond, shape)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: digits, beyond
-    real(wp), parameter :: fewer = log(2.0_wp)/log(3 + sqrt(8.0_wp)), least = 2
     type(mapped_shape_t), intent(inout) :: shape
-    real(wp) :: power, order
-    integer :: on_axis
+    integer :: order
 
     if (problem%shape%is_even()) return
-    power = problem%shape%exponent + beyond
-    order = short_order + short_orders*digits
-    on_axis = ceiling(order)
-    if (shape%z_length(1) > 2*short) then
-      shape%z_length = [short, shape%z_length(1) - short, shape%z_length(2:)]
-      shape%order = [on_axis, shape%order]
+    shape%axis_power = ceiling(smoothness/(problem%shape%exponent + beyond))
+    ! A polynomial of the position has the power's multiple of its degree.
+    order = ceiling((0.5_wp + 0.25_wp*shape%axis_power)*(short_order + short_orders*digits))
+    if (shape%z_length(1) > 2*at_axis) then
+      shape%z_length = [at_axis, shape%z_length(1) - at_axis, shape%z_length(2:)]
+      shape%order = [order, shape%order]
+    else
+      shape%order(1) = max(order, shape%order(1))
     end if
-    do while (shape%z_length(1) > 10.0_wp**(-digits/power))
-      shape%z_length = [0.5_wp*shape%z_length(1), 0.5_wp*shape%z_length(1), shape%z_length(2:)]
-      shape%order = [on_axis, ceiling(order), shape%order(2:)]
-      order = max(least, order - power*fewer)
-    end do
   end subroutine refine_axis
 
   !> Digits of the kernel: its errors matter less than those of the pressure's polynomials. They

@@ -3,19 +3,21 @@
 !>
 !>     linear     offset = left + (right - left) s
 !>     sinh       offset = d sinh(z), z = z_left + z_length s
+!>     power      position = end s**power, from the axis
 !>     algebraic  position = begin/(1 - s), out to infinity
 !>
 !> The sinh map has equal numbers of nodes for each factor in the distance from the centre, from d
-!> to the panel's length. On an algebraic panel a pressure is (1 - s)**decay times a polynomial: a
-!> power tail position**(-decay) times a polynomial in the inverse position.
+!> to the panel's length. On a power panel a function such as ln(position), times the speed, is as
+!> smooth as s**(power - 1) ln(s). On an algebraic panel a pressure is (1 - s)**decay times a
+!> polynomial: a power tail position**(-decay) times a polynomial in the inverse position.
 module panel_map
   use kinds, only: wp
   implicit none
   private
-  public :: panel_map_t, linear_panel, sinh_panel, algebraic_panel
-  public :: linear_map, sinh_map, algebraic_map
+  public :: panel_map_t, linear_panel, sinh_panel, power_panel, algebraic_panel
+  public :: linear_map, sinh_map, power_map, algebraic_map
 
-  integer, parameter :: linear_map = 1, sinh_map = 2, algebraic_map = 3
+  integer, parameter :: linear_map = 1, sinh_map = 2, power_map = 3, algebraic_map = 4
 
   type :: panel_map_t
     integer :: kind = linear_map
@@ -23,6 +25,8 @@ module panel_map
     real(wp) :: left = 0, right = 0
     !> Parameters of a sinh panel: d, z at the left end, and the length in z.
     real(wp) :: d = 0, z_left = 0, z_length = 0
+    !> Exponent of a power panel.
+    integer :: power = 1
     !> Parameters of an algebraic panel: position of its left end, and exponent of the tail.
     real(wp) :: begin = 0, decay = 0
   contains
@@ -53,6 +57,17 @@ contains
     panel%right = d*sinh(z_left + z_length)
   end function sinh_panel
 
+  !> A power panel from the axis, which is at the offset -centre, to the offset `right`.
+  pure type(panel_map_t) function power_panel(centre, right, power) result(panel)
+    real(wp), intent(in) :: centre, right
+    integer, intent(in) :: power
+
+    panel%kind = power_map
+    panel%left = -centre
+    panel%right = right
+    panel%power = power
+  end function power_panel
+
   !> An algebraic panel from the position `begin` (offset `left`) to infinity.
   pure type(panel_map_t) function algebraic_panel(begin, left, decay) result(panel)
     real(wp), intent(in) :: begin, left, decay
@@ -72,6 +87,8 @@ contains
     select case (self%kind)
     case (sinh_map)
       offset = self%d*sinh(self%z_left + self%z_length*s)
+    case (power_map)
+      offset = self%left + (self%right - self%left)*s**self%power
     case (algebraic_map)
       offset = self%left + self%begin*s/(1 - s)
     case default
@@ -87,6 +104,8 @@ contains
     select case (self%kind)
     case (sinh_map)
       s = (asinh(at/self%d) - self%z_left)/self%z_length
+    case (power_map)
+      s = ((at - self%left)/(self%right - self%left))**(1.0_wp/self%power)
     case (algebraic_map)
       s = (at - self%left)/(at - self%left + self%begin)
     case default
@@ -102,6 +121,8 @@ contains
     select case (self%kind)
     case (sinh_map)
       speed = self%z_length*self%d*cosh(self%z_left + self%z_length*s)
+    case (power_map)
+      speed = self%power*(self%right - self%left)*s**(self%power - 1)
     case (algebraic_map)
       speed = self%begin/(1 - s)**2
     case default

@@ -15,7 +15,8 @@ DIGITS = 14.0
 
 @dataclass
 class Mapped:
-    """A mesh of src/mesh/mapped_mesh.f90: sinh panels by order and length in z, then a tail."""
+    """A mesh of src/mesh/mapped_mesh.f90: sinh panels by order and length in z, then a tail; the
+    first may be a power panel."""
 
     centre: float
     d: float
@@ -24,6 +25,7 @@ class Mapped:
     tail: int = 0
     decay: float = 6.0
     digits: float = DIGITS
+    power: int = 1
     x: np.ndarray = field(init=False)
     weight: np.ndarray = field(init=False)
 
@@ -36,7 +38,7 @@ class Mapped:
 
     @property
     def shape(self):
-        numbers = self.d, self.decay, self.digits
+        numbers = self.d, self.decay, self.digits, self.power
         return "mapped", self.centre, self.z_length, [*self.order, self.tail], numbers
 
     def matrix(self):
@@ -124,7 +126,12 @@ def panel_reference(grid, row, panel, degree):
         edges.append(edges[-1] + length)
     orders = [*grid.order, grid.tail]
     begin = mp(grid.centre) + mp(grid.d) * mpmath.sinh(mp(edges[-1]))
-    if panel < len(grid.order):
+    end = mp(grid.centre) + mp(grid.d) * mpmath.sinh(mp(edges[1]))
+    if panel == 0 and grid.power > 1:
+        position = lambda s: end * s ** grid.power
+        speed = lambda s: end * grid.power * s ** (grid.power - 1)
+        tail = lambda s: 1
+    elif panel < len(grid.order):
         z0, length = mp(edges[panel]), mp(grid.z_length[panel])
         position = lambda s: mp(grid.centre) + mp(grid.d) * mpmath.sinh(z0 + length * s)
         speed = lambda s: mp(grid.d) * length * mpmath.cosh(z0 + length * s)
@@ -181,7 +188,9 @@ PANELS = {
     "small contact": lambda: Mapped(1.0, 1 / np.sinh(1.6), [20, 34], [1.6, 5.0], 5),
     "short panels": lambda: Mapped(1.0, 1 / np.sinh(0.7), [14] * 6, [0.7] * 6, 5),
     "approach": lambda: Mapped(0.0, 0.2, [30], [4.0], 6, 18.0),
-    "towards a tip": lambda: Mapped(0.0, 0.5, [14] * 4, [0.2, 0.2, 0.4, 0.8], 4, 18.0),
+    "towards a tip": lambda: Mapped(0.0, 0.5, [14] * 3, [0.3, 0.4, 0.8], 4, 18.0, power=2),
+    "tip in contact": lambda: Mapped(1.0, 1 / np.sinh(3.0), [16, 20, 26], [0.3, 2.7, 4.0], 5,
+                                     power=4),
 }
 
 
@@ -208,6 +217,16 @@ def test_the_kernel_has_the_digits_that_are_asked_for(digits):
     exact = contact_mesh(1e-4, 4.0, 40, 8, 6.0).columns()
     rough = contact_mesh(1e-4, 4.0, 40, 8, 6.0, digits).columns()
     assert np.abs((rough - exact) / np.abs(exact).max(1)[:, None]).max() < 10.0**-digits
+
+
+def test_on_a_power_panel_a_logarithm_converges_with_twice_the_power():
+    # ln(r) on a disc of radius 1 raises the axis by 2 Int ln(r) dr = -2.
+    def missed(order):
+        mesh = Mapped(0.0, 0.5, [order, 24], [0.4, np.arcsinh(2.0) - 0.4], power=3)
+        assert mesh.weight @ np.log(mesh.x) == pytest.approx(-0.25, abs=1e-8)
+        return abs(mesh.matrix()[0] @ np.log(mesh.x) + 2)
+
+    assert missed(20) < missed(10) / 2**5.5 < 3e-8
 
 
 def test_what_is_bounded_is_interpolated_out_to_infinity():
