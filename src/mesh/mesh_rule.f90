@@ -311,8 +311,8 @@ contains
 
   !> Gives a mesh a power panel on the axis, for shapes that are not smooth there. The pressure of a
   !> contact contains r**(n-1) near the axis, with a logarithm if n is odd, and the gap on the axis
-  !> has a part Int r**(n-1) dr; before contact the powers are higher by `beyond`, which is 2. On the
-  !> panel, this part is proportional to a power of the local coordinate of at least `smoothness`.
+  !> has a part Int r**(n-1) dr; before contact the powers are higher by `beyond`, which is 2. This
+  !> part is proportional to a power of the panel's local coordinate of at least `smoothness`.
   pure subroutine refine_axis(problem, digits, beyond, shape)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: digits, beyond
