@@ -179,12 +179,18 @@ contains
     integer, intent(in) :: after
     real(wp), intent(in) :: locked, low, high
     type(discretisation_t), allocatable :: grid(:)
-    integer :: k
+    real(wp), allocatable :: kernel(:, :)
+    integer :: k, to
 
     call self%insert(after, locked, low, high)
     allocate (grid(size(self%grid) + 1))
-    grid(:after) = self%grid(:after)
-    grid(after + 2:) = self%grid(after + 1:)
+    do k = 1, size(self%grid)
+      to = k + merge(0, 1, k <= after)
+      ! A kernel is moved, since its copy would take as long as a state.
+      call move_alloc(self%grid(k)%kernel, kernel)
+      grid(to) = self%grid(k)
+      call move_alloc(kernel, grid(to)%kernel)
+    end do
     call move_alloc(grid, self%grid)
     self%shape = self%shape([(k, k=1, after + 1), (k, k=after + 1, size(self%shape))])
   end subroutine insert_mesh

@@ -33,7 +33,7 @@ module arc
     procedure :: drop_first
     procedure :: guess
     procedure :: guess_from
-    procedure, private :: guess_outside
+    procedure, private :: outside
     procedure :: curve
     procedure :: slope
     procedure :: curvature
@@ -64,10 +64,9 @@ contains
     real(wp) :: h0
     type(hermite_t) :: load
 
-    state = self%guess(solver%problem%shape, solver%meshes%grid(self%mesh), s)
-    if (present(slope_error) .and. solver%problem%law%period > 0 .and. &
-      .not. solver%meshes%is_about_axis(self%mesh)) &
-      call self%guess_outside(solver%problem%shape, solver%meshes%grid(self%mesh), s, state)
+    state = self%guess(solver%problem%shape, solver%meshes%grid(self%mesh), s, &
+      present(slope_error) .and. solver%problem%law%period > 0 .and. &
+      .not. solver%meshes%is_about_axis(self%mesh))
     guessed = state%gap
     h0 = state%h0
     associate (control => path_control(solver%problem, solver%meshes, self%mesh, s))
@@ -146,16 +145,17 @@ contains
     end associate
   end subroutine support
 
-  !> The state at s by the polynomial of the arc; grid: the arc's mesh.
-  pure type(state_t) function guess(self, shape, grid, s) result(expected)
+  !> The state at s by the polynomial of the arc; grid: the arc's mesh; moved: see `guess_from`.
+  pure type(state_t) function guess(self, shape, grid, s, moved) result(expected)
     class(arc_t), intent(in) :: self
     class(shape_t), intent(in) :: shape
     type(discretisation_t), intent(in) :: grid
     real(wp), intent(in) :: s
+    logical, intent(in), optional :: moved
     integer :: nodes(most_hermite_nodes), n
 
     call self%support(s, nodes, n)
-    call self%guess_from(shape, grid, nodes(:n), s, expected)
+    call self%guess_from(shape, grid, nodes(:n), s, expected, moved)
   end function guess
 
   !> The state at s by the polynomial through the states `nodes` of the arc, in the arrays that
@@ -163,14 +163,15 @@ contains
   !> since the exact heights are known, the error of the polynomial in the heights is subtracted
   !> from the guess. Near an end of the bodies or a kink of their profile this error is most of the
   !> error of the guess. A parabola's heights are proportional to the square of the scale and need
-  !> no such correction.
-  pure subroutine guess_from(self, shape, grid, nodes, s, expected)
+  !> no such correction. moved: gaps outside the edge are those of `outside`; .false. if absent.
+  pure subroutine guess_from(self, shape, grid, nodes, s, expected, moved)
     class(arc_t), intent(in) :: self
     class(shape_t), intent(in) :: shape
     type(discretisation_t), intent(in) :: grid
     integer, intent(in) :: nodes(:)
     real(wp), intent(in) :: s
     type(state_t), intent(inout) :: expected
+    logical, intent(in), optional :: moved
     real(wp), dimension(most_hermite_nodes) :: at, of_value, of_slope
     real(wp) :: h0, scale
     integer :: j, n
@@ -194,33 +195,35 @@ contains
     end do
     if (.not. shape%parabolic) &
       expected%pressure = expected%pressure + shape%height(scale*grid%x)
+    if (present(moved)) then
+      if (moved) expected%pressure(count(grid%x <= grid%centre) + 1:) = &
+        self%outside(shape, grid, nodes, of_value(:n), of_slope(:n), scale)
+    end if
     call take_if_sound(h0, scale, expected)
   end subroutine guess_from
 
-  !> Guesses the gaps outside the edge to which a mesh is locked by polynomials of s at constant
-  !> distance from the edge. Where an oscillating pressure makes rings, these keep their distance
-  !> approximately, while they pass many nodes.
-  pure subroutine guess_outside(self, shape, grid, s, expected)
+  !> The gaps outside the edge to which a mesh is locked, at a given scale, by polynomials of s at
+  !> constant distance from the edge, with the weights of values and slopes of the states `nodes`.
+  !> Where an oscillating pressure makes rings, these keep their distance approximately, while they
+  !> pass many nodes.
+  pure function outside(self, shape, grid, nodes, of_value, of_slope, scale) result(gap)
     class(arc_t), intent(in) :: self
     class(shape_t), intent(in) :: shape
     type(discretisation_t), intent(in) :: grid
-    real(wp), intent(in) :: s
-    type(state_t), intent(inout) :: expected
+    integer, intent(in) :: nodes(:)
+    real(wp), intent(in) :: of_value(:), of_slope(:), scale
     !> Part of the distance over which a derivative is taken.
     real(wp), parameter :: part = 1.0e-4_wp
-    integer :: nodes(most_hermite_nodes), n, j, from
-    real(wp), dimension(most_hermite_nodes) :: of_value, of_slope
+    integer :: j, from
     real(wp), allocatable :: away(:), raised(:), rate(:), gap(:)
 
-    call self%support(s, nodes, n)
-    call hermite_weights(self%coordinate(nodes(:n)), s, of_value(:n), of_slope(:n))
     from = count(grid%x <= grid%centre) + 1
-    gap = shape%height(expected%scale*grid%x(from:))
-    do j = 1, n
+    gap = shape%height(scale*grid%x(from:))
+    do j = 1, size(nodes)
       associate (state => self%state(nodes(j)), tangent => self%tangent(nodes(j)))
         raised = state%gap - shape%height(state%scale*grid%x)
         rate = tangent%gap - tangent%scale*grid%x*shape%slope(state%scale*grid%x)
-        away = (grid%x(from:) - grid%centre)*expected%scale/state%scale
+        away = (grid%x(from:) - grid%centre)*scale/state%scale
         if (grid%is_bounded()) away = min(away, grid%x(grid%nodes) - grid%centre)
         ! With the distance constant, a position on the mesh moves as the scale grows.
         gap = gap + of_value(j)*at_distance(1.0_wp) + of_slope(j)*( &
@@ -228,7 +231,6 @@ contains
           tangent%scale/state%scale*(at_distance(1 + part) - at_distance(1 - part))/(2*part))
       end associate
     end do
-    if (minval(gap) > 0.5_wp*minval(expected%gap)) expected%gap(from:) = gap
 
   contains
 
@@ -239,7 +241,7 @@ contains
       value = grid%interpolate_all(raised, grid%centre + times*away)
     end function at_distance
 
-  end subroutine guess_outside
+  end function outside
 
   !> The polynomial through states at the given values of a coordinate, evaluated at s.
   pure type(state_t) function between(coordinate, states, s) result(expected)
