@@ -64,6 +64,7 @@ module mesh_plan
     procedure :: is_in_outer_contact
     procedure :: locked_gap
     procedure :: insert
+    procedure :: divide
   end type mesh_plan_t
 
 contains
@@ -120,6 +121,19 @@ contains
     self%reach = reshape([self%reach(:, :after), [low, high], self%reach(:, after + 1:)], &
       [2, size(self%locked)])
   end subroutine insert
+
+  !> Divides the band of a mesh that waits: the mesh is for radii up to `middle`, and a new one
+  !> after it for the others.
+  pure subroutine divide(self, mesh, middle)
+    class(mesh_plan_t), intent(inout) :: self
+    integer, intent(in) :: mesh
+    real(wp), intent(in) :: middle
+
+    call self%insert(mesh, self%locked(mesh), middle, self%reach(2, mesh))
+    self%inserted(mesh + 1) = .false.
+    self%passage(mesh) = middle
+    self%reach(2, mesh) = middle
+  end subroutine divide
 
   !> Number of bands of equal ratio between two radii.
   pure integer function bands_for(problem, first, last) result(bands)

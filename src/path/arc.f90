@@ -24,6 +24,8 @@ module arc
   !> s), in the order of s.
   type :: arc_t
     integer :: mesh = approach, held = 0
+    !> Whether guesses are at constant distance from the edge to which the mesh is locked.
+    logical :: moved = .false.
     real(wp) :: coordinate(most_states) = 0
     !> Allocated with most_states elements: compiler note 11.
     type(state_t), allocatable :: state(:)
@@ -49,8 +51,9 @@ contains
   !> The state at the coordinate s, with its tangent. The guess from the arc is corrected to
   !> rounding or, where rounding is not reached, to the tolerance of the options, so that load and
   !> position on the path are both exact. slope_error: if present, the options' tolerance is enough,
-  !> and the tangent may have this relative error. miss: the largest change of a gap by the
-  !> correction, relative or in the law's lengths, and the same of h0 and load.
+  !> and the tangent may have this relative error. miss: the largest change of a gap from the guess
+  !> and from the other kind of guess (see `moved`; huge if there is none), relative or in the law's
+  !> lengths, and the same of h0 and load.
   subroutine state_at(self, solver, s, state, tangent, converged, slope_error, miss)
     class(arc_t), intent(in) :: self
     class(solver_t), intent(inout) :: solver
@@ -59,32 +62,48 @@ contains
     type(tangent_t), intent(out) :: tangent
     logical, intent(out) :: converged
     real(wp), intent(in), optional :: slope_error
-    real(wp), intent(out), optional :: miss(2)
-    real(wp), allocatable :: guessed(:)
-    real(wp) :: h0
+    real(wp), intent(out), optional :: miss(3)
+    type(state_t) :: guess(2)
     type(hermite_t) :: load
+    integer :: k, guesses
 
-    state = self%guess(solver%problem%shape, solver%meshes%grid(self%mesh), s, &
-      present(slope_error) .and. solver%problem%law%period > 0 .and. &
-      .not. solver%meshes%is_about_axis(self%mesh))
-    guessed = state%gap
-    h0 = state%h0
-    associate (control => path_control(solver%problem, solver%meshes, self%mesh, s))
-      if (present(slope_error)) then
-        call solver%correct(control, state, converged)
-      else
-        call solver%correct(control, state, converged, tightened(solver%options))
-        converged = converged .or. state%residual <= solver%options%tolerance
+    ! Rings of an oscillating pressure move with the edge or, around a small contact, hardly at all.
+    guesses = 1
+    if (solver%problem%law%period > 0 .and. .not. solver%meshes%is_about_axis(self%mesh)) &
+      guesses = 2
+    associate (problem => solver%problem, grid => solver%meshes%grid(self%mesh), &
+      control => path_control(solver%problem, solver%meshes, self%mesh, s))
+      do k = 1, guesses
+        guess(k) = self%guess(problem%shape, grid, s, self%moved .neqv. k == 2)
+      end do
+      do k = 1, guesses
+        state = guess(k)
+        if (present(slope_error)) then
+          call solver%correct(control, state, converged)
+        else
+          call solver%correct(control, state, converged, tightened(solver%options))
+          converged = converged .or. state%residual <= solver%options%tolerance
+        end if
+        if (converged) exit
+      end do
+      if (present(miss)) then
+        miss = huge(miss)
+        miss(:guesses) = [(distance(state, guess(k)), k=1, guesses)]
+        load = self%curve([0.0_wp, 1.0_wp], s)
+        miss(3) = max(abs(state%h0 - guess(1)%h0)/(1 + abs(guess(1)%h0)), &
+          abs(state%load - load%value(s))/(abs(state%load) + pi*problem%law%adhesion))
       end if
     end associate
-    if (present(miss)) then
-      load = self%curve([0.0_wp, 1.0_wp], s)
-      miss(1) = maxval(abs(state%gap - guessed)/(1 + abs(guessed)))
-      miss(2) = max(abs(state%h0 - h0)/(1 + abs(h0)), abs(state%load - load%value(s))/ &
-        (abs(state%load) + pi*solver%problem%law%adhesion))
-    end if
     if (converged) call tangent_along(solver, self%mesh, s, state, tangent, converged, slope_error)
   end subroutine state_at
+
+  !> The largest difference of a gap between a state and its guess, relative or in the law's
+  !> lengths.
+  pure real(wp) function distance(state, guess)
+    type(state_t), intent(in) :: state, guess
+
+    distance = maxval(abs(state%gap - guess%gap)/(1 + abs(guess%gap)))
+  end function distance
 
   !> Inserts a state in the order of s. The arc stays as it is if it is full or has a state at s.
   pure subroutine add(self, s, state, tangent)

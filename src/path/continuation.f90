@@ -117,7 +117,7 @@ contains
     logical, intent(out) :: lost
     type(state_t) :: state
     type(tangent_t) :: tangent
-    real(wp) :: s, miss(2)
+    real(wp) :: s, miss(3)
     logical :: converged
 
     lost = .false.
@@ -132,8 +132,10 @@ contains
       lost = self%step < shortest_step
       if (lost) return
     end do
-    self%step = min(self%longest_step, abs(s - self%coordinate(self%held))* &
-      factor_for(minval([wanted_miss, self%miss_of_curve]/max(miss, tiny(1.0_wp)))))
+    ! The kind of guess that was better for this state is that for the next one.
+    self%moved = self%moved .neqv. miss(2) < miss(1)
+    self%step = min(self%longest_step, abs(s - self%coordinate(self%held))*factor_for(minval( &
+      [wanted_miss, self%miss_of_curve]/max([minval(miss(:2)), miss(3)], tiny(1.0_wp)))))
     if (self%is_full()) call self%drop_first()
     call self%add(s, state, tangent)
   end subroutine advance
@@ -225,6 +227,7 @@ contains
     lost = .false.
     if (.not. self%has_come_to_next(solver%equations_t)) return
     next%mesh = self%mesh + 1
+    next%moved = self%moved
     if (solver%meshes%waits(next%mesh)) call lay_out_next(solver%equations_t, self%arc_t)
     do j = self%held - 1, self%held
       state = self%state(j)

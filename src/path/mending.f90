@@ -11,7 +11,6 @@ module mending
   use panel_map, only: algebraic_map
   use mapped_mesh, only: mapped_shape_t, new_mapped_mesh
   use law_panels, only: left_out
-  use edge_locked, only: mesh_family_t
   use seen_gaps, only: seen_gaps_t
   use contact_state, only: state_t, gap_at, felt_load, radius_of_step
   use equilibrium, only: equations_t
@@ -37,7 +36,6 @@ module mending
     integer, allocatable :: nodes(:)
   contains
     procedure :: mend
-    procedure :: insert
   end type mender_t
 
   !> Factor of the quadrature error at kinks of the law, to which extrema are most sensitive.
@@ -60,15 +58,12 @@ contains
 
   !> The refinement of meshes for a path with a given accuracy. `left_out` counts kinks and waves in
   !> full, while only a part of their error affects the load.
-  pure type(mender_t) function new_mender(accuracy, law, meshes) result(mender)
+  pure type(mender_t) function new_mender(accuracy, law) result(mender)
     real(wp), intent(in) :: accuracy
     class(force_law_t), intent(in) :: law
-    type(mesh_family_t), intent(in) :: meshes
 
     mender%most = accuracy*merge(too_much, 1.0_wp, law%has_kink .or. law%period > 0)
-    allocate (mender%rounds(size(meshes%grid)), source=0)
-    allocate (mender%left(size(meshes%grid)), source=huge(1.0_wp))
-    allocate (mender%nodes(size(meshes%grid)), source=0)
+    allocate (mender%rounds(0), mender%left(0), mender%nodes(0))
   end function new_mender
 
   !> Refines a mesh whose end the path has reached, or on which the path is lost, if the nodes miss
@@ -84,6 +79,12 @@ contains
     type(mapped_shape_t) :: shape
     real(wp) :: left
 
+    ! Meshes may have been inserted, all of them after those that were judged before.
+    do while (size(self%rounds) < mesh)
+      self%rounds = [self%rounds, 0]
+      self%left = [self%left, huge(1.0_wp)]
+      self%nodes = [self%nodes, 0]
+    end do
     left = maxval(left_on_mesh(equations, path, mesh, equations%meshes%grid(mesh), &
       path%held - merge(1, 0, leaving)))
     mended = self%rounds(mesh) < most_rounds .and. left > self%most
@@ -107,16 +108,6 @@ contains
     equations%cost%kernel_entries = equations%cost%kernel_entries + &
       equations%meshes%grid(mesh)%kernel_entries()
   end subroutine mend
-
-  !> Makes room for a mesh that was inserted after another one.
-  pure subroutine insert(self, after)
-    class(mender_t), intent(inout) :: self
-    integer, intent(in) :: after
-
-    self%rounds = [self%rounds(:after), 0, self%rounds(after + 1:)]
-    self%left = [self%left(:after), huge(1.0_wp), self%left(after + 1:)]
-    self%nodes = [self%nodes(:after), 0, self%nodes(after + 1:)]
-  end subroutine insert
 
   !> The part of the load that the nodes of a mesh miss in a state.
   pure real(wp) function left_in_state(equations, mesh, state) result(left)

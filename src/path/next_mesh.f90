@@ -4,6 +4,7 @@ module next_mesh
   use kinds, only: wp
   use contact_state, only: state_t, radius_of_gap, radius_of_step, felt_load
   use equilibrium, only: equations_t
+  use mapped_mesh, only: mapped_shape_t
   use seen_gaps, only: seen_gaps_t
   use arc, only: arc_t
   implicit none
@@ -17,23 +18,62 @@ module next_mesh
   !> Largest number of digits of a layout for seen gaps: the polynomials of neighbouring panels meet
   !> in kinks, which no panel of another mesh resolves.
   real(wp), parameter :: most_digits_seen = 10
+  !> Number of nodes over that of the mesh before, above which a band is divided, unless the ratio
+  !> of its radii would be less than `narrowest`.
+  real(wp), parameter :: many_more = 1.5_wp, narrowest = 1.02_wp
 
 contains
 
   !> Lays out the mesh after that of an arc for the gaps of its newest state. An inserted mesh is
   !> for the state before, since the old nodes may miss too much of the newest one; about the axis
-  !> it is also for states extrapolated from that state.
+  !> it is also for states extrapolated from that state. Under an oscillating law a mesh about an
+  !> edge that would have many more nodes than the one before, as around a small contact far inside
+  !> a sharp rim, is for a narrower band.
   subroutine lay_out_next(equations, arc)
     type(equations_t), intent(inout), target :: equations
     type(arc_t), intent(in) :: arc
-    type(seen_gaps_t) :: seen
-    real(wp), allocatable :: gap(:)
-    real(wp) :: load
-    integer :: to, i, k
+    type(mapped_shape_t) :: shape, narrower
+    real(wp) :: low, middle
+    integer :: to, i
 
     to = arc%mesh + 1
     i = arc%held
     if (equations%meshes%inserted(to)) i = i - 1
+    associate (meshes => equations%meshes, before => equations%meshes%grid(arc%mesh)%nodes)
+      shape = shape_for_next(equations, arc, i)
+      do
+        if (meshes%is_about_axis(to) .or. .not. (meshes%grows .and. &
+          equations%problem%law%period > 0 .and. nodes_of(shape) > many_more*before)) exit
+        low = max(meshes%reach(1, to), radius_for(equations, arc%mesh, to, arc%state(i)))
+        middle = sqrt(low*meshes%reach(2, to))
+        if (middle < narrowest*low) exit
+        call meshes%divide_mesh(to, middle)
+        narrower = shape_for_next(equations, arc, i)
+        shape = narrower
+      end do
+      call meshes%renew(to, shape)
+      equations%cost%kernel_entries = equations%cost%kernel_entries + &
+        meshes%grid(to)%kernel_entries()
+    end associate
+  end subroutine lay_out_next
+
+  pure integer function nodes_of(shape)
+    type(mapped_shape_t), intent(in) :: shape
+
+    nodes_of = sum(shape%order) + shape%tail_order
+  end function nodes_of
+
+  !> The shape of the mesh after that of an arc, for its state number i.
+  type(mapped_shape_t) function shape_for_next(equations, arc, i) result(shape)
+    type(equations_t), intent(in), target :: equations
+    type(arc_t), intent(in) :: arc
+    integer, intent(in) :: i
+    type(seen_gaps_t) :: seen
+    real(wp), allocatable :: gap(:)
+    real(wp) :: load
+    integer :: to, k
+
+    to = arc%mesh + 1
     associate (problem => equations%problem, meshes => equations%meshes, &
       grid => equations%meshes%grid(arc%mesh), state => arc%state(i), before => arc%state(i - 1))
       call seen%begin_on(grid, size(ahead), 10.0_wp**(-min(meshes%digits, most_digits_seen)))
@@ -51,11 +91,9 @@ contains
         call seen%try(radius_for(equations, arc%mesh, to, state), meshes%reach(1, to), &
           beyond_passage*meshes%reach(2, to), radius_of_step(problem, grid, state))
       end if
-      call meshes%renew(to, meshes%shape_for(problem, to, seen))
-      equations%cost%kernel_entries = equations%cost%kernel_entries + &
-        meshes%grid(to)%kernel_entries()
+      shape = meshes%shape_for(problem, to, seen)
     end associate
-  end subroutine lay_out_next
+  end function shape_for_next
 
   !> Radius, in lateral units, to which mesh `to` would be locked for a state on mesh `from`; 0 if
   !> the state has no such radius.

@@ -83,7 +83,7 @@ contains
     call walker%take(solver, start, approach, lost)
     if (lost) known%ending%cause = path_lost
     guarded = present(accuracy)
-    if (guarded) mender = new_mender(accuracy, solver%problem%law, solver%meshes)
+    if (guarded) mender = new_mender(accuracy, solver%problem%law)
     do while (.not. (known%ending%early() .or. finished))
       call extend(known%path, walker, solver, lost)
       steps = steps + 1
@@ -95,9 +95,7 @@ contains
       inserted = .false.
       if (guarded .and. .not. lost) call insert_mesh(solver%equations_t, walker%arc_t, &
         accuracy, inserted)
-      if (inserted) then
-        call mender%insert(walker%mesh)
-      else if (guarded .and. .not. lost) then
+      if (guarded .and. .not. (lost .or. inserted)) then
         if (walker%has_come_to_next(solver%equations_t)) &
           call mender%mend(solver%equations_t, known%path, walker%mesh, .true., .false., mended)
       end if
