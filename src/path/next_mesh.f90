@@ -32,24 +32,24 @@ contains
   subroutine lay_out_next(equations, arc)
     type(equations_t), intent(inout), target :: equations
     type(arc_t), intent(in) :: arc
-    type(mapped_shape_t) :: shape, narrower
-    real(wp) :: low, middle
+    type(mapped_shape_t) :: shape
+    real(wp) :: low, middle, most
     integer :: to, i
 
     to = arc%mesh + 1
     i = arc%held
     if (equations%meshes%inserted(to)) i = i - 1
-    associate (meshes => equations%meshes, before => equations%meshes%grid(arc%mesh)%nodes)
-      shape = shape_for_next(equations, arc, i)
+    most = huge(most)
+    associate (meshes => equations%meshes)
+      if (meshes%grows .and. equations%problem%law%period > 0 .and. &
+        .not. meshes%is_about_axis(to)) most = many_more*meshes%grid(arc%mesh)%nodes
       do
-        if (meshes%is_about_axis(to) .or. .not. (meshes%grows .and. &
-          equations%problem%law%period > 0 .and. nodes_of(shape) > many_more*before)) exit
+        shape = shape_for_next(equations, arc, i)
+        if (nodes_of(shape) <= most) exit
         low = max(meshes%reach(1, to), radius_for(equations, arc%mesh, to, arc%state(i)))
         middle = sqrt(low*meshes%reach(2, to))
         if (middle < narrowest*low) exit
         call meshes%divide_mesh(to, middle)
-        narrower = shape_for_next(equations, arc, i)
-        shape = narrower
       end do
       call meshes%renew(to, shape)
       equations%cost%kernel_entries = equations%cost%kernel_entries + &

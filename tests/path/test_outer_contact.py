@@ -59,6 +59,24 @@ def test_numbers_of_outer_contacts_are_within_their_errors(name):
     assert (abs(np.subtract(near[name], exact[name])) <= allowed).all()
 
 
+def test_a_small_contact_far_inside_a_sharp_rim_has_meshes_for_narrow_bands():
+    """A path that was lost: the last layer leaves the middle of a wide outer contact, and meshes
+    for the small contact there, for all its radii at once, did not resolve the rim."""
+    def path(accuracy):
+        return snapin.run({
+            "bodies": {"radius": 1.876e-6, "stiffness": 3.499e8},
+            "van_der_waals": {"hamaker": 1.205e-21}, "born": {"z0": 4.007e-10},
+            "structural": {"amplitude": 2.235e7, "period": 8.46e-10, "decay_length": 1.163e-9},
+            "equilibrium_path": {"h0_end": -2.272e-8}, "numerics": {"accuracy": accuracy}}).summary
+
+    coarse, fine = path(1e-4), path(1e-6)
+    assert not coarse.get("warnings") and not fine.get("warnings")
+    assert coarse["error_estimate"] < 1e-4
+    assert len(coarse["folds_h0"]) == len(fine["folds_h0"]) > 4
+    for name in ("folds_h0", "max_tension", "jump_in_h0", "jump_out_h0", "end_load"):
+        np.testing.assert_allclose(coarse[name], fine[name], rtol=1e-5, atol=0)
+
+
 @pytest.mark.parametrize("h0", [1e-9, -1e-9, -2e-9])
 def test_outer_contacts_are_those_of_independent_states(h0):
     """Newton's method from the program's gaps, for equations that share nothing with it."""
