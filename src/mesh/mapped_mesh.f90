@@ -36,6 +36,7 @@ module mapped_mesh
   contains
     procedure :: halved
     procedure :: enriched
+    procedure :: node_count
   end type mapped_shape_t
 
 contains
@@ -59,6 +60,13 @@ contains
     end do
     shape%inner = self%inner + count(which(:self%inner))
   end function halved
+
+  !> Number of nodes.
+  pure integer function node_count(self)
+    class(mapped_shape_t), intent(in) :: self
+
+    node_count = sum(self%order) + self%tail_order
+  end function node_count
 
   !> The shape with the number of nodes of each panel multiplied by `times`, and with additional
   !> digits of the kernel.
@@ -88,7 +96,7 @@ contains
     logical, intent(in) :: elastic
     type(discretisation_t) :: grid
     real(wp), allocatable :: offset(:)
-    real(wp) :: target(first_node - 1 + sum(shape%order) + shape%tail_order)
+    real(wp) :: target(first_node - 1 + shape%node_count())
     integer :: k
 
     grid%centre = shape%centre
@@ -143,7 +151,7 @@ contains
     integer :: panels, k, last
 
     panels = size(grid%panel)
-    grid%nodes = sum(shape%order) + shape%tail_order
+    grid%nodes = shape%node_count()
     allocate (grid%first(panels), grid%local(panels), grid%weight(grid%nodes), offset(grid%nodes))
     grid%which = [(k, k=1, panels)]
     last = 0
@@ -160,6 +168,7 @@ contains
         associate (local => grid%local(k))
           at = panel%offset(local%node)
           grid%weight(grid%first(k):last) = local%weight*panel%speed(local%node)*(grid%centre + at)
+          ! Nodes of a power panel crowd at the axis, which resolves no edge.
           if (panel%kind /= power_map) &
             grid%spacing = min(grid%spacing, minval(panel%speed(local%node))/size(local%node))
         end associate

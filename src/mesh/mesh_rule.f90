@@ -85,7 +85,7 @@ contains
     shape%even = problem%shape%is_even()
     call add_panels(problem, shape, about_axis, 1, asinh(reach/shape%d), density, digits, 0.0_wp, &
       0.0_wp, seen)
-    call refine_axis(problem, digits, 2.0_wp, shape)
+    call resolve_axis(problem, digits, 2.0_wp, shape)
     shape%digits = kernel_digits(problem, digits, 1.0_wp)
   end function approach_shape
 
@@ -125,7 +125,7 @@ contains
     if (about == about_front) shape%d = finer*front_width(problem, high)
     call add_panels(problem, shape, about, -1, asinh(1/shape%d), inner, digits, low, high, &
       seen)
-    call refine_axis(problem, digits, 0.0_wp, shape)
+    call resolve_axis(problem, digits, 0.0_wp, shape)
     shape%inner = size(shape%order)
     ! Panels with an integer number of nodes are slightly longer; d is chosen so that they end on
     ! the axis.
@@ -313,7 +313,7 @@ contains
   !> contact contains r**(n-1) near the axis, with a logarithm if n is odd, and the gap on the axis
   !> has a part Int r**(n-1) dr; before contact the powers are higher by `beyond`, which is 2. This
   !> part is proportional to a power of the panel's local coordinate of at least `smoothness`.
-  pure subroutine refine_axis(problem, digits, beyond, shape)
+  pure subroutine resolve_axis(problem, digits, beyond, shape)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: digits, beyond
     type(mapped_shape_t), intent(inout) :: shape
@@ -329,7 +329,7 @@ contains
     else
       shape%order(1) = max(order, shape%order(1))
     end if
-  end subroutine refine_axis
+  end subroutine resolve_axis
 
   !> Digits of the kernel: its errors matter less than those of the pressure's polynomials. They
   !> matter more for more compliant bodies, and for bodies that are stiffer at this contact radius

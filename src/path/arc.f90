@@ -50,10 +50,10 @@ contains
 
   !> The state at the coordinate s, with its tangent. The guess from the arc is corrected to
   !> rounding or, where rounding is not reached, to the tolerance of the options, so that load and
-  !> position on the path are both exact. slope_error: if present, the options' tolerance is enough,
-  !> and the tangent may have this relative error. miss: the largest change of a gap from the guess
-  !> and from the other kind of guess (see `moved`; huge if there is none), relative or in the law's
-  !> lengths, and the same of h0 and load.
+  !> position on the path are both exact; if that fails, the other kind of guess is tried (see
+  !> `moved`). slope_error: if present, the options' tolerance is enough, and the tangent may have
+  !> this relative error. miss: the largest change of a gap from the guess and from the other kind
+  !> of guess (huge if there is none), relative or in the law's lengths; and that of h0 and load.
   subroutine state_at(self, solver, s, state, tangent, converged, slope_error, miss)
     class(arc_t), intent(in) :: self
     class(solver_t), intent(inout) :: solver
@@ -63,7 +63,7 @@ contains
     logical, intent(out) :: converged
     real(wp), intent(in), optional :: slope_error
     real(wp), intent(out), optional :: miss(3)
-    type(state_t) :: guess(2)
+    type(state_t) :: tried(2)
     type(hermite_t) :: load
     integer :: k, guesses
 
@@ -71,26 +71,26 @@ contains
     guesses = 1
     if (solver%problem%law%period > 0 .and. .not. solver%meshes%is_about_axis(self%mesh)) &
       guesses = 2
+    converged = .false.
     associate (problem => solver%problem, grid => solver%meshes%grid(self%mesh), &
       control => path_control(solver%problem, solver%meshes, self%mesh, s))
       do k = 1, guesses
-        guess(k) = self%guess(problem%shape, grid, s, self%moved .neqv. k == 2)
-      end do
-      do k = 1, guesses
-        state = guess(k)
+        if (converged .and. .not. present(miss)) exit
+        tried(k) = self%guess(problem%shape, grid, s, self%moved .neqv. k == 2)
+        if (converged) cycle
+        state = tried(k)
         if (present(slope_error)) then
           call solver%correct(control, state, converged)
         else
           call solver%correct(control, state, converged, tightened(solver%options))
           converged = converged .or. state%residual <= solver%options%tolerance
         end if
-        if (converged) exit
       end do
       if (present(miss)) then
         miss = huge(miss)
-        miss(:guesses) = [(distance(state, guess(k)), k=1, guesses)]
+        miss(:guesses) = [(distance(state, tried(k)), k=1, guesses)]
         load = self%curve([0.0_wp, 1.0_wp], s)
-        miss(3) = max(abs(state%h0 - guess(1)%h0)/(1 + abs(guess(1)%h0)), &
+        miss(3) = max(abs(state%h0 - tried(1)%h0)/(1 + abs(tried(1)%h0)), &
           abs(state%load - load%value(s))/(abs(state%load) + pi*problem%law%adhesion))
       end if
     end associate

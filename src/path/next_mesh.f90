@@ -45,7 +45,7 @@ contains
         .not. meshes%is_about_axis(to)) most = many_more*meshes%grid(arc%mesh)%nodes
       do
         shape = shape_for_next(equations, arc, i)
-        if (nodes_of(shape) <= most) exit
+        if (shape%node_count() <= most) exit
         low = max(meshes%reach(1, to), radius_for(equations, arc%mesh, to, arc%state(i)))
         middle = sqrt(low*meshes%reach(2, to))
         if (middle < narrowest*low) exit
@@ -56,12 +56,6 @@ contains
         meshes%grid(to)%kernel_entries()
     end associate
   end subroutine lay_out_next
-
-  pure integer function nodes_of(shape)
-    type(mapped_shape_t), intent(in) :: shape
-
-    nodes_of = sum(shape%order) + shape%tail_order
-  end function nodes_of
 
   !> The shape of the mesh after that of an arc, for its state number i.
   type(mapped_shape_t) function shape_for_next(equations, arc, i) result(shape)
