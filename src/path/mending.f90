@@ -51,7 +51,7 @@ module mending
   real(wp), parameter :: most_growth = 1.5_wp
   !> A refinement has helped if the quadrature error fell below this fraction of the earlier one. If
   !> it has not, a mesh on which the path is lost is not refined again; others are refined until
-  !> their number of nodes has grown by `most_growth`: shorter panels are useless at a tip.
+  !> their number of nodes has grown by `most_growth`.
   real(wp), parameter :: helped = 0.9_wp
 
 contains
