@@ -17,6 +17,7 @@ module equilibrium
   use contact_state, only: state_t, load_reach, gap_at_end, far_gap
   use edge_locked, only: mesh_family_t
   use elastic_operator, only: elastic_operator_t
+  use represented_pressure, only: pressure_on
   use besides, only: besides_t
   use drainage, only: drainage_t
   implicit none
@@ -152,7 +153,7 @@ contains
         state%residual = huge(1.0_wp)
         return
       end if
-      state%pressure = problem%law%pressure(state%gap)
+      state%pressure = pressure_on(problem%law, grid, state%gap)
       cost%pressure_evaluations = cost%pressure_evaluations + n*problem%law%terms
       if (allocated(equations%drainage)) state%pressure = state%pressure + &
         equations%fluid_pressure(control%mesh, state)

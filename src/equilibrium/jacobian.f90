@@ -8,6 +8,7 @@ module jacobian
   use elastic_operator, only: elastic_operator_t
   use besides, only: besides_t
   use contact_state, only: state_t
+  use represented_pressure, only: pressure_slope_t, slope_on
   use equilibrium, only: control_t, cost_t, equations_t, at_h0, at_axis_gap, at_edge_radius, &
     at_h0_with_edge, h0_is_prescribed
   implicit none
@@ -69,13 +70,14 @@ contains
     type(control_t), intent(in) :: control
     type(state_t), intent(in) :: state
     real(wp), intent(inout) :: lu(:, :)
+    type(pressure_slope_t) :: slope
     real(wp) :: softer(size(lu, 2))
     integer :: n, i
 
     n = size(state%gap)
     associate (grid => equations%meshes%grid(control%mesh), c => state%scale)
-      softer(:n) = 2*pi*control%compliance*c**2*grid%weight(:n)* &
-        equations%problem%law%slope(state%gap)
+      slope = slope_on(equations%problem%law, grid, state%gap)
+      softer(:n) = 2*pi*control%compliance*c**2*slope%weighted(grid%weight(:n))
       if (size(lu, 2) > n) softer(n + 1) = 2*control%compliance*state%load/c
       do i = 1, n
         lu(i, :) = lu(i, :) - softer
@@ -151,16 +153,21 @@ contains
     type(factorisation_t), intent(inout) :: factors
     type(cost_t), intent(inout) :: cost
     real(wp), intent(in), optional :: shift
+    type(pressure_slope_t) :: slope
     real(wp) :: factor(size(state%gap)), column(size(state%gap) + 1), diagonal
     logical :: matters(size(state%gap))
     integer, allocatable :: node(:), calm(:)
     integer :: n, k, m, j
 
     n = size(state%gap)
-    factor = -problem%law%slope(state%gap)
+    slope = slope_on(problem%law, grid, state%gap)
+    factor = -slope%factor()
     cost%pressure_evaluations = cost%pressure_evaluations + n*problem%law%terms
     matters = .true.
     if (neglected > 0) matters = abs(factor)*largest_rise(problem, grid, state%scale) > neglected
+    do j = 1, size(slope%mixed)
+      matters(slope%mixed(j)%first:slope%mixed(j)%last) = .true.
+    end do
     node = pack([(j, j=1, n)], matters)
     calm = pack([(j, j=1, n)], .not. matters)
     k = size(node)
@@ -174,6 +181,7 @@ contains
         lu(:k, :k))
       if (m > k) call operator%matrix(problem, grid, state%scale, -factor(node), &
         [bordered_row(control)], node, lu(m:, :k))
+      call slope%mix(node, lu(:, :k))
       do j = 1, k
         lu(j, j) = lu(j, j) + diagonal
       end do
@@ -185,6 +193,7 @@ contains
       if (k == n) return
       call operator%matrix(problem, grid, state%scale, factor(node), first_node - 1 + calm, node, &
         factors%rows(:, :k))
+      call slope%mix(node, factors%rows(:, :k))
       if (m > k) factors%rows(:, m) = column(calm)
     end associate
   end subroutine fill
@@ -225,12 +234,14 @@ contains
     type(control_t), intent(in) :: control
     type(state_t), intent(in) :: state
     real(wp), intent(in) :: change(:)
+    type(pressure_slope_t) :: slope
     real(wp) :: product(size(change)), rise(first_node - 1 + size(state%gap)), column(size(change))
 
     associate (problem => equations%problem, grid => equations%meshes%grid(control%mesh), &
       n => size(state%gap), m => size(change), cost => equations%cost)
+      slope = slope_on(problem%law, grid, state%gap)
       call equations%operator%deform(problem, grid, state%scale, n, &
-        problem%law%slope(state%gap)*change(:n), rise)
+        slope%times(change(:n)), rise)
       cost%pressure_evaluations = cost%pressure_evaluations + n*problem%law%terms
       cost%operator_products = cost%operator_products + 1
       cost%operator_columns = cost%operator_columns + n

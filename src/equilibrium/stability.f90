@@ -5,6 +5,7 @@ module stability
   use dimensionless_problem, only: problem_t
   use discretisation, only: discretisation_t, first_node
   use contact_state, only: state_t
+  use represented_pressure, only: pressure_slope_t, slope_on
   use equilibrium, only: control_t, cost_t
   use jacobian, only: factorise_on
   use elastic_operator, only: elastic_operator_t
@@ -48,6 +49,7 @@ contains
     real(wp), intent(out) :: eigenvalue
     logical, intent(out) :: certain
     type(cost_t), intent(inout) :: cost
+    type(pressure_slope_t) :: slope
     real(wp), dimension(size(state%gap)) :: factor, root, part
     real(wp), allocatable :: matrix(:, :)
     type(elastic_operator_t) :: operator
@@ -57,15 +59,17 @@ contains
     eigenvalue = 1
     certain = .true.
     n = size(state%gap)
-    factor = problem%law%slope(state%gap)
+    slope = slope_on(problem%law, grid, state%gap)
     ! Rigid bodies, or bodies that do not attract each other: repulsion increases the eigenvalues,
     ! and these accumulate at 1.
-    if (.not. (problem%coupling > 0 .and. maxval(factor) > 0)) return
+    if (.not. (problem%coupling > 0 .and. maxval(slope%at_node) > 0)) return
     ! If rows and columns share the slope equally, the eigenvectors are far from parallel.
+    factor = slope%factor()
     root = sqrt(abs(factor))
     allocate (matrix(n, n))
     call operator%matrix(problem, grid, state%scale, sign(root, factor), &
       [(first_node - 1 + j, j=1, n)], [(j, j=1, n)], matrix)
+    call slope%mix([(j, j=1, n)], matrix)
     do j = 1, n
       matrix(:, j) = root*matrix(:, j)
     end do
@@ -73,7 +77,7 @@ contains
     if (certain) then
       eigenvalue = 1 - maxval(part)
       widest = maxval(abs(part))
-      call refine(problem, grid, operator, state, factor, widest, eigenvalue, certain, cost)
+      call refine(problem, grid, operator, state, slope, widest, eigenvalue, certain, cost)
     end if
     if (certain) certain = error <= room(lower, eigenvalue, widest)
     if (.not. certain) eigenvalue = unknown()
@@ -82,19 +86,20 @@ contains
   !> Inverse iteration on the operator itself, with a shift just below the eigenvalue. certain: it
   !> converged to an eigenpair near its start, and by the determinant an even number of eigenvalues
   !> is below the shift.
-  subroutine refine(problem, grid, operator, state, factor, widest, eigenvalue, certain, cost)
+  subroutine refine(problem, grid, operator, state, slope, widest, eigenvalue, certain, cost)
     type(problem_t), intent(in) :: problem
     type(discretisation_t), intent(in) :: grid
     type(elastic_operator_t), intent(inout) :: operator
     type(state_t), intent(in) :: state
-    real(wp), intent(in) :: factor(:), widest
+    type(pressure_slope_t), intent(in) :: slope
+    real(wp), intent(in) :: widest
     real(wp), intent(inout) :: eigenvalue
     logical, intent(out) :: certain
     type(cost_t), intent(inout) :: cost
     type(control_t) :: control
     type(factorisation_t) :: factors
-    real(wp), dimension(size(factor)) :: vector, image
-    real(wp) :: rise(first_node - 1 + size(factor)), first, before, growth, shift
+    real(wp), dimension(size(state%gap)) :: vector, image
+    real(wp) :: rise(first_node - 1 + size(state%gap)), first, before, growth, shift
     integer :: step
 
     certain = .false.
@@ -105,8 +110,8 @@ contains
       cost, -shift)
     if (.not. factors%valid) return
     if (determinant_sign(factors) < 0) return
-    associate (weight => grid%weight(:size(factor)))
-      vector = exp(-grid%x(:size(factor)))
+    associate (weight => grid%weight(:size(state%gap)))
+      vector = exp(-grid%x(:size(state%gap)))
       do step = 1, most_iterations
         before = eigenvalue
         vector = vector/sqrt(sum(weight*vector**2))
@@ -119,7 +124,7 @@ contains
         if (abs(eigenvalue - before) <= room(settled, first, widest)) exit
       end do
       vector = vector/sqrt(sum(weight*vector**2))
-      call operator%deform(problem, grid, state%scale, size(factor), factor*vector, rise)
+      call operator%deform(problem, grid, state%scale, size(state%gap), slope%times(vector), rise)
       image = (1 - eigenvalue)*vector - rise(first_node:)
       certain = abs(eigenvalue - first) <= room(close, first, widest) .and. &
         sqrt(sum(weight*image**2)) <= room(exact, first, widest)

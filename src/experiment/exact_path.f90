@@ -106,7 +106,7 @@ contains
     real(wp), intent(in) :: accuracy
 
     finer_helps = .not. (is_lost(steps%known) .or. steps%known%left_out > too_much*accuracy .or. &
-      steps%problem%law%has_kink .or. steps%meshes%digits + more_digits > most_digits)
+      steps%meshes%digits + more_digits > most_digits)
   end function finer_helps
 
   !> Whether a path ends early. A collapse of bodies without repulsion is not an early end.

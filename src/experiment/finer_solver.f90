@@ -64,7 +64,6 @@ contains
     self%margin = usual
     if (.not. steps%problem%law%edge_gap > 0 .or. any([(steps%meshes%has_short_panels(k), &
       k=1, size(steps%meshes%grid))])) self%margin = of_less_gained
-    if (steps%problem%law%has_kink) self%margin = of_kinks
     self%meshes = new_mesh_family(steps%problem, high, low, &
       steps%meshes%digits + more_digits, shape_only=.true., coarser=steps%meshes)
     if (present(store)) self%store => store

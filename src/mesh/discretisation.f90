@@ -11,7 +11,7 @@ module discretisation
   use quadrature, only: gauss_legendre
   implicit none
   private
-  public :: discretisation_t, local_nodes_t, gauss_nodes, axis_row, centre_row, first_node
+  public :: discretisation_t, local_nodes_t, gauss_nodes, at_node, axis_row, centre_row, first_node
 
   !> Stands for a distance 0 from a node.
   real(wp), parameter :: at_node = 1.0e-100_wp

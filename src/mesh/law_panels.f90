@@ -11,6 +11,7 @@ module law_panels
   use force_law, only: force_law_t, whole_step
   use discretisation, only: local_nodes_t, gauss_nodes
   use seen_gaps, only: seen_gaps_t
+  use represented_pressure, only: panel_pressure
   use step_front, only: front_leads
   implicit none
   private
@@ -64,7 +65,6 @@ contains
     integer :: worst, k
 
     most = 10.0_wp**(-digits)
-    if (problem%law%has_kink) most = hardly_felt*most
     worst = 0
     if (present(seen)) then
       parameter = [(0.0_wp, k=1, seen%tried())]
@@ -185,7 +185,7 @@ contains
       if (side < 0) ends = [ends(2), ends(1)]
       associate (unit => merge(1.0_wp, radius, about == about_axis))
         suffices = left_out(problem, local, unit*centre, unit*ends, unit*(centre + offset), &
-          problem%law%pressure(gap_of(j, radius, offset)), load(j)) <= most
+          panel_pressure(problem%law, local, gap_of(j, radius, offset)), load(j)) <= most
       end associate
     end function suffices
 
@@ -249,10 +249,6 @@ contains
     most = max(1.0_wp, maxval(abs(pressure)))
     if (problem%law%edge_gap > 0) most = abs(problem%law%pressure([problem%law%edge_gap]))
     area = min(1.0_wp, load/most(1))
-    if (problem%law%has_kink) then
-      left = local%tail(pressure*(1 + (r - centre)**2))/most(1)
-      return
-    end if
     if (problem%law%period > 0) then
       weighted = pressure*(ends(2) - ends(1))*(1 + ends(2))
       left = local%tail(weighted)/max(load, tiny(load))

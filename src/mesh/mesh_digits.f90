@@ -12,13 +12,12 @@ module mesh_digits
   !> Least number of digits for a path; largest number of digits that rounding allows.
   real(wp), parameter :: fewest = 4.25_wp, most_digits = 13
   !> Least number of digits for each decade of sigma: with fewer digits, folds would be missing or
-  !> wrong, since folds are closer together for stronger adhesion. For laws with a kink, and for
-  !> those with a step or a period: the number to be added to `fewest`. The last number is enough
-  !> to separate folds as long as there is a contact.
-  real(wp), parameter :: for_folds = 1.5_wp, for_folds_of_kinks = 0.5_wp, &
-    for_folds_of_lengths = 1, enough_for_folds = 9
+  !> wrong, since folds are closer together for stronger adhesion. For laws with a step or a period:
+  !> the number to be added to `fewest`. The last number is enough to separate folds as long as
+  !> there is a contact.
+  real(wp), parameter :: for_folds = 1.5_wp, for_folds_of_lengths = 1, enough_for_folds = 9
   !> Digits to be added, relative to a path under the Lennard-Jones law: for bodies without jumps;
-  !> for laws with a step or a kink; for oscillating laws; for profiles, which are sensitive to the
+  !> for laws with a step; for oscillating laws; for profiles, which are sensitive to the
   !> position of the edge; for profiles, for each decade of sigma, since the neck is narrower; for
   !> bodies with a kink, which the edge passes.
   real(wp), parameter :: without_jumps = -0.5_wp, for_steps = 0.6_wp, for_waves = 1.1_wp, &
@@ -48,12 +47,11 @@ contains
     ! Jumps are more sensitive to errors than all other results.
     if (sigma < onset) digits = digits + without_jumps
     lengths = 0
-    if (problem%law%step_width > 0 .or. problem%law%has_kink) lengths = for_steps
+    if (problem%law%step_width > 0) lengths = for_steps
     if (problem%law%period > 0) lengths = for_waves
     digits = digits + lengths
     least = max(fewest, for_folds*decades)
-    if (lengths > 0) least = fewest + lengths + decades* &
-      merge(for_folds_of_kinks, for_folds_of_lengths, problem%law%has_kink)
+    if (lengths > 0) least = fewest + lengths + for_folds_of_lengths*decades
     if (profiles) digits = digits + for_profiles + for_narrow_necks*decades
     if (problem%shape%smooth_from() > 0) digits = digits + for_kinks
     digits = digits + digits_of_layers(problem, widest)

@@ -202,7 +202,7 @@ contains
       (shape%centre + shape%d*sinh(z_length))*merge(high, 1.0_wp, shape%centre > 0), high)
     fewest = ceiling(short_order + short_orders*digits)
     associate (law => problem%law)
-      if (law%has_kink .or. broken) then
+      if (broken) then
         lengths = short_panels(z_length)
         if (about == about_axis .and. broken) lengths = ending_at_breaks(problem, shape%d, z_length)
       else
@@ -212,7 +212,7 @@ contains
         lengths = spread(lengths(1)/panels, 1, panels)
         fewest = min(fewest, nodes_on(lengths(1), density, 0))
       end if
-      digits_to_fit = digits + merge(0.0_wp, of_foreseen, law%has_kink)
+      digits_to_fit = digits + of_foreseen
       if (present(seen)) digits_to_fit = -log10(seen%most)
       if (broken .or. problem%shape%smooth_from() > 0) &
         digits_to_fit = min(digits_to_fit, digits_of_broken)

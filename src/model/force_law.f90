@@ -43,12 +43,12 @@ module force_law
     !> For meshes: period of gap in which the pressure oscillates, gap of a step and its width; 0:
     !> none.
     real(wp) :: period = 0, step_at = 0, step_width = 0
-    !> Whether the force is not smooth at some gaps: where it begins or ends, or at points of a
-    !> table.
-    logical :: has_kink = .false.
     !> Gaps at which the pressure or a derivative jumps or nearly jumps; integrals over the gap are
     !> split there. Not allocated if there are none.
     real(wp), allocatable :: breaks(:)
+    !> Those of the breaks that meshes cannot resolve with more nodes: where a force begins or ends,
+    !> or at the points of a coarse table. Not allocated if there are none.
+    real(wp), allocatable :: kinks(:)
     !> Number of forces in the law.
     integer :: terms = 1
     !> Name of the coupling of law and bodies in the summary, for a law that does not attract (else

@@ -124,7 +124,7 @@ contains
   subroutine take_units(law, length, unit, origin)
     type(force_sum_t), intent(inout) :: law
     real(wp), intent(in) :: length, unit, origin
-    real(wp), allocatable :: breaks(:)
+    real(wp), allocatable :: breaks(:), kinks(:)
     integer :: i
 
     law%terms = size(law%term)
@@ -141,10 +141,9 @@ contains
     law%repulsion_length = huge(1.0_wp)
     law%tail_power = huge(1.0_wp)
     law%period = 0
-    law%has_kink = .false.
     law%step_at = 0
     law%step_width = 0
-    allocate (breaks(0))
+    allocate (breaks(0), kinks(0))
     do i = 1, size(law%term)
       associate (term => law%term(i), part => law%term(i)%law)
         term%stretch = length/part%length
@@ -154,16 +153,18 @@ contains
         if (part%has_length) &
           law%repulsion_length = min(law%repulsion_length, part%repulsion_length/term%stretch)
         law%tail_power = min(law%tail_power, part%tail_power)
-        law%has_kink = law%has_kink .or. part%has_kink
         if (law%caveat == '') law%caveat = part%caveat
         if (part%period > 0) law%period = part%period/term%stretch
         if (allocated(part%breaks)) breaks = [breaks, (part%breaks - term%shift)/term%stretch]
+        if (allocated(part%kinks)) kinks = [kinks, (part%kinks - term%shift)/term%stretch]
         if (.not. part%step_width > 0) cycle
         law%step_at = (part%step_at - term%shift)/term%stretch
         law%step_width = part%step_width/term%stretch
       end associate
     end do
     call move_alloc(breaks, law%breaks)
+    if (allocated(law%kinks)) deallocate (law%kinks)
+    if (size(kinks) > 0) call move_alloc(kinks, law%kinks)
     if (.not. law%repulsion_length < huge(1.0_wp)) law%repulsion_length = 1
     ! Messages refer to the first term.
     law%group = law%term(1)%law%group

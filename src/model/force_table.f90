@@ -65,7 +65,7 @@ contains
         table%energy_from(i) = table%energy_from(i + 1) + table%integral(i, table%u(i))
       end do
     end if
-    at_first = table%values(1.0_wp)
+    at_first = table%values(1.0_wp, with_energy=.true.)
     table%pressure = at_first(1)
     table%energy = at_first(3)
     ! Without a pressure there is no power.
@@ -100,16 +100,20 @@ contains
     if (self%decay_length > 0) integral = integral*self%decay_length
   end function integral
 
-  !> Pressure, slope and energy at a gap.
-  pure function values(self, gap) result(value)
+  !> Pressure, slope and energy at a gap; with_energy = .false.: pressure and slope, which are
+  !> faster.
+  pure function values(self, gap, with_energy) result(value)
     class(force_table_t), intent(in) :: self
     real(wp), intent(in) :: gap
+    logical, intent(in) :: with_energy
     real(wp) :: value(3), u, t, q(0:2), fall, du, ddu, z
     integer :: i, n
 
     if (gap < 1) then
       value(1) = self%pressure*gap**(-self%power)
       value(2) = -self%power*value(1)/gap
+      value(3) = 0
+      if (.not. with_energy) return
       ! The integral (g^(1 - n) - 1)/(n - 1), whose limit at n = 1 is -ln g.
       z = (1 - self%power)*log(gap)/2
       z = sign(max(abs(z), epsilon(z)), z)
@@ -140,7 +144,8 @@ contains
     else if (u >= self%u(n)) then
       value = [q(0), du*q(1), q(0)/(du*self%energy_rate)]
     else
-      value = [q(0), du*q(1), self%energy_from(i + 1) + self%integral(i, u)]
+      value = [q(0), du*q(1), 0.0_wp]
+      if (with_energy) value(3) = self%energy_from(i + 1) + self%integral(i, u)
     end if
   end function values
 

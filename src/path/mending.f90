@@ -10,6 +10,7 @@ module mending
   use discretisation, only: discretisation_t
   use panel_map, only: algebraic_map
   use mapped_mesh, only: mapped_shape_t, new_mapped_mesh
+  use represented_pressure, only: pressure_on
   use law_panels, only: left_out
   use seen_gaps, only: seen_gaps_t
   use contact_state, only: state_t, gap_at, felt_load, radius_of_step
@@ -62,7 +63,7 @@ contains
     real(wp), intent(in) :: accuracy
     class(force_law_t), intent(in) :: law
 
-    mender%most = accuracy*merge(too_much, 1.0_wp, law%has_kink .or. law%period > 0)
+    mender%most = accuracy*merge(too_much, 1.0_wp, law%period > 0)
     allocate (mender%rounds(0), mender%left(0), mender%nodes(0))
   end function new_mender
 
@@ -228,7 +229,7 @@ contains
     integer :: k
 
     smooth = problem%shape%is_even() .and. .not. problem%shape%smooth_from() > 0
-    pressure = problem%law%pressure(gap)
+    pressure = pressure_on(problem%law, grid, gap)
     left = 0
     do k = 1, size(grid%panel)
       associate (panel => grid%panel(k), first => grid%first(k), &
@@ -238,11 +239,10 @@ contains
         if (panel%right <= 0 .and. .not. smooth) cycle
         left(k) = left_out(problem, grid%local(k), &
           scale*grid%centre, scale*(grid%centre + [panel%left, panel%right]), &
-          scale*merge(grid%centre, grid%x(first:last), problem%law%has_kink), &
+          scale*grid%x(first:last), &
           pressure(first:last), load)
       end associate
     end do
-    if (problem%law%has_kink) left = of_kinks*left
   end function left_of
 
 end module mending

@@ -4,6 +4,7 @@
 module path_tangent
   use kinds, only: wp, pi
   use beyond_mesh, only: load_slope_beyond
+  use represented_pressure, only: pressure_slope_t, slope_on
   use contact_state, only: state_t, load_reach, gap_at_end
   use equilibrium, only: control_t, equations_t, at_axis_gap, at_edge_radius
   use solver, only: solver_t
@@ -146,12 +147,14 @@ contains
     type(control_t), intent(in) :: control
     type(state_t), intent(in) :: state
     type(tangent_t), intent(in) :: tangent
+    type(pressure_slope_t) :: pressure_slope
     real(wp) :: slope, reach, last, of_end(2)
 
     associate (grid => equations%meshes%grid(control%mesh), n => size(state%gap), &
       law => equations%problem%law, shape => equations%problem%shape)
+      pressure_slope = slope_on(law, grid, state%gap)
       slope = 2*pi*(2*state%scale*tangent%scale*dot_product(grid%weight, state%pressure) + &
-        state%scale**2*sum(grid%weight*law%slope(state%gap)*tangent%gap))
+        state%scale**2*dot_product(grid%weight, pressure_slope%times(tangent%gap)))
       equations%cost%pressure_evaluations = equations%cost%pressure_evaluations + &
         n*law%terms
       if (.not. grid%is_bounded()) return

@@ -65,8 +65,8 @@ contains
     this%parabolic = model == 'milner_witten_cates'
     this%length = sides*thickness
     this%pressure_unit = boltzmann*temperature*density**1.5_wp
-    this%has_kink = .true.
     this%breaks = [1.0_wp]
+    this%kinks = this%breaks
     this%smallest_gap = 1.0e-12_wp
     this%closure_fraction = 0.3_wp
     this%group = 'steric'

@@ -25,6 +25,8 @@ module tabulated
   end type tabulated_t
 
   integer, parameter :: fewest = 8
+  !> Relative error of a table's pressure, over the accuracy, that a path does not feel.
+  real(wp), parameter :: unnoticed = 1.0_wp/30
   !> The error of a spline decreases as the fourth power of the distance of points, that of slopes
   !> that are monotone as the second power at an extremum.
   real(wp), parameter :: share_of_spline = 1.0_wp/15, share_of_monotone = 1.0_wp/3
@@ -149,6 +151,7 @@ contains
     call take_scales(deck, this, error)
     if (.not. decay_length > 0) this%tail_power = exponent
     this%breaks = g
+    call find_kinks(deck, this)
 
   contains
 
@@ -164,6 +167,27 @@ contains
     end function fall
 
   end subroutine take_table
+
+  !> Finds the points about which the error of the table is not small. At the others the derivatives
+  !> jump by so little that the nodes of a mesh need not know.
+  subroutine find_kinks(deck, this)
+    type(deck_t), intent(in) :: deck
+    type(tabulated_t), intent(inout) :: this
+    real(wp), dimension(size(this%breaks) - 1) :: middle
+    real(wp) :: error(2, size(middle)), accuracy
+    logical :: rough(0:size(middle) + 1)
+
+    call deck%get('numerics', 'accuracy', accuracy)
+    associate (g => this%breaks, n => size(middle))
+      middle = (g(:n) + g(2:))/2
+      error = this%table_error(middle)
+      rough = .false.
+      rough(1:n) = error(1, :) > unnoticed*accuracy* &
+        max(abs(this%pressure(middle)), middle*abs(this%slope(middle)))
+      this%kinks = pack(g, rough(0:n) .or. rough(1:))
+    end associate
+    if (size(this%kinks) == 0) deallocate (this%kinks)
+  end subroutine find_kinks
 
   !> Sets the scales of the repulsion, which is a power before the first point.
   subroutine take_scales(deck, this, error)
@@ -181,7 +205,6 @@ contains
     this%repulsion_length = 0.9_wp/max(this%fine%power, 1.0_wp)
     this%closure_fraction = 2.7_wp/max(this%fine%power, 9.0_wp)
     this%group = 'tabulated'
-    this%has_kink = .true.
     this%strength_key = 'file'
     this%length_key = 'file'
     this%has_units = .false.
@@ -232,7 +255,7 @@ contains
     integer :: i
 
     do i = 1, size(gap)
-      at = table%values(max(gap(i), smallest))
+      at = table%values(max(gap(i), smallest), with_energy=column == 3)
       value(i) = at(column)
     end do
   end function column_of

@@ -1,0 +1,261 @@
+!> The pressure that a mesh represents for given gaps. On a panel with Gauss nodes s_i and weights
+!> w_i the mesh multiplies pressures by polynomials, and the value at a node stands for
+!>
+!>     p_i = (1/w_i) Int l_i(s) p(h(s)) ds
+!>
+!> with the panel's Lagrange polynomials l_i. For a pressure of lower degree this is the pressure
+!> at the node. On a panel where the gap passes a gap at which the law is not smooth, the integral
+!> differs from the value at the node; there it is computed in pieces between these places. The
+!> polynomial with the values p_i is then the projection of the pressure: loads and deformations are
+!> as accurate as for a smooth pressure, and change smoothly as the place moves over the nodes.
+module represented_pressure
+  use kinds, only: wp
+  use force_law, only: force_law_t
+  use discretisation, only: discretisation_t, local_nodes_t, gauss_nodes, at_node
+  use panel_map, only: algebraic_map
+  use linear_algebra, only: add_by_transposed
+  use root_finding, only: root_search_t, new_root_search
+  implicit none
+  private
+  public :: pressure_slope_t, pressure_on, slope_on, panel_pressure
+
+  !> Number of points of the quadrature on a piece of a panel: a constant, and for each node on it.
+  real(wp), parameter :: points_a_node = 1.2_wp
+  integer, parameter :: few_points = 4
+  !> Largest number of kinks that are few.
+  integer, parameter :: few = 4
+
+  !> The derivatives of a panel's pressures by its gaps, (nodes of the panel, nodes of the panel).
+  type :: panel_slope_t
+    integer :: first = 0, last = 0
+    real(wp), allocatable :: by_gap(:, :)
+  end type panel_slope_t
+
+  !> The derivative of the represented pressures by the gaps: at each node the law's slope, except
+  !> on the panels of `mixed`.
+  type :: pressure_slope_t
+    real(wp), allocatable :: at_node(:)
+    type(panel_slope_t), allocatable :: mixed(:)
+  contains
+    procedure :: times
+    procedure :: weighted
+    procedure :: factor
+    procedure :: mix
+  end type pressure_slope_t
+
+contains
+
+  !> The pressures that a mesh represents for the gaps at its nodes.
+  pure function pressure_on(law, grid, gap) result(pressure)
+    class(force_law_t), intent(in) :: law
+    type(discretisation_t), intent(in) :: grid
+    real(wp), intent(in) :: gap(:)
+    real(wp) :: pressure(size(gap))
+    integer :: k, last
+
+    if (.not. allocated(law%kinks)) then
+      pressure = law%pressure(gap)
+      return
+    end if
+    do k = 1, size(grid%panel)
+      associate (local => grid%local(grid%which(k)), first => grid%first(k))
+        last = first + size(local%node) - 1
+        if (can_mix(grid, k)) then
+          pressure(first:last) = panel_pressure(law, local, gap(first:last))
+        else
+          pressure(first:last) = law%pressure(gap(first:last))
+        end if
+      end associate
+    end do
+  end function pressure_on
+
+  !> The pressures that a panel represents for the gaps at its nodes.
+  pure function panel_pressure(law, local, gap) result(pressure)
+    class(force_law_t), intent(in) :: law
+    type(local_nodes_t), intent(in) :: local
+    real(wp), intent(in) :: gap(:)
+    real(wp) :: pressure(size(gap))
+    real(wp), allocatable :: s(:), weight(:), basis(:, :)
+
+    if (allocated(law%kinks)) call split(law, local, gap, s, weight)
+    if (.not. allocated(s)) then
+      pressure = law%pressure(gap)
+      return
+    end if
+    basis = bases(local, s)
+    pressure = matmul(basis, weight*law%pressure(matmul(gap, basis)))/local%weight
+  end function panel_pressure
+
+  !> The derivative of `pressure_on` by the gaps.
+  function slope_on(law, grid, gap) result(slope)
+    class(force_law_t), intent(in) :: law
+    type(discretisation_t), intent(in) :: grid
+    real(wp), intent(in) :: gap(:)
+    type(pressure_slope_t) :: slope
+    type(panel_slope_t) :: panel
+    real(wp), allocatable :: s(:), weight(:), basis(:, :), part(:)
+    integer :: k
+
+    slope%at_node = law%slope(gap)
+    allocate (slope%mixed(0))
+    if (.not. allocated(law%kinks)) return
+    do k = 1, size(grid%panel)
+      if (.not. can_mix(grid, k)) cycle
+      associate (local => grid%local(grid%which(k)))
+        panel%first = grid%first(k)
+        panel%last = panel%first + size(local%node) - 1
+        call split(law, local, gap(panel%first:panel%last), s, weight)
+        if (.not. allocated(s)) cycle
+        basis = bases(local, s)
+        part = weight*law%slope(matmul(gap(panel%first:panel%last), basis))
+        if (allocated(panel%by_gap)) deallocate (panel%by_gap)
+        allocate (panel%by_gap(size(local%node), size(local%node)), source=0.0_wp)
+        call add_by_transposed(basis*spread(part, 1, size(local%node)), basis, panel%by_gap)
+        panel%by_gap = panel%by_gap/spread(local%weight, 2, size(local%node))
+        slope%mixed = [slope%mixed, panel]
+      end associate
+    end do
+  end function slope_on
+
+  !> The change of the represented pressures for a change of the gaps.
+  pure function times(self, change) result(product)
+    class(pressure_slope_t), intent(in) :: self
+    real(wp), intent(in) :: change(:)
+    real(wp) :: product(size(change))
+    integer :: k
+
+    product = self%at_node*change
+    do k = 1, size(self%mixed)
+      associate (panel => self%mixed(k))
+        product(panel%first:panel%last) = matmul(panel%by_gap, change(panel%first:panel%last))
+      end associate
+    end do
+  end function times
+
+  !> The derivatives by the gaps of the sum of the pressures times their weights.
+  pure function weighted(self, weight) result(product)
+    class(pressure_slope_t), intent(in) :: self
+    real(wp), intent(in) :: weight(:)
+    real(wp) :: product(size(weight))
+    integer :: k
+
+    product = self%at_node*weight
+    do k = 1, size(self%mixed)
+      associate (panel => self%mixed(k))
+        product(panel%first:panel%last) = matmul(weight(panel%first:panel%last), panel%by_gap)
+      end associate
+    end do
+  end function weighted
+
+  !> The factors of the columns of a matrix that is multiplied from the right by the derivative,
+  !> before `mix` completes the product.
+  pure function factor(self)
+    class(pressure_slope_t), intent(in) :: self
+    real(wp) :: factor(size(self%at_node))
+    integer :: k
+
+    factor = self%at_node
+    do k = 1, size(self%mixed)
+      factor(self%mixed(k)%first:self%mixed(k)%last) = 1
+    end do
+  end function factor
+
+  !> Completes the product of a matrix and the derivative. node: the nodes of the matrix's columns,
+  !> all nodes of each mixed panel among them.
+  pure subroutine mix(self, node, matrix)
+    class(pressure_slope_t), intent(in) :: self
+    integer, intent(in) :: node(:)
+    real(wp), intent(inout) :: matrix(:, :)
+    integer :: k, from, to
+
+    do k = 1, size(self%mixed)
+      associate (panel => self%mixed(k))
+        from = findloc(node, panel%first, 1)
+        to = from + panel%last - panel%first
+        matrix(:, from:to) = matmul(matrix(:, from:to), panel%by_gap)
+      end associate
+    end do
+  end subroutine mix
+
+  !> Whether nodal values on a panel are those of a projection: its nodes are Gauss nodes, and the
+  !> pressure is a polynomial.
+  pure logical function can_mix(grid, k)
+    type(discretisation_t), intent(in) :: grid
+    integer, intent(in) :: k
+
+    can_mix = grid%panel(k)%kind /= algebraic_map .and. grid%local(grid%which(k))%node(1) > 0
+  end function can_mix
+
+  !> Points and weights for integrals over a panel with the gaps h at its nodes, in pieces between
+  !> the places where the law has kinks; not allocated if there is no such place. Under a law with
+  !> many kinks there are points on every panel: the pressures of gaps that the nodes do not resolve
+  !> would change where a kink comes to a panel or leaves it, and iterations would follow slowly.
+  pure subroutine split(law, local, h, s, weight)
+    class(force_law_t), intent(in) :: law
+    type(local_nodes_t), intent(in) :: local
+    real(wp), intent(in) :: h(:)
+    real(wp), allocatable, intent(out) :: s(:), weight(:)
+    real(wp), dimension(0:size(h) + 1) :: x, y
+    real(wp), allocatable :: place(:), length(:)
+    type(local_nodes_t) :: rule
+    logical :: above(size(law%kinks))
+    integer :: i
+
+    x = [0.0_wp, local%node, 1.0_wp]
+    y = [local%value(h, 0.0_wp), h, local%value(h, 1.0_wp)]
+    if (size(law%kinks) <= few .and. &
+      .not. any(law%kinks > minval(y) .and. law%kinks < maxval(y))) return
+    place = [0.0_wp]
+    do i = 0, size(h)
+      above = law%kinks > y(i)
+      if (any(above .neqv. law%kinks > y(i + 1))) &
+        place = [place, kinks_between(law%kinks, local, h, x(i:i + 1), y(i:i + 1))]
+    end do
+    length = [place(2:), 1.0_wp] - place
+    rule = gauss_nodes(few_points + ceiling(points_a_node*size(h)*maxval(length)))
+    s = [(place(i) + length(i)*rule%node, i=1, size(place))]
+    weight = [(length(i)*rule%weight, i=1, size(place))]
+  end subroutine split
+
+  !> The places between two positions x, where the gaps are y, at which the panel's polynomial
+  !> passes kinks.
+  pure function kinks_between(kinks, local, h, x, y) result(place)
+    type(local_nodes_t), intent(in) :: local
+    real(wp), intent(in) :: kinks(:), h(:), x(2), y(2)
+    real(wp), allocatable :: place(:)
+    type(root_search_t) :: search
+    real(wp) :: level
+    integer :: k
+
+    allocate (place(0))
+    level = y(1)
+    do
+      ! The nearest kink on the way that is not passed yet.
+      k = minloc(abs(kinks - level), 1, (kinks - level)*(y(2) - y(1)) > 0 .and. &
+        (y(2) - kinks)*(y(2) - y(1)) >= 0)
+      if (k == 0) return
+      level = kinks(k)
+      search = new_root_search(x(1), y(1) - level, x(2), y(2) - level)
+      do while (search%is_open())
+        call search%note(search%place(), local%value(h, search%place()) - level)
+      end do
+      place = [place, search%root]
+    end do
+  end function kinks_between
+
+  !> The Lagrange polynomials of a panel at points, (nodes, points).
+  pure function bases(local, s) result(basis)
+    type(local_nodes_t), intent(in) :: local
+    real(wp), intent(in) :: s(:)
+    real(wp) :: basis(size(local%node), size(s))
+    integer :: i
+
+    do i = 1, size(s)
+      basis(:, i) = s(i) - local%node
+      ! At a node, its share exceeds the others by more than the digits of a number.
+      basis(:, i) = local%barycentric/merge(basis(:, i), at_node, abs(basis(:, i)) > at_node)
+      basis(:, i) = basis(:, i)/sum(basis(:, i))
+    end do
+  end function bases
+
+end module represented_pressure
