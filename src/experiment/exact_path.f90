@@ -99,8 +99,7 @@ contains
 
   !> Whether finer meshes may make a path more accurate. They do not help if the path was lost,
   !> since the finer path may end earlier; if nodes miss too much of the load, since this needs
-  !> other panels; at a kink of the law, where errors do not decrease steadily with the number of
-  !> nodes; or if rounding limits the digits.
+  !> other panels; or if rounding limits the digits.
   pure logical function finer_helps(steps, accuracy)
     class(path_stepper_t), intent(in) :: steps
     real(wp), intent(in) :: accuracy

@@ -33,8 +33,7 @@ module finer_solver
   !> less for panels and a third for a uniform grid, of second order and locally of lower order; and
   !> for other states, which may have larger errors than those compared. For a grid twice as coarse
   !> the difference itself is two to three times the error.
-  real(wp), parameter :: usual = 3, of_fixed = 2.5_wp, of_coarser = 1.2_wp, of_less_gained = 6, &
-    of_kinks = 12
+  real(wp), parameter :: usual = 3, of_fixed = 2.5_wp, of_coarser = 1.2_wp, of_less_gained = 6
   !> Rounding error of a whole calculation; no smaller error is reported.
   real(wp), parameter :: rounding = 1.0e-13_wp
   !> Largest residual of the iteration over the error of an extremum's place; and number of

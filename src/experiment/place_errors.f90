@@ -21,6 +21,7 @@ module place_errors
   use places, only: places_t
   use path_expansion, only: expansion_t, expansion_about
   use finer_solver, only: finer_t, rounding, worst_residual, what_residual_leaves
+  use represented_pressure, only: pressure_at_nodes
   implicit none
   private
   public :: judge_places, conclude
@@ -251,19 +252,20 @@ contains
     type(finer_t), intent(in) :: fine
     type(place_t), intent(in) :: place
     type(state_t), intent(in) :: right
-    real(wp) :: x, gap, strongest
+    real(wp) :: x, gap, strongest, pressure(size(place%state%gap))
     integer :: j
 
     associate (law => own%problem%law, finer => fine%meshes%grid(place%mesh), state => place%state)
       strongest = max(maxval(abs(right%pressure)), tiny(1.0_wp))
       largest = max(abs(right%axis_gap - state%axis_gap), &
         maxval(abs(law%pressure([right%axis_gap]) - law%pressure([state%axis_gap])))/strongest)
+      pressure = pressure_at_nodes(law, own%meshes%grid(place%mesh), state%gap, state%pressure)
       do j = 1, size(state%gap)
         x = state%scale*own%meshes%grid(place%mesh)%x(j)/right%scale
         if (x > finer%end) exit
         gap = gap_at(own%problem%shape, finer, right, x)
         largest = max(largest, abs(gap - state%gap(j))/max(1.0_wp, gap), &
-          maxval(abs(law%pressure([gap]) - state%pressure(j)))/strongest)
+          maxval(abs(law%pressure([gap]) - pressure(j)))/strongest)
       end do
     end associate
     largest = fine%margin*largest

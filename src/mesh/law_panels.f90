@@ -31,10 +31,6 @@ module law_panels
   !> than its halves is not halved: waves need more nodes, steps need shorter panels.
   real(wp), parameter :: times(*) = [1.0_wp, 1.3_wp, 1.7_wp, 2.2_wp, 2.8_wp, 3.6_wp]
 
-  !> At extrema, load and h0 have less than a third of the quadrature error of a panel about a kink
-  !> of the law; so the tolerance of panels is multiplied by this factor.
-  real(wp), parameter :: hardly_felt = 3
-
 contains
 
   !> Number of nodes of panels with the given lengths in z, with `density` nodes per unit of z, and
@@ -234,9 +230,8 @@ contains
   end subroutine fit_panels
 
   !> The relative error of load and gap due to the nodes of a panel. The error is proportional to
-  !> the square of the tail of the pressure, since nodes integrate polynomials of twice the degree,
-  !> or to the tail itself where coefficients decrease slowly, at kinks of the law. Pressures are
-  !> weighted by their area, limited by the length of the panel and by the area of the total load,
+  !> the square of the tail of the pressure, since nodes integrate polynomials of twice the degree.
+  !> Pressures are weighted by their area, limited by the length of the panel and by the area of the total load,
   !> and within the panel by their effect on the gap; under oscillating laws by the area of the
   !> panel. centre: radius of the mesh's centre; ends, r: radii of the panel's ends and of its
   !> nodes; pressure: at the nodes; load: the reference load without the factor of 2 pi.

@@ -181,8 +181,8 @@ contains
   end function fading_gap
 
   !> Adds sinh panels over z_length: one panel, which gets more nodes or is halved where the
-  !> pressure needs this, as under laws with lengths of their own. Laws with a kink, and
-  !> shapes with kinks, have short panels from the beginning. about, side, low, high,
+  !> pressure needs this, as under laws with lengths of their own. Shapes
+  !> with kinks have short panels from the beginning. about, side, low, high,
   !> seen: see `fit_panels`.
   subroutine add_panels(problem, shape, about, side, z_length, density, digits, low, high, seen)
     type(problem_t), intent(in) :: problem

@@ -17,11 +17,11 @@ module represented_pressure
   use root_finding, only: root_search_t, new_root_search
   implicit none
   private
-  public :: pressure_slope_t, pressure_on, slope_on, panel_pressure
+  public :: pressure_slope_t, pressure_on, slope_on, panel_pressure, pressure_at_nodes
 
   !> Number of points of the quadrature on a piece of a panel: a constant, and for each node on it.
-  real(wp), parameter :: points_a_node = 1.2_wp
-  integer, parameter :: few_points = 4
+  real(wp), parameter :: points_a_node = 1.5_wp
+  integer, parameter :: few_points = 9
   !> Largest number of kinks that are few.
   integer, parameter :: few = 4
 
@@ -68,6 +68,19 @@ contains
       end associate
     end do
   end function pressure_on
+
+  !> The pressures at the nodes of a state whose represented pressures, which may contain the
+  !> pressure of a fluid, are given.
+  pure function pressure_at_nodes(law, grid, gap, represented) result(pressure)
+    class(force_law_t), intent(in) :: law
+    type(discretisation_t), intent(in) :: grid
+    real(wp), intent(in) :: gap(:), represented(:)
+    real(wp) :: pressure(size(gap))
+
+    pressure = represented
+    if (allocated(law%kinks)) &
+      pressure = pressure + (law%pressure(gap) - pressure_on(law, grid, gap))
+  end function pressure_at_nodes
 
   !> The pressures that a panel represents for the gaps at its nodes.
   pure function panel_pressure(law, local, gap) result(pressure)

@@ -41,6 +41,9 @@ module dimensionless_problem
   !> Width of the neck times sigma, lateral units.
   real(wp), parameter :: neck = 0.375_wp
 
+  !> Stiffness of the repulsion, relative to that of the bodies, at which its kinks are not felt.
+  real(wp), parameter :: stiff = 30
+
 contains
 
   !> A problem; stiffness [Pa] is that of `bodies`, and is ignored for rigid bodies.
@@ -61,7 +64,20 @@ contains
     problem%stiffness = stiffness
     problem%rigid = rigid
     if (.not. rigid) problem%coupling = law%pressure_unit/stiffness*sqrt(shape%radius/law%length)
+    call forget_stiff_kinks(problem)
   end function new_problem
+
+  !> Forgets kinks where the repulsion is so much stiffer than the bodies that gaps follow pressures:
+  !> there a kink hardly changes a gap.
+  subroutine forget_stiff_kinks(problem)
+    type(problem_t), intent(inout) :: problem
+
+    if (.not. allocated(problem%law%kinks)) return
+    associate (law => problem%law)
+      law%kinks = pack(law%kinks, problem%coupling*law%slope(law%kinks) > -stiff)
+      if (size(law%kinks) == 0) deallocate (law%kinks)
+    end associate
+  end subroutine forget_stiff_kinks
 
   !> sigma (40): the coupling times the surface energy; 0 without adhesion.
   pure real(wp) function adhesion_strength(problem)

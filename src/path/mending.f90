@@ -21,9 +21,8 @@ module mending
   public :: mender_t, new_mender, left_on_path, left_in_state, too_much
 
   !> Tolerated quadrature error, over the accuracy, where meshes cannot be refined: `left_out` is an
-  !> upper bound under laws with kinks or waves. At a fold the error of the load is 7 % of the tail
-  !> at a kink, and for smooth pressures between a thousandth of the square of the tail and a few
-  !> times this square.
+  !> upper bound under oscillating laws. At a fold the error of the load is between a thousandth of
+  !> the square of the tail and a few times this square.
   real(wp), parameter :: too_much = 30
 
   type :: mender_t
@@ -39,8 +38,6 @@ module mending
     procedure :: mend
   end type mender_t
 
-  !> Factor of the quadrature error at kinks of the law, to which extrema are most sensitive.
-  real(wp), parameter :: of_kinks = 3
   !> Part of the load that the panels of a new mesh may miss, over `most`; it is less than 1, since
   !> the path on the new mesh differs slightly.
   real(wp), parameter :: most_of_fit = 0.3_wp
@@ -57,7 +54,7 @@ module mending
 
 contains
 
-  !> The refinement of meshes for a path with a given accuracy. `left_out` counts kinks and waves in
+  !> The refinement of meshes for a path with a given accuracy. `left_out` counts waves in
   !> full, while only a part of their error affects the load.
   pure type(mender_t) function new_mender(accuracy, law) result(mender)
     real(wp), intent(in) :: accuracy
@@ -239,8 +236,7 @@ contains
         if (panel%right <= 0 .and. .not. smooth) cycle
         left(k) = left_out(problem, grid%local(k), &
           scale*grid%centre, scale*(grid%centre + [panel%left, panel%right]), &
-          scale*grid%x(first:last), &
-          pressure(first:last), load)
+          scale*grid%x(first:last), pressure(first:last), load)
       end associate
     end do
   end function left_of

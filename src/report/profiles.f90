@@ -8,6 +8,7 @@ module profiles
   use contact_state, only: state_t
   use tables, only: table_t, cells
   use result_tables, only: columns_of
+  use represented_pressure, only: pressure_at_nodes
   implicit none
   private
   public :: columns_of_profiles, write_profile
@@ -49,7 +50,8 @@ contains
     associate (n => size(state%gap), law => problem%law)
       r = [0.0_wp, state%scale*grid%x(:n)]
       gap = [state%axis_gap, state%gap]
-      pressure = [law%pressure([state%axis_gap]), state%pressure]
+      pressure = [law%pressure([state%axis_gap]), &
+        pressure_at_nodes(law, grid, state%gap, state%pressure)]
       energy = law%energy(gap)
       ! h = h0 + f - 2u.
       deformation = -0.5_wp*(gap - state%h0 - problem%shape%height(r))

@@ -25,8 +25,9 @@ module tabulated
   end type tabulated_t
 
   integer, parameter :: fewest = 8
-  !> Relative error of a table's pressure, over the accuracy, that a path does not feel.
-  real(wp), parameter :: unnoticed = 1.0_wp/30
+  !> Relative error of a table's pressure, over the accuracy, that a path does not feel; and the
+  !> smallest error for which integrals in pieces between the points are worth their time.
+  real(wp), parameter :: unnoticed = 1.0_wp/30, least = 1.0e-6_wp
   !> The error of a spline decreases as the fourth power of the distance of points, that of slopes
   !> that are monotone as the second power at an extremum.
   real(wp), parameter :: share_of_spline = 1.0_wp/15, share_of_monotone = 1.0_wp/3
@@ -182,7 +183,7 @@ contains
       middle = (g(:n) + g(2:))/2
       error = this%table_error(middle)
       rough = .false.
-      rough(1:n) = error(1, :) > unnoticed*accuracy* &
+      rough(1:n) = error(1, :) > max(unnoticed*accuracy, least)* &
         max(abs(this%pressure(middle)), middle*abs(this%slope(middle)))
       this%kinks = pack(g, rough(0:n) .or. rough(1:))
     end associate
