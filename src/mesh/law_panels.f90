@@ -231,10 +231,10 @@ contains
 
   !> The relative error of load and gap due to the nodes of a panel. The error is proportional to
   !> the square of the tail of the pressure, since nodes integrate polynomials of twice the degree.
-  !> Pressures are weighted by their area, limited by the length of the panel and by the area of the total load,
-  !> and within the panel by their effect on the gap; under oscillating laws by the area of the
-  !> panel. centre: radius of the mesh's centre; ends, r: radii of the panel's ends and of its
-  !> nodes; pressure: at the nodes; load: the reference load without the factor of 2 pi.
+  !> Pressures are weighted by their area, limited by the length of the panel and by the area of the
+  !> total load, and within the panel by their effect on the gap; under oscillating laws by the area
+  !> of the panel. centre: radius of the mesh's centre; ends, r: radii of the panel's ends and of
+  !> its nodes; pressure: at the nodes; load: the reference load without the factor of 2 pi.
   pure real(wp) function left_out(problem, local, centre, ends, r, pressure, load) result(left)
     type(problem_t), intent(in) :: problem
     type(local_nodes_t), intent(in) :: local
