@@ -67,8 +67,8 @@ contains
     call forget_stiff_kinks(problem)
   end function new_problem
 
-  !> Forgets kinks where the repulsion is so much stiffer than the bodies that gaps follow pressures:
-  !> there a kink hardly changes a gap.
+  !> Forgets kinks where the repulsion is so much stiffer than the bodies that gaps follow
+  !> pressures: there a kink hardly changes a gap.
   subroutine forget_stiff_kinks(problem)
     type(problem_t), intent(inout) :: problem
 
