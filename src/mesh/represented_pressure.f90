@@ -45,7 +45,8 @@ module represented_pressure
 
 contains
 
-  !> The pressures that a mesh represents for the gaps at its nodes.
+  !> The pressures that a mesh represents for the gaps at its nodes. Positions without panels, as
+  !> those of rigid bodies, have the pressures of the law.
   pure function pressure_on(law, grid, gap) result(pressure)
     class(force_law_t), intent(in) :: law
     type(discretisation_t), intent(in) :: grid
@@ -53,7 +54,7 @@ contains
     real(wp) :: pressure(size(gap))
     integer :: k, last
 
-    if (.not. allocated(law%kinks)) then
+    if (.not. (allocated(law%kinks) .and. allocated(grid%panel))) then
       pressure = law%pressure(gap)
       return
     end if

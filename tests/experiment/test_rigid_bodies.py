@@ -206,6 +206,16 @@ def test_profiles_show_the_gap_the_pressure_and_its_energy(run, body):
     assert several(result.summary["profiles_error"]) == [1e-13]
 
 
+def test_profiles_under_a_force_with_a_kink_have_the_pressure_of_the_law(run):
+    """Rigid bodies have no panels; the program looked for kinks on them and ended."""
+    result = run(rigid(LAWS["steric"], BODIES["parabola"], loading=loading(4e-9, 2e-9, 1e-9),
+                       profiles={"h0": 2e-9}))
+    table = result.table("profiles.csv")
+    assert table["separation"].min() < 1e-8 < table["separation"].max()
+    exact = snapin.force_law(LAWS["steric"], table["separation"])
+    np.testing.assert_allclose(table["pressure"], exact.pressure, rtol=1e-12)
+
+
 def test_criteria_of_stability_are_those_of_bodies_that_do_not_yield(run):
     curve = run(rigid(LAWS["lennard_jones"], BODIES["cone"], loading=STEPS, stability={})).curve
     assert (curve["smallest_eigenvalue"] == 1).all() and (curve["stable"] == 1).all()
