@@ -71,18 +71,19 @@ contains
     type(state_t), intent(in) :: state
     real(wp), intent(inout) :: lu(:, :)
     type(pressure_slope_t) :: slope
-    real(wp) :: softer(size(lu, 2))
+    real(wp) :: softer(1, size(lu, 2))
     integer :: n, i
 
     n = size(state%gap)
     associate (grid => equations%meshes%grid(control%mesh), c => state%scale)
       slope = slope_on(equations%problem%law, grid, state%gap)
-      softer(:n) = 2*pi*control%compliance*c**2*slope%weighted(grid%weight(:n))
-      if (size(lu, 2) > n) softer(n + 1) = 2*control%compliance*state%load/c
+      softer(1, :n) = 2*pi*control%compliance*c**2*grid%weight(:n)*slope%factor()
+      call slope%mix([(i, i=1, n)], softer(:, :n))
+      if (size(lu, 2) > n) softer(1, n + 1) = 2*control%compliance*state%load/c
       do i = 1, n
-        lu(i, :) = lu(i, :) - softer
+        lu(i, :) = lu(i, :) - softer(1, :)
       end do
-      if (size(lu, 1) > n) lu(n + 1, :) = lu(n + 1, :) + softer
+      if (size(lu, 1) > n) lu(n + 1, :) = lu(n + 1, :) + softer(1, :)
     end associate
   end subroutine add_spring
 

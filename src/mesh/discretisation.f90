@@ -11,7 +11,7 @@ module discretisation
   use quadrature, only: gauss_legendre
   implicit none
   private
-  public :: discretisation_t, local_nodes_t, gauss_nodes, at_node, axis_row, centre_row, first_node
+  public :: discretisation_t, local_nodes_t, gauss_nodes, axis_row, centre_row, first_node
 
   !> Stands for a distance 0 from a node.
   real(wp), parameter :: at_node = 1.0e-100_wp
@@ -27,6 +27,7 @@ module discretisation
   contains
     procedure :: value => value_at
     procedure :: values => values_at
+    procedure :: reaching
     procedure :: tail
   end type local_nodes_t
 
@@ -124,6 +125,21 @@ contains
     value = value/shares
   end function values_at
 
+  !> The point between two others at which the polynomial through values at the nodes reaches a
+  !> level between its values at the two points.
+  pure real(wp) function reaching(self, values, level, between) result(s)
+    class(local_nodes_t), intent(in) :: self
+    real(wp), intent(in) :: values(:), level, between(2)
+    type(root_search_t) :: search
+
+    search = new_root_search(between(1), self%value(values, between(1)) - level, &
+      between(2), self%value(values, between(2)) - level)
+    do while (search%is_open())
+      call search%note(search%place(), self%value(values, search%place()) - level)
+    end do
+    s = search%root
+  end function reaching
+
   !> The larger of the last two Legendre coefficients of a function given at the nodes; small if the
   !> polynomial represents the function well. On n nodes, roots of P_n, the node's weight times
   !> P_(n-1) is 2/n of the barycentric weight except for the sign, and P_(n-2) is (2 n - 1)/(n - 1)
@@ -219,21 +235,13 @@ contains
     class(discretisation_t), intent(in) :: self
     real(wp), intent(in) :: values(:), level
     integer, intent(in) :: j
-    type(root_search_t) :: search
-    real(wp) :: s
-    integer :: k, here
+    integer :: k
 
     k = self%panel_at(self%x(j))
     associate (local => self%local(self%which(k)), first => self%first(k))
-      here = j + 1 - first
-      search = new_root_search(local%node(here), values(j) - level, local%node(here + 1), &
-        values(j + 1) - level)
-      do while (search%is_open())
-        s = search%place()
-        call search%note(s, local%value(values(first:first + size(local%node) - 1), s) - level)
-      end do
+      x = self%centre + self%panel(k)%offset(local%reaching( &
+        values(first:first + size(local%node) - 1), level, local%node(j + 1 - first:j + 2 - first)))
     end associate
-    x = self%centre + self%panel(k)%offset(search%root)
   end function crossing
 
   !> The panel that contains a position; outside the mesh the nearest panel.

@@ -3,18 +3,18 @@
 !>
 !>     p_i = (1/w_i) Int l_i(s) p(h(s)) ds
 !>
-!> with the panel's Lagrange polynomials l_i. For a pressure of lower degree this is the pressure
-!> at the node. On a panel where the gap passes a gap at which the law is not smooth, the integral
-!> differs from the value at the node; there it is computed in pieces between these places. The
-!> polynomial with the values p_i is then the projection of the pressure: loads and deformations are
-!> as accurate as for a smooth pressure, and change smoothly as the place moves over the nodes.
+!> with the panel's Lagrange polynomials l_i. For a pressure that is a polynomial of lower degree
+!> this is the pressure at the node. On a panel where the gap passes a kink of the law, the integral
+!> is computed in pieces that end at the kink. The polynomial with the values p_i is then the
+!> projection of the pressure: loads and deformations are nearly as accurate as for a smooth
+!> pressure, and change smoothly as the kink moves over the nodes.
 module represented_pressure
   use kinds, only: wp
   use force_law, only: force_law_t
-  use discretisation, only: discretisation_t, local_nodes_t, gauss_nodes, at_node
+  use discretisation, only: discretisation_t, local_nodes_t, gauss_nodes
   use panel_map, only: algebraic_map
   use linear_algebra, only: add_by_transposed
-  use root_finding, only: root_search_t, new_root_search
+  use quadrature, only: lagrange_basis
   implicit none
   private
   public :: pressure_slope_t, pressure_on, slope_on, panel_pressure, pressure_at_nodes
@@ -38,7 +38,6 @@ module represented_pressure
     type(panel_slope_t), allocatable :: mixed(:)
   contains
     procedure :: times
-    procedure :: weighted
     procedure :: factor
     procedure :: mix
   end type pressure_slope_t
@@ -146,21 +145,6 @@ contains
     end do
   end function times
 
-  !> The derivatives by the gaps of the sum of the pressures times their weights.
-  pure function weighted(self, weight) result(product)
-    class(pressure_slope_t), intent(in) :: self
-    real(wp), intent(in) :: weight(:)
-    real(wp) :: product(size(weight))
-    integer :: k
-
-    product = self%at_node*weight
-    do k = 1, size(self%mixed)
-      associate (panel => self%mixed(k))
-        product(panel%first:panel%last) = matmul(weight(panel%first:panel%last), panel%by_gap)
-      end associate
-    end do
-  end function weighted
-
   !> The factors of the columns of a matrix that is multiplied from the right by the derivative,
   !> before `mix` completes the product.
   pure function factor(self)
@@ -200,10 +184,10 @@ contains
     can_mix = grid%panel(k)%kind /= algebraic_map .and. grid%local(grid%which(k))%node(1) > 0
   end function can_mix
 
-  !> Points and weights for integrals over a panel with the gaps h at its nodes, in pieces between
-  !> the places where the law has kinks; not allocated if there is no such place. Under a law with
-  !> many kinks there are points on every panel: the pressures of gaps that the nodes do not resolve
-  !> would change where a kink comes to a panel or leaves it, and iterations would follow slowly.
+  !> Points and weights for integrals over a panel with the gaps h at its nodes, in pieces that end
+  !> at the law's kinks; not allocated if there is no kink on the panel. Under a law with many kinks
+  !> there are points on every panel: otherwise the represented pressure of gaps that the nodes do
+  !> not resolve would jump where a kink enters a panel, and iterations would converge slowly.
   pure subroutine split(law, local, h, s, weight)
     class(force_law_t), intent(in) :: law
     type(local_nodes_t), intent(in) :: local
@@ -237,7 +221,6 @@ contains
     type(local_nodes_t), intent(in) :: local
     real(wp), intent(in) :: kinks(:), h(:), x(2), y(2)
     real(wp), allocatable :: place(:)
-    type(root_search_t) :: search
     real(wp) :: level
     integer :: k
 
@@ -249,11 +232,7 @@ contains
         (y(2) - kinks)*(y(2) - y(1)) >= 0)
       if (k == 0) return
       level = kinks(k)
-      search = new_root_search(x(1), y(1) - level, x(2), y(2) - level)
-      do while (search%is_open())
-        call search%note(search%place(), local%value(h, search%place()) - level)
-      end do
-      place = [place, search%root]
+      place = [place, local%reaching(h, level, x)]
     end do
   end function kinks_between
 
@@ -265,10 +244,7 @@ contains
     integer :: i
 
     do i = 1, size(s)
-      basis(:, i) = s(i) - local%node
-      ! At a node, its share exceeds the others by more than the digits of a number.
-      basis(:, i) = local%barycentric/merge(basis(:, i), at_node, abs(basis(:, i)) > at_node)
-      basis(:, i) = basis(:, i)/sum(basis(:, i))
+      basis(:, i) = lagrange_basis(local%node, local%barycentric, s(i))
     end do
   end function bases
 
