@@ -197,6 +197,20 @@ class HalfSpace:
             found.append((gap, h0))
         return found
 
+    def from_gaps(self, law, s, h0, r, gap):
+        """The gaps (axis first) at H0 by Newton's method, from gaps at the positions r."""
+        nodes = np.concatenate([[0.0], self.r])
+        undeformed = h0 + nodes**2 / 2
+        gap = undeformed + np.interp(nodes, r, gap - h0 - r**2 / 2)
+        for _ in range(12):
+            pressure, slope, _ = law(gap[1:])
+            jacobian = np.eye(len(nodes))
+            jacobian[:, 1:] -= 2 * s * self.matrix * slope
+            step = np.linalg.solve(jacobian, undeformed - gap + 2 * s * self.matrix @ pressure)
+            gap += step
+        assert abs(step).max() < 1e-9
+        return gap
+
     def folds(self, law, s, axis, states, softness):
         """H0 and load where H0 - softness*load turns, from the states at the gaps on the axis."""
         def driven(states):
