@@ -41,6 +41,12 @@ contains
     if (equations%meshes%inserted(to)) i = i - 1
     most = huge(most)
     associate (meshes => equations%meshes)
+      ! The last two states of the arc pass to the mesh. Beyond its last panel, waves at the first
+      ! of these would not be resolved.
+      if (equations%problem%law%period > 0 .and. .not. meshes%is_about_axis(to)) then
+        low = radius_for(equations, arc%mesh, to, arc%state(arc%held - 1))
+        if (low > 0) meshes%reach(1, to) = min(meshes%reach(1, to), low)
+      end if
       if (meshes%grows .and. equations%problem%law%period > 0 .and. &
         .not. meshes%is_about_axis(to)) most = many_more*meshes%grid(arc%mesh)%nodes
       do
