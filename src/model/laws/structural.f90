@@ -92,8 +92,10 @@ contains
     real(wp), intent(in) :: gap(:)
     real(wp) :: value(size(gap))
 
-    value = (cos(self%wave_number*gap + self%phase) + &
-      self%wave_number*sin(self%wave_number*gap + self%phase))*decay(gap)
+    associate (k => self%wave_number)
+      ! cos x + k sin x, as one cosine.
+      value = sqrt(1 + k**2)*cos(k*gap + (self%phase - atan(k)))*decay(gap)
+    end associate
   end function slope
 
   pure function energy(self, gap) result(value)
