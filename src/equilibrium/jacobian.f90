@@ -229,21 +229,20 @@ contains
       [(maxval(abs(grid%kernel(:, j))), j=1, grid%nodes)]
   end function largest_rise
 
-  !> The Jacobian of `residual` at a state times a change of the unknowns.
-  function jacobian_times(equations, control, state, change) result(product)
+  !> The Jacobian of `residual` at a state times a change of the unknowns. slope: that of the law at
+  !> the state's gaps.
+  function jacobian_times(equations, control, state, slope, change) result(product)
     type(equations_t), intent(inout) :: equations
     type(control_t), intent(in) :: control
     type(state_t), intent(in) :: state
+    type(pressure_slope_t), intent(in) :: slope
     real(wp), intent(in) :: change(:)
-    type(pressure_slope_t) :: slope
     real(wp) :: product(size(change)), rise(first_node - 1 + size(state%gap)), column(size(change))
 
     associate (problem => equations%problem, grid => equations%meshes%grid(control%mesh), &
       n => size(state%gap), m => size(change), cost => equations%cost)
-      slope = slope_on(problem%law, grid, state%gap)
       call equations%operator%deform(problem, grid, state%scale, n, &
         slope%times(change(:n)), rise)
-      cost%pressure_evaluations = cost%pressure_evaluations + n*problem%law%terms
       cost%operator_products = cost%operator_products + 1
       cost%operator_columns = cost%operator_columns + n
       product(:n) = change(:n) - rise(first_node:)

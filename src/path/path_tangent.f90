@@ -75,12 +75,16 @@ contains
     type(tangent_t), intent(out) :: tangent
     logical, intent(out) :: found
     real(wp), allocatable :: right(:), dz(:)
+    type(pressure_slope_t) :: law_slope
     integer :: n
 
     n = size(state%gap)
+    law_slope = slope_on(equations%problem%law, equations%meshes%grid(control%mesh), state%gap)
+    equations%cost%pressure_evaluations = equations%cost%pressure_evaluations + &
+      n*equations%problem%law%terms
     right = -control_derivative(equations, control, state)
     found = frozen%serves(control, size(right))
-    if (found) call refine(equations, error, control, state, frozen, right, dz, found)
+    if (found) call refine(equations, error, control, state, law_slope, right, frozen, dz, found)
     if (.not. found) then
       call freeze(equations, control, state, frozen, exact=.true.)
       found = frozen%factors%valid
@@ -98,18 +102,19 @@ contains
         tangent%axis_gap = dot_product(grid%at_axis, tangent%gap)
       end if
     end associate
-    tangent%load = load_slope(equations, control, state, tangent)
+    tangent%load = load_slope(equations, control, state, law_slope, tangent)
   end subroutine tangent_at
 
   !> Solves J dz = right to a relative error, with factors of a neighbouring J; done = .false.: the
-  !> refinement does not converge fast.
-  subroutine refine(equations, error, control, state, frozen, right, dz, done)
+  !> refinement does not converge fast. law_slope: slopes of the law.
+  subroutine refine(equations, error, control, state, law_slope, right, frozen, dz, done)
     type(equations_t), intent(inout) :: equations
     real(wp), intent(in) :: error
     type(control_t), intent(in) :: control
     type(state_t), intent(in) :: state
-    type(frozen_jacobian_t), intent(in) :: frozen
+    type(pressure_slope_t), intent(in) :: law_slope
     real(wp), intent(in) :: right(:)
+    type(frozen_jacobian_t), intent(in) :: frozen
     real(wp), allocatable, intent(out) :: dz(:)
     logical, intent(out) :: done
     real(wp) :: correction(size(right)), size_now, size_before
@@ -119,7 +124,7 @@ contains
     call solve(frozen%factors, dz)
     size_before = relative(dz)
     do step = 1, most_corrections
-      correction = right - jacobian_times(equations, control, state, dz)
+      correction = right - jacobian_times(equations, control, state, law_slope, dz)
       call solve(frozen%factors, correction)
       dz = dz + correction
       size_now = relative(correction)
@@ -142,21 +147,18 @@ contains
   end subroutine refine
 
   !> The derivative of the load, from the derivatives of gaps and scale.
-  function load_slope(equations, control, state, tangent) result(slope)
-    type(equations_t), intent(inout) :: equations
+  function load_slope(equations, control, state, law_slope, tangent) result(slope)
+    type(equations_t), intent(in) :: equations
     type(control_t), intent(in) :: control
     type(state_t), intent(in) :: state
+    type(pressure_slope_t), intent(in) :: law_slope
     type(tangent_t), intent(in) :: tangent
-    type(pressure_slope_t) :: pressure_slope
     real(wp) :: slope, reach, last, of_end(2)
 
     associate (grid => equations%meshes%grid(control%mesh), n => size(state%gap), &
-      law => equations%problem%law, shape => equations%problem%shape)
-      pressure_slope = slope_on(law, grid, state%gap)
+      shape => equations%problem%shape)
       slope = 2*pi*(2*state%scale*tangent%scale*dot_product(grid%weight, state%pressure) + &
-        state%scale**2*dot_product(grid%weight, pressure_slope%times(tangent%gap)))
-      equations%cost%pressure_evaluations = equations%cost%pressure_evaluations + &
-        n*law%terms
+        state%scale**2*dot_product(grid%weight, law_slope%times(tangent%gap)))
       if (.not. grid%is_bounded()) return
       ! The load beyond a bounded mesh depends on the position of the mesh's end and on the gap
       ! there; this gap changes with the gap at the last node and with the position of the end.
