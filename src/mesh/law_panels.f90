@@ -58,6 +58,8 @@ contains
     integer, parameter :: places = 5
     real(wp), allocatable :: given(:), parameter(:), load(:)
     real(wp) :: centre, most, worst_radius
+    !> Gauss rules by their number of nodes, made when they are needed.
+    type(local_nodes_t), allocatable :: rule(:)
     integer :: worst, k
 
     most = 10.0_wp**(-digits)
@@ -72,6 +74,7 @@ contains
     centre = merge(0.0_wp, 1.0_wp, about == about_axis)
     load = [(load_of(k), k=1, size(parameter))]
     call move_alloc(length, given)
+    allocate (rule(ceiling(maxval(times)*nodes_on(maxval(given), density, fewest))))
     allocate (length(0), order(0))
     do k = 1, size(given)
       call add(sum(given(:k - 1)), given(k), huge(1), length, order)
@@ -130,18 +133,17 @@ contains
     logical function is_resolved(z, z_length, nodes)
       real(wp), intent(in) :: z, z_length
       integer, intent(in) :: nodes
-      type(local_nodes_t) :: local
       real(wp), allocatable :: radius(:)
       integer :: j, i
 
-      local = gauss_nodes(nodes)
+      if (.not. allocated(rule(nodes)%node)) rule(nodes) = gauss_nodes(nodes)
       is_resolved = .true.
-      if (worst > 0) is_resolved = suffices(z, z_length, local, worst, worst_radius)
+      if (worst > 0) is_resolved = suffices(z, z_length, rule(nodes), worst, worst_radius)
       do j = 1, size(parameter)
         radius = radii_of(j, side*d*sinh(z + z_length*[(i, i=0, places - 1)]/(places - 1.0_wp)))
         do i = 1, size(radius)
           if (.not. is_resolved) return
-          is_resolved = suffices(z, z_length, local, j, radius(i))
+          is_resolved = suffices(z, z_length, rule(nodes), j, radius(i))
           if (is_resolved) cycle
           worst = j
           worst_radius = radius(i)
