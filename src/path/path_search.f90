@@ -8,6 +8,7 @@
 !> over both. Where the polynomial cannot decide, a state is solved and added to the arc.
 module path_search
   use kinds, only: wp
+  use dimensionless_problem, only: problem_t
   use contact_state, only: state_t
   use solver, only: solver_t
   use interpolation, only: hermite_t
@@ -27,10 +28,10 @@ module path_search
   integer, parameter :: golden_steps = 30
   real(wp), parameter :: at_end = 1.0e-5_wp
   !> Largest number of states solved in one search; change of place below which rounding may keep
-  !> the residual from falling; and fraction of the interval for the difference quotient of the
-  !> curve's slope.
+  !> the residual from falling; and the largest change of place, over the interval, along the
+  !> tangent of a state: the error of the moved state is the square of it.
   integer, parameter :: most_rounds = 60
-  real(wp), parameter :: rounding_rules = 1.0e-6_wp, a_little = 1.0e-4_wp
+  real(wp), parameter :: rounding_rules = 1.0e-6_wp, along_tangent = 1.0e-6_wp
   !> Relative distance from the wanted value of Q, or distance in the law's lengths, that rounding
   !> allows; correction of the coordinate that rounding of the load causes; and the largest
   !> correction that may remain after the last round.
@@ -178,11 +179,12 @@ contains
   end subroutine descend
 
   !> The state between two places at which Q, monotonic there, has the value `wanted` or, if
-  !> `wanted` is absent, the one extremum of Q there. The iteration is Newton's: the slope of Q is
-  !> exact at a state, and the derivative of the slope is taken from the last two states. Where
-  !> Newton steps do not reduce the miss, for example under a force that changes by orders of
-  !> magnitude, the bracket is halved. A value outside the bracket, which rounding may cause, is
-  !> found at the nearer end. done = .false.: there is no such state, or a solve failed.
+  !> `wanted` is absent, the one extremum of Q there. For a value the iteration is Newton's, since
+  !> the slope of Q is exact at a state; for an extremum each state joins the arc, whose polynomial
+  !> gives the next place. A small last step is along the tangent, without another solve. Where
+  !> steps do not reduce the miss, for example under a force that changes by orders of magnitude,
+  !> the bracket is halved. A value outside the bracket, which rounding may cause, is found at the
+  !> nearer end. done = .false.: there is no such state, or a solve failed.
   subroutine find_place(solver, arc, ends, weights, found, done, wanted)
     class(solver_t), intent(inout) :: solver
     type(arc_t), intent(in) :: arc
@@ -194,7 +196,7 @@ contains
     type(bracket_t) :: bracket
     type(hermite_t) :: curve
     type(found_t) :: tried
-    real(wp) :: s, rate, least_change
+    real(wp) :: s, rate, least_change, change, before
     integer :: round, k, j
     logical :: rising, solved
 
@@ -217,6 +219,7 @@ contains
       least_change = solver%options%place_error
     end if
     s = place_on(curve, ends, wanted)
+    before = ends(2) - ends(1)
     solved = .true.
     ! The factors made at the first estimate serve for all corrections.
     call solver%frozen%forget()
@@ -233,19 +236,23 @@ contains
         s = bracket%middle()
         cycle
       end if
-      if (present(wanted)) then
-        rate = tried%tangent%of(weights)
-      else if (found%miss < huge(1.0_wp)) then
-        rate = (tried%miss - found%miss)/(s - found%coordinate)
-      else
-        associate (beside => a_little*(ends(2) - ends(1)))
-          rate = (curve%slope(s + beside) - curve%slope(s))/beside
-        end associate
-      end if
       found = tried
-      if (.not. abs(rate) > tiny(rate)) exit
-      s = bracket%within(s - found%miss/rate)
-      if (abs(s - found%coordinate) < least_change) exit
+      if (present(wanted)) then
+        rate = found%tangent%of(weights)
+        if (.not. abs(rate) > tiny(rate)) exit
+        s = bracket%within(s - found%miss/rate)
+      else
+        s = place_on(near%curve(weights, bracket%middle()), [bracket%low, bracket%high])
+      end if
+      change = s - found%coordinate
+      ! The next step would be smaller by at least the ratio of this one to the last one.
+      if (abs(change) < least_change .or. abs(change) < along_tangent*(ends(2) - ends(1)) .and. &
+        (present(wanted) .or. change**2 < least_change*before)) then
+        call move(solver%problem, found, change)
+        if (present(wanted)) found%miss = miss_of(found)
+        exit
+      end if
+      before = abs(change)
     end do
     found%sense = merge(-1, 1, rising)
     done = solved
@@ -281,6 +288,23 @@ contains
     end function is_there
 
   end subroutine find_place
+
+  !> Moves a state by a small change of its coordinate.
+  subroutine move(problem, found, change)
+    type(problem_t), intent(in) :: problem
+    type(found_t), intent(inout) :: found
+    real(wp), intent(in) :: change
+
+    found%coordinate = found%coordinate + change
+    associate (state => found%state, tangent => found%tangent)
+      state%pressure = state%pressure + change*problem%law%slope(state%gap)*tangent%gap
+      state%gap = state%gap + change*tangent%gap
+      state%h0 = state%h0 + change*tangent%h0
+      state%scale = state%scale + change*tangent%scale
+      state%axis_gap = state%axis_gap + change*tangent%axis_gap
+      state%load = state%load + change*tangent%load
+    end associate
+  end subroutine move
 
   !> The place between two places at which a curve has the value `wanted` or, if `wanted` is absent,
   !> an extremum; if there is none, the end with the smaller miss.
