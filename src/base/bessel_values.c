@@ -4,7 +4,7 @@
 
 #if defined(__x86_64__) && defined(__gnu_linux__) && defined(__has_attribute)
 #if __has_attribute(target_clones)
-#define FOR_EACH_WIDTH __attribute__((target_clones("avx512f", "avx2", "default")))
+#define FOR_EACH_WIDTH __attribute__((target_clones("avx512f", "fma", "default")))
 #endif
 #endif
 #ifndef FOR_EACH_WIDTH
