@@ -3,6 +3,8 @@ module experiment_result
   use kinds, only: wp
   use numerics_choice, only: choice_t
   use equilibrium, only: cost_t
+  use ending, only: ending_t
+  use records, only: quality_t
   use stepped_branch, only: branch_t
   use path, only: path_t
   use places, only: places_t
@@ -28,6 +30,27 @@ module experiment_result
     real(wp) :: left_out = 0
     type(cost_t) :: cost
     integer :: nodes = 0
+  contains
+    procedure :: quality
   end type experiment_result_t
+
+contains
+
+  !> The quality of the rows of all experiments together.
+  pure type(quality_t) function quality(self)
+    class(experiment_result_t), intent(in) :: self
+    type(ending_t) :: planned
+    integer :: k
+
+    if (allocated(self%path)) call quality%join(self%path%quality, self%path%ending)
+    if (allocated(self%stepped_path)) &
+      call quality%join(self%stepped_path%quality, self%stepped_path%ending)
+    if (allocated(self%loading)) call quality%join(self%loading%quality, self%loading%ending)
+    if (allocated(self%timed)) call quality%join(self%timed%quality, planned)
+    if (.not. allocated(self%unloading)) return
+    do k = 1, size(self%unloading)
+      call quality%join(self%unloading(k)%quality, self%unloading(k)%ending)
+    end do
+  end function quality
 
 end module experiment_result

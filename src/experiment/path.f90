@@ -3,14 +3,13 @@
 !> between these for a smooth curve.
 module path
   use kinds, only: wp
-  use dimensionless_problem, only: spacing_over_neck
   use traced_path, only: traced_path_t
   use ending, only: ending_t, state_lost
   use known_path, only: known_path_t, interval_at
   use path_stepper, only: path_stepper_t
   use path_rows, only: row_t, row_of_point, row_at_h0, rows_between
   use reported_place, only: place_t, place_of_state, add_place, of_load
-  use records, only: observer_t, record_t, extent_t, record_of, stable_yes, stable_no
+  use records, only: observer_t, record_t, quality_t, record_of, stable_yes, stable_no
   implicit none
   private
   public :: path_t, follow_path, find_finish
@@ -26,8 +25,7 @@ module path
     type(place_t), allocatable :: lowest, finish, profile(:)
     !> The stable pieces on which the path begins and ends; 0 if it is unstable there.
     integer :: first_piece = 0, last_piece = 0
-    real(wp) :: worst_residual = 0, worst_spacing = 0
-    type(extent_t) :: extent
+    type(quality_t) :: quality
     !> Whether the path ends in a collapse of the bodies.
     logical :: fallen = .false.
     type(ending_t) :: ending
@@ -167,12 +165,10 @@ contains
     associate (grid => steps%meshes%grid(row%mesh), state => row%state)
       record = record_of('path', steps%problem, grid, state, &
         merge(stable_yes, stable_no, row%modes == 0), row%converged)
-      call path%extent%cover(record, state)
+      call path%quality%cover(record, steps%problem, grid, state, &
+        steps%meshes%in_contact(row%mesh))
       call observer%take(record, steps%problem, grid, state, row%profile)
       path%states = path%states + 1
-      path%worst_residual = max(path%worst_residual, state%residual)
-      if (steps%meshes%in_contact(row%mesh)) path%worst_spacing = max(path%worst_spacing, &
-        spacing_over_neck(steps%problem, state%scale*grid%spacing))
     end associate
     if (.not. row%converged) then
       if (.not. path%ending%early()) path%ending%cause = state_lost

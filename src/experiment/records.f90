@@ -3,12 +3,13 @@
 module records
   use kinds, only: wp
   use listener, only: listener_t
-  use dimensionless_problem, only: problem_t
+  use dimensionless_problem, only: problem_t, spacing_over_neck
   use discretisation, only: discretisation_t
   use contact_state, only: state_t, contact_radius_of
+  use ending, only: ending_t
   implicit none
   private
-  public :: record_t, observer_t, silent_observer_t, record_of, extent_t
+  public :: record_t, observer_t, silent_observer_t, record_of, quality_t
   public :: stable_yes, stable_no, stable_unasked
 
   !> Values of the column `stable`.
@@ -29,13 +30,16 @@ module records
     real(wp), allocatable :: eigenvalue, local_criterion, axis_criterion
   end type record_t
 
-  !> The widest contact of some rows [m], and the largest magnitude of their pressure, in the law's
-  !> unit.
-  type :: extent_t
-    real(wp) :: contact_radius = 0, pressure = 0
+  !> The quality of some rows: the largest residual, the widest spacing of nodes at the contact edge
+  !> over the neck width, the widest contact [m], the largest magnitude of pressure, in the law's
+  !> unit, and whether an experiment ended early.
+  type :: quality_t
+    real(wp) :: residual = 0, spacing = 0, contact_radius = 0, pressure = 0
+    logical :: early = .false.
   contains
     procedure :: cover
-  end type extent_t
+    procedure :: join
+  end type quality_t
 
   !> Receives records as they are computed.
   type, abstract, extends(listener_t) :: observer_t
@@ -64,15 +68,34 @@ module records
 
 contains
 
-  !> Extends the extent by one row.
-  pure subroutine cover(self, record, state)
-    class(extent_t), intent(inout) :: self
+  !> Includes one row; has_edge: whether the state has a contact edge.
+  pure subroutine cover(self, record, problem, grid, state, has_edge)
+    class(quality_t), intent(inout) :: self
     type(record_t), intent(in) :: record
+    type(problem_t), intent(in) :: problem
+    type(discretisation_t), intent(in) :: grid
     type(state_t), intent(in) :: state
+    logical, intent(in) :: has_edge
 
+    self%residual = max(self%residual, state%residual)
+    if (has_edge) self%spacing = max(self%spacing, &
+      spacing_over_neck(problem, state%scale*grid%spacing))
     self%contact_radius = max(self%contact_radius, record%contact_radius)
     self%pressure = max(self%pressure, maxval(abs(state%pressure)))
   end subroutine cover
+
+  !> Includes all rows of an experiment.
+  pure subroutine join(self, other, ending)
+    class(quality_t), intent(inout) :: self
+    class(quality_t), intent(in) :: other
+    type(ending_t), intent(in) :: ending
+
+    self%residual = max(self%residual, other%residual)
+    self%spacing = max(self%spacing, other%spacing)
+    self%contact_radius = max(self%contact_radius, other%contact_radius)
+    self%pressure = max(self%pressure, other%pressure)
+    self%early = self%early .or. ending%early()
+  end subroutine join
 
   subroutine take_nothing(self, record, problem, grid, state, profile)
     class(silent_observer_t), intent(inout) :: self

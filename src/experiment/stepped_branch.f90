@@ -8,7 +8,7 @@ module stepped_branch
   use tension_search, only: tension_search_t
   use reported_place, only: place_t, place_of_state, place_without_state, &
     point_of_path, add_place, of_load
-  use records, only: observer_t, record_t, extent_t, record_of, stable_yes, stable_unasked
+  use records, only: observer_t, record_t, quality_t, record_of, stable_yes, stable_unasked
   implicit none
   private
   public :: h0_schedule_t, branch_t, run_branch
@@ -38,8 +38,7 @@ module stepped_branch
     type(place_t), allocatable :: profile(:), sample(:)
     !> The stable pieces of the path on which the branch begins and ends; 0 if they are not known.
     integer :: first_piece = 0, last_piece = 0
-    real(wp) :: worst_residual = 0, worst_spacing = 0
-    type(extent_t) :: extent
+    type(quality_t) :: quality
     integer :: states = 0, unconverged = 0
     !> First h0 at which the iteration did not converge.
     real(wp) :: first_unconverged = 0
@@ -86,14 +85,15 @@ contains
         call steps%step_to(plan%h0(i), position, event)
       end if
       steps%cost%states = steps%cost%states + 1
-      call note(branch, steps, position, event, plan%h0(i))
+      call note(branch, position, event, plan%h0(i))
       call search%note_jump(event)
       if (event%ending%early()) exit
       associate (state => position%state)
         record = record_of(plan%name, steps%problem, steps%grid(position), state, &
           merge(stable_yes, stable_unasked, plan%unique), &
           holds(steps%problem, steps%options%tolerance, state))
-        call branch%extent%cover(record, state)
+        call branch%quality%cover(record, steps%problem, steps%grid(position), state, &
+          state%axis_gap < steps%problem%law%edge_gap)
         call observer%take(record, steps%problem, steps%grid(position), state, plan%profile(i))
       end associate
       if (event%converged) then
@@ -119,10 +119,9 @@ contains
     branch%lowest%searched = .not. steps%problem%rigid
   end subroutine run_branch
 
-  !> Records the first jump, the worst residual and the largest tension.
-  subroutine note(branch, steps, position, event, h0)
+  !> Records the first jump, the largest tension and what did not converge.
+  subroutine note(branch, position, event, h0)
     type(branch_t), intent(inout) :: branch
-    class(stepper_t), intent(in) :: steps
     type(branch_point_t), intent(in) :: position
     type(step_result_t), intent(in) :: event
     real(wp), intent(in) :: h0
@@ -140,9 +139,6 @@ contains
       if (branch%unconverged == 0) branch%first_unconverged = h0
       branch%unconverged = branch%unconverged + 1
     end if
-    branch%worst_residual = max(branch%worst_residual, position%state%residual)
-    if (position%state%axis_gap < steps%problem%law%edge_gap) &
-      branch%worst_spacing = max(branch%worst_spacing, steps%spacing_over_neck(position))
   end subroutine note
 
   !> Replaces the branch's largest tension by that of a step on a known path if it is larger.

@@ -2,7 +2,6 @@
 !> large separation to the start, steps from one h0 to the next, and the jumps in a step.
 module stepper
   use kinds, only: wp
-  use dimensionless_problem, only: over_neck => spacing_over_neck
   use discretisation, only: discretisation_t
   use contact_state, only: state_t
   use solver, only: solver_t
@@ -60,7 +59,6 @@ module stepper
     procedure(begin_at), deferred :: approach_to
     procedure(go_to), deferred :: step_to
     procedure :: grid
-    procedure :: spacing_over_neck
   end type stepper_t
 
   !> A stepper between an experiment and its solver that stores the steps.
@@ -116,15 +114,6 @@ contains
 
     grid => self%meshes%grid(position%mesh)
   end function grid
-
-  !> Distance between nodes at the edge over the width of the neck, for a state; 0 without a neck.
-  pure real(wp) function spacing_over_neck(self, position)
-    class(stepper_t), intent(in) :: self
-    type(branch_point_t), intent(in) :: position
-
-    spacing_over_neck = over_neck(self%problem, &
-      position%state%scale*self%meshes%grid(position%mesh)%spacing)
-  end function spacing_over_neck
 
   !> Makes `state` the position's present state. The past is removed if the mesh changes or the
   !> bodies jumped. foretold: the state was predicted from the past and needed no correction; it is

@@ -1,10 +1,9 @@
 !> The readings of a drive: its rows, the reported numbers, and their quality.
 module timed_record
   use kinds, only: wp
-  use dimensionless_problem, only: spacing_over_neck
   use equilibrium, only: holds
   use mesh_plan, only: approach
-  use records, only: record_t, extent_t, record_of, stable_unasked
+  use records, only: record_t, quality_t, record_of, stable_unasked
   use motion, only: names_of_ways
   use time_instant, only: instant_t
   use time_stepper, only: time_stepper_t
@@ -37,8 +36,8 @@ module timed_record
     integer :: steps = 0, jumps = 0
     !> Where the suction of a fluid is largest: the time [s], h0 and the distance from the axis.
     real(wp) :: suction_at(3) = 0
-    type(extent_t) :: extent
-    real(wp) :: worst_residual = 0, worst_spacing = 0, memory_tail = 0, largest_load = 0
+    type(quality_t) :: quality
+    real(wp) :: memory_tail = 0, largest_load = 0
     !> Whether a start was found, whether the bodies were lost, and the time [s] of the loss.
     logical :: begun = .false., lost = .false.
     real(wp) :: lost_at = 0
@@ -166,12 +165,10 @@ contains
         holds(problem, steps%options%tolerance, at%state))
       row%time = at%time
       if (steps%compliance > 0) row%z = problem%law%separation_of(at%position)
-      call result%extent%cover(row, at%state)
+      call result%quality%cover(row, problem, grid, at%state, &
+        at%state%axis_gap < problem%law%edge_gap)
       result%steps = now%held - 1
-      result%worst_residual = max(result%worst_residual, at%state%residual)
       result%largest_load = max(result%largest_load, abs(at%state%load))
-      if (at%state%axis_gap < problem%law%edge_gap) result%worst_spacing = max( &
-        result%worst_spacing, spacing_over_neck(problem, at%state%scale*grid%spacing))
       if (at%suction > result%number(of_suction)) then
         result%number(of_suction) = at%suction
         result%suction_at = [at%time, at%state%h0, at%suction_at]

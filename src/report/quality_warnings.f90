@@ -6,7 +6,7 @@ module quality_warnings
   use text, only: rounded
   use mending, only: too_much
   use experiment_result, only: experiment_result_t
-  use outcome_quality, only: quality_t
+  use records, only: quality_t
   use summary, only: summary_t
   implicit none
   private

@@ -6,12 +6,12 @@ module summarise
   use scene_groups, only: scene_t
   use text, only: brief, rounded
   use experiment_result, only: experiment_result_t
+  use records, only: quality_t
   use stepped_branch, only: branch_t
   use path, only: path_t
   use path_readings, only: path_readings_t
   use reported_place, only: place_t, of_h0, of_load
   use places, only: places_t, readings_t
-  use outcome_quality, only: quality_t, quality_of
   use ending_text, only: text_of
   use problem_numbers, only: describe_problem
   use result_rows, only: rows
@@ -48,7 +48,7 @@ contains
     if (allocated(scene%classical)) call summarise_classical(problem, scene%classical, summary)
     if (allocated(scene%approximations)) call summarise_approximations(problem, summary)
     if (outcome%chosen%grid == unchosen) return
-    quality = quality_of(outcome)
+    quality = outcome%quality()
     call describe_numerics(outcome, quality, summary)
     call take_places(problem, outcome%places, summary)
     call tell_branches(scene, problem, outcome, summary)
@@ -57,8 +57,8 @@ contains
     if (allocated(outcome%readings)) &
       call take_readings(scene, problem, outcome%readings, outcome%places, summary)
     if (scene%regime) call summarise_regime(problem, outcome%places, summary)
-    call judge_extent(problem, quality%extent, summary)
-    call judge_layers(problem, quality%extent, outcome%places, summary)
+    call judge_extent(problem, quality, summary)
+    call judge_layers(problem, quality, outcome%places, summary)
     if (.not. outcome%differentiated) &
       call summary%fail_with('sensitivity: not all derivatives were found')
     call judge_resolution(outcome%chosen%grid == edge_locked, quality, summary)
@@ -147,7 +147,7 @@ contains
         call summary%fail_with(name//': '//brief(branch%unconverged)//' of '// &
           brief(branch%states)//' states did not converge, the first at h0 = '// &
           rounded(problem%law%separation_of(branch%first_unconverged))// &
-          ' m; the largest residual is '//rounded(branch%worst_residual)// &
+          ' m; the largest residual is '//rounded(branch%quality%residual)// &
           ' lengths of the force law')
       if (branch%ending%early()) &
         call summary%fail_with(name//' ended early: '//trim(text_of(branch%ending)))
@@ -176,7 +176,7 @@ contains
     type(path_t), intent(in) :: path
 
     ends_before_contact = problem%law%rest_gap > 0 .and. .not. path%fallen .and. &
-      .not. path%extent%contact_radius > 0 .and. allocated(path%lowest) .and. &
+      .not. path%quality%contact_radius > 0 .and. allocated(path%lowest) .and. &
       allocated(path%finish)
     if (ends_before_contact) ends_before_contact = path%lowest%at(of_load) < 0 .and. &
       abs(path%lowest%at(of_h0) - path%finish%at(of_h0)) <= 0

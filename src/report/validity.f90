@@ -6,7 +6,7 @@ module validity
   use text, only: brief, rounded
   use layered_body, only: layered_body_t
   use layered_surface, only: layered_surface_t
-  use records, only: extent_t
+  use records, only: quality_t
   use reported_place, only: place_t, of_h0, of_load
   use places, only: places_t
   use summary, only: summary_t
@@ -67,17 +67,17 @@ contains
   end subroutine take_table_error
 
   !> Checks the states of the experiments.
-  subroutine judge_extent(problem, extent, summary)
+  subroutine judge_extent(problem, quality, summary)
     type(problem_t), intent(in) :: problem
-    type(extent_t), intent(in) :: extent
+    type(quality_t), intent(in) :: quality
     type(summary_t), intent(inout) :: summary
     real(wp) :: strain
 
-    if (extent%contact_radius > 0) call judge(summary, 'contact_over_radius', &
-      problem%shape%slope(extent%contact_radius/problem%lateral)*problem%length/problem%lateral, &
+    if (quality%contact_radius > 0) call judge(summary, 'contact_over_radius', &
+      problem%shape%slope(quality%contact_radius/problem%lateral)*problem%length/problem%lateral, &
       'the contact radius', 'the model is for half-spaces with small slopes')
-    if (problem%rigid .or. .not. extent%pressure > 0) return
-    strain = extent%pressure*problem%pressure/problem%stiffness
+    if (problem%rigid .or. .not. quality%pressure > 0) return
+    strain = quality%pressure*problem%pressure/problem%stiffness
     call summary%set('pressure_over_stiffness', strain)
     if (strain > strained) call summary%warn('beyond the model: the largest pressure is ' // &
       rounded(strain) // ' of the stiffness; strains are no longer small')
@@ -111,9 +111,9 @@ contains
 
   !> Warns of layers thinner than the range of the force, of soft layers compressed by a part of
   !> their thickness that is not small, and of strains below the top layer that are not small.
-  subroutine judge_layers(problem, extent, places, summary)
+  subroutine judge_layers(problem, quality, places, summary)
     type(problem_t), intent(in) :: problem
-    type(extent_t), intent(in) :: extent
+    type(quality_t), intent(in) :: quality
     type(places_t), intent(in) :: places
     type(summary_t), intent(inout) :: summary
     type(place_t) :: finish, lowest
@@ -138,7 +138,7 @@ contains
             'beyond the model: the bodies are pressed together by ' // &
             rounded(deepest/sum(thickness)) // ' of the thickness of the layers; ' // &
             'strains are no longer small')
-          strain = strain_below(body%surface(i), thickness, force, extent%contact_radius)
+          strain = strain_below(body%surface(i), thickness, force, quality%contact_radius)
           if (strain > strained) call summary%warn('beyond the model: the strain below the ' // &
             'top layer is about ' // rounded(strain) // ', which is not small')
           exit

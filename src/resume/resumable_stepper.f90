@@ -30,7 +30,6 @@ module resumable_stepper
     procedure :: approach_to
     procedure :: step_to
     procedure :: grid
-    procedure :: spacing_over_neck
     procedure, private :: recall
     procedure, private :: catch_up
     procedure, private :: keep
@@ -160,12 +159,5 @@ contains
 
     grid => self%steps%grid(position)
   end function grid
-
-  pure real(wp) function spacing_over_neck(self, position)
-    class(resumable_stepper_t), intent(in) :: self
-    type(branch_point_t), intent(in) :: position
-
-    spacing_over_neck = self%steps%spacing_over_neck(position)
-  end function spacing_over_neck
 
 end module resumable_stepper
