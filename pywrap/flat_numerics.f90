@@ -142,7 +142,7 @@ contains
     start, method, tolerance, most_iterations, depth, patience, mixing_limit, stop_on_change, &
     displacement_tolerance, gap, pressure, numbers, counts, stat, message, nodes, l, m)
     use deck_problem, only: pose
-    use contact_state, only: state_t, state_from
+    use contact_state, only: state_t
     use equilibrium, only: control_t, at_h0
     use solver, only: solver_t
     use solver_options, only: solver_options_t, newton_of
@@ -171,8 +171,8 @@ contains
       patience=patience, most_iterations=most_iterations, mixing_limit=mixing_limit, &
       stop_on_change=stop_on_change /= 0, displacement_tolerance=displacement_tolerance)
     if (method == 'newton') this%options = newton_of(this%options)
-    state = state_from(this%meshes%grid(1)%nodes)
     state%gap = start
+    state%pressure = 0*start
     call this%solve(control_t(kind=at_h0, value=h0, scale=scale), state, met)
     gap = state%gap
     pressure = state%pressure
@@ -185,8 +185,7 @@ contains
   function mesh_of(kind, centre, lengths, orders, map, elastic) result(mesh)
     use discretisation, only: discretisation_t
     use mapped_mesh, only: mapped_shape_t, new_mapped_mesh
-    use panels, only: new_panel_grid
-    use uniform_grid, only: new_uniform_grid
+    use linear_mesh, only: new_panel_grid, new_uniform_grid
     character(len=*), intent(in) :: kind
     real(c_double), intent(in) :: centre, lengths(:), map(4)
     integer(c_int), intent(in) :: orders(:)

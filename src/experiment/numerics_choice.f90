@@ -3,8 +3,7 @@ module numerics_choice
   use kinds, only: wp
   use dimensionless_problem, only: problem_t
   use discretisation, only: discretisation_t
-  use uniform_grid, only: new_uniform_grid
-  use panels, only: new_panel_grid, graded_ends
+  use linear_mesh, only: new_uniform_grid, new_panel_grid, graded_ends
   use mesh_digits, only: digits_for
   use contact_scales, only: largest_radius, contact_level, smallest_feature
   use experiment_request, only: numerics_t
@@ -172,8 +171,7 @@ contains
     ! At most as many nodes as a uniform grid would have.
     count = ceiling(min(widest/finest, real(max(1, chosen%nodes/chosen%panel_order), wp)))
     finest = widest/count
-    outer = widest + graded_ends(0.0_wp, max(chosen%extent, 2*widest) - widest, finest, 1.0_wp, &
-      chosen%extent)
+    outer = widest + graded_ends(max(chosen%extent, 2*widest) - widest, finest, chosen%extent)
     mesh = new_panel_grid(0.0_wp, [[(finest*j, j=0, count - 1)], outer], chosen%panel_order, &
       elastic=.true.)
   end function fixed_mesh

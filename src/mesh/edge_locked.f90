@@ -22,8 +22,7 @@ module edge_locked
     !> The shapes of these meshes.
     type(mapped_shape_t), allocatable :: shape(:)
   contains
-    procedure :: insert_mesh
-    procedure :: divide_mesh
+    procedure :: insert
     procedure :: has_short_panels
     procedure :: renew
     procedure :: replace
@@ -174,34 +173,16 @@ contains
     end associate
   end function has_short_panels
 
-  !> Inserts a mesh, which has no nodes yet, after another one (see `insert` of `mesh_plan_t`).
-  subroutine insert_mesh(self, after, locked, low, high)
+  !> Inserts a mesh, which has no nodes yet, after another one.
+  pure subroutine insert(self, after, locked, low, high)
     class(mesh_family_t), intent(inout) :: self
     integer, intent(in) :: after
     real(wp), intent(in) :: locked, low, high
-
-    call self%insert(after, locked, low, high)
-    call make_place(self, after)
-  end subroutine insert_mesh
-
-  !> Divides the band of a mesh that waits, at a radius (see `divide` of `mesh_plan_t`).
-  subroutine divide_mesh(self, mesh, middle)
-    class(mesh_family_t), intent(inout) :: self
-    integer, intent(in) :: mesh
-    real(wp), intent(in) :: middle
-
-    call self%divide(mesh, middle)
-    call make_place(self, mesh)
-  end subroutine divide_mesh
-
-  !> Makes a place for a mesh, without nodes, after another one.
-  subroutine make_place(self, after)
-    type(mesh_family_t), intent(inout) :: self
-    integer, intent(in) :: after
     type(discretisation_t), allocatable :: grid(:)
     real(wp), allocatable :: kernel(:, :)
     integer :: k, to
 
+    call self%mesh_plan_t%insert(after, locked, low, high)
     allocate (grid(size(self%grid) + 1))
     do k = 1, size(self%grid)
       to = k + merge(0, 1, k <= after)
@@ -212,6 +193,6 @@ contains
     end do
     call move_alloc(grid, self%grid)
     self%shape = self%shape([(k, k=1, after + 1), (k, k=after + 1, size(self%shape))])
-  end subroutine make_place
+  end subroutine insert
 
 end module edge_locked

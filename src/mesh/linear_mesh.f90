@@ -2,11 +2,12 @@
 module linear_mesh
   use kinds, only: wp
   use discretisation, only: discretisation_t, axis_row, centre_row, first_node
-  use panel_map, only: linear_panel
+  use panel_map, only: panel_map_t, linear_map
+  use quadrature, only: gauss_legendre
   use product_integration, only: panel_rule_t, new_panel_rule, panel_weights
   implicit none
   private
-  public :: new_linear_mesh
+  public :: new_uniform_grid, new_panel_grid, graded_ends
 
 contains
 
@@ -32,7 +33,8 @@ contains
     grid%nodes = panels*stride + (order - stride)
     grid%spacing = minval(panel_end(2:) - panel_end(:panels))/stride
     allocate (grid%panel(panels), grid%local(1))
-    grid%panel = [(linear_panel(panel_end(panel), panel_end(panel + 1)), panel=1, panels)]
+    grid%panel = [(panel_map_t(linear_map, panel_end(panel), panel_end(panel + 1)), &
+      panel=1, panels)]
     grid%first = [(1 + (panel - 1)*stride, panel=1, panels)]
     allocate (grid%which(panels), source=1)
     grid%local(1)%node = local_node
@@ -79,5 +81,50 @@ contains
     end do
     !$omp end parallel do
   end function new_linear_mesh
+
+  !> The paper's grid, with a pressure that is linear between nodes: `nodes` (2 or more)
+  !> equally spaced nodes on [0, extent]; its error is of second order in the spacing.
+  function new_uniform_grid(nodes, extent, elastic) result(grid)
+    integer, intent(in) :: nodes
+    real(wp), intent(in) :: extent
+    logical, intent(in) :: elastic
+    type(discretisation_t) :: grid
+    integer :: j
+
+    grid = new_linear_mesh(0.0_wp, [(extent*j/(nodes - 1), j=0, nodes - 1)], &
+      [0.0_wp, 1.0_wp], elastic)
+  end function new_uniform_grid
+
+  !> Composite Gauss-Legendre panels of `order` nodes with the given ends (offsets from the centre,
+  !> ascending): spectral convergence with a few hundred nodes.
+  function new_panel_grid(centre, panel_end, order, elastic) result(grid)
+    real(wp), intent(in) :: centre, panel_end(:)
+    integer, intent(in) :: order
+    logical, intent(in) :: elastic
+    type(discretisation_t) :: grid
+    real(wp) :: node(order), weight(order)
+
+    call gauss_legendre(node, weight)
+    grid = new_linear_mesh(centre, panel_end, node, elastic)
+  end function new_panel_grid
+
+  !> Ends of panels from 0 to `length`: the size of a panel is its distance from 0, but between
+  !> `finest` and `coarsest`.
+  pure function graded_ends(length, finest, coarsest) result(ends)
+    real(wp), intent(in) :: length, finest, coarsest
+    real(wp), allocatable :: ends(:)
+    real(wp) :: size_here, d
+
+    ends = [0.0_wp]
+    d = 0
+    do while (d < length)
+      size_here = min(max(finest, d), coarsest)
+      ! A remainder of less than half a panel is added to the last panel.
+      if (d + 1.5_wp*size_here >= length) size_here = length - d
+      d = d + size_here
+      if (d >= length*(1 - 4*epsilon(d))) d = length
+      ends = [ends, d]
+    end do
+  end function graded_ends
 
 end module linear_mesh

@@ -5,7 +5,7 @@
 module mapped_mesh
   use kinds, only: wp
   use discretisation, only: discretisation_t, gauss_nodes, axis_row, centre_row, first_node
-  use panel_map, only: sinh_panel, power_panel, algebraic_panel, power_map
+  use panel_map, only: panel_map_t, sinh_panel, power_map, algebraic_map
   use mapped_kernel, only: add_panel
   implicit none
   private
@@ -135,11 +135,13 @@ contains
     end do
     grid%panel(1)%left = -shape%centre
     if (shape%axis_power > 1) &
-      grid%panel(1) = power_panel(shape%centre, grid%panel(1)%right, shape%axis_power)
+      grid%panel(1) = panel_map_t(power_map, -shape%centre, grid%panel(1)%right, &
+        power=shape%axis_power)
     outermost = grid%panel(panels)%right
     grid%end = shape%centre + outermost
     if (shape%tail_order == 0) return
-    grid%panel(panels + 1) = algebraic_panel(grid%end, outermost, shape%decay)
+    grid%panel(panels + 1) = panel_map_t(algebraic_map, outermost, huge(1.0_wp), begin=grid%end, &
+      decay=shape%decay)
     grid%end = huge(1.0_wp)
   end subroutine place_panels
 
@@ -148,9 +150,10 @@ contains
     type(mapped_shape_t), intent(in) :: shape
     type(discretisation_t), intent(inout) :: grid
     real(wp), allocatable, intent(out) :: offset(:)
-    integer :: panels, k, last
+    integer :: orders(size(grid%panel)), panels, k, last
 
     panels = size(grid%panel)
+    orders = [shape%order, spread(shape%tail_order, 1, panels - size(shape%order))]
     grid%nodes = shape%node_count()
     allocate (grid%first(panels), grid%local(panels), grid%weight(grid%nodes), offset(grid%nodes))
     grid%which = [(k, k=1, panels)]
@@ -158,13 +161,9 @@ contains
     grid%spacing = huge(1.0_wp)
     do k = 1, panels
       grid%first(k) = last + 1
-      if (k <= size(shape%order)) then
-        last = last + shape%order(k)
-      else
-        last = last + shape%tail_order
-      end if
+      last = last + orders(k)
       associate (panel => grid%panel(k), at => offset(grid%first(k):last))
-        grid%local(k) = gauss_nodes(last - grid%first(k) + 1)
+        grid%local(k) = gauss_nodes(orders(k))
         associate (local => grid%local(k))
           at = panel%offset(local%node)
           grid%weight(grid%first(k):last) = local%weight*panel%speed(local%node)*(grid%centre + at)

@@ -14,7 +14,7 @@ module panel_map
   use kinds, only: wp
   implicit none
   private
-  public :: panel_map_t, linear_panel, sinh_panel, power_panel, algebraic_panel
+  public :: panel_map_t, sinh_panel
   public :: linear_map, sinh_map, power_map, algebraic_map
 
   integer, parameter :: linear_map = 1, sinh_map = 2, power_map = 3, algebraic_map = 4
@@ -37,14 +37,6 @@ module panel_map
 
 contains
 
-  pure type(panel_map_t) function linear_panel(left, right) result(panel)
-    real(wp), intent(in) :: left, right
-
-    panel%kind = linear_map
-    panel%left = left
-    panel%right = right
-  end function linear_panel
-
   !> A sinh panel with parameter d, from z_left over z_length.
   pure type(panel_map_t) function sinh_panel(d, z_left, z_length) result(panel)
     real(wp), intent(in) :: d, z_left, z_length
@@ -56,28 +48,6 @@ contains
     panel%left = d*sinh(z_left)
     panel%right = d*sinh(z_left + z_length)
   end function sinh_panel
-
-  !> A power panel from the axis, which is at the offset -centre, to the offset `right`.
-  pure type(panel_map_t) function power_panel(centre, right, power) result(panel)
-    real(wp), intent(in) :: centre, right
-    integer, intent(in) :: power
-
-    panel%kind = power_map
-    panel%left = -centre
-    panel%right = right
-    panel%power = power
-  end function power_panel
-
-  !> An algebraic panel from the position `begin` (offset `left`) to infinity.
-  pure type(panel_map_t) function algebraic_panel(begin, left, decay) result(panel)
-    real(wp), intent(in) :: begin, left, decay
-
-    panel%kind = algebraic_map
-    panel%begin = begin
-    panel%left = left
-    panel%right = huge(1.0_wp)
-    panel%decay = decay
-  end function algebraic_panel
 
   !> Offset at the local coordinate s.
   elemental real(wp) function offset(self, s)

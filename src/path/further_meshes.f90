@@ -66,10 +66,10 @@ contains
       end associate
       if (.not. inserted) return
       if (level > 0) then
-        call meshes%insert_mesh(mesh, level, radius(1), band_of_waves*radius(2))
+        call meshes%insert(mesh, level, radius(1), band_of_waves*radius(2))
       else
         ! The poles of the pressure are as far from the axis at h0 as at -h0.
-        call meshes%insert_mesh(mesh, level, max(meshes%reach(1, 1), &
+        call meshes%insert(mesh, level, max(meshes%reach(1, 1), &
           deeper*abs(arc%state(arc%held)%h0)), 0.0_wp)
       end if
     end associate

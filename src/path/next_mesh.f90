@@ -55,7 +55,7 @@ contains
         low = max(meshes%reach(1, to), radius_for(equations, arc%mesh, to, arc%state(i)))
         middle = sqrt(low*meshes%reach(2, to))
         if (middle < narrowest*low) exit
-        call meshes%divide_mesh(to, middle)
+        call meshes%divide(to, middle)
       end do
       call meshes%renew(to, shape)
       equations%cost%kernel_entries = equations%cost%kernel_entries + &
