@@ -8,8 +8,8 @@ module contact_state
   use root_finding, only: root_search_t, new_root_search
   implicit none
   private
-  public :: state_t, state_from, load_reach, gap_at_end, gap_at, radius_of_gap, radius_of_step, &
-    contact_radius_of, felt_load, far_gap
+  public :: state_t, undeformed_state, load_reach, gap_at_end, gap_at, radius_of_gap, &
+    radius_of_step, contact_radius_of, felt_load, far_gap
 
   !> At gaps above this value, in the law's lengths, forces do not depend on the last digits.
   real(wp), parameter :: far_gap = 1000
@@ -43,12 +43,18 @@ contains
     self%iterations = other%iterations
   end subroutine become
 
-  !> A state of zeros with the given number of nodes.
-  pure type(state_t) function state_from(nodes) result(state)
-    integer, intent(in) :: nodes
+  !> The bodies at h0 before any deformation, on a mesh of a scale.
+  pure type(state_t) function undeformed_state(shape, grid, h0, scale) result(state)
+    class(shape_t), intent(in) :: shape
+    type(discretisation_t), intent(in) :: grid
+    real(wp), intent(in) :: h0, scale
 
-    allocate (state%gap(nodes), state%pressure(nodes), source=0.0_wp)
-  end function state_from
+    state%h0 = h0
+    state%axis_gap = h0
+    state%scale = scale
+    state%gap = h0 + shape%height(scale*grid%x(:grid%nodes))
+    allocate (state%pressure(grid%nodes), source=0.0_wp)
+  end function undeformed_state
 
   !> Radius of the end of a bounded mesh, lateral units.
   pure real(wp) function load_reach(grid, state)

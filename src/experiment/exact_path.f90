@@ -84,7 +84,7 @@ contains
         call judge_places(fine, steps, places, .true.)
         cost%estimate_seconds = cost%estimate_seconds + seconds() - began
         if (.not. allocated(places%place)) return
-        errors = [(places%place(i)%relative_error(), i=1, size(places%place))]
+        errors = [(places%place(i)%relative_error(.false.), i=1, size(places%place))]
         if (.not. maxval(errors) > accuracy .or. maxval(errors) > helped*before) return
         if (round == most_rounds .or. .not. finer_helps(steps, accuracy)) return
         before = maxval(errors)

@@ -116,11 +116,8 @@ contains
     integer, intent(in) :: mesh
 
     if (allocated(self%meshes%grid(mesh)%kernel)) return
-    if (associated(self%store)) then
-      call self%meshes%complete(mesh, self%store)
-    else
-      call self%meshes%complete(mesh)
-    end if
+    ! A pointer that is not associated counts as absent.
+    call self%meshes%complete(mesh, self%store)
     self%cost%kernel_entries = self%cost%kernel_entries + &
       self%meshes%grid(mesh)%kernel_entries()
   end subroutine prepare

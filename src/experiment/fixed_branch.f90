@@ -18,7 +18,6 @@ module fixed_branch
     procedure :: continue_to
     procedure :: expected_at
     procedure :: follow
-    procedure :: solve_at
     procedure, private :: try_step
     procedure, private :: linearise
   end type fixed_branch_t
@@ -72,7 +71,7 @@ contains
     state = expected
     ! A single state is not enough for an extrapolation, and mixing starts as in the paper.
     if (self%options%mixing .or. position%held == 1) state = position%state
-    call self%solve_at(h0, state, event)
+    call self%solve(control_t(value=h0), state, event%converged)
     continues = event%converged .and. change(expected, state) <= &
       0.5_wp*change(position%state, expected) + jump + merge(abs(h0 - position%state%h0), 0.0_wp, &
       position%held == 1)
@@ -227,16 +226,6 @@ contains
     ahead%rate = -control_derivative(self%equations_t, control, state)
     call solve(self%frozen%factors, ahead%rate)
   end subroutine linearise
-
-  !> Solves at h0 from the guess `state`.
-  subroutine solve_at(self, h0, state, event)
-    class(fixed_branch_t), intent(inout) :: self
-    real(wp), intent(in) :: h0
-    type(state_t), intent(inout) :: state
-    type(step_result_t), intent(inout) :: event
-
-    call self%solve(control_t(value=h0), state, event%converged)
-  end subroutine solve_at
 
   !> Largest difference between the deformations of two states.
   pure real(wp) function change(a, b)

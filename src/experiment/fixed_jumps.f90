@@ -158,7 +158,7 @@ contains
 
     state = before
     if (self%options%mixing) then
-      call self%solve_at(h0, state, event)
+      call self%solve(control_t(value=h0), state, event%converged)
       return
     end if
     call relax(self%equations_t, self%options, control_t(value=h0), state, event%converged)

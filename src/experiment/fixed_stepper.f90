@@ -4,7 +4,8 @@
 module fixed_stepper
   use kinds, only: wp
   use dimensionless_problem, only: calm_gap, over_neck => spacing_over_neck
-  use contact_state, only: state_t, state_from
+  use contact_state, only: state_t, undeformed_state
+  use equilibrium, only: control_t
   use fixed_branch, only: change
   use fixed_jumps, only: fixed_jumps_t, locate_jump
   use ending, only: beyond_rounding
@@ -50,11 +51,8 @@ contains
     integer :: i, steps, lost
 
     far = max(h0, calm_gap(self%problem))
-    state = state_from(self%meshes%grid(1)%nodes)
-    state%h0 = far
-    state%axis_gap = far
-    state%gap = far + self%problem%shape%height(self%meshes%grid(1)%x)
-    call self%solve_at(far, state, event)
+    state = undeformed_state(self%problem%shape, self%meshes%grid(1), far, 1.0_wp)
+    call self%solve(control_t(value=far), state, event%converged)
     call remember(position, state, 1, .false.)
     steps = ceiling(min((far - h0)/approach_step, real(most_approach, wp)))
     lost = 0
@@ -160,7 +158,7 @@ contains
     type(state_t) :: state
 
     state = position%state
-    call self%solve_at(h0, state, event)
+    call self%solve(control_t(value=h0), state, event%converged)
     associate (before => position%state)
       event%jumped = event%converged .and. &
         change(before, state) > max(1.0_wp, paper_jump*abs(h0 - before%h0))

@@ -5,7 +5,7 @@
 module locked_stepper
   use kinds, only: wp
   use dimensionless_problem, only: calm_gap
-  use contact_state, only: state_t, state_from
+  use contact_state, only: state_t, undeformed_state
   use mesh_plan, only: approach, contact
   use locked_meshes, only: h0_control, scale_at
   use ending, only: ending_t, nothing_afar
@@ -36,13 +36,8 @@ contains
 
     mesh = merge(approach, contact, self%meshes%traceable)
     far = max(h0, self%far_away())
-    associate (grid => self%meshes%grid(mesh))
-      state = state_from(grid%nodes)
-      state%h0 = far
-      state%axis_gap = far
-      state%scale = scale_at(self%problem%shape, self%meshes, far)
-      state%gap = far + self%problem%shape%height(state%scale*grid%x(:size(state%gap)))
-    end associate
+    state = undeformed_state(self%problem%shape, self%meshes%grid(mesh), far, &
+      scale_at(self%problem%shape, self%meshes, far))
     call self%attempt(far, state, mesh, event)
     if (.not. event%converged) &
       event%ending = ending_t(nothing_afar, state%iterations, state%residual)

@@ -92,19 +92,13 @@ contains
   subroutine locate(steps, places)
     class(path_stepper_t), intent(in) :: steps
     type(places_t), intent(inout) :: places
-    integer :: i, k
-    logical :: inside
+    integer :: i
 
     do i = 1, size(places%place)
       associate (place => places%place(i), known => steps%known)
         if (place%judged .or. place%mesh == no_mesh) cycle
         if (place%landing) then
-          call landing_over(known, place%point, k, inside)
-          if (inside) then
-            call take_landing(known%inward(k), place)
-          else
-            call take_landing(known%outward(k), place)
-          end if
+          call take_landing(landing_over(known, place%point), place)
         else if (place%point > 0) then
           associate (point => known%path%point(place%point))
             call take(place, point%mesh, point%coordinate, point%state)

@@ -9,7 +9,7 @@ module rigid_bodies
   use undeformed, only: measured_t, measured_load, measured_slope, load_undeformed, &
     load_slope_undeformed
   use discretisation, only: discretisation_t
-  use contact_state, only: state_t, state_from
+  use contact_state, only: state_t, undeformed_state
   use ending, only: touching, turn_not_reached
   use reported_place, only: place_t, add_place, of_h0, of_load, of_radius
   use finer_solver, only: rounding
@@ -114,11 +114,8 @@ contains
       record%contact_radius = problem%lateral*contact_radius(problem, h0)
       grid%x = positions(problem, h0, plan%profile(i))
       grid%nodes = size(grid%x)
-      state = state_from(grid%nodes)
-      state%gap = h0 + problem%shape%height(grid%x)
+      state = undeformed_state(problem%shape, grid, h0, 1.0_wp)
       state%pressure = problem%law%pressure(state%gap)
-      state%h0 = h0
-      state%axis_gap = h0
     end associate
     record%h_centre = record%h0
     record%load = load*problem%load

@@ -108,18 +108,16 @@ contains
 
   end function folds_of_cycle
 
-  !> The landing after the jump from a fold: inward(k) if `inside`, else outward(k); k = 0 if no
-  !> stable piece ends at the fold.
-  pure subroutine landing_over(known, fold, k, inside)
+  !> The landing after the jump from a fold at which a stable piece ends.
+  pure type(landing_t) function landing_over(known, fold) result(landing)
     type(known_path_t), intent(in) :: known
     integer, intent(in) :: fold
-    integer, intent(out) :: k
-    logical, intent(out) :: inside
+    integer :: k
 
     k = findloc(known%inward%fold, fold, 1)
-    inside = k > 0
-    if (.not. inside) k = findloc(known%outward%fold, fold, 1)
-  end subroutine landing_over
+    if (k > 0) landing = known%inward(k)
+    if (k == 0) landing = known%outward(findloc(known%outward%fold, fold, 1))
+  end function landing_over
 
   !> The point of largest tension among the load extrema and folds of a piece with h0 between two
   !> values; 0 if there is none.

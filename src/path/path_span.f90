@@ -5,8 +5,9 @@ module path_span
   use kinds, only: wp
   use interpolation, only: hermite_t, most_hermite_nodes
   use contact_state, only: state_t
-  use equilibrium, only: control_t, holds, residual_floor, at_h0_with_edge
+  use equilibrium, only: holds, residual_floor
   use solver, only: solver_t
+  use locked_meshes, only: h0_control
   use path_coordinate, only: coordinate_of
   use path_tangent, only: of_h0, of_load
   use arc, only: arc_t
@@ -107,15 +108,11 @@ contains
     integer, intent(in) :: mesh
     real(wp), intent(in) :: h0, s
     type(state_t), intent(inout) :: state
-    type(control_t) :: control
     type(state_t) :: trial
     logical :: arrived
 
-    control%value = h0
-    control%mesh = mesh
-    if (.not. solver%meshes%is_about_axis(mesh)) control%kind = at_h0_with_edge
     trial = state
-    call solver%correct(control, trial, arrived)
+    call solver%correct(h0_control(solver%problem%shape, solver%meshes, mesh, h0), trial, arrived)
     if (.not. arrived) return
     if (abs(coordinate_of(solver%problem, solver%meshes, mesh, trial) - s) < same_place) &
       state = trial

@@ -173,7 +173,7 @@ contains
   !> judged. with_radius: whether the contact radius is one of them.
   pure real(wp) function relative_error(self, with_radius) result(largest)
     class(place_t), intent(in) :: self
-    logical, intent(in), optional :: with_radius
+    logical, intent(in) :: with_radius
     real(wp) :: part(quantities)
 
     largest = 0
@@ -182,9 +182,7 @@ contains
     where (part > 0) part = &
       min(part/max(abs(self%measures(self%at)), least, tiny(1.0_wp)), most)
     largest = max(part(of_load), self%profile)
-    if (present(with_radius)) then
-      if (with_radius .and. self%at(of_radius) > 0) largest = max(largest, part(of_radius))
-    end if
+    if (with_radius .and. self%at(of_radius) > 0) largest = max(largest, part(of_radius))
     if (self%after > 0) return
     if (.not. self%searched) &
       largest = max(largest, part(merge(of_position, of_h0, product(self%drive) < 0)))

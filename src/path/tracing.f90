@@ -4,7 +4,7 @@ module tracing
   use kinds, only: wp
   use listener, only: listener_t
   use dimensionless_problem, only: problem_t
-  use contact_state, only: state_t, state_from
+  use contact_state, only: state_t, undeformed_state
   use discretisation, only: discretisation_t
   use regridding, only: regrid
   use equilibrium, only: control_t, equations_t
@@ -149,14 +149,10 @@ contains
       call pass_on(path, walker, solver, lost)
       return
     end if
-    associate (problem => solver%problem, grid => solver%meshes%grid(approach))
-      state = state_from(grid%nodes)
-      state%h0 = start%h0
-      state%axis_gap = start%axis_gap
-      state%scale = start%scale
-      state%gap = start%h0 + problem%shape%height(start%scale*grid%x)
+    associate (shape => solver%problem%shape)
+      state = undeformed_state(shape, solver%meshes%grid(approach), start%h0, start%scale)
       ! With the h0 of the start, at which an experiment may begin.
-      call solver%correct(h0_control(problem%shape, solver%meshes, approach, start%h0), state, done)
+      call solver%correct(h0_control(shape, solver%meshes, approach, start%h0), state, done)
     end associate
     lost = .not. done
     if (done) call walker%take(solver, state, approach, lost)

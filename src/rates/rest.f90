@@ -2,7 +2,7 @@
 module rest
   use kinds, only: wp
   use dimensionless_problem, only: calm_gap
-  use contact_state, only: state_t, state_from
+  use contact_state, only: state_t, undeformed_state
   use equilibrium, only: control_t
   use mesh_plan, only: approach, contact
   use locked_meshes, only: scale_at
@@ -38,12 +38,8 @@ contains
     steps%problem%coupling = steps%instant*steps%creep%relaxed()
     at%mesh = merge(approach, contact, steps%meshes%traceable)
     far = max(position, calm_gap(steps%problem), steps%meshes%level + 3)
-    associate (grid => steps%meshes%grid(at%mesh), shape => steps%problem%shape)
-      state = state_from(grid%nodes)
-      state%h0 = far
-      state%scale = scale_at(shape, steps%meshes, far)
-      state%gap = far + shape%height(state%scale*grid%x(:grid%nodes))
-    end associate
+    state = undeformed_state(steps%problem%shape, steps%meshes%grid(at%mesh), far, &
+      scale_at(steps%problem%shape, steps%meshes, far))
     at%position = far
     call solve_relaxed(steps, far, state, at, found)
     step = part_of_gap

@@ -9,8 +9,8 @@ program linear_limits
   use scene, only: read_scene, scene_t
   use scene_problem, only: problem_of
   use discretisation, only: discretisation_t, first_node
-  use uniform_grid, only: new_uniform_grid
-  use contact_state, only: state_t, state_from
+  use linear_mesh, only: new_uniform_grid
+  use contact_state, only: undeformed_state, state_t
   use equilibrium, only: control_t, equations_t, residual
   use frozen_jacobian, only: frozen_jacobian_t, freeze
   use linear_algebra, only: multiply, factorisation_t, factorise, solve
@@ -106,9 +106,7 @@ contains
 
     call use_threads_for(nodes)
     equations%meshes%grid(1) = new_uniform_grid(nodes, extent, .true.)
-    start = state_from(nodes)
-    start%h0 = h0
-    start%gap = h0 + 0.5_wp*equations%meshes%grid(1)%x**2
+    start = undeformed_state(equations%problem%shape, equations%meshes%grid(1), h0, 1.0_wp)
     g = start%gap
     call residual(equations, control, start%gap, g, start)
     ! Inaccurate factors, so that the iteration continues.
