@@ -10,7 +10,7 @@ module drive_rates
   use experiment, only: run_experiment
   use experiment_result, only: experiment_result_t
   use listener, only: listener_t
-  use records, only: silent_observer_t
+  use records, only: observer_t
   use stepper, only: keeping_stepper_t
   use timed_record, only: timed_result_t, numbers
   use rate_entries, only: si_numbers
@@ -67,7 +67,7 @@ contains
     type(scene_t) :: variant
     type(problem_t) :: problem
     type(experiment_result_t) :: outcome
-    type(silent_observer_t) :: observer
+    type(observer_t) :: observer
     type(failure_t), allocatable :: error
 
     side = 0

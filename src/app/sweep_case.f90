@@ -10,7 +10,7 @@ module sweep_case
   use experiment, only: run_experiment
   use scene_problem, only: problem_of
   use equilibrium, only: cost_t
-  use records, only: silent_observer_t
+  use records, only: observer_t
   use progress, only: progress_t
   use summarise, only: summary_of
   use summary, only: summary_t
@@ -40,7 +40,7 @@ module sweep_case
   end type case_t
 
   !> Shows the present activity of a case; ignores records.
-  type, extends(silent_observer_t) :: case_observer_t
+  type, extends(observer_t) :: case_observer_t
     integer :: case = 0
     type(progress_t), pointer :: progress => null()
   contains

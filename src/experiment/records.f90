@@ -9,7 +9,7 @@ module records
   use ending, only: ending_t
   implicit none
   private
-  public :: record_t, observer_t, silent_observer_t, record_of, quality_t
+  public :: record_t, observer_t, record_of, quality_t
   public :: stable_yes, stable_no, stable_unasked
 
   !> Values of the column `stable`.
@@ -41,30 +41,12 @@ module records
     procedure :: join
   end type quality_t
 
-  !> Receives records as they are computed.
-  type, abstract, extends(listener_t) :: observer_t
+  !> Receives records as they are computed. This one ignores them, for runs that need only the
+  !> summary; extensions keep them.
+  type, extends(listener_t) :: observer_t
   contains
-    procedure(take_record), deferred :: take
+    procedure :: take
   end type observer_t
-
-  !> Ignores the records, for runs that need only the summary.
-  type, extends(observer_t) :: silent_observer_t
-  contains
-    procedure :: take => take_nothing
-  end type silent_observer_t
-
-  abstract interface
-    !> Receives a record. state and grid: for the profile; profile: the scene requests the profile.
-    subroutine take_record(self, record, problem, grid, state, profile)
-      import :: observer_t, record_t, problem_t, discretisation_t, state_t
-      class(observer_t), intent(inout) :: self
-      type(record_t), intent(in) :: record
-      type(problem_t), intent(in) :: problem
-      type(discretisation_t), intent(in) :: grid
-      type(state_t), intent(in) :: state
-      logical, intent(in) :: profile
-    end subroutine take_record
-  end interface
 
 contains
 
@@ -97,14 +79,15 @@ contains
     self%early = self%early .or. ending%early()
   end subroutine join
 
-  subroutine take_nothing(self, record, problem, grid, state, profile)
-    class(silent_observer_t), intent(inout) :: self
+  !> Receives a record. state and grid: for the profile; profile: the scene requests the profile.
+  subroutine take(self, record, problem, grid, state, profile)
+    class(observer_t), intent(inout) :: self
     type(record_t), intent(in) :: record
     type(problem_t), intent(in) :: problem
     type(discretisation_t), intent(in) :: grid
     type(state_t), intent(in) :: state
     logical, intent(in) :: profile
-  end subroutine take_nothing
+  end subroutine take
 
   !> The record of a state.
   pure function record_of(branch, problem, grid, state, stable, converged) result(record)

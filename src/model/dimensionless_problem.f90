@@ -10,7 +10,7 @@ module dimensionless_problem
   use kinds, only: wp, pi
   use force_law, only: force_law_t, whole_step
   use shape, only: shape_t
-  use elastic_body, only: elastic_body_t, half_space_t
+  use elastic_body, only: elastic_body_t
   implicit none
   private
   public :: problem_t, new_problem, neck_width, spacing_over_neck, tabor_parameter, &
@@ -55,7 +55,7 @@ contains
 
     allocate (problem%law, source=law)
     allocate (problem%shape, source=shape)
-    allocate (half_space_t :: problem%body)
+    allocate (elastic_body_t :: problem%body)
     problem%length = law%length
     problem%lateral = sqrt(shape%radius*law%length)
     problem%pressure = law%pressure_unit

@@ -15,60 +15,19 @@ module elastic_body
   use kinds, only: wp
   implicit none
   private
-  public :: elastic_body_t, half_space_t
+  public :: elastic_body_t
 
-  type, abstract :: elastic_body_t
-  contains
-    procedure(ask), deferred :: is_homogeneous
-    procedure(describe), deferred :: beside_half_space
-    procedure(describe), deferred :: growth
-    procedure(average), deferred :: mean_beside
-    procedure(bound), deferred :: wave_range
-    procedure :: is_alike
-    procedure :: take_one
-  end type elastic_body_t
-
-  abstract interface
-    !> Whether there is no remainder.
-    pure logical function ask(self)
-      import :: elastic_body_t
-      class(elastic_body_t), intent(in) :: self
-    end function ask
-
-    !> L - 1, or k dL/dk, at wave numbers in one over the lateral unit.
-    pure function describe(self, k) result(value)
-      import :: elastic_body_t, wp
-      class(elastic_body_t), intent(in) :: self
-      real(wp), intent(in) :: k(:)
-      real(wp) :: value(size(k))
-    end function describe
-
-    !> The mean of L - 1 over wave numbers from 0 to k.
-    elemental real(wp) function average(self, k)
-      import :: elastic_body_t, wp
-      class(elastic_body_t), intent(in) :: self
-      real(wp), intent(in) :: k
-    end function average
-
-    !> Two wave numbers: up to the first L is a polynomial of low degree, as it is between k and 3 k
-    !> from there on; beyond the second L - 1 is negligible for loads of some number of digits.
-    pure function bound(self, digits) result(k)
-      import :: elastic_body_t, wp
-      class(elastic_body_t), intent(in) :: self
-      real(wp), intent(in) :: digits
-      real(wp) :: k(2)
-    end function bound
-  end interface
-
-  !> Homogeneous bodies, each an elastic half-space.
-  type, extends(elastic_body_t) :: half_space_t
+  !> Homogeneous bodies, each an elastic half-space. Extensions have a remainder.
+  type :: elastic_body_t
   contains
     procedure :: is_homogeneous
     procedure :: beside_half_space => nothing
     procedure :: growth => nothing
     procedure :: mean_beside
     procedure :: wave_range
-  end type half_space_t
+    procedure :: is_alike
+    procedure :: take_one
+  end type elastic_body_t
 
 contains
 
@@ -88,29 +47,34 @@ contains
     allocate (one, source=self)
   end subroutine take_one
 
+  !> Whether there is no remainder.
   pure logical function is_homogeneous(self)
-    class(half_space_t), intent(in) :: self
+    class(elastic_body_t), intent(in) :: self
 
     is_homogeneous = .true.
   end function is_homogeneous
 
+  !> L - 1, or k dL/dk, at wave numbers in one over the lateral unit.
   pure function nothing(self, k) result(value)
-    class(half_space_t), intent(in) :: self
+    class(elastic_body_t), intent(in) :: self
     real(wp), intent(in) :: k(:)
     real(wp) :: value(size(k))
 
     value = 0
   end function nothing
 
+  !> The mean of L - 1 over wave numbers from 0 to k.
   elemental real(wp) function mean_beside(self, k)
-    class(half_space_t), intent(in) :: self
+    class(elastic_body_t), intent(in) :: self
     real(wp), intent(in) :: k
 
     mean_beside = 0
   end function mean_beside
 
+  !> Two wave numbers: up to the first L is a polynomial of low degree, as it is between k and 3 k
+  !> from there on; beyond the second L - 1 is negligible for loads of some number of digits.
   pure function wave_range(self, digits) result(k)
-    class(half_space_t), intent(in) :: self
+    class(elastic_body_t), intent(in) :: self
     real(wp), intent(in) :: digits
     real(wp) :: k(2)
 

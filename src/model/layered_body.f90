@@ -7,7 +7,7 @@ module layered_body
   use chebyshev, only: chebyshev_points, chebyshev_series, series_slope, series_integral, &
     power_series, power_value
   use wave_quadrature, only: wave_rule
-  use elastic_body, only: elastic_body_t, half_space_t
+  use elastic_body, only: elastic_body_t
   use layered_surface, only: layered_surface_t
   implicit none
   private
@@ -150,7 +150,7 @@ contains
     class(elastic_body_t), allocatable, intent(out) :: one
 
     if (size(self%surface(which)%thickness) == 0) then
-      allocate (half_space_t :: one)
+      allocate (elastic_body_t :: one)
     else
       allocate (one, source=new_layered_body(spread(self%surface(which), 1, 2), [1.0_wp, 0.0_wp]))
     end if
