@@ -10,8 +10,7 @@ module classical_rows
   use maugis, only: maugis_t, new_maugis
   use transition_fits, only: fit_t, carpick_fit, pietrement_fit
   use theory_names, only: theories, hertz, jkr, dmt, maugis_dugdale, carpick, pietrement_troyon
-  use layered_body, only: layered_body_t
-  use layered_contact, only: layered_contact_t, new_layered_contact
+  use layered_contact, only: layered_contact_t, new_layered_contact, has_layers
   use scene_groups, only: range_t
   use results, only: results_t
   use summary, only: summary_t
@@ -44,8 +43,8 @@ contains
     integer :: i
 
     if (problem%rigid) return
-    layered = is_layered(problem)
-    if (layered) contact = layered_contact_of(problem, range%h0_end)
+    layered = has_layers(problem)
+    if (layered) contact = new_layered_contact(problem, problem%law%origin - range%h0_end)
     start = from
     if (allocated(range%h0_start)) start = range%h0_start
     gamma = surface_energy(problem)
@@ -134,29 +133,6 @@ contains
 
   end subroutine write_classical
 
-  !> Whether the bodies have layers.
-  pure logical function is_layered(problem)
-    type(problem_t), intent(in) :: problem
-
-    select type (body => problem%body)
-    type is (layered_body_t)
-      is_layered = .true.
-    class default
-      is_layered = .false.
-    end select
-  end function is_layered
-
-  !> The contacts of layered bodies down to an h0 [m].
-  type(layered_contact_t) function layered_contact_of(problem, h0) result(contact)
-    type(problem_t), intent(in) :: problem
-    real(wp), intent(in) :: h0
-
-    select type (body => problem%body)
-    type is (layered_body_t)
-      contact = new_layered_contact(problem, body, (problem%law%origin - h0)/problem%length)
-    end select
-  end function layered_contact_of
-
   !> Adds numbers of layered bodies: the pull-off of JKR, and E* of half-spaces on which Hertz's
   !> load at the displacement of the deepest contact is that of the layers.
   subroutine summarise_layered(problem, range, summary)
@@ -166,7 +142,7 @@ contains
     type(layered_contact_t) :: contact
     real(wp) :: delta, a, homogeneous
 
-    contact = layered_contact_of(problem, range%h0_end)
+    contact = new_layered_contact(problem, problem%law%origin - range%h0_end)
     a = contact%pull_off()
     if (problem%law%work > 0 .and. .not. ieee_is_nan(a)) &
       call summary%set('jkr_pull_off', -a*problem%load)
@@ -188,7 +164,7 @@ contains
     type(maugis_t) :: theory
     real(wp) :: gamma, strength
 
-    if (is_layered(problem)) then
+    if (has_layers(problem)) then
       call summarise_layered(problem, range, summary)
       return
     end if

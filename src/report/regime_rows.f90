@@ -4,8 +4,7 @@ module regime_rows
   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
   use kinds, only: wp, pi, nan
   use dimensionless_problem, only: problem_t, surface_energy, largest_tension, tabor_parameter
-  use layered_body, only: layered_body_t
-  use layered_contact, only: layered_contact_t, new_layered_contact
+  use layered_contact, only: layered_contact_t, new_layered_contact, has_layers
   use theory_names, only: hertz, jkr
   use classical, only: hertz_radius_at_load, hertz_displacement, jkr_radius_at_load, &
     jkr_displacement, jkr_pull_off, dmt_radius_at_load, dmt_pull_off
@@ -24,15 +23,13 @@ module regime_rows
     'maugis', 'hertz_layered', 'jkr_layered', 'carpick', 'pietrement']
   integer, parameter :: of_layers_from = 5, fits_from = 7
   integer, parameter :: closed(*) = [2, 3, 7, 8]
+  !> The numbers that theories are compared in: pull-off [N], negative; contact radius and
+  !> indentation [m] at the largest load.
+  integer, parameter :: pull_off = 1, radius = 2, indentation = 3
   character(len=*), parameter :: numbers(3) = [character(len=14) :: 'pull-off', 'contact radius', &
     'indentation']
   !> Largest error of a theory that is recommended.
   real(wp), parameter :: acceptable = 0.1_wp
-
-  !> Pull-off [N], negative; contact radius and indentation [m] at the largest load.
-  type :: measured_t
-    real(wp) :: pull_off = 0, radius = 0, indentation = 0
-  end type measured_t
 
 contains
 
@@ -43,13 +40,13 @@ contains
     type(problem_t), intent(in) :: problem
     type(places_t), intent(in) :: places
     type(summary_t), intent(inout) :: summary
-    type(measured_t) :: solved, uncertain
+    real(wp), dimension(3) :: solved, uncertain
     type(layered_contact_t) :: layered
     type(maugis_t) :: cohesive
     real(wp), allocatable :: errors(:, :), spread(:, :)
     real(wp) :: load, load_error, gamma, strength
     integer :: i
-    logical :: there, has_layers
+    logical :: there
 
     gamma = surface_energy(problem)
     strength = largest_tension(problem)
@@ -60,13 +57,8 @@ contains
         'compared with')
       return
     end if
-    has_layers = .false.
-    select type (body => problem%body)
-    type is (layered_body_t)
-      has_layers = .true.
-      ! Deep enough for theories with a smaller load at an indentation than the path.
-      layered = new_layered_contact(problem, body, 2*solved%indentation/problem%length)
-    end select
+    ! Deep enough for theories with a smaller load at an indentation than the path.
+    layered = new_layered_contact(problem, 2*solved(indentation))
     associate (r => problem%radius, y => problem%stiffness)
       ! Tabor's parameter with E* = y/2 and the range gamma/strength.
       call summary%set('regime_tabor_range', (4*r*strength**3/(y**2*gamma))**(1.0_wp/3))
@@ -76,10 +68,10 @@ contains
       errors = all_errors(load, solved)
       ! The errors of the solved numbers change the errors of the theories by so much.
       spread = abs(all_errors(load + load_error, solved) - errors) + &
-        abs(all_errors(load, sum_of(solved, measured_t(pull_off=uncertain%pull_off))) - errors) + &
-        abs(all_errors(load, sum_of(solved, measured_t(radius=uncertain%radius))) - errors)
+        abs(all_errors(load, solved + [uncertain(pull_off), 0.0_wp, 0.0_wp]) - errors) + &
+        abs(all_errors(load, solved + [0.0_wp, uncertain(radius), 0.0_wp]) - errors)
       do i = 1, size(theories)
-        if (is_of_layers(i) .and. .not. has_layers) cycle
+        if (is_of_layers(i) .and. .not. has_layers(problem)) cycle
         call summary%set('regime_error_' // trim(theories(i)), errors(:, i), spread(:, i))
       end do
     end associate
@@ -90,9 +82,8 @@ contains
 
     function all_errors(at_load, numbers) result(errors)
       real(wp), intent(in) :: at_load
-      type(measured_t), intent(in) :: numbers
-      real(wp) :: errors(3, size(theories))
-      type(measured_t) :: says
+      real(wp), intent(in) :: numbers(3)
+      real(wp) :: errors(3, size(theories)), says(3)
       integer :: k
 
       errors = nan
@@ -100,7 +91,7 @@ contains
         if (.not. is_of_layers(k)) then
           says = of_theory(trim(theories(k)), at_load, problem%radius, problem%stiffness, gamma, &
             cohesive)
-        else if (has_layers) then
+        else if (has_layers(problem)) then
           says = of_layers(problem, layered, trim(theories(k)), at_load)
         else
           cycle
@@ -122,7 +113,7 @@ contains
     type(problem_t), intent(in) :: problem
     type(places_t), intent(in) :: places
     real(wp), intent(out) :: load, load_error
-    type(measured_t), intent(out) :: solved, uncertain
+    real(wp), intent(out) :: solved(3), uncertain(3)
     logical, intent(out) :: there
     type(place_t) :: lowest, finish
 
@@ -130,78 +121,73 @@ contains
     finish = places%place_of('path_end')
     there = min(finish%at(of_edge), finish%at(of_radius)) > 0 .and. lowest%at(of_load) < 0
     load = finish%at(of_load)*problem%load
-    solved = measured_t(lowest%at(of_load)*problem%load, finish%at(of_edge)*problem%lateral, &
-      (problem%law%rest_gap - finish%at(of_h0))*problem%length)
+    solved = [lowest%at(of_load)*problem%load, finish%at(of_edge)*problem%lateral, &
+      (problem%law%rest_gap - finish%at(of_h0))*problem%length]
     associate (errors => finish%errors()*units_of(problem), &
       of_lowest => lowest%errors()*units_of(problem))
       load_error = errors(of_load)
-      uncertain = measured_t(of_lowest(of_load), errors(of_edge), errors(of_h0))
+      uncertain = [of_lowest(of_load), errors(of_edge), errors(of_h0)]
     end associate
   end subroutine measure
 
   !> The numbers of a theory at a load [N]; NaN if it has none. cohesive: Maugis-Dugdale theory.
-  type(measured_t) function of_theory(name, load, r, y, gamma, cohesive) result(says)
+  function of_theory(name, load, r, y, gamma, cohesive) result(says)
     character(len=*), intent(in) :: name
     real(wp), intent(in) :: load, r, y, gamma
     type(maugis_t), intent(in) :: cohesive
+    real(wp) :: says(3)
     type(fit_t) :: fit
 
+    says = 0
     select case (name)
     case ('hertz')
-      says%radius = hertz_radius_at_load(load, r, y)
-      says%indentation = hertz_displacement(says%radius, r)
+      says(radius) = hertz_radius_at_load(load, r, y)
+      says(indentation) = hertz_displacement(says(radius), r)
     case ('jkr')
-      says%pull_off = jkr_pull_off(r, gamma)
-      says%radius = jkr_radius_at_load(load, r, y, gamma)
-      says%indentation = jkr_displacement(says%radius, r, y, gamma)
+      says(pull_off) = jkr_pull_off(r, gamma)
+      says(radius) = jkr_radius_at_load(load, r, y, gamma)
+      says(indentation) = jkr_displacement(says(radius), r, y, gamma)
     case ('dmt')
-      says%pull_off = dmt_pull_off(r, gamma)
-      says%radius = dmt_radius_at_load(load, r, y, gamma)
-      says%indentation = hertz_displacement(says%radius, r)
+      says(pull_off) = dmt_pull_off(r, gamma)
+      says(radius) = dmt_radius_at_load(load, r, y, gamma)
+      says(indentation) = hertz_displacement(says(radius), r)
     case ('maugis')
-      says = measured_t(cohesive%pull_off(), cohesive%radius_at_load(load), nan)
-      if (says%radius > 0) says%indentation = cohesive%displacement(says%radius)
+      says = [cohesive%pull_off(), cohesive%radius_at_load(load), nan]
+      if (says(radius) > 0) says(indentation) = cohesive%displacement(says(radius))
     case ('carpick')
       fit = carpick_fit(cohesive)
       ! The formula gives no displacement.
-      says = measured_t(fit%pull_off, fit%radius_at_load(load), nan)
+      says = [fit%pull_off, fit%radius_at_load(load), nan]
     case ('pietrement')
       fit = pietrement_fit(cohesive)
-      says = measured_t(fit%pull_off, fit%radius_at_load(load), fit%displacement_at_load(load))
+      says = [fit%pull_off, fit%radius_at_load(load), fit%displacement_at_load(load)]
     end select
   end function of_theory
 
   !> The same for theories of layers.
-  type(measured_t) function of_layers(problem, contact, name, load) result(says)
+  function of_layers(problem, contact, name, load) result(says)
     type(problem_t), intent(in) :: problem
     type(layered_contact_t), intent(in) :: contact
     character(len=*), intent(in) :: name
     real(wp), intent(in) :: load
-    real(wp) :: a
+    real(wp) :: says(3), a
     integer :: theory
 
+    says = 0
     theory = merge(jkr, hertz, name == 'jkr_layered')
-    if (theory == jkr) says%pull_off = contact%pull_off()*problem%load
+    if (theory == jkr) says(pull_off) = contact%pull_off()*problem%load
     a = contact%radius_at(theory, load=load/problem%load)
-    says%radius = a*problem%lateral
-    says%indentation = a
-    if (.not. ieee_is_nan(a)) says%indentation = contact%displacement(theory, a)*problem%length
+    says(radius) = a*problem%lateral
+    says(indentation) = a
+    if (.not. ieee_is_nan(a)) says(indentation) = contact%displacement(theory, a)*problem%length
   end function of_layers
 
-  pure type(measured_t) function sum_of(one, other) result(total)
-    type(measured_t), intent(in) :: one, other
-
-    total = measured_t(one%pull_off + other%pull_off, one%radius + other%radius, &
-      one%indentation + other%indentation)
-  end function sum_of
-
-  pure function errors_of(theory, solved, radius) result(errors)
-    type(measured_t), intent(in) :: theory, solved
-    real(wp), intent(in) :: radius
+  pure function errors_of(theory, solved, r) result(errors)
+    real(wp), intent(in) :: theory(3), solved(3), r
     real(wp) :: errors(3)
 
-    errors = [theory%pull_off/solved%pull_off, theory%radius/solved%radius, &
-      1 + (theory%indentation - solved%indentation)*radius/solved%radius**2] - 1
+    errors = [theory(:radius)/solved(:radius), &
+      1 + (theory(indentation) - solved(indentation))*r/solved(radius)**2] - 1
   end function errors_of
 
   !> Recommends the theory whose largest error is the smallest, and says why. A formula fitted to a

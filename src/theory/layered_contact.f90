@@ -19,7 +19,7 @@ module layered_contact
   use theory_names, only: hertz, jkr
   implicit none
   private
-  public :: layered_contact_t, new_layered_contact
+  public :: layered_contact_t, new_layered_contact, has_layers
 
   !> Degree of the series; ratio of the radius without displacement to the smallest radius.
   integer, parameter :: degree = 80
@@ -45,9 +45,32 @@ module layered_contact
 
 contains
 
+  !> Whether the bodies have layers.
+  pure logical function has_layers(problem)
+    type(problem_t), intent(in) :: problem
+
+    select type (body => problem%body)
+    type is (layered_body_t)
+      has_layers = .true.
+    class default
+      has_layers = .false.
+    end select
+  end function has_layers
+
+  !> Contacts of bodies with layers up to the displacement `largest` [m].
+  type(layered_contact_t) function new_layered_contact(problem, largest) result(contact)
+    type(problem_t), intent(in) :: problem
+    real(wp), intent(in) :: largest
+
+    select type (body => problem%body)
+    type is (layered_body_t)
+      contact = contacts_of(problem, body, largest/problem%length)
+    end select
+  end function new_layered_contact
+
   !> Contacts up to the displacement `largest`, or to the radius `widest`. A negative `work` of the
   !> law counts as zero.
-  type(layered_contact_t) function new_layered_contact(problem, body, largest) result(contact)
+  type(layered_contact_t) function contacts_of(problem, body, largest) result(contact)
     type(problem_t), intent(in) :: problem
     type(layered_body_t), intent(in) :: body
     real(wp), intent(in) :: largest
@@ -77,7 +100,7 @@ contains
       contact%displacement_series(:, i) = chebyshev_series(values(:, i))
       contact%load_series(:, i) = chebyshev_series(values(:, 2 + i))
     end do
-  end function new_layered_contact
+  end function contacts_of
 
   !> Displacements and loads of both theories at a contact radius.
   subroutine contact_at(problem, body, a, delta, force)
