@@ -10,7 +10,6 @@ module exact_path
   use edge_locked, only: new_mesh_family
   use ending, only: path_lost
   use mesh_store, only: mesh_store_t
-  use known_path, only: known_path_t
   use traced_path, only: traced_path_t
   use mending, only: too_much
   use path_stepper, only: path_stepper_t
@@ -104,16 +103,12 @@ contains
     class(path_stepper_t), intent(in) :: steps
     real(wp), intent(in) :: accuracy
 
-    finer_helps = .not. (is_lost(steps%known) .or. steps%known%left_out > too_much*accuracy .or. &
-      steps%meshes%digits + more_digits > most_digits)
+    associate (known => steps%known)
+      ! A collapse of bodies without repulsion is not an early end.
+      finer_helps = .not. (known%ending%early() .and. .not. known%fallen .or. &
+        known%left_out > too_much*accuracy .or. steps%meshes%digits + more_digits > most_digits)
+    end associate
   end function finer_helps
-
-  !> Whether a path ends early. A collapse of bodies without repulsion is not an early end.
-  pure logical function is_lost(known)
-    type(known_path_t), intent(in) :: known
-
-    is_lost = known%ending%early() .and. .not. known%fallen
-  end function is_lost
 
   !> Makes the extrema of a path the places of a table. Known extrema keep their errors, except
   !> those on renewed meshes.

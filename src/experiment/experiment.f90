@@ -248,12 +248,11 @@ contains
     class(unique_stepper_t), intent(inout) :: steps
     class(observer_t), intent(inout) :: observer
     type(experiment_result_t), intent(inout) :: outcome
-    type(branch_point_t) :: position, none(0)
-    real(wp), allocatable :: nowhere(:)
+    type(branch_point_t) :: position
 
-    allocate (nowhere(0), outcome%stepped_path)
+    allocate (outcome%stepped_path)
     call run_branch(steps, path_plan(request, steps%problem%law, steps%far_away()), .true., &
-      position, observer, nowhere, none, outcome%stepped_path)
+      position, observer, outcome%stepped_path)
   end subroutine run_stepped_path
 
   !> Runs the cycle, with a keeper of its steps if present.
@@ -282,16 +281,16 @@ contains
     type(experiment_result_t), intent(inout) :: outcome
     type(h0_schedule_t) :: plan
     type(branch_point_t) :: position
-    type(branch_point_t), allocatable :: turning(:), none(:)
-    real(wp), allocatable :: from(:), nowhere(:)
+    type(branch_point_t), allocatable :: turning(:)
+    real(wp), allocatable :: from(:)
     integer :: k
 
-    allocate (from(0), nowhere(0), none(0))
+    allocate (from(0))
     if (allocated(request%unloading)) from = steps%problem%law%gap_of(request%unloading%from)
     allocate (turning(size(from)))
     allocate (outcome%loading)
     plan = loading_plan(request, steps%problem%law, from)
-    call run_branch(steps, plan, .true., position, observer, from, turning, outcome%loading)
+    call run_branch(steps, plan, .true., position, observer, outcome%loading, from, turning)
     if (allocated(request%unloading)) then
       allocate (outcome%unloading(size(from)))
       do k = 1, size(from)
@@ -301,8 +300,7 @@ contains
         end if
         position = turning(k)
         plan = unloading_plan(request, steps%problem%law, k)
-        call run_branch(steps, plan, .false., position, observer, nowhere, none, &
-          outcome%unloading(k))
+        call run_branch(steps, plan, .false., position, observer, outcome%unloading(k))
       end do
     end if
   end subroutine run_cycle

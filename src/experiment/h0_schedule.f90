@@ -87,15 +87,15 @@ contains
     type(h0_schedule_t) :: plan
     real(wp), allocatable :: h0(:), profiles(:)
     real(wp) :: sense, same
-    integer :: count, i
+    integer :: steps, i
 
     sense = sign(1.0_wp, finish - start)
     ! A remainder due to rounding is not a step.
     same = 1.0e-6_wp*min(step, abs(finish - start))
-    count = floor(abs(finish - start)/step + 1.0e-6_wp)
-    h0 = [(start + sense*step*i, i=0, count)]
-    if (abs(h0(count + 1) - finish) <= same) then
-      h0(count + 1) = finish
+    steps = floor(abs(finish - start)/step + 1.0e-6_wp)
+    h0 = [(start + sense*step*i, i=0, steps)]
+    if (abs(h0(steps + 1) - finish) <= same) then
+      h0(steps + 1) = finish
     else
       h0 = [h0, finish]
     end if
@@ -121,15 +121,9 @@ contains
       integer :: place
 
       if (any(abs(values - value) <= same)) return
-      place = count_before(values, value)
+      place = count(sense*(values - value) < 0)
       values = [values(:place), value, values(place + 1:)]
     end subroutine include
-
-    pure integer function count_before(values, value)
-      real(wp), intent(in) :: values(:), value
-
-      count_before = int(sum(merge(1, 0, sense*(values - value) < 0)))
-    end function count_before
 
   end function schedule_of
 

@@ -51,25 +51,25 @@ contains
   !> to the first value; otherwise the branch begins at `position`. `kept` returns the positions at
   !> the steps nearest to the values `keep`: a plan merges values that differ by less than a rounded
   !> step.
-  subroutine run_branch(steps, plan, fresh, position, observer, keep, kept, branch)
+  subroutine run_branch(steps, plan, fresh, position, observer, branch, keep, kept)
     class(stepper_t), intent(inout), target :: steps
     type(h0_schedule_t), intent(in) :: plan
     logical, intent(in) :: fresh
     type(branch_point_t), intent(inout) :: position
     class(observer_t), intent(inout) :: observer
-    real(wp), intent(in) :: keep(:)
-    type(branch_point_t), intent(out) :: kept(:)
     type(branch_t), intent(out) :: branch
+    real(wp), intent(in), optional :: keep(:)
+    type(branch_point_t), intent(out), optional :: kept(:)
     type(tension_search_t) :: search
     type(branch_point_t) :: previous, last
     type(step_result_t) :: event
     type(record_t) :: record
     real(wp) :: last_h0
-    integer :: i, k, place(size(keep))
+    integer, allocatable :: place(:)
+    integer :: i, k
 
-    do k = 1, size(keep)
-      place(k) = minloc(abs(plan%h0 - keep(k)), 1)
-    end do
+    allocate (place(0))
+    if (present(keep)) place = [(minloc(abs(plan%h0 - keep(k)), 1), k=1, size(keep))]
     last_h0 = plan%h0(1)
     if (.not. fresh) then
       last_h0 = position%state%h0
@@ -105,7 +105,7 @@ contains
         if (position%piece == 0 .and. any(i == [1, (1 + size(plan%h0))/2])) &
           call add_place(branch%sample, place_of_state(last%mesh, last%state))
       end if
-      do k = 1, size(keep)
+      do k = 1, size(place)
         if (place(k) == i) kept(k) = position
       end do
       if (.not. allocated(event%lowest)) &

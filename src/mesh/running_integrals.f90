@@ -6,7 +6,7 @@ module running_integrals
   use kinds, only: wp
   use discretisation, only: discretisation_t, local_nodes_t
   use panel_map, only: algebraic_map
-  use quadrature, only: gauss_legendre
+  use quadrature, only: gauss_legendre, lagrange_basis
   implicit none
   private
   public :: running_integrals_t, new_running_integrals
@@ -83,27 +83,11 @@ contains
     up = 0
     do i = 1, size(local%node)
       do q = 1, size(at)
-        up(:, i) = up(:, i) + local%node(i)*weight(q)*basis(local, local%node(i)*at(q))
+        up(:, i) = up(:, i) + local%node(i)*weight(q)* &
+          lagrange_basis(local%node, local%barycentric, local%node(i)*at(q))
       end do
     end do
   end function cumulative
-
-  !> The Lagrange polynomials of the nodes at s.
-  pure function basis(local, s) result(values)
-    type(local_nodes_t), intent(in) :: local
-    real(wp), intent(in) :: s
-    real(wp) :: values(size(local%node))
-    integer :: k
-
-    associate (away => s - local%node)
-      k = minloc(abs(away), 1)
-      values = 0
-      values(k) = 1
-      if (.not. abs(away(k)) > tiny(s)) return
-      values = local%barycentric/away
-      values = values/sum(values)
-    end associate
-  end function basis
 
   !> For a panel from `begin` to infinity, its part of Int f x dx up to each node: with x = begin
   !> exp(y), an integral over y of a smooth function. whole: the integral over the whole panel is
@@ -121,7 +105,8 @@ contains
       length = -log(1 - local%node(i))
       do q = 1, points
         y = length*at(q)
-        up(:, i) = up(:, i) + length*weight(q)*begin**2*exp(2*y)*basis(local, 1 - exp(-y))
+        up(:, i) = up(:, i) + length*weight(q)*begin**2*exp(2*y)* &
+          lagrange_basis(local%node, local%barycentric, 1 - exp(-y))
       end do
     end do
   end subroutine to_infinity
@@ -152,7 +137,8 @@ contains
       call gauss_legendre(at, weight)
       part = 0
       do q = 1, size(x)
-        part = part + u*weight(q)*(u*at(q))**(power - 3)*basis(local, 1 - u*at(q))
+        part = part + u*weight(q)*(u*at(q))**(power - 3)* &
+          lagrange_basis(local%node, local%barycentric, 1 - u*at(q))
       end do
     end function from_zero
 
