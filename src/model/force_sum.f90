@@ -98,7 +98,8 @@ contains
     end if
     select type (law)
     type is (force_sum_t)
-      call take_units(law, minval(lengths(law)), maxval(units(law)), 0.0_wp)
+      unit = maxval([(law%term(i)%law%pressure_unit, i=1, size(law%term))])
+      call take_units(law, minval(lengths(law)), unit, 0.0_wp)
       call find_scales(law)
       if (law%edge_gap > 0 .and. law%adhesion > 0) then
         most = -law%pressure([law%edge_gap])
@@ -184,28 +185,12 @@ contains
   pure function lengths(law)
     type(force_sum_t), intent(in) :: law
     real(wp), allocatable :: lengths(:)
-    logical :: any_has
+    logical :: has(size(law%term))
     integer :: i
 
-    any_has = .false.
-    do i = 1, size(law%term)
-      any_has = any_has .or. law%term(i)%law%has_length
-    end do
-    allocate (lengths(0))
-    do i = 1, size(law%term)
-      if (law%term(i)%law%has_length .or. .not. any_has) lengths = [lengths, law%term(i)%law%length]
-    end do
+    has = [(law%term(i)%law%has_length, i=1, size(has))]
+    lengths = pack([(law%term(i)%law%length, i=1, size(has))], has .or. .not. any(has))
   end function lengths
-
-  pure function units(law)
-    type(force_sum_t), intent(in) :: law
-    real(wp) :: units(size(law%term))
-    integer :: i
-
-    do i = 1, size(law%term)
-      units(i) = law%term(i)%law%pressure_unit
-    end do
-  end function units
 
   pure function pressure(self, gap) result(value)
     class(force_sum_t), intent(in) :: self
