@@ -8,7 +8,6 @@ from support.scenes import JKR, deck, exponential, lennard_jones, loading, sever
 
 FIG1 = {"radius": 1.5e-2, "stiffness": 1e10}
 FIG1_LJ = {"law": "lennard_jones", "hamaker": 1e-20, "z0": 0.5e-9}
-FIG1_EXPONENTIAL = {"law": "exponential", "p0": 2.5e8, "decay_length": 0.2e-9}
 # sigma of the two rows of the reference table: attraction with a jump, and with much adhesion.
 WEAK, STRONG = 0.87, 8.7
 STRONG_PULL_OFF = 1.01124487  # In units of JKR's.
@@ -22,23 +21,6 @@ def fig1(**numerics):
 
 
 # --- Independent solutions
-
-
-def test_fig1_exponential_converges_in_every_state_to_the_converged_load(run):
-    def scene(accuracy):
-        return deck(
-            bodies=FIG1, force=FIG1_EXPONENTIAL,
-            loading={"h0_start": 2e-9, "h0_end": -15e-9, "h0_step": 1e-10},
-            numerics={"accuracy": accuracy})
-
-    plain, fine = run(scene(1e-6)).curve, run(scene(1e-10)).curve
-    assert len(plain) == 171
-    assert plain["residual"].max() <= 1e-8
-    assert fine["residual"].max() <= 1e-11
-    np.testing.assert_allclose(plain["load"], fine["load"], rtol=1e-5)
-    np.testing.assert_allclose(plain["h_centre"], fine["h_centre"], atol=1e-5 * 0.2e-9)
-    assert (np.diff(plain["load"]) > 0).all()
-    assert (np.diff(plain["h_centre"]) < 0).all()
 
 
 def test_fig1_exponential_is_that_of_an_independent_solution(run):
@@ -94,15 +76,6 @@ def test_pull_off_does_not_depend_on_penetration(run):
     assert pull_off[0] / summary["jkr_pull_off"] == pytest.approx(STRONG_PULL_OFF, rel=3e-5)
     jump_out = np.array(summary["unload_jump_out_h0"])
     np.testing.assert_allclose(jump_out, jump_out[0], rtol=1e-6)
-
-
-def test_unloading_retraces_loading_where_there_is_no_jump(run):
-    scene = lennard_jones(0.2, loading=loading(6, -4, 0.25), unloading={})
-    curve = run(scene).curve
-    down, up = curve.rows("loading"), curve.rows("unloading_1")
-    np.testing.assert_allclose(up["h0"], down["h0"][::-1], atol=1e-12)
-    np.testing.assert_allclose(up["load"], down["load"][::-1], atol=1e-6 * abs(down["load"]).max())
-    np.testing.assert_allclose(up["h_centre"], down["h_centre"][::-1], atol=1e-6)
 
 
 def test_branches_differ_between_the_jumps_and_nowhere_else(run):

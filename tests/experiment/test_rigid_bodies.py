@@ -186,6 +186,7 @@ def test_there_is_no_mesh_and_nothing_is_solved(run):
     assert (curve["residual"] == 0).all() and (curve["iterations"] == 0).all()
     assert (curve["displacement"] == 0).all() and (curve["converged"] == 1).all()
     assert set(curve.rows("path")["stable"]) == {1}
+    assert not {"sigma", "tabor", "big_lambda", "spacing_over_neck"} & set(result.summary)
     assert result.warnings == []
 
 

@@ -59,28 +59,6 @@ def test_jumps_start_where_the_slope_is_the_stiffness_and_their_ends_bracket_the
         assert slope(np.array([end]))[0] < stiffness
 
 
-@pytest.mark.parametrize("field", ["cubic", "morse", "power_laws_0"])
-def test_a_slow_cycle_jumps_there_and_never_rests_between_the_starts(field):
-    steps, force = 61, FIELDS[field][0]
-    (inward, outward), stiffness = jumps_of(field, 0.8)
-    width = inward.start - outward.start
-    away = 0.3 * abs(inward.rest - outward.rest)
-    low, high = sorted((inward.rest, outward.rest))
-    rests = np.linspace(low - away, high + away, steps)
-    gap, visited = outward.end + 10 * width, []
-    for rest in np.concatenate([rests[::-1], rests]):
-        gap = spring.settle(force, stiffness, rest, gap, 1e-4 * width)
-        visited.append(gap)
-    approach, retreat = np.array(visited[:steps]), np.array(visited[steps:])
-    for way in (approach, retreat):
-        between = (way > outward.start + 1e-6 * width) & (way < inward.start - 1e-6 * width)
-        assert not between.any()
-    # The approach comes to the inward start and the retreat to the outward one.
-    assert approach[approach > inward.start].min() - inward.start < 0.2 * width
-    assert outward.start - retreat[retreat < outward.start].max() < 0.2 * width
-    assert (np.diff(approach) < 0).all() and (np.diff(retreat) > 0).all()
-
-
 @pytest.mark.parametrize("stiffness", [1e-3, 0.2, 0.9, 0.999])
 def test_jumps_of_a_cubic_end_at_twice_the_other_side(stiffness):
     # The starts are double roots of a cubic without square term: the third is -2 times these.
