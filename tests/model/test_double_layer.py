@@ -193,10 +193,6 @@ def test_salt_sets_the_debye_length():
         ({"potential": 0.6}, ("potential", "20 kT")),
         ({"potential": [0.1, 0.1, 0.1]}, ("potential",)),
         ({"potential": None}, ("potential",)),
-        ({"regulation": 1.5}, ("regulation",)),
-        ({"model": "exact"}, ("model", "nonlinear")),
-        ({"temperature": 0.0}, ("temperature",)),
-        ({"valence": 0}, ("valence",)),
     ],
 )
 def test_a_mistake_is_named(keys, named):

@@ -92,48 +92,19 @@ def test_numbers_say_where_the_pressure_vanishes_and_is_least(law, part):
 # --- Lennard-Jones
 
 
-def test_lennard_jones_is_equation_33():
-    gap = gaps("lennard_jones")
-    exact = HAMAKER / (6 * math.pi * gap**3) * ((Z0 / gap) ** 6 - 1)
-    size = HAMAKER / (6 * math.pi * gap**3) * ((Z0 / gap) ** 6 + 1)
-    found = functions("lennard_jones", "full")(gap).pressure
-    assert (abs(found - exact) <= 1e-14 * size).all()
-
-
-def test_lennard_jones_has_no_pressure_at_z0_and_most_tension_at_a_sixth_root_of_3():
-    numbers = snapin.law_numbers(law_of("lennard_jones"))
+def test_lennard_jones_and_its_parts_are_equations_33_and_34():
+    gap, unit = gaps("lennard_jones"), HAMAKER / (6 * math.pi)
+    up = unit * Z0**6 * np.array([gap**-9, -9 * gap**-10, gap**-8 / 8])
+    down = unit * np.array([-(gap**-3), 3 * gap**-4, -(gap**-2) / 2])
+    for part, *terms in (("full", up, down), ("repulsive", up), ("attractive", down)):
+        found = np.array(functions("lennard_jones", part)(gap))
+        assert (abs(found - sum(terms)) <= 1e-14 * sum(map(abs, terms))).all()
+    numbers, gamma = snapin.law_numbers(law_of("lennard_jones")), HAMAKER / (16 * math.pi * Z0**2)
     assert numbers.rest_gap == Z0 == numbers.length
-    assert numbers.edge_gap == pytest.approx(3 ** (1 / 6) * Z0, rel=1e-15)
     assert functions("lennard_jones", "full")([Z0]).pressure == 0
-    assert functions("lennard_jones", "full")([0.999 * Z0]).pressure > 0
-    assert functions("lennard_jones", "full")([1.001 * Z0]).pressure < 0
-
-
-def test_surface_energy_is_equation_34():
-    numbers = snapin.law_numbers(law_of("lennard_jones"))
-    gamma = HAMAKER / (16 * math.pi * Z0**2)
+    assert numbers.edge_gap == pytest.approx(3 ** (1 / 6) * Z0, rel=1e-15)
     assert numbers.surface_energy == pytest.approx(gamma, rel=1e-15)
     assert numbers.pressure_unit == pytest.approx(gamma / Z0, rel=1e-15)
-    energy = functions("lennard_jones", "full")(gaps("lennard_jones")).energy
-    assert energy.min() >= -gamma * (1 + 1e-15)
-
-
-def test_lennard_jones_parts_add_up_to_the_whole():
-    gap = gaps("lennard_jones")
-    whole, repulsive, attractive = (
-        np.array(functions("lennard_jones", part)(gap))
-        for part in ("full", "repulsive", "attractive")
-    )
-    size = abs(repulsive) + abs(attractive)
-    assert (abs(repulsive + attractive - whole) <= 1e-14 * size).all()
-    assert (repulsive[0] > 0).all() and (attractive[0] < 0).all()
-
-
-def test_attraction_alone_is_van_der_waals():
-    gap = gaps("lennard_jones")
-    values = functions("lennard_jones", "attractive")(gap)
-    np.testing.assert_allclose(values.pressure, -HAMAKER / (6 * math.pi * gap**3), rtol=1e-14)
-    np.testing.assert_allclose(values.energy, -HAMAKER / (12 * math.pi * gap**2), rtol=1e-14)
 
 
 # --- Exponential

@@ -197,11 +197,8 @@ def test_a_mistake_in_the_file_is_shown_with_its_line(tmp_path, lines, line, wha
     [
         ({"tail_exponent": None}, ("tail_exponent", "tail_decay_length")),
         ({"tail_decay_length": 1e-9}, ("tail_exponent", "tail_decay_length")),
-        ({"tail_exponent": 1.0}, ("tail_exponent",)),
         ({"file": None}, ("file",)),
         ({"file": "/nowhere/law.txt"}, ("file", "no such file")),
-        ({"interpolation": "linear"}, ("interpolation", "monotone")),
-        ({"quantity": "force"}, ("quantity", "energy")),
         ({"tail_exponent": None, "tail_decay_length": 1e-11}, ("file", "exp(-10)")),
     ],
 )
