@@ -182,22 +182,3 @@ def test_salt_sets_the_debye_length():
     length = math.sqrt(78.4 * 8.8541878128e-12 * 1.380649e-23 * 298.15 / density)
     assert snapin.law_numbers({"double_layer": by_salt}).length == pytest.approx(length, rel=1e-9)
     assert length == pytest.approx(4.8e-9, rel=0.01)
-
-
-@pytest.mark.parametrize(
-    ("keys", "named"),
-    [
-        ({"salt": 1.0}, ("salt", "debye_length")),
-        ({"debye_length": None}, ("salt", "debye_length")),
-        ({"potential": 0.0}, ("potential",)),
-        ({"potential": 0.6}, ("potential", "20 kT")),
-        ({"potential": [0.1, 0.1, 0.1]}, ("potential",)),
-        ({"potential": None}, ("potential",)),
-    ],
-)
-def test_a_mistake_is_named(keys, named):
-    groups = {"double_layer": {"potential": 0.05, "debye_length": LENGTH, **keys}}
-    with pytest.raises(snapin.DeckError) as told:
-        snapin.law_numbers(groups)
-    assert "&double_layer" in str(told.value)
-    assert all(name in str(told.value) for name in named)

@@ -192,22 +192,6 @@ def test_a_mistake_in_the_file_is_shown_with_its_line(tmp_path, lines, line, wha
     assert f"law.txt:{line}: " in str(told.value) and what in str(told.value)
 
 
-@pytest.mark.parametrize(
-    ("keys", "named"),
-    [
-        ({"tail_exponent": None}, ("tail_exponent", "tail_decay_length")),
-        ({"tail_decay_length": 1e-9}, ("tail_exponent", "tail_decay_length")),
-        ({"file": None}, ("file",)),
-        ({"file": "/nowhere/law.txt"}, ("file", "no such file")),
-        ({"tail_exponent": None, "tail_decay_length": 1e-11}, ("file", "exp(-10)")),
-    ],
-)
-def test_a_mistake_in_the_deck_is_named(tmp_path, keys, named):
-    with pytest.raises(snapin.DeckError) as told:
-        snapin.law_numbers(lennard_jones(tmp_path, **keys))
-    assert all(name in str(told.value) for name in ("&tabulated", *named))
-
-
 def test_a_force_that_ends_before_its_first_gap_cannot_be_continued(tmp_path):
     gap = np.linspace(0.5e-9, 5e-9, 12)
     with pytest.raises(snapin.DeckError, match="does not grow towards the first gap"):
