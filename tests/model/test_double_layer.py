@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 import snapin
 from support import boundary_value
+from support.calculus import derivative, integrals
 
 # Unit of potential [V], a Debye length [m], and the osmotic pressure 2 n kT [Pa] that they make.
 THERMAL = 1.380649e-23 * 298.15 / 1.602176634e-19
@@ -48,22 +49,19 @@ def values(gap, *args, **keys):
 @every_pair
 def test_slope_is_the_derivative_and_energy_the_integral(model, y, p):
     gap = np.geomspace(1e-5, 30, 200)
-    step = 1e-3 * np.minimum(gap, 1)
-    around = [values(gap + k * step, y, p, model)[0] for k in (-2, -1, 1, 2)]
     pressure, slope, energy = values(gap, y, p, model)
-    differences = (around[0] - 8 * around[1] + 8 * around[2] - around[3]) / (12 * step)
+
+    def of(at):
+        return values(at, y, p, model)[0]
+
+    differences = derivative(of, gap, 1e-2 * np.minimum(gap, 1))
     # Of a neutral surface, and where forces cancel, this much of what charges feel still counts.
     scale = max(abs(y[0]), abs(y[1])) ** 2 * np.exp(-gap)
-    # Error of the fourth order, and rounding over the step, both of the pressure near by.
-    size = (np.max(np.abs(around), axis=0) + scale) / np.minimum(gap, 1)
+    # Error of the sixth order, and rounding over the step.
+    size = (abs(pressure) + scale) / np.minimum(gap, 1)
     assert (abs(slope - differences) <= 1e-9 * size).all()
-    x, w = np.polynomial.legendre.leggauss(20)
-    low, high = gap[:-1], gap[1:]
-    at = low[:, None] + (high - low)[:, None] * (x + 1) / 2
-    at_nodes = values(at.ravel(), y, p, model)[0].reshape(at.shape)
-    integral = at_nodes @ (w / 2) * (high - low)
-    size = abs(at_nodes) @ (w / 2) * (high - low) + abs(energy[:-1])
-    size += 1e-2 * scale[:-1]
+    integral, size = integrals(of, gap)
+    size += abs(energy[:-1]) + 1e-2 * scale[:-1]
     assert (abs(energy[:-1] - energy[1:] - integral) <= 1e-12 * size).all()
 
 

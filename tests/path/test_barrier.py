@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 import snapin
 from conftest import ROOT
+from support.calculus import zero
 from support.dlvo import Dlvo
 from support.half_space import path_by_axis
 from support.scenes import JKR, of_numbers
@@ -76,27 +77,10 @@ def scene():
     return snapin.run(DECK), keys["bodies"], law
 
 
-def zero(function, low, high):
-    """The zero of a function between two gaps, by bisection."""
-    sign = function(low) > 0
-    for _ in range(80):
-        middle = (low + high) / 2
-        low, high = (middle, high) if (function(middle) > 0) == sign else (low, middle)
-    return low
-
-
 def test_the_scan_finds_the_extrema_of_the_equations():
     summary, law = scene()[0].summary, scene()[2]
 
-    def pressure(gap):
-        return float(law(np.array([gap]))[0][0])
-
-    def slope(gap):
-        return float(law(np.array([gap]))[1][0])
-
-    def energy(gap):
-        return float(law(np.array([gap]))[2][0])
-
+    pressure, slope, energy = (lambda gap, k=k: float(law(np.array([gap]))[k][0]) for k in range(3))
     rest = zero(pressure, 0.25e-9, 0.35e-9)
     top = zero(pressure, 0.4e-9, 3e-9)
     bottom = zero(pressure, 20e-9, 50e-9)
