@@ -74,11 +74,6 @@ def test_huge_file_is_refused(snapin, tmp_path):
     refused_file(snapin, deck, "larger than")
 
 
-def test_endless_device_is_refused(snapin):
-    if os.path.exists("/dev/zero"):
-        refused_file(snapin, "/dev/zero", "larger than")
-
-
 def test_binary_file_is_refused(snapin, snapin_path):
     done = snapin("--check", snapin_path)
     assert done.returncode == 2

@@ -108,28 +108,16 @@ def end_of(curve, branch):
     return [rows[name][-1] for name in ("h0", "displacement", "load")]
 
 
-@pytest.mark.parametrize(
-    "deck",
-    [
-        adhesive(), adhesive(equilibrium_path={"h0_end": -3.0}),
-        adhesive(numerics={"grid": "uniform"}), exponential(3, loading=loading(6, -1, 1))],
-    ids=["cycle", "cycle and path", "uniform grid", "repulsion"],
-)
-def test_end_is_the_last_row_of_the_loading(run, deck):
+@pytest.mark.parametrize("deck, branch", [
+    (adhesive(), "loading"), (adhesive(equilibrium_path={"h0_end": -3.0}), "loading"),
+    (adhesive(numerics={"grid": "uniform"}), "loading"),
+    (exponential(3, loading=loading(6, -1, 1)), "loading"),
+    (lennard_jones(0.87, equilibrium_path={"h0_end": -3.0}), "path"),
+    (exponential(3, equilibrium_path={"h0_end": -1.0}), "path")],
+    ids=["cycle", "cycle and path", "uniform grid", "repulsion", "path", "path of repulsion"])
+def test_end_is_the_last_row_of_the_loading_or_without_one_of_the_path(run, deck, branch):
     result = run(deck)
-    assert [result.summary[key] for key in END] == end_of(result.curve, "loading")
-
-
-@pytest.mark.parametrize(
-    "deck",
-    [
-        lennard_jones(0.87, equilibrium_path={"h0_end": -3.0}),
-        exponential(3, equilibrium_path={"h0_end": -1.0})],
-    ids=["adhesion", "repulsion"],
-)
-def test_without_loading_end_is_that_of_the_path(run, deck):
-    result = run(deck)
-    assert [result.summary[key] for key in END] == end_of(result.curve, "path")
+    assert [result.summary[key] for key in END] == end_of(result.curve, branch)
 
 
 def test_a_path_into_collapse_has_no_end(run):
