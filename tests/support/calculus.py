@@ -25,3 +25,13 @@ def integrals(function, ends):
     low, length = ends[:-1, None], np.diff(ends)[:, None]
     values = function((low + length * (x + 1) / 2).ravel()).reshape(-1, x.size) * length
     return values @ (w / 2), abs(values) @ (w / 2)
+
+
+def hermite(at, x, y, slope):
+    """Cubics between points with given slopes; constant beyond the first and the last."""
+    i = np.clip(np.searchsorted(x, at) - 1, 0, len(x) - 2)
+    width = x[i + 1] - x[i]
+    t = np.clip((at - x[i]) / width, 0, 1)
+    return (
+        (1 + 2 * t) * (1 - t) ** 2 * y[i] + t * (1 - t) ** 2 * width * slope[i]
+        + t**2 * (3 - 2 * t) * y[i + 1] + t**2 * (t - 1) * width * slope[i + 1])
