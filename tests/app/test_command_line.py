@@ -140,13 +140,6 @@ def test_deck_may_begin_with_a_dash_after_double_dash(snapin, decks):
     assert (done.returncode, done.stdout) == (0, "-d.nml: ok\n")
 
 
-def test_deck_name_may_hold_blanks_and_further_points(snapin, decks):
-    (decks / "my deck.v2.nml").write_text(DECK)
-    done = snapin("--quiet", "my deck.v2.nml", "--out", "out put", cwd=decks)
-    assert done.returncode == 0, done.stderr
-    assert (decks / "out put" / "my deck.v2" / "summary.nml").is_file()
-
-
 @pytest.mark.parametrize("name", ["..nml", "...nml", ".nml"])
 def test_results_stay_inside_the_folder_whatever_the_deck_is_called(snapin, decks, name):
     (decks / name).write_text(DECK)
@@ -157,7 +150,8 @@ def test_results_stay_inside_the_folder_whatever_the_deck_is_called(snapin, deck
         f"there/{name}{file}" for file in ["", "/classical.csv", "/summary.nml"])
 
 
-@pytest.mark.parametrize("name", ["a\nb.nml", "q'\".nml", "\u00e9\u221e.nml", "*.nml", "a\\b.nml"])
+@pytest.mark.parametrize("name", [
+    "my deck.v2.nml", "a\nb.nml", "q'\".nml", "\u00e9\u221e.nml", "*.nml", "a\\b.nml"])
 def test_a_deck_may_be_called_anything(snapin, decks, name):
     (decks / name).write_text(DECK)
     done = snapin("--quiet", name, cwd=decks)

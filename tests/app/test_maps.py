@@ -204,6 +204,18 @@ WRONG = {
     "twice": ({**GRID, "key": ["force.hamaker", "Force.Hamaker"]}, "is there twice"),
     "column twice": ({"file": "twice.csv"}, "'bodies.stiffness' is there twice"),
     "nul": ({"file": "nul.csv"}, "nul.csv:3: a NUL byte"),
+    "unknown": ({"key": "force.law", "words": ["lennard_jones", "exponentail"]},
+                'did you mean "exponential"'),
+    "no words": ({"key": "force.law"}, "missing"),
+    "both kinds": ({"key": "force.law", "words": "exponential", "values": [1.0]}, "give words"),
+    "number": ({"key": "force.hamaker", "words": ["linear"]}, "does not hold a word"),
+    "several": ({"key": ["force.law", "numerics.method"], "words": ["lennard_jones"]},
+                "only one of the keys may hold a word"),
+    "no range": ({"key": ["force.law", "force.hamaker"], "words": ["lennard_jones"]},
+                 "missing; give from"),
+    "word in a cell": ({"file": "laws.csv"}, "laws.csv:3"),
+    "with file": ({"file": "laws.csv", "words": ["exponential"]}, "not together with file"),
+    "deck": ({"key": "force.law", "words": ["exponential"]}, "with force.law = exponential"),
 }
 
 
@@ -216,7 +228,8 @@ def test_a_wrong_sweep_is_refused(snapin, tmp_path, case):
                        ("columns", "bodies.stiffness\n1e9, 2\n"),
                        ("whole", "numerics.nodes\n100\n200\n2.5\n"),
                        ("twice", "bodies.stiffness, bodies.stiffness\n1e9, 2e9\n"),
-                       ("nul", "bodies.stiffness\n1e9\n2e9\0\n")):
+                       ("nul", "bodies.stiffness\n1e9\n2e9\0\n"),
+                       ("laws", "force.law\nlennard_jones\nnewton\n")):
         (tmp_path / f"{name}.csv").write_text(text)
     (tmp_path / "d.nml").write_text(scene(sweep))
     result = snapin("d.nml", cwd=tmp_path)
@@ -303,29 +316,3 @@ def test_a_table_has_words_in_columns_of_words(run, folder, models):
     assert list(table["double_layer.model"]) == ["nonlinear", "linear", "superposition"]
     np.testing.assert_array_equal(table["double_layer.salt"], [10, 1, 1])
     np.testing.assert_array_equal(table["end_load"][1:], models.table("sweep.csv")["end_load"][:2])
-
-
-WRONG_WORDS = {
-    "unknown": ({"key": "force.law", "words": ["lennard_jones", "exponentail"]},
-                'did you mean "exponential"'),
-    "none": ({"key": "force.law"}, "missing"),
-    "values": ({"key": "force.law", "words": "exponential", "values": [1.0]}, "give words"),
-    "number": ({"key": "force.hamaker", "words": ["linear"]}, "does not hold a word"),
-    "several": ({"key": ["force.law", "numerics.method"], "words": ["lennard_jones"]},
-                "only one of the keys may hold a word"),
-    "no range": ({"key": ["force.law", "force.hamaker"], "words": ["lennard_jones"]},
-                 "missing; give from"),
-    "cell": ({"file": "laws.csv"}, "laws.csv:3"),
-    "with file": ({"file": "laws.csv", "words": ["exponential"]}, "not together with file"),
-    "deck": ({"key": "force.law", "words": ["exponential"]}, "with force.law = exponential"),
-}
-
-
-@pytest.mark.parametrize("case", WRONG_WORDS)
-def test_wrong_words_are_refused(snapin, tmp_path, case):
-    sweep, said = WRONG_WORDS[case]
-    (tmp_path / "laws.csv").write_text("force.law\nlennard_jones\nnewton\n")
-    (tmp_path / "d.nml").write_text(scene(sweep))
-    result = snapin("d.nml", cwd=tmp_path)
-    assert result.returncode == 2
-    assert said in result.stderr

@@ -144,14 +144,6 @@ def test_the_mpirun_of_another_mpi_is_refused(ranks):
     assert not (ranks.folder / "results").exists()
 
 
-def test_a_build_without_mpi_says_so_under_mpirun(ranks, snapin_path):
-    done = subprocess.run([*ranks.start, "-n", "2", snapin_path, "map.nml"], cwd=ranks.folder,
-                          env=ENVIRONMENT, capture_output=True, text=True, timeout=60, check=False)
-    assert done.returncode == 2
-    assert "this build has no MPI" in done.stderr
-    assert not (ranks.folder / "results").exists()
-
-
 def killed_and_resumed(ranks, rng, out):
     """One killed run and its resumption; whether it was killed in time."""
     shutil.rmtree(ranks.folder / out, ignore_errors=True)

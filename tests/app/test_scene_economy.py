@@ -16,27 +16,6 @@ def counts(result):
     return {name: result.cost[name] for name in COUNTERS}
 
 
-# --- Bodies
-
-
-@pytest.mark.parametrize("numerics", [{}, {"grid": "uniform", "nodes": 300}], ids=["auto", "grid"])
-@pytest.mark.parametrize("law", ["lennard_jones", "exponential"])
-def test_rigid_bodies_need_no_kernel(run, law, numerics):
-    make = {
-        "lennard_jones": lambda **groups: lennard_jones(1.0, **groups),
-        "exponential": lambda **groups: exponential(1.0, **groups)}[law]
-    scene = make(loading=loading(8, 1, 0.25), numerics=numerics)
-    result = run(scene.replace("stiffness = 1.0", "rigid = .true."))
-    assert result.cost["kernel_entries"] == 0
-    assert result.cost["operator_products"] == 0
-    assert result.cost["operator_columns"] == 0
-    assert result.cost["factorisations"] <= 5
-    assert result.cost["states"] == 29
-    assert abs(result.curve["displacement"]).max() == 0
-    for absent in ("sigma", "tabor", "big_lambda", "spacing_over_neck"):
-        assert absent not in result.summary
-
-
 # --- Laws
 
 
@@ -162,15 +141,6 @@ def test_classical_theory_alone_solves_nothing(run):
     assert "nodes" not in result.cost
     for name, value in counts(result).items():
         assert value == 0, name
-
-
-def test_a_path_alone_has_no_cycle_and_a_cycle_alone_no_path(run):
-    path = run(lennard_jones(1.0, equilibrium_path={"h0_end": -2.0}))
-    assert set(path.curve["branch"]) == {"path"}
-    assert not any(key.startswith("unload") for key in path.summary)
-    cycle = run(lennard_jones(1.0, **PLAIN, unloading={}))
-    assert "path" not in set(cycle.curve["branch"])
-    assert "folds_h0" not in cycle.summary
 
 
 # --- The cost model

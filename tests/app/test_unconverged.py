@@ -1,5 +1,6 @@
 """Claims about what does not converge."""
 
+import numpy as np
 import pytest
 from support.scenes import exponential, lennard_jones, loading
 
@@ -47,9 +48,14 @@ def test_what_does_not_converge_says_so_and_invents_nothing(run, scene, numerics
 
 @pytest.mark.parametrize("name", ["anderson, uniform", "mixing"])
 def test_a_row_that_is_no_equilibrium_is_neither_stable_nor_unstable(run, name):
-    curve = run(lennard_jones(0.87, **CYCLE, stability={}, numerics=STARVED[name]), status=1).curve
-    assert (curve["converged"] == 0).any()
-    assert (curve["stable"][curve["converged"] == 0] == -1).all()
+    scene = lennard_jones(0.87, **CYCLE, stability={}, numerics=STARVED[name])
+    result = run(scene, status=1)
+    curve, failed = result.curve, result.curve["converged"] == 0
+    assert failed.any() and (curve["stable"][failed] == -1).all()
+    for column in ("smallest_eigenvalue", "criterion_28", "criterion_29"):
+        assert np.isnan(curve[column][failed]).all()
+    assert result.summary["worst_residual"] == pytest.approx(curve["residual"].max())
+    assert result.files == ["curve.csv", "summary.nml"] and "did not converge" in result.stderr
 
 
 def test_what_came_before_the_fall_is_kept(run):

@@ -160,16 +160,6 @@ def test_bodies_that_only_repel_have_the_eigenvalue_one(run):
         assert np.isnan(curve["criterion_28"]).all()
 
 
-def test_what_is_no_equilibrium_has_no_eigenvalue(run):
-    starved = {"max_iterations": 1, "grid": "uniform", "nodes": 100}
-    scene = lennard_jones(0.87, loading=loading(6, -2, 0.5), stability={}, numerics=starved)
-    curve = run(scene, status=1).curve
-    failed = curve["converged"] == 0
-    assert failed.any()
-    for name in ("smallest_eigenvalue", "criterion_28", "criterion_29"):
-        assert np.isnan(curve[name][failed]).all()
-
-
 # --- Stability
 
 

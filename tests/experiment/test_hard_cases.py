@@ -140,22 +140,6 @@ def test_rigid_bodies_under_exponential_repulsion_obey_derjaguin_even_overlappin
 # --- Steps and starts
 
 
-@pytest.mark.parametrize("step", [1.0, 5.0, 10.0, 40.0])
-@pytest.mark.parametrize("sigma", [0.87, 8.7, 100.0])
-def test_steps_across_the_jump_land_where_fine_ones_do(run, sigma, step):
-    far = 80.0
-    coarse = run(lennard_jones(sigma, loading=loading(far, -40, step), unloading={}))
-    fine = run(lennard_jones(sigma, loading=loading(far, -40, 0.5), unloading={}))
-    mine, theirs = check(coarse), check(fine)
-    for branch in ("loading", "unloading_1"):
-        rows, others = mine.rows(branch), theirs.rows(branch)
-        place = [int(np.argmin(abs(others["h0"] - h0))) for h0 in rows["h0"]]
-        load = others["load"][place]
-        np.testing.assert_allclose(rows["load"], load, rtol=1e-5, atol=1e-6 * sigma)
-    assert coarse.summary["jump_in_h0"] == pytest.approx(fine.summary["jump_in_h0"], rel=1e-6)
-    assert coarse.summary["jump_out_h0"] == pytest.approx(fine.summary["jump_out_h0"], rel=1e-6)
-
-
 @pytest.mark.parametrize("sigma", [0.01, 8.7, 1e3])
 def test_start_anywhere_in_contact_is_the_state_that_an_approach_reaches(run, sigma):
     whole = check(run(lennard_jones(sigma, loading=loading(50, -20, 5))))
@@ -223,29 +207,6 @@ def test_unit_scene_is_the_scene_of_fig10(run):
     unit = check(run(lennard_jones(8.7, loading=loading(13, -4, 0.5), unloading={})))
     np.testing.assert_allclose(real["h_centre"] / z0, unit["h_centre"], rtol=1e-9, atol=1e-9)
     np.testing.assert_allclose(real["load"] / load, unit["load"] / 8.7, rtol=1e-9, atol=1e-9)
-
-
-@pytest.mark.parametrize(
-    "scene",
-    [
-        lennard_jones(
-            8.7, loading=loading(13, -4, 0.5), unloading={}, equilibrium_path={}, stability={}),
-        lennard_jones(
-            0.87, loading=loading(6, -1, 0.5), numerics={"grid": "uniform", "nodes": 300}),
-        exponential(100, loading=loading(6, -20, 1)),
-    ],
-    ids=["adhesion", "uniform grid", "repulsion"],
-)
-def test_below_2500_nodes_the_number_of_threads_makes_no_difference_at_all(run, scene):
-    """Matrices of that size are kept on one thread; kernels are computed entry by entry."""
-    one = run(scene, threads=1)
-    for threads in (2, 4):
-        more = run(scene, threads=threads)
-        assert more.cost["threads"] == threads and more.cost["nodes"] < 2500
-        tables = [(result.folder / "curve.csv").read_bytes() for result in (one, more)]
-        assert tables[0] == tables[1]
-        for key in ("max_tension", "jump_in_h0", "jump_out_h0", "folds_h0"):
-            assert several(more.summary.get(key)) == several(one.summary.get(key))
 
 
 @pytest.mark.parametrize("stiffness,diameter,h0,accuracy", [

@@ -8,6 +8,7 @@ inverse of sigma but for a factor near 1.
 import math
 
 import pytest
+from support.calculus import zero
 from support.scenes import deck, lennard_jones, several
 
 # Pull-off over pi R w of Maugis' theory (1992), from a solver of its own.
@@ -91,14 +92,8 @@ def test_least_repulsion_before_a_step_is_where_the_pressure_vanishes(run):
     """There the bodies are hardly deformed, and by (23) the load is largest; the pressure falls by
     orders of magnitude between the states of the path beside it."""
     summary = check(run(steps(0.1, **dugdale(0.1))))
-    low, high = 1.2, 1.8
-    for _ in range(60):
-        middle = (low + high) / 2
-        if math.erfc((middle - 1) / 0.1) / 2 > 20 * math.exp(-20 * middle):
-            low = middle
-        else:
-            high = middle
-    assert several(summary["load_folds_h0"])[0] == pytest.approx(low, abs=1e-6)
+    place = zero(lambda h: math.erfc((h - 1) / 0.1) / 2 - 20 * math.exp(-20 * h), 1.2, 1.8)
+    assert several(summary["load_folds_h0"])[0] == pytest.approx(place, abs=1e-6)
 
 
 @pytest.mark.parametrize("smoothing", [3e-3, 1e-3])

@@ -5,6 +5,7 @@ import math
 
 import numpy as np
 import pytest
+from support.calculus import hermite
 from support.half_space import path_by_axis
 from support.scenes import changed, deck, lennard_jones, loading, value_in
 
@@ -176,16 +177,10 @@ def test_cases_of_a_sweep_are_runs_of_their_own(run):
 def test_a_table_has_the_loads_of_a_cycle_and_their_slopes(run):
     run = run(coated(table={}, loading=loading(6, -1, 0.25)))
     table, cycle = run.table("table.csv").rows("approach"), run.table("curve.csv").rows("loading")
-    apart = 0
-    for h0, load in zip(cycle["h0"], cycle["load"]):
-        if not run.summary["jump_in_h0"] - 0.2 > h0 > -1 + 1e-9:
-            continue
-        i = np.searchsorted(table["indentation"], -h0, side="right") - 1
-        x, y, slope = (table[name][i:i + 2] for name in ("indentation", "load", "stiffness"))
-        u = (-h0 - x[0]) / (x[1] - x[0])
-        found = ((1 + 2 * u) * (1 - u)**2 * y[0] + u**2 * (3 - 2 * u) * y[1]
-                 + (x[1] - x[0]) * u * (1 - u) * ((1 - u) * slope[0] - u * slope[1]))
-        apart = max(apart, abs(found - load))
+    here = (cycle["h0"] < run.summary["jump_in_h0"] - 0.2) & (cycle["h0"] > -1 + 1e-9)
+    found = hermite(-cycle["h0"][here],
+                    *(table[name] for name in ("indentation", "load", "stiffness")))
+    apart = abs(found - cycle["load"][here]).max()
     assert 0 < apart < 1e-4 * run.summary["max_tension"]
 
 

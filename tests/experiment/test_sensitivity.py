@@ -6,7 +6,6 @@ import re
 
 import numpy as np
 import pytest
-import snapin as python
 from support.scenes import changed, deck, lennard_jones, several, value_in
 
 LAW = {"law": "lennard_jones", "hamaker": 1.0e-20, "z0": 0.5e-9}
@@ -204,13 +203,3 @@ def test_nothing_else_changes(run):
     for name in ("curve.csv", "device.csv", "device_jumps.csv", "fixed_load.csv"):
         assert (beside.folder / name).read_bytes() == (without.folder / name).read_bytes()
     assert not (without.folder / "sensitivity.csv").exists()
-
-
-def test_python_has_the_tables_by_name():
-    result = python.run({"bodies": PARABOLA, "force": LAW, "equilibrium_path": {"h0_end": -2e-9},
-                         "sensitivity": {"parameters": ["force.z0"]}})
-    table = result.sensitivity
-    mine = table[table["quantity"] == "max_tension"]
-    assert list(mine["parameter"]) == ["force.z0"]
-    assert mine["value"] == result.summary["max_tension"]
-    assert len(result.curve_sensitivity) > 20

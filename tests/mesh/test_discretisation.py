@@ -215,14 +215,6 @@ def test_leading_part_of_a_matrix_is_that_of_a_leading_part_of_the_mesh():
     np.testing.assert_array_equal(whole.weight[:n], part.weight)
 
 
-def test_matrix_of_the_uniform_mesh_is_positive_and_falls_away_from_the_diagonal():
-    matrix = snapin.uniform_mesh(60, 3.0).matrix()
-    assert (matrix.nodes > 0).all() and (matrix.axis > 0).all()
-    # Per unit of area the nearest pressure deforms most.
-    weight = snapin.uniform_mesh(60, 3.0).weight
-    assert ((matrix.nodes / weight)[1:, 1:].argmax(1) == np.arange(59)).all()
-
-
 # --- Load weights and interpolation
 
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 import snapin
-from support.half_space import HalfSpace
+from support.half_space import HalfSpace, lennard_jones
 
 HAMAKER, Z0, KT = 1e-19, 0.5e-9, 1.380649e-23 * 298.15
 BRUSH, DENSITY = 1.5e-9, 5e17
@@ -21,11 +21,9 @@ def force(gap):
     unit = KT * DENSITY**1.5 * Z0 / ENERGY
     u = np.minimum(gap / kink, 1)
     energy = kink * (u**-1.25 / 1.25 + u**1.75 / 1.75 - 1 / 1.25 - 1 / 1.75)
-    return (
-        8 / 3 * (gap**-9 - gap**-3) + unit * (u**-2.25 - u**0.75),
-        8 * (gap**-4 - 3 * gap**-10)
-        - unit / kink * np.where(u < 1, 2.25 * u**-3.25 + 0.75 * u**-0.25, 0),
-        gap**-8 / 3 - 4 / 3 * gap**-2 + unit * energy)
+    brush = (u**-2.25 - u**0.75,
+             -np.where(u < 1, 2.25 * u**-3.25 + 0.75 * u**-0.25, 0) / kink, energy)
+    return tuple(one + unit * more for one, more in zip(lennard_jones(gap), brush))
 
 
 @pytest.mark.parametrize("h0", [4, 2, 0])

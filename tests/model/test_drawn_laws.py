@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 import snapin
 from conftest import ROOT
+from support.calculus import derivative, integrals
 
 # Orders of magnitude of the keys of each group: drawn evenly by their logarithm; a third number is
 # how many values a list has at most.
@@ -40,29 +41,20 @@ SEEDS = range(6)
 def claim_slope(of, gap, unit, size):
     """The slope is the derivative of the pressure, by central differences at separations `gap` [m];
     unit: the law's numbers; size: the parts of the slope, which set the rounding."""
-    # Extrapolated twice: the error is that of the sixth order in a step of 1 % of the gap or
-    # length, 1e-12 times the ninth power's coefficients.
+    # The error is that of the sixth order in a step of 1 % of the gap or length, 1e-12 times the
+    # ninth power's coefficients.
     step = 1e-2 * np.minimum(gap - unit.origin, unit.length)
-    d = [
-        (of(gap + h).pressure - of(gap - h).pressure) / (2 * h)
-        for h in (step, step / 2, step / 4)
-    ]
-    d = [(4 * d[1] - d[0]) / 3, (4 * d[2] - d[1]) / 3]
-    derivative = (16 * d[1] - d[0]) / 15
-    assert (abs(of(gap).slope - derivative) <= 1e-8 * size).all()
+    slope = derivative(lambda at: of(at).pressure, gap, step)
+    assert (abs(of(gap).slope - slope) <= 1e-8 * size).all()
 
 
 def claim_energy(of, gap, unit, size):
     """The energy is the integral of the pressure, by quadrature between neighbouring separations,
     and vanishes at large ones; size: its parts, which set the rounding; None: the integrand."""
-    x, w = np.polynomial.legendre.leggauss(30)
-    low, high = gap[:-1], gap[1:]
-    at = low[:, None] + (high - low)[:, None] * (x + 1) / 2
-    pressure = of(at.ravel()).pressure.reshape(at.shape)
-    integral = pressure @ (w / 2) * (high - low)
+    integral, of_size = integrals(lambda at: of(at).pressure, gap)
     energy = of(gap).energy
     if size is None:
-        size = abs(pressure) @ (w / 2) * (high - low) + np.abs(energy[:-1])
+        size = of_size + np.abs(energy[:-1])
     assert (abs(energy[:-1] - energy[1:] - integral) <= 1e-13 * size).all()
     far = of([unit.origin + 1e8 * unit.length]).energy
     assert abs(far[0]) <= 1e-15 * abs(energy).max()

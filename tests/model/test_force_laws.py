@@ -5,75 +5,28 @@ import math
 import numpy as np
 import pytest
 import snapin
-from conftest import ROOT
+from support.laws import LAWS
 
-# Every law there is with parameters in SI; one without an entry fails the first test.
-LAWS = {
-    "lennard_jones": snapin.lennard_jones(hamaker=1e-19, z0=0.5e-9),
-    "exponential": snapin.exponential(p0=2.5e8, decay_length=0.2e-9),
-    "morse": {"morse": {"surface_energy": 0.05, "z0": 3e-9, "decay_length": 0.2e-9}},
-    "van_der_waals": {"van_der_waals": {"hamaker": 1e-19, "retardation_length": 5e-9}},
-    "born": {"born": {"hamaker": 1e-19, "z0": 0.3e-9, "exponent": 12.0}},
-    "hydration": {"hydration": {"energy": 5e-3, "decay_length": 0.5e-9}},
-    "hydrophobic": {"hydrophobic": {"energy": 5e-2, "decay_length": 1e-9}},
-    "steric": {"steric": {"brush_thickness": 5e-9, "grafting_density": 1e16}},
-    "structural": {"structural": {"amplitude": 1e6, "period": 2e-9, "decay_length": 1e-9}},
-    "depletion": {"depletion": {"osmotic_pressure": 1e5, "diameter": 5e-9, "smoothing": 2e-9}},
-    "capillary": {"capillary": {"humidity": 0.5, "smoothing": 0.5e-9}},
-    "dugdale": {"dugdale": {"stress": 1e7, "range": 1e-9, "smoothing": 0.4e-9}},
-    "double_layer": {
-        "double_layer": {
-            "potential": [0.1, 0.06], "regulation": [0.8, 0.3], "debye_length": 2e-9,
-            "model": "nonlinear"}
-    },
-    "tabulated": {
-        "tabulated": {
-            "file": str(ROOT / "inputs" / "examples" / "tabulated.txt"), "tail_exponent": 3},
-    },
-}
-PARTS = {"lennard_jones": ("full", "repulsive", "attractive")}
-ALL = [(law, part) for law in LAWS for part in PARTS.get(law, ("full",))]
-every_law = pytest.mark.parametrize(("law", "part"), ALL, ids=map("-".join, ALL))
 Z0, HAMAKER = 0.5e-9, 1e-19
+every_law = pytest.mark.parametrize("law", LAWS)
 
 
-def law_of(law, part="full"):
-    """Return the groups of a deck with this law."""
-    groups = LAWS[law]
-    return groups if part == "full" else {"force": {**groups["force"], "part": part}}
-
-
-def scales(law):
-    """Return the numbers of a law."""
-    return snapin.law_numbers(law_of(law))
-
-
-def gaps(law):
-    """Return separations [m] from deep within the repulsion to far away."""
-    unit = scales(law)
-    return unit.origin + unit.length * np.geomspace(0.5, 40, 60)
-
-
-def functions(law, part):
+def functions(law):
     """Return the law as a function of gaps [m]."""
-    return lambda gap: snapin.force_law(law_of(law, part), gap)
-
-
-def test_every_law_is_tested():
-    assert set(LAWS) == {path.stem for path in (ROOT / "src" / "model" / "laws").glob("*.f90")}
+    return lambda gap: snapin.force_law(LAWS[law], gap)
 
 
 @every_law
-def test_far_away_there_is_nothing(law, part):
-    for values in functions(law, part)(scales(law).length * np.array([1e12, 1e30, 1e90])):
+def test_far_away_there_is_nothing(law):
+    length = snapin.law_numbers(LAWS[law]).length
+    for values in functions(law)(length * np.array([1e12, 1e30, 1e90])):
         assert np.isfinite(values).all()
         assert (abs(values) <= 1e-9).all()
 
 
 @every_law
-def test_numbers_say_where_the_pressure_vanishes_and_is_least(law, part):
-    of = functions(law, part)
-    numbers = snapin.law_numbers(law_of(law, part))
+def test_numbers_say_where_the_pressure_vanishes_and_is_least(law):
+    of, numbers = functions(law), snapin.law_numbers(LAWS[law])
     unit = numbers.pressure_unit
     if not math.isnan(numbers.rest_gap):
         assert abs(of([numbers.rest_gap]).pressure[0]) <= 1e-14 * unit
@@ -83,7 +36,7 @@ def test_numbers_say_where_the_pressure_vanishes_and_is_least(law, part):
         near = numbers.edge_gap * np.array([0.99, 1, 1.01])
         assert of(near).pressure.argmin() == 1
     # Nothing is left of a repulsion beyond its range, compared with its unit.
-    if part == "repulsive" or law == "exponential":
+    if law in ("repulsive", "exponential"):
         assert of([numbers.range]).pressure[0] <= 1e-15 * unit
         assert numbers.surface_energy == 0
         assert math.isnan(numbers.edge_gap) and math.isnan(numbers.rest_gap)
@@ -92,48 +45,19 @@ def test_numbers_say_where_the_pressure_vanishes_and_is_least(law, part):
 # --- Lennard-Jones
 
 
-def test_lennard_jones_is_equation_33():
-    gap = gaps("lennard_jones")
-    exact = HAMAKER / (6 * math.pi * gap**3) * ((Z0 / gap) ** 6 - 1)
-    size = HAMAKER / (6 * math.pi * gap**3) * ((Z0 / gap) ** 6 + 1)
-    found = functions("lennard_jones", "full")(gap).pressure
-    assert (abs(found - exact) <= 1e-14 * size).all()
-
-
-def test_lennard_jones_has_no_pressure_at_z0_and_most_tension_at_a_sixth_root_of_3():
-    numbers = snapin.law_numbers(law_of("lennard_jones"))
+def test_lennard_jones_and_its_parts_are_equations_33_and_34():
+    gap, unit = Z0 * np.geomspace(0.5, 40, 60), HAMAKER / (6 * math.pi)
+    up = unit * Z0**6 * np.array([gap**-9, -9 * gap**-10, gap**-8 / 8])
+    down = unit * np.array([-(gap**-3), 3 * gap**-4, -(gap**-2) / 2])
+    for part, *terms in (("lennard_jones", up, down), ("repulsive", up), ("attractive", down)):
+        found = np.array(functions(part)(gap))
+        assert (abs(found - sum(terms)) <= 1e-14 * sum(map(abs, terms))).all()
+    numbers, gamma = snapin.law_numbers(LAWS["lennard_jones"]), HAMAKER / (16 * math.pi * Z0**2)
     assert numbers.rest_gap == Z0 == numbers.length
+    assert functions("lennard_jones")([Z0]).pressure == 0
     assert numbers.edge_gap == pytest.approx(3 ** (1 / 6) * Z0, rel=1e-15)
-    assert functions("lennard_jones", "full")([Z0]).pressure == 0
-    assert functions("lennard_jones", "full")([0.999 * Z0]).pressure > 0
-    assert functions("lennard_jones", "full")([1.001 * Z0]).pressure < 0
-
-
-def test_surface_energy_is_equation_34():
-    numbers = snapin.law_numbers(law_of("lennard_jones"))
-    gamma = HAMAKER / (16 * math.pi * Z0**2)
     assert numbers.surface_energy == pytest.approx(gamma, rel=1e-15)
     assert numbers.pressure_unit == pytest.approx(gamma / Z0, rel=1e-15)
-    energy = functions("lennard_jones", "full")(gaps("lennard_jones")).energy
-    assert energy.min() >= -gamma * (1 + 1e-15)
-
-
-def test_lennard_jones_parts_add_up_to_the_whole():
-    gap = gaps("lennard_jones")
-    whole, repulsive, attractive = (
-        np.array(functions("lennard_jones", part)(gap))
-        for part in ("full", "repulsive", "attractive")
-    )
-    size = abs(repulsive) + abs(attractive)
-    assert (abs(repulsive + attractive - whole) <= 1e-14 * size).all()
-    assert (repulsive[0] > 0).all() and (attractive[0] < 0).all()
-
-
-def test_attraction_alone_is_van_der_waals():
-    gap = gaps("lennard_jones")
-    values = functions("lennard_jones", "attractive")(gap)
-    np.testing.assert_allclose(values.pressure, -HAMAKER / (6 * math.pi * gap**3), rtol=1e-14)
-    np.testing.assert_allclose(values.energy, -HAMAKER / (12 * math.pi * gap**2), rtol=1e-14)
 
 
 # --- Exponential
@@ -144,7 +68,7 @@ UNIT = snapin.exponential(p0=1.0, decay_length=1.0)
 def test_exponential_is_equation_30():
     p0, length = 2.5e8, 0.2e-9
     gap = length * np.linspace(-20, 40, 61)
-    values = functions("exponential", "full")(gap)
+    values = functions("exponential")(gap)
     pressure = p0 * np.exp(-gap / length)
     # The exponent, up to 40, carries its own rounding.
     np.testing.assert_allclose(values.pressure, pressure, rtol=1e-14)

@@ -5,8 +5,10 @@ import math
 import numpy as np
 import pytest
 import snapin
+from conftest import ROOT
 
 Z0, HAMAKER = 0.5e-9, 1e-19
+TABLE = ROOT / "inputs" / "examples" / "tabulated.txt"
 GAP = np.geomspace(0.05e-9, 200e-9, 80)
 
 
@@ -168,6 +170,18 @@ def test_a_capillary_bridge_has_the_energy_of_its_surface():
     ("&structural amplitude = 0, period = 1e-9, decay_length = 1e-9 /", 'key "amplitude"'),
     ("&morse surface_energy = 1, z0 = 1e-9 /", 'key "decay_length": missing'),
     ("&van_der_waals hamaker = 1e-300 /", "numbers have decimal orders"),
+    ("&double_layer potential = 0.05, debye_length = 2e-9, salt = 1 /", "debye_length"),
+    ("&double_layer potential = 0.05 /", "debye_length"),
+    ("&double_layer potential = 0, debye_length = 2e-9 /", 'key "potential"'),
+    ("&double_layer potential = 0.6, debye_length = 2e-9 /", "20 kT"),
+    ("&double_layer potential = 3*0.1, debye_length = 2e-9 /", "too many values"),
+    ("&double_layer debye_length = 2e-9 /", 'key "potential": missing'),
+    (f"&tabulated file = '{TABLE}' /", "give tail_exponent or tail_decay_length"),
+    (f"&tabulated file = '{TABLE}', tail_exponent = 3, tail_decay_length = 1e-9 /",
+     "give tail_exponent or tail_decay_length"),
+    (f"&tabulated file = '{TABLE}', tail_decay_length = 1e-11 /", "exp(-10)"),
+    ("&tabulated file = 'nowhere/law.txt', tail_exponent = 3 /", "no such file"),
+    ("&tabulated tail_exponent = 3 /", '&tabulated: key "file": missing'),
 ])
 def test_forces_that_contradict_themselves_are_refused(check, forces, phrase):
     status, _, err = check(

@@ -98,19 +98,6 @@ def test_a_profile_is_the_shape_that_it_was_taken_from(run, tmp_path):
         assert near[key] == pytest.approx(exact[key], rel=2e-4), key
 
 
-@pytest.mark.parametrize("shape", [
-    {"kind": "cone", "half_angle": math.atan(2.0)},
-    {"kind": "power", "exponent": 3.0, "coefficient": 0.5}], ids=["cone", "cube"])
-def test_what_a_cycle_loses_is_the_area_between_its_branches(run, shape):
-    run_of = run(scene(shape, 5.0, loading={"h0_start": 24.0, "h0_end": -6.0, "h0_step": 0.1},
-                       unloading={"h0_end": 24.0, "h0_step": 0.1}))
-    out, back = run_of.curve.rows("loading"), run_of.curve.rows("unloading_1")
-    area = -np.trapezoid(back["load"], back["h0"]) - np.trapezoid(out["load"], out["h0"])
-    # Steps meet the jumps with an error of a step times the jump of the load.
-    summary = run_of.summary
-    assert summary["energy_lost"] == pytest.approx(area, rel=0.03)
-
-
 # --- The mesh
 
 
@@ -171,12 +158,10 @@ def refused(run, shape, **groups):
     "shape, key, phrase",
     [
         ({"kind": "power"}, "exponent", "kind 'power' needs it"),
-        ({"kind": "power", "exponent": 0.5}, "exponent", "out of range"),
         ({"kind": "power", "exponent": 3.0}, "radius", "missing"),
         ({"kind": "power", "exponent": 3.0, "coefficient": 1.0, "radius": 1.0}, "radius",
          "the coefficient replaces it"),
         ({"kind": "cone"}, "half_angle", "kind 'cone' needs it"),
-        ({"kind": "cone", "half_angle": 1.6}, "half_angle", "out of range"),
         ({"kind": "cone", "half_angle": 1.0, "radius": 1.0}, "radius", "a cone has none"),
         ({"kind": "cone", "half_angle": 1.0, "exponent": 2.0}, "exponent",
          "belongs to kind 'power', not to 'cone'"),
@@ -187,7 +172,6 @@ def refused(run, shape, **groups):
         ({"kind": "rounded_punch", "radius": 1.0}, "flat_radius", "needs it"),
         ({"kind": "profile"}, "file", "needs it"),
         ({"kind": "profile", "file": "nowhere.txt"}, "file", "no such file"),
-        ({"kind": "pyramid"}, "kind", "one of 'parabola'"),
     ],
 )
 def test_a_shape_that_is_none_is_refused(run, shape, key, phrase):

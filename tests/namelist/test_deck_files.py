@@ -74,11 +74,6 @@ def test_huge_file_is_refused(snapin, tmp_path):
     refused_file(snapin, deck, "larger than")
 
 
-def test_endless_device_is_refused(snapin):
-    if os.path.exists("/dev/zero"):
-        refused_file(snapin, "/dev/zero", "larger than")
-
-
 def test_binary_file_is_refused(snapin, snapin_path):
     done = snapin("--check", snapin_path)
     assert done.returncode == 2
@@ -145,6 +140,35 @@ def test_every_printed_key_is_accepted(snapin, check):
             assert "allowed" not in err, err
 
 
+def beyond(described):
+    """Values that are just not those of a key described so."""
+    if described.startswith("one of "):
+        return ["'none'"]
+    near = 1 if "whole" in described else 1e-9
+    if match := re.search(r" from (\S+) to (\S+)", described):
+        low, high = (type(near)(end) for end in match.groups())
+        return [repr(low - near * (low or 1)), repr(high + near * high)] if near < 1 else [
+            str(low - 1), str(high + 1)]
+    match = re.search(r" (>=?) (\S+)(?: and (<=?) (\S+))?", described)
+    sign, low, other, high = match.groups() if match else (None,) * 4
+    return [repr(float(end) + (off if "=" in kind else 0))
+            for kind, end, off in ((sign, low, -near), (other, high, near)) if kind]
+
+
+def test_no_key_takes_what_is_beyond_the_range_that_is_printed(snapin, tmp_path):
+    decks = [(group, key, described.partition(";")[0], value)
+             for group, keys in printed_keys(snapin).items() for key, described in keys.items()
+             for value in beyond(described.partition(";")[0])]
+    assert len(decks) > 100
+    for i, (group, key, _, value) in enumerate(decks):
+        (tmp_path / f"{i}.nml").write_text(f"&{group} {key} = {value} /\n")
+    done = snapin("--check", *(f"{i}.nml" for i in range(len(decks))), cwd=tmp_path)
+    assert done.returncode == 2 and not done.stdout
+    for i, (group, key, described, _) in enumerate(decks):
+        said = re.search(rf'^{i}.nml:1: &{group}: key "{key}": (.*)$', done.stderr, re.M)
+        assert said and said[1].endswith(described), decks[i]
+
+
 def test_every_accepted_key_is_printed(snapin, check):
     """The reader lists the keys of a group when it meets a wrong one: the same as --keys."""
     table = printed_keys(snapin)
@@ -162,5 +186,6 @@ def test_keys_name_unit_default_and_meaning(snapin):
     assert table["loading"]["h0_step"] == "a number > 0 m; required"
     assert table["numerics"]["accuracy"] == "a number from 1e-10 to 0.1; default 1e-6"
     assert table["force"]["part"].endswith("default: full")
+    assert table["bodies"]["poisson"].startswith("up to 2 numbers > -1 and <= 0.5")
     lines = snapin("--keys").stdout.splitlines()
     assert all(len(line) > 30 for line in lines if line.startswith(" " * 20))

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 import snapin
 from conftest import ROOT
+from support.calculus import zero
 from support.dlvo import Dlvo
 from support.half_space import path_by_axis
 from support.scenes import JKR, of_numbers
@@ -45,14 +46,6 @@ def test_a_barrier_changes_tension_and_jumps_as_another_program_found(accuracy):
     assert found["jump_out_load"] == pytest.approx(-1.5618, abs=5e-5)
 
 
-def test_jumps_change_with_sigma_in_the_fifth_digit_for_each_ten_thousandth():
-    """So that digits are compared at one sigma, not at one that is rounded."""
-    found = behind_a_barrier(0.99987, 1e-8)
-    assert found["max_tension"] / (JKR * 0.99987) == pytest.approx(0.73649, abs=5e-6)
-    assert found["jump_in_h0"] == pytest.approx(2.85777, abs=5e-6)
-    assert found["jump_out_h0"] == pytest.approx(3.36004, abs=5e-6)
-
-
 @pytest.mark.parametrize("h0_end", [0.0, -6.0])
 def test_the_path_does_not_depend_on_gaps_where_no_force_acts(h0_end):
     """The mesh ends the farther out the deeper the path goes: gaps there are 10^7 z0 and more."""
@@ -84,27 +77,10 @@ def scene():
     return snapin.run(DECK), keys["bodies"], law
 
 
-def zero(function, low, high):
-    """The zero of a function between two gaps, by bisection."""
-    sign = function(low) > 0
-    for _ in range(80):
-        middle = (low + high) / 2
-        low, high = (middle, high) if (function(middle) > 0) == sign else (low, middle)
-    return low
-
-
 def test_the_scan_finds_the_extrema_of_the_equations():
     summary, law = scene()[0].summary, scene()[2]
 
-    def pressure(gap):
-        return float(law(np.array([gap]))[0][0])
-
-    def slope(gap):
-        return float(law(np.array([gap]))[1][0])
-
-    def energy(gap):
-        return float(law(np.array([gap]))[2][0])
-
+    pressure, slope, energy = (lambda gap, k=k: float(law(np.array([gap]))[k][0]) for k in range(3))
     rest = zero(pressure, 0.25e-9, 0.35e-9)
     top = zero(pressure, 0.4e-9, 3e-9)
     bottom = zero(pressure, 20e-9, 50e-9)

@@ -6,7 +6,7 @@ import functools
 import numpy as np
 import pytest
 import snapin
-from support.half_space import HalfSpace
+from support.half_space import HalfSpace, lennard_jones
 
 RADIUS, STIFFNESS, HAMAKER, Z0 = 0.94e-6, 42e6, 3.3e-21, 0.37e-9
 AMPLITUDE, PERIOD, DECAY = 18e6, 0.53e-9, 0.42e-9
@@ -26,10 +26,8 @@ def force(gap):
     energy = HAMAKER / (16 * np.pi * Z0**2)
     amplitude, rate = AMPLITUDE * Z0 / energy, -Z0 / DECAY + 2j * np.pi * Z0 / PERIOD
     wave = -amplitude * np.exp(rate * gap)
-    return (
-        8 / 3 * (gap**-9 - gap**-3) + wave.real,
-        8 * (gap**-4 - 3 * gap**-10) + (rate * wave).real,
-        gap**-8 / 3 - 4 / 3 * gap**-2 - (wave / rate).real)
+    waves = wave.real, (rate * wave).real, -(wave / rate).real
+    return tuple(map(sum, zip(lennard_jones(gap), waves)))
 
 
 @functools.cache

@@ -226,10 +226,7 @@ def test_cases_of_a_sweep_have_velocities_and_viscosities(run):
 
 
 @pytest.mark.parametrize("fluid, other, said", [
-    ({"viscosity": 0.0}, {}, "viscosity"),
-    ({"viscosity": -1.0}, {}, "viscosity"),
     ({"slip_length": 1.0}, {}, "viscosity"),
-    ({"viscosity": 1.0, "slip_length": -1.0}, {}, "slip_length"),
     ({"viscosity": 1.0, "slip_length": [1.0, 2.0, 3.0]}, {}, "slip_length"),
     ({"viscosity": 1.0}, {"drive": None, "equilibrium_path": {"h0_end": 0.0}}, "needs &drive"),
     ({"viscosity": 1.0}, {"shape": {"kind": "rounded_punch", "flat_radius": 3.0}},

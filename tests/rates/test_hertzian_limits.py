@@ -3,6 +3,7 @@ which load and depth are known in closed form (Lee and Radok; Ting on the way ba
 
 import numpy as np
 import pytest
+from support.calculus import zero
 from support.scenes import exponential
 
 # Depth in decay lengths of the repulsion, and stiffness at rest over that at once.
@@ -29,16 +30,14 @@ def relaxed_between(time, first, last):
 
 def ting(time, turn):
     """Load of a sphere of radius 1 that goes in with velocity DEPTH/turn, and back."""
-    low, high = 0.0, min(time, turn)
-    # On the way back the contact is as wide as it was at a time when it grew.
-    for _ in range(60 if time > turn else 0):
-        middle = (low + high) / 2
-        if relaxed_between(time, middle, turn) > relaxed_between(time, turn, time):
-            low = middle
-        else:
-            high = middle
-    root = np.sqrt(high) * (NODES + 1) / 2
-    integral = np.sqrt(high) / 2 * WEIGHTS @ (2 * root**2 * relaxation(time - root**2))
+
+    def longer(first):
+        return relaxed_between(time, first, turn) - relaxed_between(time, turn, time)
+
+    # On the way back the contact is as wide as it was at a time when it grew, until it is gone.
+    grown = time if time <= turn else zero(longer, 0.0, turn) if longer(0.0) > 0 else 0.0
+    root = np.sqrt(grown) * (NODES + 1) / 2
+    integral = np.sqrt(grown) / 2 * WEIGHTS @ (2 * root**2 * relaxation(time - root**2))
     return 4 / 3 * 1.5 * (DEPTH / turn)**1.5 * integral
 
 

@@ -152,13 +152,11 @@ def test_rows_have_times_and_ways(run):
 @pytest.mark.parametrize("change, message", [
     ({"viscoelastic": {"stiffness_relaxed": 2.0, "retardation_time": 1.0}},
      "above the instantaneous"),
-    ({"viscoelastic": {"stiffness_relaxed": 0.5, "retardation_time": -1.0}}, "retardation_time"),
     ({"viscoelastic": {"retardation_time": 1.0}}, "give one of"),
     ({"viscoelastic": {"compliance": [1.0, 2.0], "retardation_time": 1.0}}, "1 values for 2"),
     ({"drive": None, "viscoelastic": {"stiffness_relaxed": 0.5, "retardation_time": 1.0},
       "equilibrium_path": {"h0_end": 0.0}}, "needs &drive"),
     ({"drive": {"velocity": 1.0, "z_start": 1.0, "z_turn": 2.0}}, "is not above z_turn"),
-    ({"drive": {"velocity": 0.0, "z_start": 3.0, "z_turn": 2.0}}, "velocity"),
     ({"drive": {"velocity": 1.0, "z_start": 3.0, "z_turn": 2.0, "time_step": 1e-9}}, "steps"),
     ({"equilibrium_path": {"h0_end": 0.0}}, "which &drive does not have"),
     ({"bodies": {"radius": 1.0, "rigid": True}}, "needs bodies that deform, or &fluid"),

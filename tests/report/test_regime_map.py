@@ -5,6 +5,7 @@ import math
 
 import numpy as np
 import pytest
+from support.calculus import zero
 from support.scenes import lennard_jones, several
 
 THEORIES = ("hertz", "jkr", "dmt", "maugis", "carpick", "pietrement")
@@ -12,14 +13,6 @@ EDGE, REST = 3 ** (1 / 6), 1.0
 # Largest tension of the Lennard-Jones law over gamma/z0.
 STRENGTH = 16 / (9 * math.sqrt(3))
 SIGMAS = np.geomspace(1e-3, 1e3, 10)
-
-
-def root(function, low, high):
-    """The zero of a rising function, by bisection."""
-    for _ in range(200):
-        middle = (low + high) / 2
-        low, high = (low, middle) if function(middle) > 0 else (middle, high)
-    return (low + high) / 2
 
 
 # --- Theories. R = z0 = E/(1-nu^2) = 1, so that K = 4/3 E* = 2/3 and w = sigma. Each gives
@@ -52,7 +45,7 @@ def edge_ratio(a, strength):
         return (strength * a**2 / 2 * (t + (m * m - 2) * angle)
                 + 4 / 3 * strength**2 * a * (t * angle - m + 1) - 1)
 
-    return 1 + math.exp(root(equation, -35.0, 25.0))
+    return 1 + math.exp(zero(equation, -35.0, 25.0))
 
 
 def maugis_load(a, strength):
@@ -73,7 +66,7 @@ def maugis(load, w):
                      else (one, high))
     pull = min(maugis_load(low, strength), loads[0])
     wanted = load / (math.pi * w)
-    a = root(lambda a: maugis_load(a, strength) - wanted, low, 2 * (wanted + 10) ** (1 / 3))
+    a = zero(lambda a: maugis_load(a, strength) - wanted, low, 2 * (wanted + 10) ** (1 / 3))
     m = edge_ratio(a, strength)
     indentation = a**2 - 4 / 3 * strength * a * math.sqrt(m * m - 1)
     return math.pi * w * pull, a * unit, indentation * unit**2

@@ -1,7 +1,7 @@
 """An independent solution of the elastic problem in NumPy. It shares no code with the program.
 
 H = H0 + r^2/2 + 2 s Int P(H(t)) k(r, t) t dt on fixed Gauss-Legendre panels, by Newton's method and
-continuation in H0. Lengths are in units of the law's length; s is sigma or Lambda.
+continuation in the gap on the axis. Lengths are in units of the law's length; s is sigma or Lambda.
 """
 
 import ctypes
@@ -145,30 +145,6 @@ class HalfSpace:
         if layer:
             self.matrix += layer_image(targets, self.r, layer) * self.weight
 
-    def solve(self, law, s, h0, largest=0.8):
-        """The gaps (axis first) at each of several H0; `largest`: decrease of a gap in a step."""
-        r = np.concatenate([[0.0], self.r])
-        gap = h0[0] + r**2 / 2
-        found = []
-        for value in h0:
-            # Extrapolation by the last step, which is almost zero in contact.
-            gap = 2 * found[-1] - found[-2] if len(found) > 1 else gap
-            if found and gap.min() < 0.3:
-                gap = found[-1]
-            for _ in range(60):
-                pressure, slope, _ = law(gap[1:])
-                residual = gap - value - r**2 / 2 - 2 * s * self.matrix @ pressure
-                jacobian = np.eye(len(r))
-                jacobian[:, 1:] -= 2 * s * self.matrix * slope
-                step = np.linalg.solve(jacobian, -residual)
-                gap = gap + min(1, largest / max(1e-300, -step.min())) * step
-                if abs(step).max() < 1e-11 * max(1, abs(gap).max()):
-                    break
-            else:
-                raise ArithmeticError(f"no solution at {value}")
-            found.append(gap)
-        return found
-
     def with_axis(self, law, s, axis):
         """The gaps and H0 for each of several gaps on the axis, from large gaps inwards.
 
@@ -269,12 +245,6 @@ def dlvo(z0, **keys):
     return values
 
 
-def independent_states(law, s, h0, ends, largest=0.8):
-    """Gaps on the axis and loads at each H0 on panels with the given ends."""
-    return np.array(carried_out(
-        {"law": law, "s": s, "h0": list(h0), "ends": list(ends), "largest": largest})).T
-
-
 @functools.cache
 def path_by_axis(law, s, axis, ends, image=None, layer=None, softness=(0.0,), **keys):
     """H0 and loads, (two, states), at each gap on the axis, from large gaps inwards; and, for each
@@ -304,15 +274,11 @@ def main():
         "exponential": exponential, "lennard_jones": lennard_jones, "barrier": behind_a_barrier,
     }.get(task["law"]) or dlvo(**task["keys"])
     half_space = HalfSpace(task["ends"], image=task.get("image"), layer=task.get("layer"))
-    if "axis" in task:
-        states = half_space.with_axis(law, task["s"], task["axis"])
-        folds = [half_space.folds(law, task["s"], task["axis"], states, softness)
-                 for softness in task["softness"]]
-        loads = [[h0, half_space.load(law, task["s"], gap)] for gap, h0 in states]
-        print(json.dumps([loads, *folds]))
-        return
-    gaps = half_space.solve(law, task["s"], task["h0"], task["largest"])
-    print(json.dumps([[gap[0], half_space.load(law, task["s"], gap)] for gap in gaps]))
+    states = half_space.with_axis(law, task["s"], task["axis"])
+    folds = [half_space.folds(law, task["s"], task["axis"], states, softness)
+             for softness in task["softness"]]
+    loads = [[h0, half_space.load(law, task["s"], gap)] for gap, h0 in states]
+    print(json.dumps([loads, *folds]))
 
 
 if __name__ == "__main__":

@@ -6,6 +6,7 @@ import warnings
 import numpy as np
 import pytest
 import snapin
+from support.calculus import hermite
 
 BODIES = {"radius": 50e-9, "stiffness": 1e10}
 LENNARD_JONES = {"bodies": BODIES, "force": {"law": "lennard_jones", "hamaker": 1e-19, "z0": 3e-10}}
@@ -51,7 +52,7 @@ class Branches:
     def force(self, z, inward):
         """Load at positions of the drive on the way in or out."""
         jump = self.outer[0][0] if inward else self.inner[0][-1]
-        return np.where(z > jump, _hermite(z, *self.outer), _hermite(z, *self.inner))
+        return np.where(z > jump, through(z, *self.outer), through(z, *self.inner))
 
     def measure(self, n, noise=0.0, seed=0):
         """z, force and segment of n samples on each way; `noise` is white. The positions of the
@@ -73,16 +74,9 @@ def branches():
     return Branches(LENNARD_JONES)
 
 
-def _hermite(at, x, y):
-    """A cubic between adjacent points, at places that may be beyond the points."""
-    slope = np.gradient(y, x)
-    i = np.clip(np.searchsorted(x, at) - 1, 0, len(x) - 2)
-    width = x[i + 1] - x[i]
-    t = np.clip((at - x[i]) / width, 0, 1)
-    return (
-        (1 + 2 * t) * (1 - t) ** 2 * y[i] + t * (1 - t) ** 2 * width * slope[i]
-        + t**2 * (3 - 2 * t) * y[i + 1] + t**2 * (t - 1) * width * slope[i + 1]
-    )
+def through(at, x, y):
+    """A smooth curve through points."""
+    return hermite(at, x, y, np.gradient(y, x))
 
 
 def write(path, z, signal, segment=None, header="z,force,segment", digits=16):

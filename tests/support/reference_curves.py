@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.polynomial import chebyshev
-from support.measured import _hermite
+from support.measured import through
 from support.reference import Path
 
 RADIUS, Z0 = 50e-9, 3e-10
@@ -82,9 +82,9 @@ class Driven:
 
     def force(self, z, inward):
         if not self.turns:
-            return _hermite(z, *self.outer)
+            return through(z, *self.outer)
         jump = self.jump_in if inward else self.jump_out
-        return np.where(z > jump, _hermite(z, *self.outer), _hermite(z, *self.inner))
+        return np.where(z > jump, through(z, *self.outer), through(z, *self.inner))
 
 
 class Curve(NamedTuple):

@@ -14,6 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 from support.abel import Mesh
+from support.calculus import zero
 
 # The gap at the edge of the contact.
 EDGE = 1.25
@@ -107,11 +108,7 @@ def neck(sigma, c):
 
 def edge_radius(state):
     """The radius at which the gap is EDGE."""
-    low, high = 0.0, 10.0
-    for _ in range(60):
-        middle = (low + high) / 2
-        low, high = (middle, high) if state.at(np.array([middle]))[0] < EDGE else (low, middle)
-    return (low + high) / 2
+    return zero(lambda r: state.at(np.array([r]))[0] - EDGE, 1e-9, 10.0)
 
 
 def jkr_radius(sigma, h0):

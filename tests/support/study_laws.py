@@ -5,7 +5,6 @@ accuracy, and a deviation counts if it is well above the estimated error of the 
 seed is always the same scene.
 """
 
-import collections
 import math
 import random
 import shutil
@@ -13,6 +12,8 @@ from typing import NamedTuple
 
 import f90nml
 import numpy as np
+from support import comparison
+from support.comparison import Deviation
 from support.decks_in_units import LENGTHS, LOADS, run_deck
 from support.scenes import deck, several
 from support.study_cycles import logarithmic
@@ -27,8 +28,6 @@ FINER, FINEST = 1e-4, 1e-10
 # The error of the truth is its estimate; a deviation this many times larger is that of the run.
 WELL_ABOVE = 3
 SECONDS = 30
-# Quantiles of a table, and the smallest acceptable ratio: an estimate of 30 times the error.
-QUANTILES, PESSIMISTIC = (0.05, 0.5, 0.95), 1 / 30
 
 
 class Law(NamedTuple):
@@ -49,19 +48,6 @@ class Scene(NamedTuple):
     kind: str
     accuracy: float
     folder: object
-
-
-class Deviation(NamedTuple):
-    """A number of a run: the true value, its error, and its estimated error."""
-
-    key: str
-    value: float
-    error: float
-    allowed: float
-
-    @property
-    def ratio(self):
-        return self.error / self.allowed if self.allowed else math.inf
 
 
 class Finding(NamedTuple):
@@ -257,53 +243,24 @@ def of_number(summary, key, i, size):
     return summary.get("error_estimate", 0.0) * size
 
 
-def is_bad(finding):
-    """Something is missing, invented or failed, or an error is larger than its estimate."""
-    return finding.wrong or any(one.ratio > 1 for one in finding.deviations)
-
-
 def is_warned(finding):
     """Whether a run warns that it is less accurate than requested."""
     return any("resolve" in said or "error" in said for said in finding.warnings)
 
 
 def table(findings):
-    """Lines of a report: quantiles of the ratio for each number, and the largest errors."""
-    by_key = collections.defaultdict(list)
-    for finding in findings:
-        for one in finding.deviations:
-            by_key[finding.scene.kind, one.key].append(one.ratio)
-    every = [ratio for ratios in by_key.values() for ratio in ratios]
-    heads = [f"{100 * q:.0f} %" for q in QUANTILES]
-    lines = [f"{'true error over estimated':<34} {'number':>6} " + "".join(f"{h:>9}" for h in heads)
-             + f"{'largest':>9} {'above 1':>8} {'below 1/30':>11}"]
-    for (kind, key), ratios in [*sorted(by_key.items()), (("all", "numbers"), every)]:
-        if ratios:
-            cells = "".join(f"{x:9.1e}" for x in [*np.quantile(ratios, QUANTILES), max(ratios)])
-            low = sum(r < PESSIMISTIC for r in ratios)
-            lines.append(f"{kind + ' ' + key:<34} {len(ratios):6d} {cells} "
-                         f"{sum(r > 1 for r in ratios):8d} {low:11d}")
+    """Lines of a report: errors and estimates, and what the scenes cost."""
+    lines = comparison.table((named(f.scene), f.scene.kind, f) for f in findings)
     unknown = sum(finding.unknown for finding in findings)
     compared = sum(bool(f.deviations) or f.unknown > 0 for f in findings)
-    lines.append(f"scenes {len(findings)}, compared {compared}; "
-                 f"numbers as good as the truth {unknown}")
     seconds = [f.seconds for f in findings]
-    lines.append(f"seconds: median {np.median(seconds):.2g}, 99 % "
-                 f"{np.quantile(seconds, 0.99, method='higher'):.2g}, largest {max(seconds):.2g}; "
-                 f"with a warning on the mesh or the error {sum(map(is_warned, findings))}, lost "
-                 f"{sum(bool(f.wrong) for f in findings)}")
-    lines += offenders(findings)
-    return lines
-
-
-def offenders(findings, most=25):
-    """Lines on the numbers above their estimates and on what is missing, invented or failed."""
-    above = [(one, f.scene) for f in findings for one in f.deviations if one.ratio > 1]
-    above.sort(key=lambda item: -item[0].ratio)
-    lines = [f"  {named(s)} {one.key}: {one.ratio:.1e} (off by {one.error:.1e} of {one.value:.6g})"
-             for one, s in above[:most]]
-    odd = [f for f in findings if f.wrong]
-    return lines + [f"  {named(f.scene)}: {'; '.join(f.wrong)[:200]}" for f in odd[:most]]
+    return [
+        *lines,
+        f"scenes {len(findings)}, compared {compared}; numbers as good as the truth {unknown}",
+        f"seconds: median {np.median(seconds):.2g}, 99 % "
+        f"{np.quantile(seconds, 0.99, method='higher'):.2g}, largest {max(seconds):.2g}; "
+        f"with a warning on the mesh or the error {sum(map(is_warned, findings))}, lost "
+        f"{sum(bool(f.wrong) for f in findings)}"]
 
 
 def named(scene):

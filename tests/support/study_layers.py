@@ -9,9 +9,9 @@ import math
 import random
 
 from support import study_laws
-from support.study_laws import RADIUS, Law, compared, is_bad, lennard_jones, logarithmic, table
+from support.study_laws import RADIUS, Law, compared, lennard_jones, logarithmic, table
 
-__all__ = ["examine", "is_bad", "jobs", "table"]
+__all__ = ["examine", "jobs", "table"]
 
 # Strengths of adhesion.
 STRENGTHS = (1e-2, 1e2)

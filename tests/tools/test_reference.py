@@ -3,7 +3,6 @@
 It is part of the tests, not of the program; studies and tests hold the program against it.
 """
 
-import csv
 import math
 
 import numpy as np
@@ -13,7 +12,6 @@ from support.known import BY_SIGMA, BY_TABOR, ERRORS
 from support.reference import CUSP, Path, path
 from support.scenes import JKR
 from support.series import FINE, USUAL
-from support.tabulate import COLUMNS, DEPTH, FILE, numbers, strengths
 
 
 @pytest.mark.parametrize("centre, d, finer", [(0.0, 0.3, 2), (1.0, 0.05, 1), (1.0, 0.2, 2)])
@@ -65,10 +63,17 @@ def test_published_parameters_give_the_known_table(tabor):
         assert one == pytest.approx(other, abs=error)
 
 
+def numbers(found):
+    """The results of a path, those that there are."""
+    end = found.on(found.contact_branch, found.h0_end)
+    points = [found.pull_off, found.jump_in, found.jump_out, end]
+    return np.array([value for point in points if point for value in (point.h0, point.load)]
+                    + [found.energy_lost or 0.0])
+
+
 @pytest.mark.parametrize("sigma", [1e-3, 0.35, 30.0])
 def test_two_resolutions_agree_to_nine_digits(sigma):
-    usual = np.array(numbers(Path(sigma, DEPTH, resolution=USUAL)))
-    fine = np.array(numbers(Path(sigma, DEPTH, resolution=FINE)))
+    usual, fine = (numbers(Path(sigma, resolution=each)) for each in (USUAL, FINE))
     np.testing.assert_allclose(usual, fine, rtol=1e-9)
 
 
@@ -96,27 +101,3 @@ def test_branches_between_the_jumps_are_unstable_however_many_folds():
     assert len(found.folds) == 8
     unstable = [branch.unstable for branch in found.branches]
     assert unstable == [0, 1, 2, 3, 4, 3, 2, 1, 0]
-
-
-# --- The table
-
-
-def table():
-    with FILE.open() as file:
-        return {float(row["sigma"]): row for row in csv.DictReader(file)}
-
-
-def test_the_table_has_every_strength_and_says_how_good_it_is():
-    rows = table()
-    assert list(rows) == strengths()
-    for sigma, row in rows.items():
-        # So near the cusp the area is a difference of almost equal ones.
-        allowed = 1e-9 if abs(sigma / CUSP - 1) > 0.005 else 1e-8
-        assert float(row["difference"]) < allowed, sigma
-
-
-@pytest.mark.parametrize("sigma", [0.33, 100.0])
-def test_the_table_is_what_the_reference_computes(sigma):
-    row = table()[sigma]
-    stored = [float(row[name]) for name in COLUMNS]
-    np.testing.assert_allclose(numbers(path(sigma, DEPTH)), stored, rtol=1e-9)

@@ -15,18 +15,15 @@ from support.processes import HANG
 pytest.importorskip("matplotlib")
 import curves  # noqa: E402 (needs matplotlib)
 import draws  # noqa: E402
-import fig03  # noqa: E402
 import fig06  # noqa: E402
 import fig08  # noqa: E402
 import fig11  # noqa: E402
 import misprints  # noqa: E402
-import penetrations  # noqa: E402
 import report  # noqa: E402
 import style  # noqa: E402
 from runs import RunError, Runs  # noqa: E402
 
 INPUTS = ROOT / "inputs"
-CYCLES = ("fig10a_converged", "fig10b_converged", "fig10c_converged")
 DECK = """&bodies radius = 1.5e-2, rigid = .true. /
 &force law = 'exponential', p0 = 1e7, decay_length = 1e-9 /
 &loading h0_start = 2e-9, h0_end = 0, h0_step = 1e-9 /
@@ -239,21 +236,7 @@ def test_the_command_writes_report_table_and_picture_and_fails_on_a_bad_name(sna
     assert run("-j", "0", "fig03").returncode == 2
 
 
-# --- Figs. 3 to 6
-
-
-@pytest.mark.parametrize(("big_lambda", "percent"), [(0.01, -88.4), (1, -45.5), (1e4, -13.7)])
-def test_figure_3_hertz_theory_is_off_by_the_known_amounts(runs, big_lambda, percent):
-    assert fig03.at(fig03.errors(runs), "hertz", big_lambda) == pytest.approx(percent, abs=0.05)
-
-
-def test_figure_3_both_approximations_are_low_and_worse_for_larger_lambda(runs):
-    found = fig03.errors(runs)
-    for key, percent in (("displacement", -0.79), ("load", -1.39)):
-        assert (found[key] < 0).all() and (np.diff(found[key]) < 0).all()
-        assert fig03.at(found, key, 0.01) == pytest.approx(percent, abs=0.005)
-    assert (found["load"] < found["displacement"]).all()
-    assert (np.diff(found["hertz"]) > 0).all()
+# --- Figures, and chapters as a whole
 
 
 def test_figure_6_neck_and_tension_are_those_between_the_nodes(runs):
@@ -274,22 +257,6 @@ def test_the_printed_kernel_is_a_misprint(runs):
     assert abs(found["modulus"] / found["angular"] - 1) > 0.05
 
 
-# --- Figs. 7 to 9
-
-
-@pytest.mark.parametrize("stem", CYCLES)
-def test_pull_off_is_one_value_and_the_contact_one_branch_whatever_the_penetration(runs, stem):
-    pulls = penetrations.of_cycle(runs[stem])
-    assert len(pulls) >= 3 and penetrations.spread(pulls) < 1e-6
-    assert runs[stem].summary["max_tension"] == pytest.approx(
-        pulls[0].ratio * runs[stem].summary["jkr_pull_off"], rel=1e-6)
-    loading, unloading = fig11.both_in_contact(runs[stem])
-    assert loading.size > 20 and (loading > 0).all()
-    np.testing.assert_allclose(unloading, loading, rtol=1e-5)
-    # Unloading never has the smaller tension.
-    assert fig11.least_excess(runs[stem]) > -1e-8
-
-
 def test_estimates_of_jumps_are_those_that_were_evaluated_independently(runs):
     found = fig08.exact(runs)
     for name, value, unit in (
@@ -297,24 +264,6 @@ def test_estimates_of_jumps_are_those_that_were_evaluated_independently(runs):
             ("jump_equation_37_gap", 4.7403, 1e-4), ("fold_closed_form_h0", 6.2995, 1e-4),
             ("fold_closed_form_load", -0.4138, 1e-4)):
         assert found[name] == pytest.approx(value, abs=unit)
-
-
-# --- Figs. 10 and 11, and chapters as a whole
-
-
-@pytest.mark.slow
-def test_a_grid_coarser_than_the_neck_makes_the_loops_of_the_paper(runs):
-    coarse = runs["fig10c_coarse"]
-    assert coarse.summary["resolved"] is False
-    assert coarse.summary["worst_residual"] < 1e-6
-    loading, unloading = fig11.both_in_contact(coarse)
-    assert np.median(unloading / loading) > 1.05
-    # JKR theory between loading and unloading, nearer to the former.
-    assert 0.1 < penetrations.between(coarse) < 0.5
-    # Each unloading leaves the loading on a line of its own.
-    loads = [curves.at(-0.5e-9, coarse.branch(f"unloading_{i}"), "load") for i in (2, 3)]
-    assert abs(loads[0] / loads[1] - 1) > 0.05
-    assert coarse.summary["max_tension"] > 1.2 * coarse.summary["jkr_pull_off"]
 
 
 def quicker(groups):

@@ -75,14 +75,6 @@ def test_every_list_of_a_summary_is_an_array_though_it_may_hold_one_value(result
     assert one.summary["unload_from"].tolist() == [-1e-9]
 
 
-def test_a_sweep_has_its_table(run):
-    scene = lennard_jones(
-        0.5, equilibrium_path={"h0_end": 0.0}, sweep={"key": "force.hamaker", "values": [5.0, 9.0]})
-    mine = snapin.run(scene)
-    assert list(mine.tables) == ["sweep"]
-    assert_same(mine.sweep, run(scene).table("sweep.csv").columns)
-
-
 def test_a_table_that_the_run_has_not_is_answered_with_those_it_has(result):
     with pytest.raises(AttributeError, match="^no table 'sweep'; this run has approximations, "):
         result.sweep

@@ -27,14 +27,9 @@ sys.path.insert(0, str(ROOT / "tests"))
 
 from support import study_cycles, study_estimates, study_folds  # noqa: E402
 from support import study_laws, study_layers  # noqa: E402
+from support.comparison import is_bad  # noqa: E402
 from support.decks_in_units import program_path  # noqa: E402
 from support.spread import spread  # noqa: E402
-
-
-def bad_estimate(finding):
-    """A missing number, or an error that exceeds the estimate."""
-    ratios = (study_estimates.ratio(one) for one in finding.deviations)
-    return finding.wrong or any(ratio is not None and ratio > 1 for ratio in ratios)
 
 
 def cusp_jobs(count, folder, *, seed):
@@ -45,13 +40,13 @@ def cusp_jobs(count, folder, *, seed):
 # Module, jobs, number of them (decks for cycles, scenes for laws, else strengths), and the test for
 # a bad finding.
 STUDIES = {
-    "estimates": (study_estimates, study_estimates.jobs, 40, bad_estimate),
+    "estimates": (study_estimates, study_estimates.jobs, 40, is_bad),
     "cycles": (study_cycles, study_cycles.jobs, 1000, lambda finding: finding.wrong),
     "cusp": (study_cycles, cusp_jobs, 1000, lambda finding: finding.wrong),
     "folds": (study_folds, study_folds.jobs, 10, lambda finding: finding.wrong),
-    "laws": (study_laws, study_laws.jobs, 1000, study_laws.is_bad),
-    "layers": (study_layers, study_layers.jobs, 200, study_layers.is_bad),
-    "energy": (study_estimates, study_estimates.energy_jobs, 40, bad_estimate),
+    "laws": (study_laws, study_laws.jobs, 1000, is_bad),
+    "layers": (study_layers, study_layers.jobs, 200, is_bad),
+    "energy": (study_estimates, study_estimates.energy_jobs, 40, is_bad),
 }
 SEEDED = ("cycles", "cusp", "laws", "layers")
 

@@ -1,0 +1,37 @@
+"""Zeros, derivatives and integrals of functions that tests can evaluate."""
+
+import numpy as np
+
+
+def zero(function, low, high):
+    """A place between two others at which a function changes its sign, by bisection."""
+    sign = function(low) > 0
+    for _ in range(200):
+        middle = (low + high) / 2
+        low, high = (middle, high) if (function(middle) > 0) == sign else (low, middle)
+    return low
+
+
+def derivative(function, at, step):
+    """The derivative by central differences, extrapolated twice: of the sixth order."""
+    d = [(function(at + h) - function(at - h)) / (2 * h) for h in (step, step / 2, step / 4)]
+    d = [(4 * d[1] - d[0]) / 3, (4 * d[2] - d[1]) / 3]
+    return (16 * d[1] - d[0]) / 15
+
+
+def integrals(function, ends):
+    """The integrals of a function and of its size between successive ends, by Gauss's rule."""
+    x, w = np.polynomial.legendre.leggauss(30)
+    low, length = ends[:-1, None], np.diff(ends)[:, None]
+    values = function((low + length * (x + 1) / 2).ravel()).reshape(-1, x.size) * length
+    return values @ (w / 2), abs(values) @ (w / 2)
+
+
+def hermite(at, x, y, slope):
+    """Cubics between points with given slopes; constant beyond the first and the last."""
+    i = np.clip(np.searchsorted(x, at) - 1, 0, len(x) - 2)
+    width = x[i + 1] - x[i]
+    t = np.clip((at - x[i]) / width, 0, 1)
+    return (
+        (1 + 2 * t) * (1 - t) ** 2 * y[i] + t * (1 - t) ** 2 * width * slope[i]
+        + t**2 * (3 - 2 * t) * y[i + 1] + t**2 * (t - 1) * width * slope[i + 1])
