@@ -8,7 +8,7 @@
 !> over both. Where the polynomial cannot decide, a state is solved and added to the arc.
 module path_search
   use kinds, only: wp
-  use dimensionless_problem, only: problem_t
+  use represented_pressure, only: pressure_slope_t, slope_on
   use contact_state, only: state_t
   use solver, only: solver_t
   use interpolation, only: hermite_t
@@ -28,8 +28,8 @@ module path_search
   integer, parameter :: golden_steps = 30
   real(wp), parameter :: at_end = 1.0e-5_wp
   !> Largest number of states solved in one search; change of place below which rounding may keep
-  !> the residual from falling; and the largest change of place, over the interval, along the
-  !> tangent of a state: the error of the moved state is the square of it.
+  !> the residual from falling; and the largest change of place, over the interval, that follows
+  !> the tangent of a state without another solve: the error of the moved state is its square.
   integer, parameter :: most_rounds = 60
   real(wp), parameter :: rounding_rules = 1.0e-6_wp, along_tangent = 1.0e-6_wp
   !> Relative distance from the wanted value of Q, or distance in the law's lengths, that rounding
@@ -248,7 +248,8 @@ contains
       ! The next step would be smaller by at least the ratio of this one to the last one.
       if (abs(change) < least_change .or. abs(change) < along_tangent*(ends(2) - ends(1)) .and. &
         (present(wanted) .or. change**2 < least_change*before)) then
-        call move(solver%problem, found, change)
+        call move(found, change, slope_on(solver%problem%law, solver%meshes%grid(near%mesh), &
+          found%state%gap))
         if (present(wanted)) found%miss = miss_of(found)
         exit
       end if
@@ -289,15 +290,15 @@ contains
 
   end subroutine find_place
 
-  !> Moves a state by a small change of its coordinate.
-  subroutine move(problem, found, change)
-    type(problem_t), intent(in) :: problem
+  !> Moves a state by a small change of its coordinate. slope: that of the law at its gaps.
+  subroutine move(found, change, slope)
     type(found_t), intent(inout) :: found
     real(wp), intent(in) :: change
+    type(pressure_slope_t), intent(in) :: slope
 
     found%coordinate = found%coordinate + change
     associate (state => found%state, tangent => found%tangent)
-      state%pressure = state%pressure + change*problem%law%slope(state%gap)*tangent%gap
+      state%pressure = state%pressure + change*slope%times(tangent%gap)
       state%gap = state%gap + change*tangent%gap
       state%h0 = state%h0 + change*tangent%h0
       state%scale = state%scale + change*tangent%scale
