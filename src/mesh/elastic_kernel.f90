@@ -11,55 +11,83 @@ module elastic_kernel
   private
   public :: kernel, kernel_log_coefficient
 
-  !> Steps of the mean that reach double precision from the first of these ratios upward; one more
-  !> step from the next ratio upward, and so on; four more steps are enough from 1e-14.
-  integer, parameter :: fewest_steps = 3
-  real(wp), parameter :: one_more(4) = [0.45_wp, 0.06_wp, 9.0e-4_wp, 2.0e-7_wp]
+  !> A step of the mean is needed if a ratio is below the first of these numbers, one more step
+  !> below the next, and so on. The ratios are then so near to 1 that the series is exact.
+  real(wp), parameter :: one_more(6) = [0.82_wp, 0.271_wp, 0.019_wp, 9.1e-5_wp, 2.1e-9_wp, &
+    1.2e-18_wp]
+  !> Coefficients, after 1, of the series of 1/agm(1 + q, 1 - q) in q**2.
+  real(wp), parameter :: series(7) = [1/4.0_wp, 9/64.0_wp, 25/256.0_wp, 1225/16384.0_wp, &
+    3969/65536.0_wp, 53361/1048576.0_wp, 184041/4194304.0_wp]
   !> Number of means that are computed together.
-  integer, parameter :: at_once = 16
+  integer, parameter :: at_once = 8
 
 contains
 
   !> The kernel k as a function of the sums r + t and the distances |r - t|, both positive; its unit
   !> is the inverse of that of the arguments. Integrable (logarithmic) singularity at distance 0.
   pure function kernel(total, distance) result(k)
-    real(wp), intent(in) :: total(:), distance(:)
+    real(wp), intent(in), contiguous :: total(:), distance(:)
     real(wp) :: k(size(total))
 
-    k = 2/(total*agm(distance/total))
+    k = over_means(2.0_wp, total, distance)
   end function kernel
 
   !> The coefficient a in k = -a ln(|r - t|) + smooth; a is analytic at t = r.
   pure function kernel_log_coefficient(total, distance) result(a)
-    real(wp), intent(in) :: total(:), distance(:)
-    real(wp), dimension(size(total)) :: a, x
+    real(wp), intent(in), contiguous :: total(:), distance(:)
+    real(wp) :: a(size(total))
 
-    x = distance/total
-    a = 4/(pi*total*agm(sqrt((1 - x)*(1 + x))))
+    a = over_means(4/pi, total, sqrt((total - distance)*(total + distance)))
   end function kernel_log_coefficient
 
-  !> Arithmetic-geometric means of 1 and x, 0 < x <= 1, to rounding. A fixed number of values is
-  !> iterated together, with the number of steps that the smallest of them needs, so that the loops
-  !> vectorise. (Consecutive points usually have similar values.)
-  pure function agm(x) result(mean)
-    real(wp), intent(in) :: x(:)
-    real(wp) :: mean(size(x))
-    real(wp), dimension(at_once) :: a, b, next
-    integer :: step, first, last
+  !> A factor over the arithmetic-geometric means of x and y, 0 < y <= x, to rounding. If the last
+  !> values are fewer than are computed together, values before them are computed again.
+  pure function over_means(factor, x, y) result(quotient)
+    real(wp), intent(in) :: factor
+    real(wp), intent(in), contiguous :: x(:), y(:)
+    real(wp) :: quotient(size(x)), few(at_once, 3)
+    integer :: first, last, i, n
 
-    do first = 1, size(x), at_once
-      last = min(first + at_once - 1, size(x))
-      b(:last - first + 1) = x(first:last)
-      b(last - first + 2:) = 1
-      a = 1
-      do step = 1, fewest_steps + count(minval(b) < one_more)
-        next = 0.5_wp*(a + b)
-        b = sqrt(a*b)
-        a = next
-      end do
-      a = 0.5_wp*(a + b)
-      mean(first:last) = a(:last - first + 1)
+    n = size(x)
+    if (n < at_once) then
+      few = 1
+      few(:n, 1) = x
+      few(:n, 2) = y
+      call divide(factor, few(:, 1), few(:, 2), few(:, 3))
+      quotient = few(:n, 3)
+      return
+    end if
+    do first = 1, n, at_once
+      i = min(first, n + 1 - at_once)
+      last = i + at_once - 1
+      call divide(factor, x(i:last), y(i:last), quotient(i:last))
     end do
-  end function agm
+  end function over_means
+
+  !> The same for a fixed number of values, so that the loops vectorise. All take the number of
+  !> steps that one of them needs. (Consecutive points usually have similar ratios.)
+  pure subroutine divide(factor, x, y, quotient)
+    real(wp), intent(in) :: factor, x(at_once), y(at_once)
+    real(wp), intent(out) :: quotient(at_once)
+    real(wp), dimension(at_once) :: a, b, next
+    integer :: step, k
+
+    a = x
+    b = y
+    next = b/a
+    next(:4) = min(next(:4), next(5:))
+    do step = 1, count(minval(next(:4)) < one_more)
+      next = 0.5_wp*(a + b)
+      b = sqrt(a*b)
+      a = next
+    end do
+    next = 2/(a + b)
+    a = (0.5_wp*(a - b)*next)**2
+    b = series(size(series))
+    do k = size(series) - 1, 1, -1
+      b = series(k) + b*a
+    end do
+    quotient = factor*(next + next*(b*a))
+  end subroutine divide
 
 end module elastic_kernel

@@ -3,19 +3,13 @@
 module graded_kernel
   use kinds, only: wp
   use elastic_kernel, only: kernel
-  use linear_algebra, only: multiply_transposed
+  use linear_algebra, only: multiply_left, multiply_transposed
   use quadrature, only: legendre_values
   use panel_map, only: panel_map_t, sinh_map, power_map
   use graded_rule, only: graded_rule_t
   implicit none
   private
   public :: add_graded
-
-  !> Quadrature points of a panel, graded towards a place: distances from the place, positions, and
-  !> weights for integrals of f t dt, with f a tail times a polynomial.
-  type :: points_t
-    real(wp), allocatable :: distance(:), t(:), weight(:)
-  end type points_t
 
   !> Below this argument the series of sinh is exact, and the difference of exponentials cancels.
   real(wp), parameter :: small = 0.5_wp
@@ -35,6 +29,8 @@ contains
     real(wp), intent(inout) :: moments(:, :)
     integer :: beyond(size(target) - count(node < rule%part)), inside, k
     logical :: far(size(target) - count(node < rule%part))
+    ! Graded points: distances from the place towards which they are graded, positions, weights.
+    real(wp), dimension(size(rule%step)) :: distance, t, weight
 
     inside = count(node < rule%part)
     beyond = [(k, k=1, own - 1), (k, k=own + inside, size(target))]
@@ -60,17 +56,16 @@ contains
     subroutine add_points(from, length, which)
       real(wp), intent(in) :: from, length
       integer, intent(in) :: which(:)
-      type(points_t) :: points
       real(wp) :: f(size(rule%step), size(which)), gap
       integer :: j
 
       if (size(which) == 0) return
-      points = points_from(panel, rule, centre, from, length)
+      call find_points(panel, rule, centre, from, length, distance, t, weight)
       do j = 1, size(which)
         gap = 0
         if (which(j) < own .or. which(j) >= own + inside) &
           gap = abs(target(which(j)) - panel%offset(from))
-        f(:, j) = points%weight*kernel(centre + target(which(j)) + points%t, gap + points%distance)
+        f(:, j) = weight*kernel(centre + target(which(j)) + t, gap + distance)
       end do
       call add(legendre_values(from + length*rule%step, size(node)), f, which)
     end subroutine add_points
@@ -96,95 +91,95 @@ contains
       integer, intent(in) :: which(:)
       real(wp) :: of_these(size(node), size(which))
 
-      call multiply_transposed(legendre, f, of_these)
+      if (size(which) == 1) then
+        call multiply_left(f(:, 1), legendre, of_these(:, 1))
+      else
+        call multiply_transposed(legendre, f, of_these)
+      end if
       moments(:, which) = moments(:, which) + of_these
     end subroutine add
 
   end subroutine add_graded
 
   !> Points graded towards the place `from`, over `length` of the panel after it or, if negative,
-  !> before it.
-  pure function points_from(panel, rule, centre, from, length) result(points)
+  !> before it: distances from the place, positions, and weights for integrals of f t dt, with f a
+  !> tail times a polynomial.
+  pure subroutine find_points(panel, rule, centre, from, length, distance, t, weight)
     type(panel_map_t), intent(in) :: panel
     type(graded_rule_t), intent(in) :: rule
     real(wp), intent(in) :: centre, from, length
-    type(points_t) :: points
-    real(wp), dimension(size(rule%step)) :: growth, chord
-    real(wp) :: z
+    real(wp), intent(out) :: distance(:), t(:), weight(:)
+    real(wp) :: z, z_length
 
     if (panel%kind == sinh_map) then
       z = panel%z_left + panel%z_length*from
-      call exponentials(0.5_wp*panel%z_length*abs(length)*rule%step, growth, chord)
-      points = points_along_sinh(panel%d, exp(sign(1.0_wp, length)*z), growth, chord)
-      points%t = centre + panel%d*sinh(z) + sign(1.0_wp, length)*points%distance
-      points%weight = points%weight*panel%z_length*abs(length)*rule%step_weight*points%t
+      z_length = panel%z_length*abs(length)
+      call place_along_sinh(panel%d, exp(sign(1.0_wp, length)*z), 0.5_wp*z_length, rule%step, &
+        distance, weight)
+      t = centre + panel%d*sinh(z) + sign(1.0_wp, length)*distance
+      weight = weight*z_length*rule%step_weight*t
     else if (panel%kind == power_map) then
-      points = points_of_power(panel, from, length*rule%step, abs(length)*rule%step_weight)
+      call place_on_power(panel, from, length, rule%step, distance, t, weight)
+      weight = weight*abs(length)*rule%step_weight
     else
-      points = points_of_tail(panel, from, length*rule%step, abs(length)*rule%step_weight)
+      call place_in_tail(panel, from, length, rule%step, distance, t, weight)
+      weight = weight*abs(length)*rule%step_weight
     end if
-  end function points_from
+  end subroutine find_points
 
-  !> exp(x) and 2 sinh(x) for x > 0, without cancellation.
-  pure subroutine exponentials(x, growth, chord)
-    real(wp), intent(in) :: x(:)
-    real(wp), intent(out) :: growth(:), chord(:)
-    real(wp), dimension(size(x)) :: square
-    integer :: k
+  !> Points along offset = d sinh(z), from z0 to z0 + delta with delta = 2 half step > 0: distances
+  !> d (sinh(z0 + delta) - sinh(z0)) and, as weights, the derivative of the map by z. grown:
+  !> exp(z0). The distance contains 2 sinh(delta/2), so that there is no cancellation.
+  pure subroutine place_along_sinh(d, grown, half, step, distance, weight)
+    real(wp), intent(in) :: d, grown, half, step(:)
+    real(wp), intent(out) :: distance(:), weight(:)
+    real(wp) :: x, growth, chord, middle
+    integer :: i, k
 
-    growth = exp(x)
-    square = x**2
-    chord = 1
-    do k = 15, 3, -2
-      chord = 1 + chord*(square*(1.0_wp/(k*(k - 1))))
-    end do
-    chord = merge(2*x*chord, growth - 1/growth, x < small)
-  end subroutine exponentials
-
-  !> Points along offset = d sinh(z), from z0 to z0 + delta with delta > 0: distances d (sinh(z0 +
-  !> delta) - sinh(z0)) and, as weights, the derivative of the map by z. The arguments are exp(z0),
-  !> exp(delta/2) and 2 sinh(delta/2), so that there is no cancellation. The positions are not set.
-  pure function points_along_sinh(d, grown, growth, chord) result(points)
-    real(wp), intent(in) :: d, grown, growth(:), chord(:)
-    type(points_t) :: points
-    real(wp), dimension(size(growth)) :: middle
-
-    middle = grown*growth
-    points%distance = 0.5_wp*d*chord*(middle + 1/middle)
-    middle = middle*growth
-    points%weight = 0.5_wp*d*(middle + 1/middle)
-  end function points_along_sinh
-
-  !> Points on a power panel from s to s + by (by of either sign). The distance is a sum of positive
-  !> terms: a**n - b**n = (a - b) (a**(n - 1) + a**(n - 2) b + ... + b**(n - 1)).
-  pure function points_of_power(panel, s, by, weight) result(points)
-    type(panel_map_t), intent(in) :: panel
-    real(wp), intent(in) :: s, by(:), weight(:)
-    type(points_t) :: points
-    integer :: k
-
-    associate (to => s + by, long => panel%right - panel%left, n => panel%power)
-      points%t = long*to**n
-      points%distance = 0*by
-      do k = 0, n - 1
-        points%distance = points%distance + s**(n - 1 - k)*to**k
+    do i = 1, size(step)
+      x = half*step(i)
+      growth = exp(x)
+      chord = 1
+      do k = 15, 3, -2
+        chord = 1 + chord*(x**2*(1.0_wp/(k*(k - 1))))
       end do
-      points%distance = long*abs(by)*points%distance
-      points%weight = weight*n*long*to**(n - 1)*points%t
-    end associate
-  end function points_of_power
+      chord = merge(2*x*chord, growth - 1/growth, x < small)
+      middle = grown*growth
+      distance(i) = 0.5_wp*d*chord*(middle + 1/middle)
+      middle = middle*growth
+      weight(i) = 0.5_wp*d*(middle + 1/middle)
+    end do
+  end subroutine place_along_sinh
 
-  !> Points in the tail from s to s + by (by of either sign): position = begin/(1 - s).
-  pure function points_of_tail(panel, s, by, weight) result(points)
+  !> Points on a power panel from s to s + length. The distance is a sum of positive terms: a**n -
+  !> b**n = (a - b) (a**(n - 1) + a**(n - 2) b + ... + b**(n - 1)).
+  pure subroutine place_on_power(panel, s, length, step, distance, t, weight)
     type(panel_map_t), intent(in) :: panel
-    real(wp), intent(in) :: s, by(:), weight(:)
-    type(points_t) :: points
-    real(wp) :: left(size(by))
+    real(wp), intent(in) :: s, length, step(:)
+    real(wp), intent(out) :: distance(:), t(:), weight(:)
+    integer :: k
 
-    left = (1 - s) - by
-    points%t = panel%begin/left
-    points%distance = abs(by)*points%t/(1 - s)
-    points%weight = weight*panel%begin**2*left**(panel%decay - 3)
-  end function points_of_tail
+    associate (to => s + length*step, long => panel%right - panel%left, n => panel%power)
+      t = long*to**n
+      distance = 0
+      do k = 0, n - 1
+        distance = distance + s**(n - 1 - k)*to**k
+      end do
+      distance = long*abs(length*step)*distance
+      weight = n*long*to**(n - 1)*t
+    end associate
+  end subroutine place_on_power
+
+  !> Points in the tail from s to s + length: position = begin/(1 - s).
+  pure subroutine place_in_tail(panel, s, length, step, distance, t, weight)
+    type(panel_map_t), intent(in) :: panel
+    real(wp), intent(in) :: s, length, step(:)
+    real(wp), intent(out) :: distance(:), t(:), weight(:)
+
+    weight = (1 - s) - length*step
+    t = panel%begin/weight
+    distance = abs(length*step)*t/(1 - s)
+    weight = panel%begin**2*weight**(panel%decay - 3)
+  end subroutine place_in_tail
 
 end module graded_kernel

@@ -43,11 +43,11 @@ contains
     place = 0
     z_length = panel%z_length
     if (panel%kind == power_map) then
-      place = panel%local(target)
+      place = panel%locals(target)
       z_length = length_of_power
     end if
     if (panel%kind == sinh_map) then
-      place = panel%local(target)
+      place = panel%locals(target)
       place(own:own + size(node) - 1) = node
       part = part_about_axis(panel, centre, size(node), digits)
       if (.not. part > 0) then

@@ -32,6 +32,7 @@ module panel_map
   contains
     procedure :: offset
     procedure :: local
+    procedure :: locals
     procedure :: speed
   end type panel_map_t
 
@@ -82,6 +83,20 @@ contains
       s = (at - self%left)/(self%right - self%left)
     end select
   end function local
+
+  !> Local coordinates of many offsets, faster than `local`, since compilers vectorise a logarithm.
+  pure function locals(self, at) result(s)
+    class(panel_map_t), intent(in) :: self
+    real(wp), intent(in) :: at(:)
+    real(wp) :: s(size(at))
+
+    if (self%kind == sinh_map) then
+      s = abs(at)/self%d
+      s = (sign(log(s + sqrt(1 + s**2)), at) - self%z_left)/self%z_length
+    else
+      s = self%local(at)
+    end if
+  end function locals
 
   !> Derivative of the offset by s.
   elemental real(wp) function speed(self, s)
