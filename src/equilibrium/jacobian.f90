@@ -165,7 +165,9 @@ contains
     factor = -slope%factor()
     cost%pressure_evaluations = cost%pressure_evaluations + n*problem%law%terms
     matters = .true.
-    if (neglected > 0) matters = abs(factor)*largest_rise(problem, grid, state%scale) > neglected
+    ! The largest rise of a gap under a unit pressure, approximately for layered bodies.
+    if (neglected > 0) matters = abs(factor)*grid%largest* &
+      (2*max(problem%coupling, coupling_over(problem, state%scale))*state%scale) > neglected
     do j = 1, size(slope%mixed)
       matters(slope%mixed(j)%first:slope%mixed(j)%last) = .true.
     end do
@@ -204,7 +206,6 @@ contains
   pure subroutine make_room(factors, node, calm, n, m)
     type(factorisation_t), intent(inout) :: factors
     integer, intent(in) :: node(:), calm(:), n, m
-    integer :: j
 
     if (allocated(factors%lu)) then
       if (size(factors%lu, 1) /= m) deallocate (factors%lu)
@@ -212,22 +213,11 @@ contains
     if (.not. allocated(factors%lu)) allocate (factors%lu(m, m))
     if (allocated(factors%kept)) deallocate (factors%kept, factors%unit, factors%rows)
     if (size(calm) == 0) return
-    factors%kept = [node, [(n + j, j=1, m - size(node))]]
+    allocate (factors%kept(m), factors%rows(size(calm), m))
+    factors%kept(:size(node)) = node
+    factors%kept(size(node) + 1:) = n + 1
     factors%unit = calm
-    allocate (factors%rows(size(calm), m))
   end subroutine make_room
-
-  !> The largest rise of a gap under a unit pressure at each node, approximately for layered bodies.
-  pure function largest_rise(problem, grid, scale) result(rise)
-    type(problem_t), intent(in) :: problem
-    type(discretisation_t), intent(in) :: grid
-    real(wp), intent(in) :: scale
-    real(wp) :: rise(grid%nodes)
-    integer :: j
-
-    rise = 2*max(problem%coupling, coupling_over(problem, scale))*scale* &
-      [(maxval(abs(grid%kernel(:, j))), j=1, grid%nodes)]
-  end function largest_rise
 
   !> The Jacobian of `residual` at a state times a change of the unknowns. slope: that of the law at
   !> the state's gaps.

@@ -5,6 +5,7 @@
 !> valid for every scale (see `elastic_operator`).
 module discretisation
   use kinds, only: wp, long
+  use lapack, only: idamax
   use panel_map, only: panel_map_t, algebraic_map
   use root_finding, only: root_search_t, new_root_search
   use interpolation, only: polynomial_weights
@@ -13,7 +14,7 @@ module discretisation
   private
   public :: discretisation_t, local_nodes_t, gauss_nodes, axis_row, centre_row, first_node
 
-  !> Stands for a distance 0 from a node.
+  !> Stands for a distance 0 from a node; added to another distance, it changes nothing.
   real(wp), parameter :: at_node = 1.0e-100_wp
   !> Number of nodes from which the value on the axis is interpolated.
   integer, parameter :: nodes_at_axis = 6
@@ -45,6 +46,8 @@ module discretisation
     !> is for the axis, row centre_row for the mesh's centre, and rows from first_node on are for
     !> the nodes. Not allocated for rigid bodies.
     real(wp), allocatable :: kernel(:, :)
+    !> The largest absolute value in each column of the kernel, (nodes).
+    real(wp), allocatable :: largest(:)
     !> Weights of nodal values in the interpolated value on the axis, (nodes).
     real(wp), allocatable :: at_axis(:)
     !> The panels from the axis outward, the first node of each, and the index in `local` of its
@@ -63,6 +66,7 @@ module discretisation
     procedure :: on_one_panel
     procedure :: crossing
     procedure :: note_axis
+    procedure :: note_kernel
     procedure :: is_bounded
     procedure :: in_tail
     procedure :: panel_tails
@@ -116,9 +120,8 @@ contains
     value = 0
     shares = 0
     do j = 1, size(values)
-      share = s - self%node(j)
       ! At a node, its share exceeds the others by more than the digits of a number.
-      share = self%barycentric(j)/merge(share, at_node, abs(share) > at_node)
+      share = self%barycentric(j)/(s - self%node(j) + at_node)
       shares = shares + share
       value = value + share*values(j)
     end do
@@ -212,7 +215,7 @@ contains
           last = last + 1
         end do
         value(i:last) = local%values(values(first:first + size(local%node) - 1), &
-          panel%local(x(i:last) - self%centre))
+          panel%locals(x(i:last) - self%centre))
       end associate
     end do
   end function interpolate_all
@@ -282,6 +285,17 @@ contains
       self%at_axis(:n) = polynomial_weights(self%x(:n)**merge(2, 1, even), 0.0_wp)
     end associate
   end subroutine note_axis
+
+  !> Sets what follows from the kernel, once it is known.
+  subroutine note_kernel(self)
+    class(discretisation_t), intent(inout) :: self
+    integer :: j
+
+    allocate (self%largest(self%nodes))
+    do j = 1, self%nodes
+      self%largest(j) = abs(self%kernel(idamax(size(self%kernel, 1), self%kernel(1, j), 1), j))
+    end do
+  end subroutine note_kernel
 
   !> Whether the mesh has a finite end.
   elemental logical function is_bounded(self)

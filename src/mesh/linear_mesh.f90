@@ -80,6 +80,7 @@ contains
       deallocate (weights)
     end do
     !$omp end parallel do
+    call grid%note_kernel()
   end function new_linear_mesh
 
   !> The paper's grid, with a pressure that is linear between nodes: `nodes` (2 or more)

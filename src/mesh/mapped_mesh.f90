@@ -114,6 +114,7 @@ contains
           first_node - 1 + first, grid%kernel(:, first:first + size(local%node) - 1))
       end associate
     end do
+    call grid%note_kernel()
   end function new_mapped_mesh
 
   !> The panels and the end of the mesh. Neighbouring panels have exactly equal ends, and the
