@@ -125,35 +125,39 @@ contains
     real(wp), intent(in) :: x(:)
     integer, intent(in) :: i
     integer, intent(out) :: nodes(most_hermite_nodes), n
-    integer, allocatable :: before(:), after(:)
+    integer, dimension(2) :: before, after
+    integer :: n_before, n_after
 
-    before = apart(i, -1)
-    after = apart(i + 1, 1)
-    if (size(after) > 0) before = before(:min(1, size(before)))
-    if (size(before) > 0) after = after(:min(1, size(after)))
-    n = size(before) + 2 + size(after)
-    nodes(:n) = [before(size(before):1:-1), i, i + 1, after]
+    call find_apart(i, -1, before, n_before)
+    call find_apart(i + 1, 1, after, n_after)
+    if (n_after > 0) n_before = min(1, n_before)
+    if (n_before > 0) n_after = min(1, n_after)
+    n = n_before + 2 + n_after
+    nodes(:n_before) = before(n_before:1:-1)
+    nodes(n_before + 1:n_before + 2) = [i, i + 1]
+    nodes(n_before + 3:n) = after(:n_after)
 
   contains
 
     !> The first two nodes from node j to one side, each well apart from the one before it.
-    pure function apart(j, side) result(found)
+    pure subroutine find_apart(j, side, found, count)
       integer, intent(in) :: j, side
-      integer, allocatable :: found(:)
+      integer, intent(out) :: found(2), count
       real(wp), parameter :: well_apart = 0.1_wp
       integer :: k, newest
 
-      allocate (found(0))
+      count = 0
       newest = j
       k = j + side
-      do while (k >= 1 .and. k <= size(x) .and. size(found) < 2)
+      do while (k >= 1 .and. k <= size(x) .and. count < 2)
         if (.not. abs(x(k) - x(newest)) < well_apart*(x(i + 1) - x(i))) then
-          found = [found, k]
+          count = count + 1
+          found(count) = k
           newest = k
         end if
         k = k + side
       end do
-    end function apart
+    end subroutine find_apart
 
   end subroutine find_nodes_about
 

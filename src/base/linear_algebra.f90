@@ -107,18 +107,20 @@ contains
   subroutine solve(factors, b)
     type(factorisation_t), intent(in) :: factors
     real(wp), intent(inout) :: b(:)
-    real(wp), allocatable :: kept(:), unit(:)
+    real(wp), allocatable :: part(:)
 
     if (.not. allocated(factors%kept)) then
       call substitute(factors, b)
       return
     end if
-    kept = b(factors%kept)
-    call substitute(factors, kept)
-    b(factors%kept) = kept
-    allocate (unit(size(factors%unit)))
-    call multiply(factors%rows, size(kept), kept, unit)
-    b(factors%unit) = b(factors%unit) - unit
+    allocate (part(size(b)))
+    associate (n => size(factors%kept))
+      part(:n) = b(factors%kept)
+      call substitute(factors, part(:n))
+      b(factors%kept) = part(:n)
+      call multiply(factors%rows, n, part(:n), part(n + 1:))
+      b(factors%unit) = b(factors%unit) - part(n + 1:)
+    end associate
   end subroutine solve
 
   !> Overwrites b with the solution of the system of lu.

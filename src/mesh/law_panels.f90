@@ -243,13 +243,13 @@ contains
     real(wp), intent(in) :: centre, ends(2), r(:), pressure(:), load
     real(wp) :: most(1), area, weighted(size(pressure))
 
-    most = max(1.0_wp, maxval(abs(pressure)))
-    if (problem%law%edge_gap > 0) most = abs(problem%law%pressure([problem%law%edge_gap]))
-    area = min(1.0_wp, load/most(1))
     if (problem%law%period > 0) then
       weighted = pressure*(ends(2) - ends(1))*(1 + ends(2))
       left = local%tail(weighted)/max(load, tiny(load))
     else
+      most = max(1.0_wp, maxval(abs(pressure)))
+      if (problem%law%edge_gap > 0) most = abs(problem%law%pressure([problem%law%edge_gap]))
+      area = min(1.0_wp, load/most(1))
       weighted = pressure*(min(area, ends(2)**2) + &
         r*abs(r - centre)*(ends(2) - ends(1))/maxval(abs(ends - centre)))
       left = local%tail(weighted)/max(most(1)*area, load, tiny(load))

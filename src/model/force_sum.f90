@@ -12,8 +12,6 @@ module force_sum
   type :: term_t
     class(force_law_t), allocatable :: law
     real(wp) :: stretch = 1, shift = 0, weight = 1
-  contains
-    procedure :: own
   end type term_t
 
   type, extends(force_law_t) :: force_sum_t
@@ -173,14 +171,6 @@ contains
     law%length_key = law%term(1)%law%length_key
   end subroutine take_units
 
-  !> The gap of a term at a gap of the sum.
-  elemental real(wp) function own(self, gap)
-    class(term_t), intent(in) :: self
-    real(wp), intent(in) :: gap
-
-    own = self%stretch*gap + self%shift
-  end function own
-
   !> Lengths of those terms that have a characteristic length, or of all terms if none has.
   pure function lengths(law)
     type(force_sum_t), intent(in) :: law
@@ -201,7 +191,7 @@ contains
     value = 0
     do i = 1, size(self%term)
       associate (term => self%term(i))
-        value = value + term%weight*term%law%pressure(term%own(gap))
+        value = value + term%weight*term%law%pressure(term%stretch*gap + term%shift)
       end associate
     end do
   end function pressure
@@ -215,7 +205,7 @@ contains
     value = 0
     do i = 1, size(self%term)
       associate (term => self%term(i))
-        value = value + term%weight*term%stretch*term%law%slope(term%own(gap))
+        value = value + term%weight*term%stretch*term%law%slope(term%stretch*gap + term%shift)
       end associate
     end do
   end function slope
@@ -229,7 +219,7 @@ contains
     value = 0
     do i = 1, size(self%term)
       associate (term => self%term(i))
-        value = value + term%weight/term%stretch*term%law%energy(term%own(gap))
+        value = value + term%weight/term%stretch*term%law%energy(term%stretch*gap + term%shift)
       end associate
     end do
   end function energy
@@ -243,7 +233,7 @@ contains
     value = 0
     do i = 1, size(self%term)
       associate (term => self%term(i))
-        own = term%law%table_error(term%own(gap))
+        own = term%law%table_error(term%stretch*gap + term%shift)
         value(1, :) = value(1, :) + term%weight*own(1, :)
         value(2, :) = value(2, :) + term%weight/term%stretch*own(2, :)
       end associate
@@ -261,7 +251,7 @@ contains
     most = huge(1.0_wp)
     do i = 1, size(self%term)
       associate (term => self%term(i))
-        most = min(most, term%law%closure(term%own(gap))/term%stretch)
+        most = min(most, term%law%closure(term%stretch*gap + term%shift)/term%stretch)
       end associate
     end do
     if (self%range > 0) most = max(most, 0.5_wp*(gap - self%range))

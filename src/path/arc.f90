@@ -119,13 +119,13 @@ contains
     place = count(self%coordinate(:self%held) < s) + 1
     do j = self%held, place, -1
       self%coordinate(j + 1) = self%coordinate(j)
-      self%state(j + 1) = self%state(j)
-      self%tangent(j + 1) = self%tangent(j)
+      call self%state(j + 1)%become(self%state(j))
+      call self%tangent(j + 1)%become(self%tangent(j))
     end do
     self%held = self%held + 1
     self%coordinate(place) = s
-    self%state(place) = state
-    self%tangent(place) = tangent
+    call self%state(place)%become(state)
+    call self%tangent(place)%become(tangent)
   end subroutine add
 
   !> Removes the first state.
@@ -136,8 +136,8 @@ contains
     self%held = self%held - 1
     do j = 1, self%held
       self%coordinate(j) = self%coordinate(j + 1)
-      self%state(j) = self%state(j + 1)
-      self%tangent(j) = self%tangent(j + 1)
+      call self%state(j)%become(self%state(j + 1))
+      call self%tangent(j)%become(self%tangent(j + 1))
     end do
   end subroutine drop_first
 
@@ -232,34 +232,27 @@ contains
     integer, intent(in) :: nodes(:)
     real(wp), intent(in) :: of_value(:), of_slope(:), scale
     !> Part of the distance over which a derivative is taken.
-    real(wp), parameter :: part = 1.0e-4_wp
+    real(wp), parameter :: part = 1.0e-5_wp
     integer :: j, from
-    real(wp), allocatable :: away(:), raised(:), rate(:), gap(:)
+    real(wp), allocatable :: away(:), raised(:), value(:), change(:), gap(:)
 
     from = count(grid%x <= grid%centre) + 1
     gap = shape%height(scale*grid%x(from:))
     do j = 1, size(nodes)
       associate (state => self%state(nodes(j)), tangent => self%tangent(nodes(j)))
         raised = state%gap - shape%height(state%scale*grid%x)
-        rate = tangent%gap - tangent%scale*grid%x*shape%slope(state%scale*grid%x)
+        value = of_value(j)*raised + of_slope(j)*(tangent%gap - &
+          tangent%scale*grid%x*shape%slope(state%scale*grid%x))
         away = (grid%x(from:) - grid%centre)*scale/state%scale
         if (grid%is_bounded()) away = min(away, grid%x(grid%nodes) - grid%centre)
-        ! With the distance constant, a position on the mesh moves as the scale grows.
-        gap = gap + of_value(j)*at_distance(1.0_wp) + of_slope(j)*( &
-          grid%interpolate_all(rate, grid%centre + away) - &
-          tangent%scale/state%scale*(at_distance(1 + part) - at_distance(1 - part))/(2*part))
+        ! With the distance constant, a position on the mesh moves as the scale grows. The mean of
+        ! two neighbouring positions is the value between them.
+        change = of_slope(j)*tangent%scale/(state%scale*part)*raised
+        gap = gap + 0.5_wp*( &
+          grid%interpolate_all(value - change, grid%centre + (1 + part)*away) + &
+          grid%interpolate_all(value + change, grid%centre + (1 - part)*away))
       end associate
     end do
-
-  contains
-
-    pure function at_distance(times) result(value)
-      real(wp), intent(in) :: times
-      real(wp) :: value(size(away))
-
-      value = grid%interpolate_all(raised, grid%centre + times*away)
-    end function at_distance
-
   end function outside
 
   !> The polynomial through states at the given values of a coordinate, evaluated at s.

@@ -26,6 +26,7 @@ module path_tangent
     real(wp) :: h0 = 0, scale = 0, axis_gap = 0, load = 0
   contains
     procedure :: of
+    procedure :: become
   end type tangent_t
 
   !> Largest last correction of a tangent, over the permitted error, since the next correction would
@@ -35,6 +36,18 @@ module path_tangent
   integer, parameter :: most_corrections = 12
 
 contains
+
+  !> Copies another tangent into the allocated array, without a new allocation.
+  pure subroutine become(self, other)
+    class(tangent_t), intent(inout) :: self
+    type(tangent_t), intent(in) :: other
+
+    self%gap = other%gap
+    self%h0 = other%h0
+    self%scale = other%scale
+    self%axis_gap = other%axis_gap
+    self%load = other%load
+  end subroutine become
 
   !> The derivative of weights(1) h0 + weights(2) load.
   pure real(wp) function of(self, weights)
