@@ -67,9 +67,11 @@ contains
     type(hermite_t) :: load
     integer :: k, guesses
 
-    ! Rings of an oscillating pressure move with the edge or, around a small contact, hardly at all.
+    ! Rings of an oscillating pressure and the front of a step move with the edge or, around a small
+    ! contact, hardly at all.
     guesses = 1
-    if (solver%problem%law%period > 0 .and. .not. solver%meshes%is_about_axis(self%mesh)) &
+    if (max(solver%problem%law%period, solver%problem%law%step_width) > 0 .and. &
+      .not. solver%meshes%is_about_axis(self%mesh)) &
       guesses = 2
     converged = .false.
     associate (problem => solver%problem, grid => solver%meshes%grid(self%mesh), &

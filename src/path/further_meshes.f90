@@ -1,14 +1,15 @@
-!> Meshes that are inserted while the path is traced. Under a law with several minima of its energy,
-!> bodies may be in contact in an outer minimum before the contact proper. Such a contact has an
-!> edge of its own: there the tension outside the minimum is largest. While this edge moves faster
-!> than the axis, meshes are locked to it; otherwise meshes are about the axis, and a new one begins
-!> where the present one misses too much of the load.
+!> Meshes that are inserted while the path is traced. Under a law that oscillates or has a step, a
+!> new mesh about the axis begins where the present one misses too much of the load. Under a law
+!> with several minima of its energy, bodies may be in contact in an outer minimum before the
+!> contact proper. Such a contact has an edge of its own: there the tension outside the minimum is
+!> largest. While this edge moves faster than the axis, meshes are locked to it.
 module further_meshes
   use kinds, only: wp
   use force_law, only: force_law_t
   use contact_state, only: radius_of_gap
   use equilibrium, only: equations_t
   use mesh_plan, only: band_of_waves
+  use step_front, only: front_leads
   use arc, only: arc_t
   use path_coordinate, only: axis_coordinate
   use mending, only: left_in_state
@@ -40,12 +41,13 @@ contains
 
     inserted = .false.
     associate (meshes => equations%meshes, law => equations%problem%law, mesh => arc%mesh)
-      if (.not. meshes%grows .or. .not. (law%period > 0 .and. law%edge_gap > 0)) return
+      if (.not. meshes%grows .or. .not. ((law%period > 0 .or. &
+        law%step_width > 0 .and. .not. front_leads(law)) .and. law%edge_gap > 0)) return
       if (meshes%in_contact(mesh) .or. arc%held < enough) return
       if (meshes%passage(mesh) <= 0) return
       associate (before => arc%state(arc%held - 1), now => arc%state(arc%held))
         level = meshes%locked_gap(mesh)
-        if (.not. level > 0) level = edge_beyond(law, now%axis_gap)
+        if (.not. level > 0 .and. law%period > 0) level = edge_beyond(law, now%axis_gap)
         radius = [radius_of_gap(equations%problem%shape, level, meshes%grid(mesh), before), &
           radius_of_gap(equations%problem%shape, level, meshes%grid(mesh), now)]
         nearer = axis_coordinate(law, now) - axis_coordinate(law, before)
