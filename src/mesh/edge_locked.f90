@@ -143,8 +143,9 @@ contains
   end subroutine refine
 
   !> Chooses the shape of a mesh from a coarser one with more nodes on its panels: if the coarser
-  !> one has short or halved panels, or if a new layout would have fewer nodes than this, as under
-  !> laws for which numbers of nodes were tried, and so would have the same error.
+  !> one was inserted for the gaps of computed states, or has short or halved panels; or if a new
+  !> layout would have fewer nodes than this, as under laws for which numbers of nodes were tried,
+  !> and so would have the same error.
   subroutine follow(self, coarser, mesh, problem)
     class(mesh_family_t), intent(inout) :: self
     type(mesh_family_t), intent(in) :: coarser
@@ -154,7 +155,7 @@ contains
 
     if (.not. allocated(coarser%grid(mesh)%kernel)) return
     richer = coarser%shape(mesh)%enriched(self%digits/coarser%digits, self%digits - coarser%digits)
-    if (.not. coarser%has_short_panels(mesh)) then
+    if (.not. (coarser%inserted(mesh) .or. coarser%has_short_panels(mesh))) then
       self%shape(mesh) = self%shape_for(problem, mesh)
       if (.not. sum(self%shape(mesh)%order) < sum(richer%order)) return
     end if

@@ -41,8 +41,7 @@ contains
 
     inserted = .false.
     associate (meshes => equations%meshes, law => equations%problem%law, mesh => arc%mesh)
-      if (.not. meshes%grows .or. .not. ((law%period > 0 .or. &
-        law%step_width > 0 .and. .not. front_leads(law)) .and. law%edge_gap > 0)) return
+      if (.not. meshes%grows .or. front_leads(law) .or. .not. law%edge_gap > 0) return
       if (meshes%in_contact(mesh) .or. arc%held < enough) return
       if (meshes%passage(mesh) <= 0) return
       associate (before => arc%state(arc%held - 1), now => arc%state(arc%held))
