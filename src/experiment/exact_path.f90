@@ -25,8 +25,9 @@ module exact_path
   private
   public :: trace_exactly
 
-  !> Largest number of further attempts, on finer meshes, to trace a path that was lost: on coarse
-  !> meshes strong adhesion makes folds that bodies do not have.
+  !> Largest number of further attempts to trace a path that was lost: without meshes that are
+  !> locked to a front, which may recede, or on finer meshes, since on coarse ones strong adhesion
+  !> makes folds that bodies do not have.
   integer, parameter :: most_attempts = 2
   !> Largest number of rounds of judging.
   integer, parameter :: most_rounds = 4
@@ -37,7 +38,7 @@ module exact_path
 
 contains
 
-  !> Traces the path on steps%meshes, or on finer ones if it is lost. If the path is an output, and
+  !> Traces the path on steps%meshes, or on others if it is lost. If the path is an output, and
   !> its folds, extrema or end are not as accurate as requested, traces it again on finer meshes
   !> where these can help. h0: law's lengths; fine: judges places of the path; places: the judged
   !> places; store: of meshes.
@@ -61,7 +62,8 @@ contains
       do round = 0, most_attempts
         if (round > 0) then
           steps%meshes = new_mesh_family(steps%problem, h0_high, h0_low, &
-            steps%meshes%digits + more_digits, store=store)
+            steps%meshes%digits + merge(0.0_wp, more_digits, steps%meshes%fronts), store=store, &
+            fronts=.false.)
           cost%kernel_entries = cost%kernel_entries + sum(steps%meshes%grid%kernel_entries())
         end if
         call steps%know_path(h0_high, h0_low, allocated(request%path), listener, farthest, &

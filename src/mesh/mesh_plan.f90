@@ -12,7 +12,7 @@ module mesh_plan
   use kinds, only: wp
   use dimensionless_problem, only: problem_t
   use mesh_rule, only: is_narrow, rim_passed_at
-  use step_front, only: front_leads, has_constant_tension, first_front, last_front
+  use step_front, only: front_leads, first_front, last_front
   use contact_scales, only: largest_radius, contact_level, cohesive_width, lost_in_rounding
   implicit none
   private
@@ -26,9 +26,6 @@ module mesh_plan
   !> more meshes. Under a law that oscillates or has a step, short panels cover all places that the
   !> law's special gaps have at any radius of the band.
   real(wp), parameter :: widest_band = 30, band_of_waves = 2, band_of_steps = 1.5_wp
-  !> Where the tension is nearly constant up to the step, the nodes outside the step hardly add to
-  !> the cost of a state, and wider bands are cheaper.
-  real(wp), parameter :: band_of_constant_tension = 4
   !> Fraction of the radius at which a front becomes sharp; above it a mesh is locked to the front.
   real(wp), parameter :: early = 0.25_wp
 
@@ -55,6 +52,8 @@ module mesh_plan
     real(wp), allocatable :: locked(:)
     !> The gap at the contact edge.
     real(wp) :: edge_gap = 0
+    !> Whether meshes between the approach and contact are locked to the front of a step.
+    logical :: fronts = .false.
     !> Whether meshes may be inserted while the path is traced (`insert`). Experiments in time pass
     !> from mesh to mesh by radii alone, and need plans without inserted meshes.
     logical :: grows = .true.
@@ -69,29 +68,32 @@ module mesh_plan
 
 contains
 
-  !> The plan of meshes for H0 from h0_high down to h0_low.
-  type(mesh_plan_t) function new_mesh_plan(problem, h0_high, h0_low) result(plan)
+  !> The plan of meshes for H0 from h0_high down to h0_low. fronts: whether meshes may be locked to
+  !> the front of a step.
+  type(mesh_plan_t) function new_mesh_plan(problem, h0_high, h0_low, fronts) result(plan)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: h0_high, h0_low
+    logical, intent(in) :: fronts
     real(wp) :: widest
     real(wp), allocatable :: low(:), high(:)
-    integer :: k, fronts
+    integer :: k, about_front
 
     plan%traceable = problem%law%adhesion > 0
     if (.not. plan%traceable) plan%level = contact_level(problem)
     widest = largest_radius(problem, h0_low, plan%level)
     allocate (low(0), high(0))
-    fronts = 0
+    about_front = 0
+    plan%fronts = fronts .and. front_leads(problem%law)
     if (.not. plan%traceable) then
       call add_bands(1.0_wp, widest, 1, low, high)
     else if (problem%law%edge_gap > 0) then
-      associate (first => min(passage_to_contact(problem), widest))
+      associate (first => min(passage_to_contact(problem, plan%fronts), widest))
         ! Where rounding hides the contact, the path ends at its first fold.
         if (lost_in_rounding(problem, widest)) widest = widest_band*first
-        if (front_leads(problem%law)) call add_bands(early*first_front(problem), &
+        if (plan%fronts) call add_bands(early*first_front(problem), &
           last_front(problem), bands_for(problem, early*first_front(problem), &
           last_front(problem)), low, high)
-        fronts = size(low)
+        about_front = size(low)
         call add_bands(first, widest, bands_for(problem, first, widest), low, high)
       end associate
     end if
@@ -99,8 +101,8 @@ contains
     plan%reach = reshape([h0_high, 0.0_wp, (low(k), high(k), k=1, size(low))], &
       [2, approach + size(low)])
     plan%edge_gap = problem%law%edge_gap
-    plan%locked = [0.0_wp, spread(problem%law%step_at, 1, fronts), &
-      spread(problem%law%edge_gap, 1, size(low) - fronts)]
+    plan%locked = [0.0_wp, spread(problem%law%step_at, 1, about_front), &
+      spread(problem%law%edge_gap, 1, size(low) - about_front)]
     allocate (plan%inserted(size(plan%locked)), source=.false.)
     plan%waits = plan%inserted
     if (plan%traceable) plan%waits(contact:) = is_narrow(problem)
@@ -145,7 +147,6 @@ contains
     ratio = widest_band
     if (problem%law%period > 0) ratio = band_of_waves
     if (problem%law%step_width > 0) ratio = band_of_steps
-    if (has_constant_tension(problem%law)) ratio = band_of_constant_tension
     bands = ceiling(log(last/first)/log(ratio))
   end function bands_for
 
@@ -198,12 +199,13 @@ contains
 
   !> Contact radius at which the edge becomes too sharp for the mesh of the approach: a fraction of
   !> the neck, and of the radius over which the gap between rigid bodies increases from the gap at
-  !> rest to that of largest tension. If a front leads, nothing inside it is sharp before its last
-  !> radius; the rim of a flat face is passed before.
-  pure real(wp) function passage_to_contact(problem) result(c)
+  !> rest to that of largest tension. If meshes are locked to a front, nothing inside it is sharp
+  !> before its last radius; the rim of a flat face is passed before.
+  pure real(wp) function passage_to_contact(problem, fronts) result(c)
     type(problem_t), intent(in) :: problem
+    logical, intent(in) :: fronts
 
-    if (front_leads(problem%law)) then
+    if (fronts) then
       c = 0.5_wp*last_front(problem)
       return
     end if

@@ -9,14 +9,13 @@ module step_front
   use dimensionless_problem, only: problem_t
   implicit none
   private
-  public :: front_leads, has_constant_tension, first_front, last_front, front_width
+  public :: front_leads, first_front, last_front, front_width
 
   !> Distance from the middle of the step, in its widths, at which the tension inside the step is
   !> complete; least ratio of this tension to the largest tension for which the bodies follow the
   !> step before the attraction at smaller gaps. With less tension the front recedes while the axis
-  !> is drawn into contact. The part by which a constant tension may
-  !> change, and that may be left beyond the step.
-  real(wp), parameter :: complete = 2, leading = 0.5_wp, little = 0.05_wp
+  !> is drawn into contact.
+  real(wp), parameter :: complete = 2, leading = 0.5_wp
 
 contains
 
@@ -26,18 +25,6 @@ contains
 
     front_leads = tension_inside(law) > leading
   end function front_leads
-
-  !> Whether the tension is nearly constant between the contact edge and a step, and nearly zero
-  !> beyond the step.
-  pure logical function has_constant_tension(law)
-    class(force_law_t), intent(in) :: law
-    real(wp) :: pressure(2)
-
-    has_constant_tension = tension_inside(law) > 1 - little .and. .not. law%period > 0
-    if (.not. has_constant_tension) return
-    pressure = law%pressure(law%step_at + complete*law%step_width*[-1, 1])
-    has_constant_tension = abs(pressure(2)) < little*abs(pressure(1))
-  end function has_constant_tension
 
   !> The tension inside a step over the largest tension; 0 without a step outside the contact edge.
   pure real(wp) function tension_inside(law)

@@ -9,7 +9,6 @@ module further_meshes
   use contact_state, only: radius_of_gap
   use equilibrium, only: equations_t
   use mesh_plan, only: band_of_waves
-  use step_front, only: front_leads
   use arc, only: arc_t
   use path_coordinate, only: axis_coordinate
   use mending, only: left_in_state
@@ -41,7 +40,7 @@ contains
 
     inserted = .false.
     associate (meshes => equations%meshes, law => equations%problem%law, mesh => arc%mesh)
-      if (.not. meshes%grows .or. front_leads(law) .or. .not. law%edge_gap > 0) return
+      if (.not. meshes%grows .or. meshes%fronts .or. .not. law%edge_gap > 0) return
       if (meshes%in_contact(mesh) .or. arc%held < enough) return
       if (meshes%passage(mesh) <= 0) return
       associate (before => arc%state(arc%held - 1), now => arc%state(arc%held))
