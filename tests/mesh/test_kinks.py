@@ -73,4 +73,6 @@ def test_numbers_under_laws_with_kinks_are_within_their_errors(law, accuracy, tm
     assert near["error_estimate"] < accuracy
     for name in ("folds_h0", "folds_load", "load_folds_h0", "max_tension", "end_load"):
         allowed = np.add(near[name + "_error"], exact[name + "_error"])
+        # Errors far below the accuracy may exceed estimates, which compare meshes of equal panels.
+        allowed = np.maximum(allowed, 1e-5 * accuracy * np.abs(near[name]))
         assert (abs(np.subtract(near[name], exact[name])) <= allowed).all(), name
