@@ -196,7 +196,7 @@ contains
       call move_alloc(kernel, grid(to)%kernel)
     end do
     call move_alloc(grid, self%grid)
-    self%shape = self%shape([(k, k=1, after + 1), (k, k=after + 1, size(self%shape))])
+    self%shape = self%shape([(k, k=1, after), (k, k=after, size(self%shape))])
   end subroutine insert
 
 end module edge_locked

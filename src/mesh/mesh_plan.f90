@@ -24,8 +24,8 @@ module mesh_plan
 
   !> Largest ratio of the contact radii of one mesh: wider bands need more nodes, narrower bands
   !> more meshes. Under a law that oscillates or has a step, short panels cover all places that the
-  !> law's special gaps have at any radius of the band.
-  real(wp), parameter :: widest_band = 30, band_of_waves = 2, band_of_steps = 1.5_wp
+  !> law's special gaps have at any radius of the band, and `next_mesh` may divide bands.
+  real(wp), parameter :: widest_band = 30, band_of_waves = 2, band_of_steps = 4
   !> Fraction of the radius at which a front becomes sharp; above it a mesh is locked to the front.
   real(wp), parameter :: early = 0.25_wp
 

@@ -6,6 +6,7 @@ module next_mesh
   use equilibrium, only: equations_t
   use mapped_mesh, only: mapped_shape_t
   use seen_gaps, only: seen_gaps_t
+  use mesh_rule, only: is_narrow
   use arc, only: arc_t
   implicit none
   private
@@ -18,28 +19,26 @@ module next_mesh
   !> Largest number of digits of a layout for seen gaps: the polynomials of neighbouring panels meet
   !> in kinks, which no panel of another mesh resolves.
   real(wp), parameter :: most_digits_seen = 10
-  !> Number of nodes over that of the mesh before, above which a band is divided, unless the ratio
-  !> of its radii would be less than `narrowest`.
-  real(wp), parameter :: many_more = 1.5_wp, narrowest = 1.02_wp
+  !> Number of nodes for half a band over that for all of it, below which the band is divided, unless
+  !> the ratio of its radii would be less than `narrowest`.
+  real(wp), parameter :: fewer = 0.8_wp, narrowest = 1.02_wp
 
 contains
 
   !> Lays out the mesh after that of an arc for the gaps of its newest state. An inserted mesh is
   !> for the state before, since the old nodes may miss too much of the newest one; about the axis
-  !> it is also for states extrapolated from that state. Under an oscillating law a mesh about an
-  !> edge that would have many more nodes than the one before, as around a small contact far inside
-  !> a sharp rim, is for a narrower band.
+  !> it is also for states extrapolated from that state. Under a law that oscillates or has a step, a
+  !> band of an edge is halved as long as half of it needs clearly fewer nodes.
   subroutine lay_out_next(equations, arc)
     type(equations_t), intent(inout), target :: equations
     type(arc_t), intent(in) :: arc
-    type(mapped_shape_t) :: shape
-    real(wp) :: low, middle, most
+    type(mapped_shape_t) :: shape, narrower
+    real(wp) :: low, high
     integer :: to, i
 
     to = arc%mesh + 1
     i = arc%held
     if (equations%meshes%inserted(to)) i = i - 1
-    most = huge(most)
     associate (meshes => equations%meshes)
       ! The last two states of the arc pass to the mesh. Beyond its last panel, waves at the first
       ! of these would not be resolved.
@@ -47,15 +46,18 @@ contains
         low = radius_for(equations, arc%mesh, to, arc%state(arc%held - 1))
         if (low > 0) meshes%reach(1, to) = min(meshes%reach(1, to), low)
       end if
-      if (meshes%grows .and. equations%problem%law%period > 0 .and. &
-        .not. meshes%is_about_axis(to)) most = many_more*meshes%grid(arc%mesh)%nodes
-      do
-        shape = shape_for_next(equations, arc, i)
-        if (shape%node_count() <= most) exit
+      shape = shape_for_next(equations, arc, i)
+      do while (meshes%grows .and. is_narrow(equations%problem) .and. &
+        .not. meshes%is_about_axis(to))
         low = max(meshes%reach(1, to), radius_for(equations, arc%mesh, to, arc%state(i)))
-        middle = sqrt(low*meshes%reach(2, to))
-        if (middle < narrowest*low) exit
-        call meshes%divide(to, middle)
+        high = meshes%reach(2, to)
+        if (high < narrowest**2*low) exit
+        meshes%reach(2, to) = sqrt(low*high)
+        narrower = shape_for_next(equations, arc, i)
+        meshes%reach(2, to) = high
+        if (narrower%node_count() > fewer*shape%node_count()) exit
+        call meshes%divide(to, sqrt(low*high))
+        shape = narrower
       end do
       call meshes%renew(to, shape)
       equations%cost%kernel_entries = equations%cost%kernel_entries + &
