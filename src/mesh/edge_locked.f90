@@ -177,7 +177,7 @@ contains
     end associate
   end function has_short_panels
 
-  !> Inserts a mesh, which has no nodes yet, after another one.
+  !> Inserts a mesh after another one. Until it is laid out, it has the shape of that one.
   pure subroutine insert(self, after, locked, low, high)
     class(mesh_family_t), intent(inout) :: self
     integer, intent(in) :: after
@@ -192,6 +192,7 @@ contains
       to = k + merge(0, 1, k <= after)
       ! A kernel is moved, since its copy would take as long as a state.
       call move_alloc(self%grid(k)%kernel, kernel)
+      if (k == after) grid(k + 1) = self%grid(k)
       grid(to) = self%grid(k)
       call move_alloc(kernel, grid(to)%kernel)
     end do

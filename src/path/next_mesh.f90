@@ -19,16 +19,18 @@ module next_mesh
   !> Largest number of digits of a layout for seen gaps: the polynomials of neighbouring panels meet
   !> in kinks, which no panel of another mesh resolves.
   real(wp), parameter :: most_digits_seen = 10
-  !> Number of nodes for half a band over that for all of it, below which the band is divided, unless
-  !> the ratio of its radii would be less than `narrowest`.
-  real(wp), parameter :: fewer = 0.8_wp, narrowest = 1.02_wp
+  !> Number of nodes for half a band over that for all of it below which the band is divided, and
+  !> number of nodes over that of the mesh before above which it is; unless the ratio of its radii
+  !> would be less than `narrowest`.
+  real(wp), parameter :: fewer = 0.8_wp, many_more = 1.5_wp, narrowest = 1.02_wp
 
 contains
 
   !> Lays out the mesh after that of an arc for the gaps of its newest state. An inserted mesh is
   !> for the state before, since the old nodes may miss too much of the newest one; about the axis
-  !> it is also for states extrapolated from that state. Under a law that oscillates or has a step, a
-  !> band of an edge is halved as long as half of it needs clearly fewer nodes.
+  !> it is also for states extrapolated from that state. Under a law that oscillates or has a step,
+  !> a band of an edge is halved as long as half of it needs clearly fewer nodes, or all of it many
+  !> more than the mesh before, as around a small contact far inside a sharp rim.
   subroutine lay_out_next(equations, arc)
     type(equations_t), intent(inout), target :: equations
     type(arc_t), intent(in) :: arc
@@ -55,7 +57,8 @@ contains
         meshes%reach(2, to) = sqrt(low*high)
         narrower = shape_for_next(equations, arc, i)
         meshes%reach(2, to) = high
-        if (narrower%node_count() > fewer*shape%node_count()) exit
+        if (narrower%node_count() > fewer*shape%node_count() .and. &
+          shape%node_count() <= many_more*meshes%grid(arc%mesh)%nodes) exit
         call meshes%divide(to, sqrt(low*high))
         shape = narrower
       end do
