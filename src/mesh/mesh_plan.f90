@@ -26,8 +26,6 @@ module mesh_plan
   !> more meshes. Under a law that oscillates or has a step, short panels cover all places that the
   !> law's special gaps have at any radius of the band, and `next_mesh` may divide bands.
   real(wp), parameter :: widest_band = 30, band_of_waves = 2, band_of_steps = 4
-  !> Fraction of the radius at which a front becomes sharp; above it a mesh is locked to the front.
-  real(wp), parameter :: early = 0.25_wp
 
   !> The meshes are in the order of the path.
   type :: mesh_plan_t
@@ -90,9 +88,8 @@ contains
       associate (first => min(passage_to_contact(problem, plan%fronts), widest))
         ! Where rounding hides the contact, the path ends at its first fold.
         if (lost_in_rounding(problem, widest)) widest = widest_band*first
-        if (plan%fronts) call add_bands(early*first_front(problem), &
-          last_front(problem), bands_for(problem, early*first_front(problem), &
-          last_front(problem)), low, high)
+        if (plan%fronts) call add_bands(first_front(problem), last_front(problem), &
+          bands_for(problem, first_front(problem), last_front(problem)), low, high)
         about_front = size(low)
         call add_bands(first, widest, bands_for(problem, first, widest), low, high)
       end associate

@@ -29,13 +29,15 @@ contains
   !> Lays out the mesh after that of an arc for the gaps of its newest state. An inserted mesh is
   !> for the state before, since the old nodes may miss too much of the newest one; about the axis
   !> it is also for states extrapolated from that state. Under a law that oscillates or has a step,
-  !> a band of an edge is halved as long as half of it needs clearly fewer nodes, or all of it many
-  !> more than the mesh before, as around a small contact far inside a sharp rim.
+  !> a band of an edge is halved as long as it needs many more nodes than the mesh before, as around
+  !> a small contact far inside a sharp rim; under a law that does not oscillate also if half of it
+  !> needs clearly fewer nodes. (Rings that appear as an oscillating contact grows are foreseen less
+  !> well on many narrow bands.)
   subroutine lay_out_next(equations, arc)
     type(equations_t), intent(inout), target :: equations
     type(arc_t), intent(in) :: arc
     type(mapped_shape_t) :: shape, narrower
-    real(wp) :: low, high
+    real(wp) :: low, high, most
     integer :: to, i
 
     to = arc%mesh + 1
@@ -54,11 +56,12 @@ contains
         low = max(meshes%reach(1, to), radius_for(equations, arc%mesh, to, arc%state(i)))
         high = meshes%reach(2, to)
         if (high < narrowest**2*low) exit
+        most = many_more*meshes%grid(arc%mesh)%nodes
+        if (equations%problem%law%period > 0 .and. shape%node_count() <= most) exit
         meshes%reach(2, to) = sqrt(low*high)
         narrower = shape_for_next(equations, arc, i)
         meshes%reach(2, to) = high
-        if (narrower%node_count() > fewer*shape%node_count() .and. &
-          shape%node_count() <= many_more*meshes%grid(arc%mesh)%nodes) exit
+        if (narrower%node_count() > fewer*shape%node_count() .and. shape%node_count() <= most) exit
         call meshes%divide(to, sqrt(low*high))
         shape = narrower
       end do

@@ -256,3 +256,26 @@ def test_a_mesh_that_is_mended_does_not_have_the_whole_path_traced_again(run):
     ))
     check(result)
     assert result.cost["factorisations"] < 2.2 * result.cost["states"]
+
+
+@pytest.mark.parametrize(("share", "reach", "sigma"), [
+    pytest.param(0.38, 3.4, 2.1, id="the axis passes the step and falls into the well"),
+    pytest.param(0.38, 4.0, 7.0, id="folds far apart"),
+    pytest.param(0.52, 6.0, 1.0, id="a front that recedes"),
+    pytest.param(0.96, 6.0, 1.0, id="a last band that is divided")])
+def test_a_step_outside_a_well_is_followed(run, share, reach, sigma):
+    """Such paths were lost or took ten seconds on meshes that served for all of the approach. The
+    step has a share of the tension of step and well; sigma is that of the well."""
+    def path(accuracy):
+        # In units of the well's length; bodies so large that their strains are small.
+        radius = 1e6
+        gamma = sigma / math.sqrt(radius)
+        return run(lennard_jones(
+            gamma, bodies={"radius": radius, "stiffness": 1.0},
+            dugdale={"stress": 1.026 * gamma * share / (1 - share), "range": reach},
+            equilibrium_path={"h0_end": -5.0 - 5 * sigma}, numerics={"accuracy": accuracy}))
+
+    found, finer = (check(path(accuracy), accuracy) for accuracy in (1e-5, 1e-7))
+    for name in ("folds_h0", "max_tension", "end_load"):
+        near, exact = (several(summary[name]) for summary in (found, finer))
+        assert near == pytest.approx(exact, rel=1e-5), name
