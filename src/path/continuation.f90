@@ -240,7 +240,7 @@ contains
         call transfer(self, solver, next, lost)
       end if
     end if
-    if (lost) return
+    if (lost .or. next%held < 2) return
     associate (here => self%tangent(self%held - 1), there => next%tangent(1))
       if (.not. (here%h0*there%h0 > 0 .and. here%load*there%load > 0)) return
     end associate
