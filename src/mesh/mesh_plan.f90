@@ -24,10 +24,8 @@ module mesh_plan
 
   !> Largest ratio of the contact radii of one mesh: wider bands need more nodes, narrower bands
   !> more meshes. Under a law that oscillates or has a step, short panels cover all places that the
-  !> law's special gaps have at any radius of the band, and `next_mesh` may divide bands. If a
-  !> step leads, gaps moved to other radii foresee it over wider bands.
-  real(wp), parameter :: widest_band = 30, band_of_waves = 2, &
-    band_of_steps = 1.5_wp, band_of_fronts = 4
+  !> law's special gaps have at any radius of the band, and `next_mesh` may divide bands.
+  real(wp), parameter :: widest_band = 30, band_of_waves = 2, band_of_steps = 4
 
   !> The meshes are in the order of the path.
   type :: mesh_plan_t
@@ -145,8 +143,7 @@ contains
 
     ratio = widest_band
     if (problem%law%period > 0) ratio = band_of_waves
-    if (problem%law%step_width > 0) ratio = merge(band_of_fronts, band_of_steps, &
-      front_leads(problem%law))
+    if (problem%law%step_width > 0) ratio = band_of_steps
     bands = ceiling(log(last/first)/log(ratio))
   end function bands_for
 

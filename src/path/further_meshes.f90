@@ -24,8 +24,6 @@ module further_meshes
   real(wp), parameter :: deeper = 1.5_wp
   !> States of an arc, of which two are from the mesh before, after which a mesh is inserted.
   integer, parameter :: enough = 4
-  !> Change of the coordinate over the states of an arc below which another mesh would not help.
-  real(wp), parameter :: least_progress = 1.0e-4_wp
   !> Part of the period by which gaps differ among which an edge is looked for.
   real(wp), parameter :: apart = 1.0_wp/32
 
@@ -44,7 +42,6 @@ contains
     associate (meshes => equations%meshes, law => equations%problem%law, mesh => arc%mesh)
       if (.not. meshes%grows .or. meshes%fronts .or. .not. law%edge_gap > 0) return
       if (meshes%in_contact(mesh) .or. arc%held < enough) return
-      if (arc%coordinate(arc%held) - arc%coordinate(1) < least_progress) return
       if (meshes%passage(mesh) <= 0) return
       associate (before => arc%state(arc%held - 1), now => arc%state(arc%held))
         level = meshes%locked_gap(mesh)

@@ -42,7 +42,7 @@ contains
 
     to = arc%mesh + 1
     i = arc%held
-    if (equations%meshes%inserted(to) .and. i > 2) i = i - 1
+    if (equations%meshes%inserted(to)) i = i - 1
     associate (meshes => equations%meshes)
       ! The last two states of the arc pass to the mesh. Beyond its last panel, waves at the first
       ! of these would not be resolved.

@@ -83,10 +83,7 @@ contains
     call walker%take(solver, start, approach, lost)
     if (lost) known%ending%cause = path_lost
     guarded = present(accuracy)
-    if (guarded) then
-      mender = new_mender(accuracy, solver%problem%law)
-      walker%most = mender%most
-    end if
+    if (guarded) mender = new_mender(accuracy, solver%problem%law)
     do while (.not. (known%ending%early() .or. finished))
       call extend(known%path, walker, solver, lost)
       steps = steps + 1
