@@ -181,7 +181,8 @@ contains
   end function place_of
 
   !> The largest relative error of all reported numbers; 0 if no place was judged. Errors of a
-  !> table's loads are relative to the largest load.
+  !> table's loads are relative to the largest load. A fold of the path that a finer mesh does not
+  !> have counts even if it is not reported, since the stability of all later states depends on it.
   pure real(wp) function largest_error(self) result(largest)
     class(places_t), intent(in) :: self
     real(wp) :: load
@@ -198,6 +199,12 @@ contains
           if (entry%name /= of_table) largest = &
             max(largest, place%relative_error(any(with_radius == entry%name)))
         end associate
+      end associate
+    end do
+    do i = 1, size(self%place)
+      associate (place => self%place(i))
+        if (place%is_fold() .and. .not. place%known) &
+          largest = max(largest, place%relative_error(.false.))
       end associate
     end do
     largest = max(largest, self%largest_of(of_table, of_load)/load)

@@ -59,6 +59,7 @@ module reported_place
   contains
     procedure :: has_state
     procedure :: turns
+    procedure :: is_fold
     procedure :: measures
     procedure :: leftovers
     procedure :: errors
@@ -127,6 +128,13 @@ contains
 
     turns = any(abs(self%turn_of) > 0)
   end function turns
+
+  !> Whether h0 turns at the place.
+  pure logical function is_fold(self)
+    class(place_t), intent(in) :: self
+
+    is_fold = abs(self%turn_of(1)) > 0 .and. .not. abs(self%turn_of(2)) > 0
+  end function is_fold
 
   !> All quantities, from the values read at the place.
   pure function measures(self, value) result(all)
