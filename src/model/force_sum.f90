@@ -171,6 +171,14 @@ contains
     law%length_key = law%term(1)%law%length_key
   end subroutine take_units
 
+  !> The gap of a term at a gap of the sum.
+  elemental real(wp) function own_gap(term, gap)
+    type(term_t), intent(in) :: term
+    real(wp), intent(in) :: gap
+
+    own_gap = term%stretch*gap + term%shift
+  end function own_gap
+
   !> Lengths of those terms that have a characteristic length, or of all terms if none has.
   pure function lengths(law)
     type(force_sum_t), intent(in) :: law
@@ -191,7 +199,7 @@ contains
     value = 0
     do i = 1, size(self%term)
       associate (term => self%term(i))
-        value = value + term%weight*term%law%pressure(term%stretch*gap + term%shift)
+        value = value + term%weight*term%law%pressure(own_gap(term, gap))
       end associate
     end do
   end function pressure
@@ -205,7 +213,7 @@ contains
     value = 0
     do i = 1, size(self%term)
       associate (term => self%term(i))
-        value = value + term%weight*term%stretch*term%law%slope(term%stretch*gap + term%shift)
+        value = value + term%weight*term%stretch*term%law%slope(own_gap(term, gap))
       end associate
     end do
   end function slope
@@ -219,7 +227,7 @@ contains
     value = 0
     do i = 1, size(self%term)
       associate (term => self%term(i))
-        value = value + term%weight/term%stretch*term%law%energy(term%stretch*gap + term%shift)
+        value = value + term%weight/term%stretch*term%law%energy(own_gap(term, gap))
       end associate
     end do
   end function energy
@@ -233,7 +241,7 @@ contains
     value = 0
     do i = 1, size(self%term)
       associate (term => self%term(i))
-        own = term%law%table_error(term%stretch*gap + term%shift)
+        own = term%law%table_error(own_gap(term, gap))
         value(1, :) = value(1, :) + term%weight*own(1, :)
         value(2, :) = value(2, :) + term%weight/term%stretch*own(2, :)
       end associate
@@ -251,7 +259,7 @@ contains
     most = huge(1.0_wp)
     do i = 1, size(self%term)
       associate (term => self%term(i))
-        most = min(most, term%law%closure(term%stretch*gap + term%shift)/term%stretch)
+        most = min(most, term%law%closure(own_gap(term, gap))/term%stretch)
       end associate
     end do
     if (self%range > 0) most = max(most, 0.5_wp*(gap - self%range))
