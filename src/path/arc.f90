@@ -225,8 +225,8 @@ contains
 
   !> The gaps outside the edge to which a mesh is locked, at a given scale, by polynomials of s at
   !> constant distance from the edge, with the weights of values and slopes of the states `nodes`.
-  !> Where an oscillating pressure makes rings, these keep their distance approximately, while they
-  !> pass many nodes.
+  !> Rings of an oscillating pressure and the front of a step keep their distance approximately,
+  !> while they pass many nodes.
   pure function outside(self, shape, grid, nodes, of_value, of_slope, scale) result(gap)
     class(arc_t), intent(in) :: self
     class(shape_t), intent(in) :: shape

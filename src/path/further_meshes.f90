@@ -1,6 +1,6 @@
-!> Meshes that are inserted while the path is traced. Under a law that oscillates or has a step, a
-!> new mesh about the axis begins where the present one misses too much of the load. Under a law
-!> with several minima of its energy, bodies may be in contact in an outer minimum before the
+!> Meshes that are inserted while the path is traced. A new mesh about the axis begins where the
+!> present one misses too much of the load, unless meshes are locked to the front of a step. Under a
+!> law with several minima of its energy, bodies may be in contact in an outer minimum before the
 !> contact proper. Such a contact has an edge of its own: there the tension outside the minimum is
 !> largest. While this edge moves faster than the axis, meshes are locked to it.
 module further_meshes

@@ -37,7 +37,8 @@ contains
     type(equations_t), intent(inout), target :: equations
     type(arc_t), intent(in) :: arc
     type(mapped_shape_t) :: shape, narrower
-    real(wp) :: low, high, most
+    real(wp) :: low, high
+    logical :: crowded
     integer :: to, i
 
     to = arc%mesh + 1
@@ -56,12 +57,12 @@ contains
         low = max(meshes%reach(1, to), radius_for(equations, arc%mesh, to, arc%state(i)))
         high = meshes%reach(2, to)
         if (high < narrowest**2*low) exit
-        most = many_more*meshes%grid(arc%mesh)%nodes
-        if (equations%problem%law%period > 0 .and. shape%node_count() <= most) exit
+        crowded = shape%node_count() > many_more*meshes%grid(arc%mesh)%nodes
+        if (equations%problem%law%period > 0 .and. .not. crowded) exit
         meshes%reach(2, to) = sqrt(low*high)
         narrower = shape_for_next(equations, arc, i)
         meshes%reach(2, to) = high
-        if (narrower%node_count() > fewer*shape%node_count() .and. shape%node_count() <= most) exit
+        if (narrower%node_count() > fewer*shape%node_count() .and. .not. crowded) exit
         call meshes%divide(to, sqrt(low*high))
         shape = narrower
       end do
