@@ -12,7 +12,7 @@ module law_panels
   use discretisation, only: local_nodes_t, gauss_nodes
   use seen_gaps, only: seen_gaps_t
   use represented_pressure, only: panel_pressure
-  use step_front, only: front_leads
+  use step_front, only: front_leads, step_height
   implicit none
   private
   public :: fit_panels, nodes_on, left_out
@@ -171,31 +171,22 @@ contains
       real(wp), intent(in) :: z, z_length, radius
       type(local_nodes_t), intent(in) :: local
       integer, intent(in) :: j
-      real(wp), dimension(size(local%node)) :: offset
+      real(wp), dimension(size(local%node)) :: offset, gap
       real(wp) :: ends(2)
 
       offset = side*d*sinh(z + z_length*local%node)
+      gap = gap_of(j, radius, offset)
       if (j > 1 .and. j < size(parameter) .and. problem%law%step_width > 0) then
-        suffices = .not. meets_step(gap_of(j, radius, offset([1, size(offset)])))
+        suffices = .not. meets_step(problem%law, gap)
         if (suffices) return
       end if
       ends = centre + side*d*sinh(z + z_length*[0, 1])
       if (side < 0) ends = [ends(2), ends(1)]
       associate (unit => merge(1.0_wp, radius, about == about_axis))
         suffices = left_out(problem, local, unit*centre, unit*ends, unit*(centre + offset), &
-          panel_pressure(problem%law, local, gap_of(j, radius, offset)), load(j)) <= most
+          gap, panel_pressure(problem%law, local, gap), load(j)) <= most
       end associate
     end function suffices
-
-    !> Whether two gaps have the step of the law between them, or nearby.
-    pure logical function meets_step(gap)
-      real(wp), intent(in) :: gap(2)
-
-      associate (law => problem%law)
-        meets_step = maxval(gap) > law%step_at - whole_step*law%step_width .and. &
-          minval(gap) < law%step_at + whole_step*law%step_width
-      end associate
-    end function meets_step
 
     !> The gap number j at offsets from the centre; radius: that of a contact.
     function gap_of(j, radius, offset) result(gap)
@@ -232,30 +223,50 @@ contains
   end subroutine fit_panels
 
   !> The relative error of load and gap due to the nodes of a panel. The error is proportional to
-  !> the square of the tail of the pressure, since nodes integrate polynomials of twice the degree.
+  !> the square of the tail of the pressure, since nodes integrate polynomials of twice the degree;
+  !> more exactly, to the tail times its ratio to the pressure or, where a step is smaller than the
+  !> pressure around it, to the step: nodes that miss a step miss all of it.
+  !>
   !> Pressures are weighted by their area, limited by the length of the panel and by the area of the
   !> total load, and within the panel by their effect on the gap; under oscillating laws by the area
   !> of the panel. centre: radius of the mesh's centre; ends, r: radii of the panel's ends and of
-  !> its nodes; pressure: at the nodes; load: the reference load without the factor of 2 pi.
-  pure real(wp) function left_out(problem, local, centre, ends, r, pressure, load) result(left)
+  !> its nodes; gap, pressure: at the nodes; load: the reference load without the factor of 2 pi.
+  pure real(wp) function left_out(problem, local, centre, ends, r, gap, pressure, load) result(left)
     type(problem_t), intent(in) :: problem
     type(local_nodes_t), intent(in) :: local
-    real(wp), intent(in) :: centre, ends(2), r(:), pressure(:), load
-    real(wp) :: most(1), area, weighted(size(pressure))
+    real(wp), intent(in) :: centre, ends(2), r(:), gap(:), pressure(:), load
+    real(wp), dimension(size(pressure)) :: weight
+    real(wp) :: most(1), area, tail, largest, whole
 
     if (problem%law%period > 0) then
-      weighted = pressure*(ends(2) - ends(1))*(1 + ends(2))
-      left = local%tail(weighted)/max(load, tiny(load))
+      weight = (ends(2) - ends(1))*(1 + ends(2))
+      whole = load
     else
       most = max(1.0_wp, maxval(abs(pressure)))
       if (problem%law%edge_gap > 0) most = abs(problem%law%pressure([problem%law%edge_gap]))
       area = min(1.0_wp, load/most(1))
-      weighted = pressure*(min(area, ends(2)**2) + &
-        r*abs(r - centre)*(ends(2) - ends(1))/maxval(abs(ends - centre)))
-      left = local%tail(weighted)/max(most(1)*area, load, tiny(load))
+      weight = min(area, ends(2)**2) + &
+        r*abs(r - centre)*(ends(2) - ends(1))/maxval(abs(ends - centre))
+      whole = max(most(1)*area, load)
     end if
-    left = left*min(1.0_wp, local%tail(weighted)/max(maxval(abs(weighted)), tiny(1.0_wp)))
+    tail = local%tail(weight*pressure)
+    largest = maxval(abs(weight*pressure))
+    if (meets_step(problem%law, gap)) largest = min(largest, step_height(problem%law)* &
+      weight(minloc(abs(gap - problem%law%step_at), 1))/size(gap))
+    left = tail/max(whole, tiny(whole))*min(1.0_wp, tail/max(largest, tiny(largest)))
   end function left_out
+
+  !> Whether gaps that rise or fall have the step of a law between them, or nearby.
+  pure logical function meets_step(law, gap)
+    class(force_law_t), intent(in) :: law
+    real(wp), intent(in) :: gap(:)
+
+    associate (ends => gap([1, size(gap)]))
+      meets_step = law%step_width > 0 .and. &
+        maxval(ends) > law%step_at - whole_step*law%step_width .and. &
+        minval(ends) < law%step_at + whole_step*law%step_width
+    end associate
+  end function meets_step
 
   !> Gaps on the axis before contact: from large gaps down to that of largest tension or, if a step
   !> has a front before that, through the step.

@@ -9,7 +9,7 @@ module step_front
   use dimensionless_problem, only: problem_t
   implicit none
   private
-  public :: front_leads, first_front, last_front, front_width
+  public :: front_leads, step_height, first_front, last_front, front_width
 
   !> Distance from the middle of the step, in its widths, at which the tension inside the step is
   !> complete; least ratio of this tension to the largest tension for which the bodies follow the
@@ -36,6 +36,15 @@ contains
     pressure = law%pressure([law%edge_gap, law%step_at - complete*law%step_width])
     tension_inside = pressure(2)/pressure(1)
   end function tension_inside
+
+  !> The change of the pressure over the step of a law.
+  pure real(wp) function step_height(law)
+    class(force_law_t), intent(in) :: law
+    real(wp) :: pressure(2)
+
+    pressure = law%pressure(law%step_at + complete*law%step_width*[-1, 1])
+    step_height = abs(pressure(2) - pressure(1))
+  end function step_height
 
   !> Coupling times the tension inside the step: a disk of radius c under this tension is deformed
   !> by 4 c times this product on the axis and by 8/pi c times it at the rim.

@@ -38,6 +38,8 @@ module mending
     procedure :: mend
   end type mender_t
 
+  !> Part of the load, over the accuracy, that nodes may miss under a law with a step.
+  real(wp), parameter :: of_steps = 0.1_wp
   !> Part of the load that the panels of a new mesh may miss, over `most`; it is less than 1, since
   !> the path on the new mesh differs slightly.
   real(wp), parameter :: most_of_fit = 0.3_wp
@@ -55,12 +57,15 @@ module mending
 contains
 
   !> The refinement of meshes for a path with a given accuracy. `left_out` counts waves in
-  !> full, while only a part of their error affects the load.
+  !> full, while only a part of their error affects the load. Errors by a step change quickly as
+  !> the step passes from node to node, so that they shift extrema of the load more than the load.
   pure type(mender_t) function new_mender(accuracy, law) result(mender)
     real(wp), intent(in) :: accuracy
     class(force_law_t), intent(in) :: law
 
-    mender%most = accuracy*merge(too_much, 1.0_wp, law%period > 0)
+    mender%most = accuracy
+    if (law%step_width > 0) mender%most = of_steps*accuracy
+    if (law%period > 0) mender%most = too_much*accuracy
     allocate (mender%rounds(0), mender%left(0), mender%nodes(0))
   end function new_mender
 
@@ -236,7 +241,7 @@ contains
         if (panel%right <= 0 .and. .not. smooth) cycle
         left(k) = left_out(problem, grid%local(k), &
           scale*grid%centre, scale*(grid%centre + [panel%left, panel%right]), &
-          scale*grid%x(first:last), pressure(first:last), load)
+          scale*grid%x(first:last), gap(first:last), pressure(first:last), load)
       end associate
     end do
   end function left_of
