@@ -25,9 +25,9 @@ module exact_path
   private
   public :: trace_exactly
 
-  !> Largest number of further attempts to trace a path that was lost: without meshes that are
-  !> locked to a front, which may recede, or on finer meshes, since on coarse ones strong adhesion
-  !> makes folds that bodies do not have.
+  !> Largest number of further attempts to trace a path that was lost or has folds that a finer mesh
+  !> does not have: without meshes that are locked to a front, which may recede, or on finer meshes,
+  !> since on coarse ones strong adhesion makes folds that bodies do not have.
   integer, parameter :: most_attempts = 2
   !> Largest number of rounds of judging.
   integer, parameter :: most_rounds = 4
@@ -38,10 +38,9 @@ module exact_path
 
 contains
 
-  !> Traces the path on steps%meshes, or on others if it is lost. If the path is an output, and
-  !> its folds, extrema or end are not as accurate as requested, traces it again on finer meshes
-  !> where these can help. h0: law's lengths; fine: judges places of the path; places: the judged
-  !> places; store: of meshes.
+  !> Traces the path on steps%meshes, or on others if it is lost or has folds that finer meshes do
+  !> not have. h0: law's lengths; fine: judges places of the path; places: the judged places; store:
+  !> of meshes.
   subroutine trace_exactly(request, steps, h0_high, h0_low, listener, fine, places, store)
     class(request_t), intent(in) :: request
     class(path_stepper_t), intent(inout), target :: steps
@@ -50,29 +49,52 @@ contains
     type(finer_t), intent(out) :: fine
     type(places_t), intent(out) :: places
     type(mesh_store_t), intent(inout), target, optional :: store
-    real(wp), allocatable :: farthest, errors(:)
+    real(wp), allocatable :: farthest
+    real(wp) :: more, accuracy
+    integer :: attempt
+    logical :: lost, last
+
+    if (request%reads_path()) farthest = farthest_wanted(request, steps%problem)
+    accuracy = request%numerics%accuracy
+    do attempt = 0, most_attempts
+      associate (meshes => steps%meshes, known => steps%known)
+        if (attempt > 0) then
+          more = merge(0.0_wp, more_digits, lost .and. meshes%fronts)
+          accuracy = accuracy*10**(-more)
+          meshes = new_mesh_family(steps%problem, h0_high, h0_low, meshes%digits + more, &
+            store=store, fronts=meshes%fronts .and. .not. lost)
+          steps%cost%kernel_entries = steps%cost%kernel_entries + &
+            sum(meshes%grid%kernel_entries())
+        end if
+        call steps%know_path(h0_high, h0_low, allocated(request%path), accuracy, listener, farthest)
+        lost = known%ending%cause == path_lost
+        ! A path of too many states would have as many again.
+        last = attempt == most_attempts .or. known%path%held >= longest .or. &
+          meshes%digits + more_digits > most_digits
+      end associate
+      if (lost .and. .not. last) cycle
+      call fine%lay_out(steps, h0_high, h0_low, store)
+      call make_exact(request, steps, fine, places)
+      if (last .or. .not. allocated(places%place)) exit
+      if (all(places%place%known)) exit
+    end do
+  end subroutine trace_exactly
+
+  !> Judges the extrema of a path. If the path is an output, and its extrema or end are not as
+  !> accurate as requested, traces it again on finer meshes where these can help.
+  subroutine make_exact(request, steps, fine, places)
+    class(request_t), intent(in) :: request
+    class(path_stepper_t), intent(inout), target :: steps
+    type(finer_t), intent(inout) :: fine
+    type(places_t), intent(out) :: places
+    real(wp), allocatable :: errors(:)
     logical, allocatable :: poor(:), renewed(:)
     type(place_t) :: finish
     real(wp) :: before, began
     integer :: round, mesh, i, kept
     logical :: found
 
-    if (request%reads_path()) farthest = farthest_wanted(request, steps%problem)
     associate (accuracy => request%numerics%accuracy, cost => steps%cost)
-      do round = 0, most_attempts
-        if (round > 0) then
-          steps%meshes = new_mesh_family(steps%problem, h0_high, h0_low, &
-            steps%meshes%digits + merge(0.0_wp, more_digits, steps%meshes%fronts), store=store, &
-            fronts=.false.)
-          cost%kernel_entries = cost%kernel_entries + sum(steps%meshes%grid%kernel_entries())
-        end if
-        call steps%know_path(h0_high, h0_low, allocated(request%path), listener, farthest, &
-          accuracy)
-        ! A path of too many states would have as many again.
-        if (steps%known%ending%cause /= path_lost .or. steps%known%path%held >= longest .or. &
-          steps%meshes%digits + more_digits > most_digits) exit
-      end do
-      call fine%lay_out(steps, h0_high, h0_low, store)
       renewed = spread(.false., 1, size(steps%meshes%grid))
       before = huge(before)
       do round = 1, most_rounds
@@ -96,7 +118,7 @@ contains
         end do
       end do
     end associate
-  end subroutine trace_exactly
+  end subroutine make_exact
 
   !> Whether finer meshes may make a path more accurate. They do not help if the path was lost,
   !> since the finer path may end earlier; if nodes miss too much of the load, since this needs

@@ -53,15 +53,15 @@ module path_stepper
 contains
 
   !> Traces the path from h0_high, or from where the bodies hardly deform, until it is stable at
-  !> h0_low; into_contact: until it is also on the mesh for contact; farthest, accuracy: see
+  !> h0_low; into_contact: until it is also on the mesh for contact; accuracy, farthest: see
   !> `trace`; with `farthest` the points define a smooth curve. To be called before the first step.
   !> The listener receives messages about the progress.
-  subroutine know_path(self, h0_high, h0_low, into_contact, listener, farthest, accuracy)
+  subroutine know_path(self, h0_high, h0_low, into_contact, accuracy, listener, farthest)
     class(path_stepper_t), intent(inout) :: self
-    real(wp), intent(in) :: h0_high, h0_low
+    real(wp), intent(in) :: h0_high, h0_low, accuracy
     logical, intent(in) :: into_contact
     class(listener_t), intent(inout) :: listener
-    real(wp), intent(in), optional :: farthest, accuracy
+    real(wp), intent(in), optional :: farthest
     type(known_path_t) :: nothing
     type(branch_point_t) :: position
     type(step_result_t) :: event
@@ -70,8 +70,8 @@ contains
     call self%operator%forget()
     call self%begin_afar(h0_high, position, event)
     if (.not. event%ending%early()) then
-      call trace(self%solver_t, position%state, h0_low, into_contact, listener, self%known, &
-        farthest, accuracy)
+      call trace(self%solver_t, position%state, h0_low, into_contact, accuracy, listener, &
+        self%known, farthest)
       call know_pieces(self%solver_t, self%known)
     else
       self%known%ending = event%ending

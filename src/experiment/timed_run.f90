@@ -229,7 +229,7 @@ contains
     ! Without the pieces of the path and their landings, which `know_path` solves too.
     call at_rest%begin_afar(high, afar, event)
     if (.not. event%ending%early()) call trace(at_rest%solver_t, afar%state, low, .true., &
-      listener, traced, accuracy=accuracy)
+      accuracy, listener, traced)
     steps%meshes = at_rest%meshes
     steps%cost = at_rest%cost
     associate (meshes => steps%meshes)

@@ -120,8 +120,8 @@ contains
     call prepare(self%steps, problem, chosen, self%numerics%accuracy)
     self%steps%options%mixing = .false.
     self%steps%meshes = new_mesh_family(problem, high, low, chosen%digits, store=self%store)
-    call self%steps%know_path(high, low, .true., silent, farthest_wanted(request, problem), &
-      self%numerics%accuracy)
+    call self%steps%know_path(high, low, .true., self%numerics%accuracy, silent, &
+      farthest_wanted(request, problem))
     self%left_out = self%steps%known%left_out
     if (.not. self%steps%known%path%held > 1) return
     call drive_bodies(self%steps%solver_t, self%steps%known%path, &

@@ -39,7 +39,7 @@ module mesh_plan
     !> Least and largest radius of each mesh, lateral units; for the approach the largest H0.
     real(wp), allocatable :: reach(:, :)
     !> Whether a mesh is laid out only when the path reaches it, for the gaps of the bodies there
-    !> (`lay_out`); until then it has no kernel.
+    !> (`lay_out_next`); until then it has no kernel.
     logical, allocatable :: waits(:)
     !> Whether a mesh was inserted while the path was traced (`insert`).
     logical, allocatable :: inserted(:)

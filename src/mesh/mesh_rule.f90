@@ -98,7 +98,7 @@ contains
     integer, intent(in) :: about
     real(wp), intent(in) :: low, high, level, digits
     type(seen_gaps_t), intent(in), optional :: seen
-    real(wp) :: inner, outer, reach, repulsion
+    real(wp) :: inner, outer, farthest, reach, repulsion
 
     inner = 0.15_wp + digits*(0.24_wp + 0.0105_wp*digits)
     if (problem%law%adhesion > 0) then
@@ -112,7 +112,9 @@ contains
       inner = 1.5_wp*inner
       outer = inner
     end if
-    reach = max(nearest_tail, beyond_poles*problem%shape%position_of(0.5_wp*calm_gap(problem)))
+    farthest = 0.5_wp*calm_gap(problem)
+    if (present(seen)) farthest = max(farthest, seen%farthest)
+    reach = max(nearest_tail, beyond_poles*problem%shape%position_of(farthest))
     ! The pressure around a contact smaller than its neck is that before contact. If the neck is
     ! wider than the range of the force, this pressure is smooth enough.
     if (problem%law%adhesion > 0 .and. cohesive_width(problem) < 1) &

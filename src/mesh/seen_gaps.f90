@@ -15,6 +15,8 @@ module seen_gaps
     type(discretisation_t), pointer, private :: grid => null()
     integer, private :: held = 0
     real(wp), allocatable, private :: beside(:, :), scale(:), on(:)
+    !> The largest distance between the undeformed bodies of a state.
+    real(wp) :: farthest = 0
     !> The last position on a bounded mesh.
     real(wp), private :: last = huge(1.0_wp)
     !> The part of the load that panels for these gaps may miss (`law_panels`).
@@ -58,16 +60,17 @@ contains
     allocate (self%moved(0))
   end subroutine begin_on
 
-  !> Adds a state: its gaps, scale, and the load to which its errors are relative.
-  pure subroutine add(self, shape, gap, scale, load)
+  !> Adds a state: its gaps, scale, H0, and the load to which its errors are relative.
+  pure subroutine add(self, shape, gap, scale, h0, load)
     class(seen_gaps_t), intent(inout) :: self
     class(shape_t), intent(in) :: shape
-    real(wp), intent(in) :: gap(:), scale, load
+    real(wp), intent(in) :: gap(:), scale, h0, load
 
     self%held = self%held + 1
     self%beside(:, self%held) = gap - shape%height(scale*self%grid%x)
     self%scale(self%held) = scale
     self%on(self%held) = load
+    self%farthest = max(self%farthest, abs(h0))
   end subroutine add
 
   !> The gaps of the newest state are to be tried, moved so that the gap at the radius `from` is at

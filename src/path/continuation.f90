@@ -12,6 +12,7 @@ module continuation
   use next_mesh, only: radius_for, locked_alike, lay_out_next, beyond_passage
   use path_coordinate, only: path_control, coordinate_of
   use path_tangent, only: tangent_t, tangent_along
+  use mending, only: left_in_state
   use arc, only: arc_t
   implicit none
   private
@@ -41,6 +42,8 @@ module continuation
   type, extends(arc_t) :: continuation_t
     real(wp) :: step = first_step, longest_step = longest_step, miss_of_curve = wanted_miss, &
       slope_error = slope_error
+    !> Part of the load that the nodes of a mesh may miss where the path comes to it.
+    real(wp) :: most = huge(1.0_wp)
   contains
     procedure :: follow_closely
     procedure :: take
@@ -212,38 +215,61 @@ contains
 
   !> Passes to the next mesh once the contact radius has crossed the passage to that mesh (to be
   !> called after each `advance`). The last two states are transferred, so that the next mesh has
-  !> the interval between them too. The next mesh must be fine enough for the first of the two
-  !> states, and h0 and load must change in the same sense on both meshes there; otherwise an
-  !> extremum would be found twice or not at all.
+  !> the interval between them too. A mesh that was laid out for predicted gaps is laid out anew for
+  !> those of the path if it does not resolve the first of the two states. h0 and load must change
+  !> in the same sense on both meshes there; otherwise an extremum would be found twice or not at
+  !> all.
   subroutine change_mesh(self, solver, lost)
     class(continuation_t), intent(inout) :: self
     class(solver_t), intent(inout) :: solver
     logical, intent(out) :: lost
     type(arc_t) :: next
-    type(state_t) :: state
-    integer :: j
-    logical :: done
+    logical :: suffices
 
     lost = .false.
     if (.not. self%has_come_to_next(solver%equations_t)) return
-    next%mesh = self%mesh + 1
-    next%moved = self%moved
-    if (solver%meshes%waits(next%mesh)) call lay_out_next(solver%equations_t, self%arc_t)
-    do j = self%held - 1, self%held
-      state = self%state(j)
-      ! The two states are a step of the path apart.
-      call solver%frozen%forget()
-      call move_to_mesh(solver, self%mesh, next%mesh, state, done)
-      lost = .not. done
-      if (done) call add_with_tangent(solver, self%slope_error, state, next, lost)
-      if (lost) return
-    end do
+    suffices = .not. solver%meshes%waits(self%mesh + 1)
+    if (suffices) then
+      call transfer(self, solver, next, lost)
+      suffices = .not. lost
+      if (suffices) suffices = &
+        left_in_state(solver%equations_t, next%mesh, next%state(1)) <= self%most
+    end if
+    if (.not. suffices) then
+      call lay_out_next(solver%equations_t, self%arc_t)
+      call solver%operator%forget()
+      call transfer(self, solver, next, lost)
+    end if
+    if (lost .or. next%held < 2) return
     associate (here => self%tangent(self%held - 1), there => next%tangent(1))
       if (.not. (here%h0*there%h0 > 0 .and. here%load*there%load > 0)) return
     end associate
     self%arc_t = next
     self%step = 0.5_wp*self%step
   end subroutine change_mesh
+
+  !> Solves the last two states of an arc on the next mesh. lost: this failed.
+  subroutine transfer(arc, solver, next, lost)
+    class(continuation_t), intent(in) :: arc
+    class(solver_t), intent(inout) :: solver
+    type(arc_t), intent(out) :: next
+    logical, intent(out) :: lost
+    type(state_t) :: state
+    integer :: j
+    logical :: done
+
+    next%mesh = arc%mesh + 1
+    next%moved = arc%moved
+    do j = arc%held - 1, arc%held
+      state = arc%state(j)
+      ! The two states are a step of the path apart.
+      call solver%frozen%forget()
+      call move_to_mesh(solver, arc%mesh, next%mesh, state, done)
+      lost = .not. done
+      if (done) call add_with_tangent(solver, arc%slope_error, state, next, lost)
+      if (lost) return
+    end do
+  end subroutine transfer
 
   !> Solves a state of one mesh on another mesh, at the same contact radius or axis gap. done =
   !> .false.: the state has no contact edge for the locked mesh, or the iteration did not converge.

@@ -14,7 +14,14 @@ module further_meshes
   use mending, only: left_in_state
   implicit none
   private
-  public :: insert_mesh
+  public :: further_mesh_t, further_mesh
+
+  !> Whether a mesh is to be inserted; the gap to which it is locked (0: about the axis) and its
+  !> reach, see `mesh_plan_t`.
+  type :: further_mesh_t
+    logical :: wanted = .false.
+    real(wp) :: locked = 0, reach(2) = 0
+  end type further_mesh_t
 
   !> Ratio of the rates of the two coordinates at which a mesh is locked to the faster one.
   real(wp), parameter :: faster = 2
@@ -24,24 +31,25 @@ module further_meshes
   real(wp), parameter :: deeper = 1.5_wp
   !> States of an arc, of which two are from the mesh before, after which a mesh is inserted.
   integer, parameter :: enough = 4
+  !> Change of the coordinate over the states of an arc below which another mesh would not help.
+  real(wp), parameter :: least_progress = 1.0e-4_wp
   !> Part of the period by which gaps differ among which an edge is looked for.
   real(wp), parameter :: apart = 1.0_wp/32
 
 contains
 
-  !> Inserts a mesh after that of an arc if the path should continue on another one. most: part of
-  !> the load that the nodes may miss.
-  subroutine insert_mesh(equations, arc, most, inserted)
-    type(equations_t), intent(inout) :: equations
+  !> The mesh on which the path should continue after that of an arc, if it should leave this one.
+  !> most: part of the load that the nodes may miss.
+  pure type(further_mesh_t) function further_mesh(equations, arc, most) result(further)
+    type(equations_t), intent(in) :: equations
     type(arc_t), intent(in) :: arc
     real(wp), intent(in) :: most
-    logical, intent(out) :: inserted
     real(wp) :: level, radius(2), nearer, wider
 
-    inserted = .false.
     associate (meshes => equations%meshes, law => equations%problem%law, mesh => arc%mesh)
       if (.not. meshes%grows .or. meshes%fronts .or. .not. law%edge_gap > 0) return
       if (meshes%in_contact(mesh) .or. arc%held < enough) return
+      if (arc%coordinate(arc%held) - arc%coordinate(1) < least_progress) return
       if (meshes%passage(mesh) <= 0) return
       associate (before => arc%state(arc%held - 1), now => arc%state(arc%held))
         level = meshes%locked_gap(mesh)
@@ -52,29 +60,26 @@ contains
         wider = 0
         if (minval(radius) > 0) wider = log(radius(2)/radius(1))
         if (meshes%is_about_axis(mesh)) then
-          inserted = level > law%edge_gap .and. wider > faster*nearer .and. &
+          further%wanted = level > law%edge_gap .and. wider > faster*nearer .and. &
             wider < log(band_of_waves) .and. &
             abs(now%axis_gap - before%axis_gap) < resting*abs(now%h0 - before%h0)
-          if (.not. inserted) level = 0
-          inserted = inserted .or. left_in_state(equations, mesh, now) > most
+          if (.not. further%wanted) level = 0
         else
-          inserted = nearer > faster*wider
-          if (inserted) level = 0
-          inserted = inserted .or. radius(2) > meshes%reach(2, mesh) .or. &
-            left_in_state(equations, mesh, now) > most
+          further%wanted = nearer > faster*wider
+          if (further%wanted) level = 0
+          further%wanted = further%wanted .or. radius(2) > meshes%reach(2, mesh)
         end if
+        further%wanted = further%wanted .or. left_in_state(equations, mesh, now) > most
       end associate
-      if (.not. inserted) return
+      further%locked = level
       if (level > 0) then
-        call meshes%insert(mesh, level, radius(1), band_of_waves*radius(2))
+        further%reach = [radius(1), band_of_waves*radius(2)]
       else
         ! The poles of the pressure are as far from the axis at h0 as at -h0.
-        call meshes%insert(mesh, level, max(meshes%reach(1, 1), &
-          deeper*abs(arc%state(arc%held)%h0)), 0.0_wp)
+        further%reach = [max(meshes%reach(1, 1), deeper*abs(arc%state(arc%held)%h0)), 0.0_wp]
       end if
     end associate
-    call equations%operator%forget()
-  end subroutine insert_mesh
+  end function further_mesh
 
   !> The smallest gap above another one, approximately, at which the tension is largest.
   pure real(wp) function edge_beyond(law, gap) result(edge)

@@ -156,7 +156,8 @@ contains
         if (path%point(i)%mesh /= mesh) cycle
         k = k + 1
         associate (state => path%point(i)%state)
-          call seen%add(problem%shape, state%gap, state%scale, felt_load(problem, grid, state))
+          call seen%add(problem%shape, state%gap, state%scale, state%h0, &
+            felt_load(problem, grid, state))
           call seen%try(grid%centre*state%scale, state%scale, state%scale, 0.0_wp)
           if (.not. grid%centre > 0) cycle
           if (k == 1) call seen%try(state%scale, reach(1), state%scale, &

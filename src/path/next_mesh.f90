@@ -6,7 +6,6 @@ module next_mesh
   use equilibrium, only: equations_t
   use mapped_mesh, only: mapped_shape_t
   use seen_gaps, only: seen_gaps_t
-  use mesh_rule, only: is_narrow
   use arc, only: arc_t
   implicit none
   private
@@ -28,11 +27,10 @@ contains
 
   !> Lays out the mesh after that of an arc for the gaps of its newest state. An inserted mesh is
   !> for the state before, since the old nodes may miss too much of the newest one; about the axis
-  !> it is also for states extrapolated from that state. Under a law that oscillates or has a step,
-  !> a band of an edge is halved as long as it needs many more nodes than the mesh before, as around
-  !> a small contact far inside a sharp rim; under a law that does not oscillate also if half of it
-  !> needs clearly fewer nodes. (Rings that appear as an oscillating contact grows are foreseen less
-  !> well on many narrow bands.)
+  !> it is also for states extrapolated from that state. A band of an edge is halved as long as it
+  !> needs many more nodes than the mesh before, as around a small contact far inside a sharp rim;
+  !> under a law that does not oscillate also if half of it needs clearly fewer nodes. (Rings that
+  !> appear as an oscillating contact grows are foreseen less well on many narrow bands.)
   subroutine lay_out_next(equations, arc)
     type(equations_t), intent(inout), target :: equations
     type(arc_t), intent(in) :: arc
@@ -43,17 +41,16 @@ contains
 
     to = arc%mesh + 1
     i = arc%held
-    if (equations%meshes%inserted(to)) i = i - 1
+    if (equations%meshes%inserted(to) .and. i > 2) i = i - 1
     associate (meshes => equations%meshes)
-      ! The last two states of the arc pass to the mesh. Beyond its last panel, waves at the first
-      ! of these would not be resolved.
-      if (equations%problem%law%period > 0 .and. .not. meshes%is_about_axis(to)) then
+      ! The last two states of the arc pass to the mesh. Beyond its last panel, features of the
+      ! first of these would not be resolved.
+      if (.not. meshes%is_about_axis(to)) then
         low = radius_for(equations, arc%mesh, to, arc%state(arc%held - 1))
         if (low > 0) meshes%reach(1, to) = min(meshes%reach(1, to), low)
       end if
       shape = shape_for_next(equations, arc, i)
-      do while (meshes%grows .and. is_narrow(equations%problem) .and. &
-        .not. meshes%is_about_axis(to))
+      do while (meshes%grows .and. .not. meshes%is_about_axis(to))
         low = max(meshes%reach(1, to), radius_for(equations, arc%mesh, to, arc%state(i)))
         high = meshes%reach(2, to)
         if (high < narrowest**2*low) exit
@@ -92,11 +89,11 @@ contains
           gap = state%gap + ahead(k)*(equations%raised(arc%mesh, state) - &
             equations%raised(arc%mesh, before))
           if (minval(gap) < problem%law%rest_gap .and. k > 1) exit
-          call seen%add(problem%shape, gap, state%scale, load)
+          call seen%add(problem%shape, gap, state%scale, state%h0, load)
           call seen%try(0.0_wp, 1.0_wp, 1.0_wp, 0.0_wp)
         end do
       else
-        call seen%add(problem%shape, state%gap, state%scale, load)
+        call seen%add(problem%shape, state%gap, state%scale, state%h0, load)
         call seen%try(radius_for(equations, arc%mesh, to, state), meshes%reach(1, to), &
           beyond_passage*meshes%reach(2, to), radius_of_step(problem, grid, state))
       end if

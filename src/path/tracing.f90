@@ -17,7 +17,7 @@ module tracing
   use ending, only: ending_t, beyond_rounding, no_equilibrium, path_lost
   use traced_path, only: traced_path_t
   use path_growth, only: append, add_extrema
-  use further_meshes, only: insert_mesh
+  use further_meshes, only: further_mesh_t, further_mesh
   use mending, only: mender_t, new_mender, left_on_path
   implicit none
   private
@@ -51,25 +51,24 @@ module tracing
 contains
 
   !> Traces the path from a state at large separation, on the mesh for the approach, until it is
-  !> stable at h0_low; into_contact: until it is also on the mesh for contact. farthest: if present,
-  !> the points are close enough for a smooth curve, and undeformed bodies fill the range from
-  !> `farthest` to the start. accuracy: if present, meshes that miss too much of the load for this
-  !> accuracy are refined.
-  subroutine trace(solver, start, h0_low, into_contact, listener, known, farthest, accuracy)
+  !> stable at h0_low; into_contact: until it is also on the mesh for contact. Meshes that miss too
+  !> much of the load for the accuracy are refined. farthest: if present, the points are close
+  !> enough for a smooth curve, and undeformed bodies fill the range from `farthest` to the start.
+  subroutine trace(solver, start, h0_low, into_contact, accuracy, listener, known, farthest)
     class(solver_t), intent(inout) :: solver
     type(state_t), intent(in) :: start
-    real(wp), intent(in) :: h0_low
+    real(wp), intent(in) :: h0_low, accuracy
     logical, intent(in) :: into_contact
     class(listener_t), intent(inout) :: listener
     class(tracing_t), intent(inout) :: known
-    real(wp), intent(in), optional :: farthest, accuracy
+    real(wp), intent(in), optional :: farthest
     type(continuation_t) :: walker
     type(mender_t) :: mender
     character(len=40) :: so_far
-    logical :: lost, blind, finished, mended, inserted
+    type(further_mesh_t) :: further
+    logical :: lost, blind, finished, mended
     type(ending_t) :: going_on
     real(wp) :: tolerance
-    logical :: guarded
     integer :: steps
 
     ! Where rounding hides the contact, the path is useful up to its first fold only.
@@ -82,8 +81,8 @@ contains
     if (present(farthest)) call walker%follow_closely()
     call walker%take(solver, start, approach, lost)
     if (lost) known%ending%cause = path_lost
-    guarded = present(accuracy)
-    if (guarded) mender = new_mender(accuracy, solver%problem%law)
+    mender = new_mender(accuracy, solver%problem%law)
+    walker%most = mender%most
     do while (.not. (known%ending%early() .or. finished))
       call extend(known%path, walker, solver, lost)
       steps = steps + 1
@@ -92,12 +91,14 @@ contains
         call listener%hear(trim(so_far))
       end if
       mended = .false.
-      inserted = .false.
-      if (guarded .and. .not. lost) call insert_mesh(solver%equations_t, walker%arc_t, &
-        accuracy, inserted)
-      if (guarded .and. .not. (lost .or. inserted)) then
-        if (walker%has_come_to_next(solver%equations_t)) &
+      if (.not. lost) then
+        further = further_mesh(solver%equations_t, walker%arc_t, accuracy)
+        if (further%wanted .or. walker%has_come_to_next(solver%equations_t)) &
           call mender%mend(solver%equations_t, known%path, walker%mesh, .true., .false., mended)
+        if (further%wanted .and. .not. mended) then
+          call solver%meshes%insert(walker%mesh, further%locked, further%reach(1), further%reach(2))
+          call solver%operator%forget()
+        end if
       end if
       if (.not. (lost .or. mended)) call pass_on(known%path, walker, solver, lost)
       known%fallen = collapsed(solver%problem, known%path)
@@ -115,7 +116,7 @@ contains
           (solver%meshes%in_contact(last%mesh) .or. .not. into_contact .or. &
           solver%meshes%is_in_outer_contact(last%mesh))
       end associate
-      if (guarded .and. .not. mended .and. (finished .or. known%ending%early())) &
+      if (.not. mended .and. (finished .or. known%ending%early())) &
         call mender%mend(solver%equations_t, known%path, walker%mesh, .false., lost, mended)
       if (.not. mended) cycle
       known%ending = going_on
@@ -124,8 +125,7 @@ contains
       if (lost) known%ending%cause = path_lost
     end do
     solver%options%tolerance = tolerance
-    if (guarded .and. .not. known%fallen) &
-      known%left_out = left_on_path(solver%equations_t, known%path)
+    if (.not. known%fallen) known%left_out = left_on_path(solver%equations_t, known%path)
     if (present(farthest)) call known%path%begin_undeformed(solver%problem, farthest)
     known%path%last = known%path%held
   end subroutine trace

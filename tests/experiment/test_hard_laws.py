@@ -281,15 +281,44 @@ def test_a_step_outside_a_well_is_followed(run, share, reach, sigma):
         assert near == pytest.approx(exact, rel=1e-5), name
 
 
-@pytest.mark.parametrize("accuracy", [8e-4, 1e-4, 1e-5])
-def test_a_path_with_folds_that_bodies_do_not_have_is_not_believed(run, accuracy):
-    """Far outside a tiny first contact the pressure has features that its mesh may miss. The folds
-    made by their error lie beyond the end of the path, whose stability depends on them."""
-    result = run(deck(
-        bodies={"radius": 0.015, "stiffness": 57003128.5},
-        force={"law": "lennard_jones", "hamaker": 1e-19, "z0": 5e-10},
-        hydration={"energy": 0.006093877842049739, "decay_length": 8.296930209265921e-10},
-        equilibrium_path={"h0_end": -2.5372542765209914e-11}, numerics={"accuracy": accuracy}))
-    doubts = [said for said in result.warnings if "beyond" not in said]
-    exact = pytest.approx(3.27944187e-4, rel=1.2 * accuracy)
-    assert doubts or result.summary["max_tension"] == exact
+SOFT_BODIES = {
+    "a tiny contact in a wide hydration force": (57003128.5, -2.537e-11, {
+        "force": {"law": "lennard_jones", "hamaker": 1e-19, "z0": 5e-10},
+        "hydration": {"energy": 0.0060939, "decay_length": 8.297e-10}}),
+    "a wide hydration force and few folds": (315094422.0, -8.821e-11, {
+        "force": {"law": "lennard_jones", "hamaker": 1e-19, "z0": 5e-10},
+        "hydration": {"energy": 0.0091518, "decay_length": 9.526e-10}}),
+    "a tiny contact in a double layer": (23443826.7, -1.244e-10, {
+        "van_der_waals": {"hamaker": 1e-19, "retardation_length": 8.347e-8},
+        "born": {"hamaker": 1e-19, "z0": 4.286e-10},
+        "double_layer": {"potential": -0.08986, "regulation": 0.7368, "salt": 0.14068,
+                         "valence": 1}}),
+    "a weak step far outside": (411123179.0, -3.548e-9, {
+        "force": {"law": "lennard_jones", "hamaker": 1e-19, "z0": 5e-10},
+        "depletion": {"osmotic_pressure": 1e5, "diameter": 4.577e-9}}),
+    "a weak step around hard bodies": (3.44e13, -8e-11, {
+        "force": {"law": "lennard_jones", "hamaker": 1e-19, "z0": 5e-10},
+        "depletion": {"osmotic_pressure": 1e5, "diameter": 3.208e-9}}),
+}
+
+
+@pytest.mark.parametrize("scene", SOFT_BODIES)
+def test_no_fold_is_made_by_the_mesh(run, scene):
+    """Nodes that miss a weak step, or features far outside a tiny contact, make folds that bodies
+    do not have, and the stability of all later states depends on them."""
+    stiffness, h0_end, forces = SOFT_BODIES[scene]
+
+    def path(accuracy):
+        found = run(deck(
+            bodies={"radius": 0.015, "stiffness": stiffness}, **forces,
+            equilibrium_path={"h0_end": h0_end}, numerics={"accuracy": accuracy}))
+        assert all(said.startswith("beyond the model") for said in found.warnings)
+        return found.summary
+
+    exact = path(1e-7)
+    for accuracy in (5e-4, 1e-4, 1e-5):
+        found = path(accuracy)
+        for name in ("max_tension", "folds_h0", "end_load"):
+            # Folds of nearly rigid bodies are not resolved by h0 alone.
+            assert several(found.get(name, [])) == pytest.approx(
+                several(exact.get(name, [])), rel=3 * accuracy), (accuracy, name)
