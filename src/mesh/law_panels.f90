@@ -251,8 +251,8 @@ contains
     end if
     tail = local%tail(weight*pressure)
     largest = maxval(abs(weight*pressure))
-    if (meets_step(problem%law, gap)) largest = min(largest, step_height(problem%law)* &
-      weight(minloc(abs(gap - problem%law%step_at), 1))/size(gap))
+    if (meets_step(problem%law, gap)) largest = min(largest, &
+      step_height(problem%law)*weight(minloc(abs(gap - problem%law%step_at), 1)))
     left = tail/max(whole, tiny(whole))*min(1.0_wp, tail/max(largest, tiny(largest)))
   end function left_out
 

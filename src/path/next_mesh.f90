@@ -43,11 +43,12 @@ contains
     i = arc%held
     if (equations%meshes%inserted(to) .and. i > 2) i = i - 1
     associate (meshes => equations%meshes)
-      ! The last two states of the arc pass to the mesh. Beyond its last panel, features of the
-      ! first of these would not be resolved.
+      ! The last two states of the arc pass to the mesh, and may have passed all of its band.
       if (.not. meshes%is_about_axis(to)) then
         low = radius_for(equations, arc%mesh, to, arc%state(arc%held - 1))
+        high = radius_for(equations, arc%mesh, to, arc%state(arc%held))
         if (low > 0) meshes%reach(1, to) = min(meshes%reach(1, to), low)
+        meshes%reach(2, to) = max(meshes%reach(2, to), high)
       end if
       shape = shape_for_next(equations, arc, i)
       do while (meshes%grows .and. .not. meshes%is_about_axis(to))
@@ -76,7 +77,7 @@ contains
     integer, intent(in) :: i
     type(seen_gaps_t) :: seen
     real(wp), allocatable :: gap(:)
-    real(wp) :: load
+    real(wp) :: load, radius
     integer :: to, k
 
     to = arc%mesh + 1
@@ -96,6 +97,12 @@ contains
         call seen%add(problem%shape, state%gap, state%scale, state%h0, load)
         call seen%try(radius_for(equations, arc%mesh, to, state), meshes%reach(1, to), &
           beyond_passage*meshes%reach(2, to), radius_of_step(problem, grid, state))
+        if (i == arc%held) then
+          call seen%add(problem%shape, before%gap, before%scale, before%h0, &
+            felt_load(problem, grid, before))
+          radius = radius_for(equations, arc%mesh, to, before)
+          call seen%try(radius, radius, radius, 0.0_wp)
+        end if
       end if
       shape = meshes%shape_for(problem, to, seen)
     end associate
