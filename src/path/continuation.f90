@@ -10,7 +10,7 @@ module continuation
   use solver, only: solver_t
   use regridding, only: regrid
   use next_mesh, only: radius_for, locked_alike, lay_out_next, beyond_passage
-  use path_coordinate, only: path_control, coordinate_of
+  use path_coordinate, only: path_control, coordinate_of, axis_gap_rate
   use path_tangent, only: tangent_t, tangent_along
   use mending, only: left_in_state
   use arc, only: arc_t
@@ -193,7 +193,8 @@ contains
     if (.not. (about_axis .and. problem%law%step_width > 0)) return
     associate (law => problem%law, gap => self%state(self%held)%axis_gap)
       longest = max(at_once*law%step_width, &
-        0.5_wp*(abs(gap - law%step_at) - reach*law%step_width))/(gap - 0.9_wp*law%rest_gap)
+        0.5_wp*(abs(gap - law%step_at) - reach*law%step_width))/ &
+        abs(axis_gap_rate(law, self%coordinate(self%held)))
     end associate
   end function step_past_step
 

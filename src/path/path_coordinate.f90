@@ -1,7 +1,8 @@
 !> The coordinate s of the equilibrium path, in which the path has no folds and which increases
 !> inward. On meshes about the axis s is minus the logarithm of the gap on the axis, less nine
-!> tenths of the gap at rest; on other meshes it is the logarithm of the radius of the edge or
-!> front to which they are locked (`mesh_plan`).
+!> tenths of the gap at rest; within the gap at rest, to which flat faces may be pressed, it is the
+!> parabola that continues this logarithm. On other meshes it is the logarithm of the radius of the
+!> edge or front to which they are locked (`mesh_plan`).
 module path_coordinate
   use kinds, only: wp
   use force_law, only: force_law_t
@@ -11,7 +12,10 @@ module path_coordinate
   use edge_locked, only: mesh_family_t
   implicit none
   private
-  public :: path_control, coordinate_of, axis_coordinate
+  public :: path_control, coordinate_of, axis_coordinate, axis_gap_rate
+
+  !> The singular gap of the logarithm, over the gap at rest.
+  real(wp), parameter :: singular = 0.9_wp
 
 contains
 
@@ -25,7 +29,7 @@ contains
     control%mesh = mesh
     if (meshes%is_about_axis(mesh)) then
       control%kind = at_axis_gap
-      control%value = exp(-s) + 0.9_wp*problem%law%rest_gap
+      control%value = axis_gap_at(problem%law, s)
     else
       control%kind = at_edge_radius
       control%value = exp(s)
@@ -52,7 +56,40 @@ contains
     class(force_law_t), intent(in) :: law
     type(state_t), intent(in) :: state
 
-    s = -log(max(state%axis_gap - 0.9_wp*law%rest_gap, tiny(1.0_wp)))
+    associate (beyond => state%axis_gap - singular*law%rest_gap, &
+      at_rest => (1 - singular)*law%rest_gap)
+      if (beyond > at_rest .or. .not. at_rest > 0) then
+        s = -log(max(beyond, tiny(1.0_wp)))
+      else
+        s = (at_rest - beyond)/at_rest
+        s = s + 0.5_wp*s**2 - log(at_rest)
+      end if
+    end associate
   end function axis_coordinate
+
+  !> The gap on the axis at a coordinate.
+  pure real(wp) function axis_gap_at(law, s) result(gap)
+    class(force_law_t), intent(in) :: law
+    real(wp), intent(in) :: s
+
+    associate (at_rest => (1 - singular)*law%rest_gap)
+      if (exp(-s) > at_rest) then
+        gap = exp(-s) + singular*law%rest_gap
+      else
+        gap = law%rest_gap - at_rest*(sqrt(1 + 2*(s + log(at_rest))) - 1)
+      end if
+    end associate
+  end function axis_gap_at
+
+  !> The derivative of the gap on the axis by the coordinate.
+  pure real(wp) function axis_gap_rate(law, s) result(rate)
+    class(force_law_t), intent(in) :: law
+    real(wp), intent(in) :: s
+
+    associate (at_rest => (1 - singular)*law%rest_gap)
+      rate = -exp(-s)
+      if (.not. exp(-s) > at_rest) rate = -at_rest/sqrt(1 + 2*(s + log(at_rest)))
+    end associate
+  end function axis_gap_rate
 
 end module path_coordinate

@@ -8,7 +8,7 @@ module path_tangent
   use contact_state, only: state_t, load_reach, gap_at_end
   use equilibrium, only: control_t, equations_t, at_axis_gap, at_edge_radius
   use solver, only: solver_t
-  use path_coordinate, only: path_control
+  use path_coordinate, only: path_control, axis_gap_rate
   use jacobian, only: control_derivative, jacobian_times
   use linear_algebra, only: solve
   use frozen_jacobian, only: frozen_jacobian_t, freeze
@@ -73,8 +73,12 @@ contains
     if (present(error)) allowed = max(allowed, error)
     call tangent_at(solver%equations_t, path_control(solver%problem, solver%meshes, &
       mesh, s), state, allowed, solver%frozen, tangent, found)
-    ! On a mesh about the axis the control's value is exp(-s) plus a constant, on others exp(s).
-    if (found) call scale(tangent, merge(-exp(-s), exp(s), solver%meshes%is_about_axis(mesh)))
+    if (.not. found) return
+    if (solver%meshes%is_about_axis(mesh)) then
+      call scale(tangent, axis_gap_rate(solver%problem%law, s))
+    else
+      call scale(tangent, exp(s))
+    end if
   end subroutine tangent_along
 
   !> The derivatives by the value of the control. Factors of a state too far from this one are
