@@ -175,11 +175,11 @@ contains
       real(wp) :: ends(2)
 
       offset = side*d*sinh(z + z_length*local%node)
-      gap = gap_of(j, radius, offset)
       if (j > 1 .and. j < size(parameter) .and. problem%law%step_width > 0) then
-        suffices = .not. meets_step(problem%law, gap)
+        suffices = .not. meets_step(problem%law, gap_of(j, radius, offset([1, size(offset)])))
         if (suffices) return
       end if
+      gap = gap_of(j, radius, offset)
       ends = centre + side*d*sinh(z + z_length*[0, 1])
       if (side < 0) ends = [ends(2), ends(1)]
       associate (unit => merge(1.0_wp, radius, about == about_axis))
