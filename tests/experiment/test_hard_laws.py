@@ -281,7 +281,7 @@ def test_a_step_outside_a_well_is_followed(run, share, reach, sigma):
         assert near == pytest.approx(exact, rel=1e-5), name
 
 
-SOFT_BODIES = {
+EASILY_MISSED = {
     "a tiny contact in a wide hydration force": (57003128.5, -2.537e-11, {
         "force": {"law": "lennard_jones", "hamaker": 1e-19, "z0": 5e-10},
         "hydration": {"energy": 0.0060939, "decay_length": 8.297e-10}}),
@@ -302,11 +302,11 @@ SOFT_BODIES = {
 }
 
 
-@pytest.mark.parametrize("scene", SOFT_BODIES)
+@pytest.mark.parametrize("scene", EASILY_MISSED)
 def test_no_fold_is_made_by_the_mesh(run, scene):
     """Nodes that miss a weak step, or features far outside a tiny contact, make folds that bodies
     do not have, and the stability of all later states depends on them."""
-    stiffness, h0_end, forces = SOFT_BODIES[scene]
+    stiffness, h0_end, forces = EASILY_MISSED[scene]
 
     def path(accuracy):
         found = run(deck(
@@ -316,12 +316,11 @@ def test_no_fold_is_made_by_the_mesh(run, scene):
         return found.summary
 
     exact = path(1e-7)
-    for accuracy in (5e-4, 1e-4, 1e-5):
+    for accuracy in (8e-4, 1e-4, 1e-5):
         found = path(accuracy)
         for name in ("max_tension", "folds_h0", "end_load"):
-            # Folds of nearly rigid bodies are not resolved by h0 alone.
             assert several(found.get(name, [])) == pytest.approx(
-                several(exact.get(name, [])), rel=3 * accuracy), (accuracy, name)
+                several(exact.get(name, [])), rel=1.2 * accuracy), (accuracy, name)
 
 
 def test_a_stiff_flat_face_is_pressed_far_within_the_gap_at_rest(run):
