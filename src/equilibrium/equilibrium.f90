@@ -279,17 +279,19 @@ contains
     if (.not. holds) holds = state%residual <= residual_floor(problem, state)
   end function holds
 
-  !> The residual due to rounding alone: a few units in the last place of the gaps and of the parts
-  !> of the deformation, which have opposite signs in an adhesive contact (the operator on a uniform
-  !> pressure gives at most 2). It is at most the residual up to which a state counts as an
-  !> equilibrium of the law.
+  !> The residual due to rounding alone: a few units in the last place of the gaps, and the rounding
+  !> of the sums for the deformation, which grows as the root of the number of nodes; its parts have
+  !> opposite signs in an adhesive contact (the operator on a uniform pressure gives at most 2). It
+  !> is at most the residual up to which a state counts as an equilibrium of the law.
   pure real(wp) function residual_floor(problem, state)
     type(problem_t), intent(in) :: problem
     type(state_t), intent(in) :: state
+    real(wp) :: part
 
-    residual_floor = 3*epsilon(1.0_wp)*(abs(state%h0) + min(maxval(abs(state%gap)), far_gap) + &
-      4*max(problem%coupling, coupling_over(problem, state%scale))*state%scale* &
-      maxval(abs(state%pressure)))
+    part = 2*max(problem%coupling, coupling_over(problem, state%scale))*state%scale* &
+      maxval(abs(state%pressure))
+    residual_floor = epsilon(1.0_wp)*(3*(abs(state%h0) + min(maxval(abs(state%gap)), far_gap)) + &
+      sqrt(real(size(state%pressure), wp))*part)
     residual_floor = min(residual_floor, largest_floor)
   end function residual_floor
 
