@@ -114,7 +114,8 @@ contains
         finished = last%modes == 0 .and. last%state%h0 <= h0_low .and. &
           last%tangent%h0 < 0 .and. &
           (solver%meshes%in_contact(last%mesh) .or. .not. into_contact .or. &
-          solver%meshes%is_in_outer_contact(last%mesh))
+          solver%meshes%is_in_outer_contact(last%mesh) .or. &
+          last%state%axis_gap < solver%problem%law%edge_gap)
       end associate
       if (.not. mended .and. (finished .or. known%ending%early())) &
         call mender%mend(solver%equations_t, known%path, walker%mesh, .false., lost, mended)
