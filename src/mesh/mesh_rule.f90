@@ -37,11 +37,10 @@ module mesh_rule
   !> Short panels: their length in z, their number of nodes, and nodes per digit.
   real(wp), parameter :: short = 0.7_wp, short_order = 4, short_orders = 0.9_wp
   !> Largest radius of a flat face, in widths of the cohesive zone, for which the edge passes the
-  !> rim on the fixed mesh of the approach, and the radius up to which the edge stays on this mesh,
-  !> over that of the rim (`rim_passed_at`).
-  real(wp), parameter :: widths_to_pass = 10, beyond_rim = 1.3_wp
-  !> Largest length of panels near the rim, in widths of the cohesive zone.
-  real(wp), parameter :: short_at_rim = 0.7_wp
+  !> rim on meshes about the axis; the radius up to which the edge then stays on them, over that of
+  !> the rim, but at most one unit more; and this radius on a wider face, in widths of the cohesive
+  !> zone (`rim_passed_at`).
+  real(wp), parameter :: widths_to_pass = 40, beyond_rim = 1.3_wp, widths_before = 5
   !> Largest number of kinks of a shape at which panels end; a table has more kinks, which are
   !> everywhere.
   integer, parameter :: few = 4
@@ -216,7 +215,7 @@ contains
       end if
       digits_to_fit = digits + of_foreseen
       if (present(seen)) digits_to_fit = -log10(seen%most)
-      if (broken .or. problem%shape%smooth_from() > 0) &
+      if (about /= about_axis .and. (broken .or. problem%shape%smooth_from() > 0)) &
         digits_to_fit = min(digits_to_fit, digits_of_broken)
       ! Inside the edge the bodies are at the gap of rest except for the repulsion, whose length is
       ! known. In contact under a law with special gaps, meshes are laid out for seen gaps only.
@@ -238,16 +237,18 @@ contains
     shape%z_length = [shape%z_length, lengths]
   end subroutine add_panels
 
-  !> The radius up to which the contact edge is followed on the mesh of the approach, which has the
-  !> kink at the rim of a flat face at a panel's end: somewhat beyond the rim, unless the cohesive
-  !> zone is so narrow that this would need many nodes. 0: there is no such radius.
+  !> The radius up to which the edge of a contact on a flat face stays on meshes about the axis, on
+  !> which the rim is a panel's end: somewhat beyond the rim or, on a face so wide that the edge
+  !> would pass over very many panels, while the rim is far outside. 0: the shape has no flat face.
   pure real(wp) function rim_passed_at(problem) result(radius)
     type(problem_t), intent(in) :: problem
 
-    radius = problem%shape%smooth_from()
-    if (problem%shape%height(radius) > 0 .or. radius > widths_to_pass*cohesive_width(problem)) &
-      radius = 0
-    radius = beyond_rim*radius
+    radius = 0
+    associate (rim => problem%shape%smooth_from(), width => cohesive_width(problem))
+      if (problem%shape%height(rim) > 0) return
+      radius = min(beyond_rim*rim, rim + 1)
+      if (rim > widths_to_pass*width) radius = widths_before*width
+    end associate
   end function rim_passed_at
 
   !> Short panels over a length in z.
@@ -261,37 +262,57 @@ contains
   end function short_panels
 
   !> Short panels that end where a derivative of the shape jumps, unless there are many such places,
-  !> as in a table. The panels are shorter where the edge passes.
+  !> as in a table.
   pure function ending_at_breaks(problem, d, z_length) result(lengths)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: d, z_length
-    real(wp), allocatable :: lengths(:), long(:), breaks(:)
-    real(wp) :: from, z
-    integer :: i, parts
+    real(wp), allocatable :: lengths(:), breaks(:), ends(:), rims(:)
+    integer :: i
 
-    allocate (lengths(0))
-    from = 0
-    allocate (breaks(0))
+    allocate (breaks(0), lengths(0))
     if (allocated(problem%shape%breaks)) breaks = problem%shape%breaks
-    do i = 1, merge(size(breaks), 0, size(breaks) <= few)
-      z = asinh(breaks(i)/d)
-      if (.not. z < z_length) exit
-      lengths = [lengths, short_panels(z - from)]
-      from = z
-    end do
-    lengths = [lengths, short_panels(z_length - from)]
-    if (.not. rim_passed_at(problem) > 0) return
-    call move_alloc(lengths, long)
-    allocate (lengths(0))
-    from = 0
-    do i = 1, size(long)
-      parts = 1
-      if (d*sinh(from) < rim_passed_at(problem)) parts = ceiling( &
-        d*(sinh(from + long(i)) - sinh(from))/(short_at_rim*min(1.0_wp, cohesive_width(problem))))
-      lengths = [lengths, spread(long(i)/parts, 1, parts)]
-      from = from + long(i)
+    if (size(breaks) > few) breaks = breaks(:0)
+    ends = asinh(breaks/d)
+    ends = [0.0_wp, pack(ends, ends < z_length), z_length]
+    rims = pack(breaks, .not. problem%shape%height(breaks) > 0)
+    do i = 1, size(ends) - 1
+      lengths = [lengths, graded_panels(rims, d, ends(i), ends(i + 1))]
     end do
   end function ending_at_breaks
+
+  !> Lengths in z of short panels between two places. They are also short in comparison with the
+  !> distance from the rim of a flat face or, beside it, with the length over which the undeformed
+  !> bodies separate there.
+  pure function graded_panels(rims, d, from, to) result(lengths)
+    real(wp), intent(in) :: rims(:), d, from, to
+    real(wp), allocatable :: lengths(:)
+    !> Number of places at which the length is evaluated.
+    integer, parameter :: places = 200
+    real(wp) :: step, z, away, panels(0:places)
+    integer :: i, n
+
+    step = (to - from)/places
+    panels(0) = 0
+    do i = 1, places
+      z = from + (i - 0.5_wp)*step
+      away = max(1.0_wp, minval(abs(rims - d*sinh(z))))
+      panels(i) = panels(i - 1) + step/(short*min(1.0_wp, away/(d*cosh(z))))
+    end do
+    n = ceiling(panels(places))
+    lengths = [(place_of(i*panels(places)/n) - place_of((i - 1)*panels(places)/n), i=1, n)]
+
+  contains
+
+    !> The length before which there is a number of panels.
+    pure real(wp) function place_of(number)
+      real(wp), intent(in) :: number
+      integer :: k
+
+      k = count(panels(1:places - 1) < number)
+      place_of = step*(k + (number - panels(k))/(panels(k + 1) - panels(k)))
+    end function place_of
+
+  end function graded_panels
 
   !> Whether a mesh up to a radius contains the end of the bodies and the force there matters.
   !> contact: the radius of a contact, 0 before contact; without adhesion the gap around the contact

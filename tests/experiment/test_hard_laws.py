@@ -321,19 +321,3 @@ def test_no_fold_is_made_by_the_mesh(run, scene):
         for name in ("max_tension", "folds_h0", "end_load"):
             assert several(found.get(name, [])) == pytest.approx(
                 several(exact.get(name, [])), rel=1.2 * accuracy), (accuracy, name)
-
-
-def test_a_stiff_flat_face_is_pressed_far_within_the_gap_at_rest(run):
-    """The coordinate of the path before the edge passes the rim had a singular gap there."""
-    def path(accuracy):
-        found = run(deck(
-            bodies={"radius": 0.015, "stiffness": 4.2886e14},
-            shape={"kind": "rounded_punch", "flat_radius": 1.324e-5},
-            morse={"surface_energy": 0.05, "z0": 6.26e-10, "decay_length": 1.545e-10},
-            equilibrium_path={"h0_end": -4.4556e-9}, numerics={"accuracy": accuracy}))
-        assert found.status == 0
-        return found.summary
-
-    found, exact = path(1e-4), path(1e-7)
-    assert found["end_load"] == pytest.approx(exact["end_load"], rel=1e-4)
-    assert found["max_tension"] == pytest.approx(exact["max_tension"], rel=1e-4)

@@ -1,0 +1,70 @@
+"""Claims about punches with a flat face and a rounded rim: the edge of the contact begins somewhere
+on the face and passes the rim, and paths have the folds that the bodies have.
+"""
+
+import pytest
+from support.scenes import deck, several
+
+
+FLAT_FACES = {
+    # Radius of the rim and of the face [m], stiffness [Pa].
+    "a face at rest everywhere at once": (1e-6, 4.4721e-7, 1e11),
+    "a face forty widths of the cohesive zone wide": (1e-6, 2.2361e-6, 1e10),
+    "a nucleus of contact on a soft face": (1e-6, 8.9443e-8, 1e8),
+}
+
+
+@pytest.mark.parametrize("face", FLAT_FACES)
+def test_paths_of_wide_flat_punches_have_the_folds_of_the_bodies(run, face):
+    """Nodes that miss the rim far outside a nucleus of contact made folds, and the mesh for all
+    positions of the edge had thousands of nodes."""
+    radius, flat_radius, stiffness = FLAT_FACES[face]
+
+    def path(accuracy):
+        found = run(deck(
+            bodies={"radius": radius, "stiffness": stiffness},
+            shape={"kind": "rounded_punch", "flat_radius": flat_radius},
+            force={"law": "lennard_jones", "hamaker": 1e-19, "z0": 5e-10},
+            equilibrium_path={"h0_end": 0}, numerics={"accuracy": accuracy}))
+        # An extremum of the load may be so flat that its h0 has four digits only.
+        assert all(said.startswith(("beyond the model", "the error is estimated"))
+                   for said in found.warnings)
+        return found.summary
+
+    exact = path(1e-6)
+    for accuracy in (1e-3, 1e-5):
+        found = path(accuracy)
+        for name in ("max_tension", "folds_h0", "end_load"):
+            assert several(found.get(name, [])) == pytest.approx(
+                several(exact.get(name, [])), rel=1.2 * accuracy), (accuracy, name)
+
+
+def test_a_wide_stiff_flat_punch_has_the_tension_of_a_rigid_one(run):
+    def tension(stiffness):
+        return run(deck(
+            bodies={"radius": 1e-6, "stiffness": stiffness} if stiffness else
+                   {"radius": 1e-6, "rigid": True},
+            shape={"kind": "rounded_punch", "flat_radius": 4.4721e-7},
+            force={"law": "lennard_jones", "hamaker": 1e-19, "z0": 5e-10},
+            equilibrium_path={"h0_end": 4e-10})).summary["max_tension"]
+
+    rigid, stiff, stiffer = tension(None), tension(1e13), tension(1e14)
+    assert stiffer == pytest.approx(rigid, rel=1e-3)
+    # Bodies that deform change the tension in proportion to their compliance, to first order.
+    assert stiff - rigid == pytest.approx(10 * (stiffer - rigid), rel=0.1)
+
+
+def test_a_stiff_flat_face_is_pressed_far_within_the_gap_at_rest(run):
+    """The coordinate of the path before the edge passes the rim had a singular gap there."""
+    def path(accuracy):
+        found = run(deck(
+            bodies={"radius": 0.015, "stiffness": 4.2886e14},
+            shape={"kind": "rounded_punch", "flat_radius": 1.324e-5},
+            morse={"surface_energy": 0.05, "z0": 6.26e-10, "decay_length": 1.545e-10},
+            equilibrium_path={"h0_end": -4.4556e-9}, numerics={"accuracy": accuracy}))
+        assert found.status == 0
+        return found.summary
+
+    found, exact = path(1e-4), path(1e-7)
+    assert found["end_load"] == pytest.approx(exact["end_load"], rel=1e-4)
+    assert found["max_tension"] == pytest.approx(exact["max_tension"], rel=1e-4)
