@@ -32,7 +32,7 @@ module law_scan
 
 contains
 
-  !> Sets adhesion, work, edge_gap, rest_gap and range of a law that has not set its range.
+  !> Sets adhesion, work, edges, rest_gap and range of a law that has not set its range.
   subroutine find_scales(law)
     class(force_law_t), intent(inout) :: law
     real(wp), allocatable :: gap(:), pressure(:), slope(:)
@@ -63,6 +63,13 @@ contains
       if (i > 0) then
         law%edge_gap = zero_between(law, gap(i), gap(i + 1), of_slope=.true.)
         largest = -pressure_at(law, law%edge_gap)
+        law%outer_edges = [real(wp) ::]
+        do
+          i = next_zero(slope, i + 1, falling=.false.)
+          if (i == 0) exit
+          if (pressure(i) < -nothing*largest) law%outer_edges = [law%outer_edges, &
+            zero_between(law, gap(i), gap(i + 1), of_slope=.true.)]
+        end do
       end if
     else if (pressure(1) < 0) then
       ! Without a well the adhesion is the energy at one length.

@@ -33,8 +33,6 @@ module further_meshes
   integer, parameter :: enough = 4
   !> Change of the coordinate over the states of an arc below which another mesh would not help.
   real(wp), parameter :: least_progress = 1.0e-4_wp
-  !> Part of the period by which gaps differ among which an edge is looked for.
-  real(wp), parameter :: apart = 1.0_wp/32
 
 contains
 
@@ -53,7 +51,7 @@ contains
       if (meshes%passage(mesh) <= 0) return
       associate (before => arc%state(arc%held - 1), now => arc%state(arc%held))
         level = meshes%locked_gap(mesh)
-        if (.not. level > 0 .and. law%period > 0) level = edge_beyond(law, now%axis_gap)
+        if (.not. level > 0) level = edge_beyond(law, now%axis_gap)
         radius = [radius_of_gap(equations%problem%shape, level, meshes%grid(mesh), before), &
           radius_of_gap(equations%problem%shape, level, meshes%grid(mesh), now)]
         nearer = axis_coordinate(law, now) - axis_coordinate(law, before)
@@ -81,22 +79,17 @@ contains
     end associate
   end function further_mesh
 
-  !> The smallest gap above another one, approximately, at which the tension is largest.
+  !> The smallest gap of an outer edge above another gap; 0: there is none, or the bodies are in
+  !> contact.
   pure real(wp) function edge_beyond(law, gap) result(edge)
     class(force_law_t), intent(in) :: law
     real(wp), intent(in) :: gap
-    real(wp) :: pressure(3), step
     integer :: k
 
-    step = apart*law%period
-    k = max(0, ceiling((gap - law%edge_gap)/step))
-    do
-      edge = law%edge_gap + k*step
-      if (edge > law%range) exit
-      pressure = law%pressure(edge + step*[-1, 0, 1])
-      if (pressure(2) < min(pressure(1), pressure(3), 0.0_wp)) exit
-      k = k + 1
-    end do
+    edge = 0
+    if (.not. (allocated(law%outer_edges) .and. gap > law%edge_gap)) return
+    k = count(law%outer_edges <= gap) + 1
+    if (k <= size(law%outer_edges)) edge = law%outer_edges(k)
   end function edge_beyond
 
 end module further_meshes

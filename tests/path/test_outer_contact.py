@@ -91,3 +91,32 @@ def test_outer_contacts_are_those_of_independent_states(h0):
     assert states.curve["h_centre"][-1] == pytest.approx(gap[0] * Z0, rel=1e-7)
     load = bodies.load(force, s, gap) * energy * RADIUS / s
     assert states.curve["load"][-1] == pytest.approx(load, rel=1e-6)
+
+
+def test_a_contact_outside_a_barrier_is_that_of_an_independent_state():
+    """Under any law with a barrier the path ends in the outer minimum if this is stable at the last
+    h0; it went on to where the barrier gives way, a thousand times as deep."""
+    radius, stiffness, hamaker, z0, h0 = 1.5e-2, 6.56e7, 1e-19, 5e-10, -8.6e-9
+    work, decay = 9.82e-3, 7.034e-10
+    energy, lateral = hamaker / (16 * np.pi * z0**2), np.sqrt(radius * z0)
+
+    def force(gap):
+        hydration = work / energy * np.exp(-gap * z0 / decay)
+        rate = z0 / decay
+        waves = rate * hydration, -rate**2 * hydration, hydration
+        return tuple(map(sum, zip(lennard_jones(gap), waves)))
+
+    states = snapin.run({
+        "bodies": {"radius": radius, "stiffness": stiffness},
+        "force": {"law": "lennard_jones", "hamaker": hamaker, "z0": z0},
+        "hydration": {"energy": work, "decay_length": decay},
+        "equilibrium_path": {"h0_end": h0}, "profiles": {"h0": h0}, "numerics": {"accuracy": 1e-8}})
+    assert not states.summary.get("warnings")
+    profile = states.profiles
+    bodies = HalfSpace((*np.arange(0, 60, 0.5), *np.geomspace(60, 3000, 14)), order=10)
+    s = energy * lateral / (stiffness * z0**2)
+    gap = bodies.from_gaps(force, s, h0 / z0, profile["r"] / lateral, profile["separation"] / z0)
+    # The edge of the contact is where the tension outside the minimum is largest.
+    assert 4 < gap[0] < 7 and profile["pressure"].min() < 0 < profile["pressure"][0]
+    assert states.summary["end_load"] == pytest.approx(
+        bodies.load(force, s, gap) * energy * radius / s, rel=1e-6)
