@@ -18,7 +18,7 @@ module tracing
   use traced_path, only: traced_path_t
   use path_growth, only: append, add_extrema
   use further_meshes, only: further_mesh_t, further_mesh
-  use mending, only: mender_t, new_mender, left_on_path
+  use mending, only: mender_t, new_mender, left_on_path, left_in_state
   implicit none
   private
   public :: tracing_t, trace, trace_again, longest
@@ -36,12 +36,18 @@ module tracing
   integer, parameter :: longest = 3000
   !> Contact radius, over the largest expected, that no path reaches.
   real(wp), parameter :: too_large = 5
+  !> Part of the load missed by the nodes at which a mesh is refined before the path has reached its
+  !> end, since later states would mean nothing; and number of steps between these checks.
+  real(wp), parameter :: most_adrift = 0.1_wp
+  integer, parameter :: steps_a_check = 8
   !> Number of steps between messages to the listener: a message takes a tenth of the time of a
   !> step.
   integer, parameter :: steps_a_message = 8
   !> Largest residual of the path's points, in the law's lengths, even if the deck allows larger
-  !> ones for the experiment's states.
-  real(wp), parameter :: path_tolerance = 1.0e-8_wp
+  !> ones for the experiment's states; and that of points that define a smooth curve. Extrapolation
+  !> multiplies differences within the residual a hundred times, and no step is short enough if
+  !> these exceed the distance from the curve.
+  real(wp), parameter :: path_tolerance = 1.0e-8_wp, curve_tolerance = 1.0e-10_wp
 
   !> Without repulsion the bodies collapse after their jump, and the path continues to a gap of
   !> zero. The path ends when the gap is this fraction of the gap at the first fold or, if there is
@@ -66,7 +72,7 @@ contains
     type(mender_t) :: mender
     character(len=40) :: so_far
     type(further_mesh_t) :: further
-    logical :: lost, blind, finished, mended
+    logical :: lost, blind, finished, mended, adrift
     type(ending_t) :: going_on
     real(wp) :: tolerance
     integer :: steps
@@ -75,7 +81,8 @@ contains
     blind = lost_in_rounding(solver%problem, &
       largest_radius(solver%problem, h0_low, solver%meshes%level))
     tolerance = solver%options%tolerance
-    solver%options%tolerance = min(tolerance, path_tolerance)
+    solver%options%tolerance = min(tolerance, &
+      merge(curve_tolerance, path_tolerance, present(farthest)))
     finished = .false.
     steps = 0
     if (present(farthest)) call walker%follow_closely()
@@ -93,8 +100,11 @@ contains
       mended = .false.
       if (.not. lost) then
         further = further_mesh(solver%equations_t, walker%arc_t, accuracy)
-        if (further%wanted .or. walker%has_come_to_next(solver%equations_t)) &
-          call mender%mend(solver%equations_t, known%path, walker%mesh, .true., .false., mended)
+        adrift = mod(steps, steps_a_check) == 0
+        if (adrift) adrift = left_in_state(solver%equations_t, walker%mesh, &
+          walker%state(walker%held)) > most_adrift
+        if (further%wanted .or. adrift .or. walker%has_come_to_next(solver%equations_t)) call &
+          mender%mend(solver%equations_t, known%path, walker%mesh, .not. adrift, .false., mended)
         if (further%wanted .and. .not. mended) then
           call solver%meshes%insert(walker%mesh, further%locked, further%reach(1), further%reach(2))
           call solver%operator%forget()
@@ -264,7 +274,7 @@ contains
     integer :: i, last
 
     tolerance = solver%options%tolerance
-    solver%options%tolerance = min(tolerance, path_tolerance)
+    solver%options%tolerance = min(tolerance, curve_tolerance)
     call walker%follow_closely()
     anew = path
     anew%held = findloc(path%point(:path%held)%mesh, mesh, 1) - 1

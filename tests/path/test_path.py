@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from support.known import BY_SIGMA
-from support.scenes import JKR, exponential, lennard_jones, loading, several
+from support.scenes import JKR, deck, exponential, lennard_jones, loading, several
 
 EIGHT = {"rel": 1e-8}
 SEVEN = {"abs": 1.05e-7}
@@ -221,3 +221,30 @@ def test_a_path_that_starts_between_far_and_the_jump_begins_at_its_start(run):
     assert result.curve["h0"][0] == pytest.approx(7.0, rel=1e-14)
     for key in ("jump_in_h0", "jump_out_h0", "max_tension", "energy_lost"):
         assert result.summary[key] == pytest.approx(whole.summary[key], rel=1e-6)
+
+
+# --- What a path costs
+
+
+@pytest.mark.parametrize("numerics", [{"accuracy": 1e-4}, {"residual_tolerance": 1e-8}])
+def test_points_of_a_smooth_curve_are_few_with_any_tolerance(run, numerics):
+    """With residuals of a hundredth of the wanted distance from the curve steps became ever
+    shorter, since extrapolation multiplies residuals, and the path was lost."""
+    found = run(deck(
+        bodies={"radius": 0.015, "stiffness": 2.894e13},
+        force={"law": "lennard_jones", "hamaker": 1e-19, "z0": 5e-10},
+        equilibrium_path={"h0_end": -2.32e-10}, fixed_load={"load": [0.0, 0.01]},
+        numerics=numerics))
+    assert not found.warnings
+    assert found.cost["states"] < 200
+
+
+def test_a_path_stops_where_its_mesh_misses_a_large_part_of_the_load(run):
+    """It went on for thousands of states that mean nothing, until the mesh was refined."""
+    found = run(deck(
+        bodies={"radius": 0.015, "stiffness": 4.276e8},
+        force={"law": "lennard_jones", "hamaker": 1e-19, "z0": 5e-10},
+        steric={"brush_thickness": 3.38e-9, "grafting_density": 1e16},
+        equilibrium_path={"h0_end": -2.2345e-9},
+        device={"stiffness": [3.866e4, 1.021e7]}, numerics={"accuracy": 1e-5}))
+    assert found.cost["factorisations"] < 1000
