@@ -15,13 +15,17 @@ import numpy as np
 from support import comparison
 from support.comparison import Deviation
 from support.decks_in_units import LENGTHS, LOADS, run_deck
-from support.scenes import deck, several
+from support.scenes import deck, read_table, several
 from support.study_cycles import logarithmic
 
 ACCURACIES = (1e-3, 1e-8)
 STRENGTHS = (1e-4, 1e4)
 RADIUS, STIFFNESS, Z0 = 1.5e-2, 1e10, 0.5e-9
-KEYS = (*LOADS, *LENGTHS, "energy_lost")
+SPRING_LOADS = tuple(f"device_jump_{way}_{what}" for way in ("in", "out")
+                     for what in ("load", "load_after"))
+ENERGIES = ("energy_lost", "device_energy_lost")
+KEYS = (*LOADS, *SPRING_LOADS, *LENGTHS, "device_jump_in_z", "device_jump_out_z", "fixed_load_h0",
+        *ENERGIES)
 # Ratio of the accuracies of truth and run (meshes gain three quarters of a digit for each digit of
 # the accuracy), and the smallest possible accuracy.
 FINER, FINEST = 1e-4, 1e-10
@@ -154,15 +158,19 @@ def examine(scene):
     return [compared(scene, rng, LAWS[scene.law](rng), bodies)]
 
 
-def compared(scene, rng, law, bodies):
-    """The finding of a scene; bodies(stiffness): the groups of its bodies."""
+def compared(scene, rng, law, bodies, more=lambda rng, law, scales: {}):
+    """The finding of a scene; bodies(stiffness): the groups of its bodies; more: further groups, by
+    the scales of the law."""
     scene.folder.mkdir(parents=True, exist_ok=True)
     if scene.law == "tabulated":
         gap = np.geomspace(0.5, 60, 300) * Z0
         pressure = 1e-19 / (6 * math.pi) * (Z0**6 / gap**9 - 1 / gap**3)
         np.savetxt(scene.folder / "law.txt", np.column_stack([gap, pressure]))
-    groups = {**bodies(STIFFNESS * strength(scene, law) / scene.sigma), **law.groups}
+    scales = scales_of(scene, law)
+    strength = scales.get("sigma") or scales.get("big_lambda") or 1.0
+    groups = {**bodies(STIFFNESS * strength / scene.sigma), **law.groups}
     groups.update(driven(rng, scene, law))
+    groups.update(more(rng, law, scales))
     found = run(scene, "asked", {**groups, "numerics": {"accuracy": scene.accuracy}})
     truth = run(scene, "truth", {**groups, "numerics": {
         "accuracy": max(FINER * scene.accuracy, FINEST), "residual_tolerance": 1e-12}})
@@ -181,13 +189,12 @@ def driven(rng, scene, law):
             "unloading": {"from_": depth}}
 
 
-def strength(scene, law):
-    """sigma of the law on bodies of the usual stiffness, from a table without solved equations;
-    Lambda of a law without adhesion."""
-    summary, _ = run(scene, "strength", {
+def scales_of(scene, law):
+    """The summary of the law on bodies of the usual stiffness, from a table without solved
+    equations."""
+    return run(scene, "strength", {
         "bodies": {"radius": RADIUS, "stiffness": STIFFNESS}, **law.groups,
-        "classical": {"h0_start": law.rest + law.length, "h0_end": law.rest}})
-    return summary.get("sigma") or summary.get("big_lambda") or 1.0
+        "classical": {"h0_start": law.rest + law.length, "h0_end": law.rest}})[0]
 
 
 def run(scene, name, groups):
@@ -199,6 +206,10 @@ def run(scene, name, groups):
         return {}, f"status {status}: {stderr.strip()[-200:]}"
     results = f90nml.read(found / "summary.nml")
     summary = {**results["summary"], "wall_seconds": results["cost"]["wall_seconds"]}
+    if (found / "fixed_load.csv").exists():
+        rows = read_table(found / "fixed_load.csv")
+        summary["fixed_load_h0"] = list(rows["h0"])
+        summary["fixed_load_h0_error"] = list(rows["h0_error"])
     said = " | ".join(several(summary.get("warnings", [])))
     return summary, f"status {status}: {said[:200]}" if status else ""
 
@@ -221,7 +232,9 @@ def judged(scene, law, found, truth):
         if len(one) != len(other) or [math.isnan(x) for x in one] != [math.isnan(x) for x in other]:
             wrong.append(f"{key} has {one} for {other}")
             continue
-        scale = 0.0 if key == "energy_lost" else load if key in LOADS else law.length
+        scale = load if key in (*LOADS, *SPRING_LOADS) else law.length
+        if key in ENERGIES:
+            scale = 0.0
         for i, (a, b) in enumerate(zip(one, other)):
             if math.isnan(a):
                 continue

@@ -3,7 +3,8 @@
 import math
 
 import pytest
-from support import study_cycles, study_estimates, study_folds, study_laws, study_layers
+from support import (
+    study_cycles, study_estimates, study_experiments, study_folds, study_laws, study_layers)
 from support.comparison import deviations, is_bad
 from support.decks_in_units import Report
 from support.reference import Path
@@ -92,6 +93,14 @@ def test_an_error_above_its_estimate_is_within_the_accuracy(tmp_path, number):
     assert finding.deviations and not finding.wrong
     for one in finding.deviations:
         assert one.error <= finding.scene.accuracy * abs(one.value), one
+
+
+def test_springs_and_fixed_loads_under_random_laws_are_within_the_accuracy(tmp_path):
+    for scene in study_experiments.jobs(6, tmp_path):
+        [finding] = study_experiments.examine(scene)
+        assert finding.unknown > 0 and not finding.wrong, finding
+        for one in finding.deviations:
+            assert one.error <= max(one.allowed, scene.accuracy * abs(one.value)), (scene, one)
 
 
 # --- The studies themselves
