@@ -16,8 +16,6 @@ module outcome_places
   private
   public :: enter_all, enter_cycle, enter_energy
 
-  !> The slope of a drive's position at a turn, after cancellation, as a fraction of its terms.
-  real(wp), parameter :: turning = 1.0e-6_wp
   !> Numbers of each drive that may not exist.
   character(len=*), parameter :: of_each_way(*) = [character(len=18) :: 'device_jump_in', &
     'device_landing_in', 'device_jump_out', 'device_landing_out']
@@ -149,7 +147,7 @@ contains
         before = of_curve(jump%before, drive)
         ! The turn of the drive, or the fold of h0 before it.
         before%turn_of = merge(drive, h0_alone, abs(dot_product(drive, jump%before%slopes)) <= &
-          turning*sum(abs(drive*jump%before%slopes)))
+          abs(dot_product(h0_alone, jump%before%slopes)))
         if (allocated(after)) deallocate (after)
         if (jump%landed) then
           after = of_curve(jump%after, drive)

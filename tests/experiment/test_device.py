@@ -183,3 +183,12 @@ def test_what_is_read_from_the_path_leaves_the_path_as_it_is(run):
     for key in ("max_tension", "jump_in_h0", "jump_out_load", "energy_lost", "end_load"):
         assert beside.summary[key] == pytest.approx(alone.summary[key], rel=1e-6)
     assert beside.curve["h0"][0] == pytest.approx(alone.curve["h0"][0], rel=1e-9)
+
+
+@pytest.mark.parametrize("stiffness", [3.0, 10.0, 30.0, 100.0, 1000.0])
+def test_jumps_of_stiff_springs_have_the_errors_of_their_own_turns(run, stiffness):
+    """Close to the fold of h0 they were judged at this fold, and said to be off by a hundredth."""
+    found = run(springs(2.58, [stiffness], h0_end=-6.0, accuracy=1e-6))
+    assert not found.warnings
+    for name in ("device_jump_in_load", "device_jump_out_load"):
+        assert found.summary[f"{name}_error"] < 1e-6 * abs(found.summary[name])
