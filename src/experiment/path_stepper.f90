@@ -53,7 +53,7 @@ module path_stepper
 contains
 
   !> Traces the path from h0_high, or from where the bodies hardly deform, until it is stable at
-  !> h0_low; into_contact: until it is also on the mesh for contact; accuracy, farthest: see
+  !> h0_low; into_contact: until the bodies are also in contact; accuracy, farthest: see
   !> `trace`; with `farthest` the points define a smooth curve. To be called before the first step.
   !> The listener receives messages about the progress.
   subroutine know_path(self, h0_high, h0_low, into_contact, accuracy, listener, farthest)

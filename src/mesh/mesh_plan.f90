@@ -11,7 +11,8 @@
 module mesh_plan
   use kinds, only: wp
   use dimensionless_problem, only: problem_t
-  use mesh_rule, only: is_narrow, rim_passed_at
+  use mesh_rule, only: is_narrow
+  use shape_panels, only: rim_passed_at
   use step_front, only: front_leads, first_front, last_front
   use contact_scales, only: largest_radius, contact_level, cohesive_width, lost_in_rounding
   implicit none

@@ -8,11 +8,12 @@ module mesh_rule
   use contact_scales, only: smallest_feature, cohesive_width
   use law_panels, only: fit_panels, nodes_on, about_axis, about_front, about_edge
   use seen_gaps, only: seen_gaps_t
+  use shape_panels, only: panels_for
   use step_front, only: front_leads, first_front, front_width
   use mapped_mesh, only: mapped_shape_t
   implicit none
   private
-  public :: approach_shape, contact_shape, is_narrow, rim_passed_at
+  public :: approach_shape, contact_shape, is_narrow
 
   !> The length d over the smallest feature: errors change little between half this value and twice.
   real(wp), parameter :: finer = 0.5_wp
@@ -34,16 +35,8 @@ module mesh_rule
   !> The panel on the axis of shapes that are not smooth there: its length in z, and the least power
   !> of its local coordinate that is not smooth.
   real(wp), parameter :: at_axis = 0.35_wp, smoothness = 4
-  !> Short panels: their length in z, their number of nodes, and nodes per digit.
-  real(wp), parameter :: short = 0.7_wp, short_order = 4, short_orders = 0.9_wp
-  !> Largest radius of a flat face, in widths of the cohesive zone, for which the edge passes the
-  !> rim on meshes about the axis; the radius up to which the edge then stays on them, over that of
-  !> the rim, but at most one unit more; and this radius on a wider face, in widths of the cohesive
-  !> zone (`rim_passed_at`).
-  real(wp), parameter :: widths_to_pass = 40, beyond_rim = 1.3_wp, widths_before = 5
-  !> Largest number of kinks of a shape at which panels end; a table has more kinks, which are
-  !> everywhere.
-  integer, parameter :: few = 4
+  !> Number of nodes of short panels, and nodes per digit.
+  real(wp), parameter :: short_order = 4, short_orders = 0.9_wp
   !> The tail begins beyond the end of a body if the end is nearer than this multiple of the usual
   !> beginning of the tail.
   real(wp), parameter :: near_end = 100
@@ -54,7 +47,7 @@ module mesh_rule
   !> half-space and the layers' correction to it are both much larger than their sum.
   real(wp), parameter :: for_layers = 2
   !> Additional digits for pressures of predicted gaps, which are only approximately those of the
-  !> bodies; and digits that a shape with kinks allows.
+  !> bodies; and digits that a shape with kinks allows on meshes over which its kinks move.
   real(wp), parameter :: of_foreseen = 1.5_wp, digits_of_broken = 4
 
 contains
@@ -182,9 +175,8 @@ contains
   end function fading_gap
 
   !> Adds sinh panels over z_length: one panel, which gets more nodes or is halved where the
-  !> pressure needs this, as under laws with lengths of their own. Shapes
-  !> with kinks have short panels from the beginning. about, side, low, high,
-  !> seen: see `fit_panels`.
+  !> pressure needs this, as under laws with lengths of their own. Shapes with kinks have short
+  !> panels from the beginning. about, side, low, high, seen: see `fit_panels`.
   subroutine add_panels(problem, shape, about, side, z_length, density, digits, low, high, seen)
     type(problem_t), intent(in) :: problem
     type(mapped_shape_t), intent(inout) :: shape
@@ -204,8 +196,7 @@ contains
     fewest = ceiling(short_order + short_orders*digits)
     associate (law => problem%law)
       if (broken) then
-        lengths = short_panels(z_length)
-        if (about == about_axis .and. broken) lengths = ending_at_breaks(problem, shape%d, z_length)
+        lengths = panels_for(problem%shape, about == about_axis, shape%d, z_length)
       else
         lengths = [rung*ceiling(z_length/rung)]
         panels = 1
@@ -236,83 +227,6 @@ contains
     shape%order = [shape%order, orders]
     shape%z_length = [shape%z_length, lengths]
   end subroutine add_panels
-
-  !> The radius up to which the edge of a contact on a flat face stays on meshes about the axis, on
-  !> which the rim is a panel's end: somewhat beyond the rim or, on a face so wide that the edge
-  !> would pass over very many panels, while the rim is far outside. 0: the shape has no flat face.
-  pure real(wp) function rim_passed_at(problem) result(radius)
-    type(problem_t), intent(in) :: problem
-
-    radius = 0
-    associate (rim => problem%shape%smooth_from(), width => cohesive_width(problem))
-      if (problem%shape%height(rim) > 0) return
-      radius = min(beyond_rim*rim, rim + 1)
-      if (rim > widths_to_pass*width) radius = widths_before*width
-    end associate
-  end function rim_passed_at
-
-  !> Short panels over a length in z.
-  pure function short_panels(z_length) result(lengths)
-    real(wp), intent(in) :: z_length
-    real(wp), allocatable :: lengths(:)
-
-    associate (panels => ceiling(z_length/short))
-      lengths = spread(z_length/panels, 1, panels)
-    end associate
-  end function short_panels
-
-  !> Short panels that end where a derivative of the shape jumps, unless there are many such places,
-  !> as in a table.
-  pure function ending_at_breaks(problem, d, z_length) result(lengths)
-    type(problem_t), intent(in) :: problem
-    real(wp), intent(in) :: d, z_length
-    real(wp), allocatable :: lengths(:), breaks(:), ends(:), rims(:)
-    integer :: i
-
-    allocate (breaks(0), lengths(0))
-    if (allocated(problem%shape%breaks)) breaks = problem%shape%breaks
-    if (size(breaks) > few) breaks = breaks(:0)
-    ends = asinh(breaks/d)
-    ends = [0.0_wp, pack(ends, ends < z_length), z_length]
-    rims = pack(breaks, .not. problem%shape%height(breaks) > 0)
-    do i = 1, size(ends) - 1
-      lengths = [lengths, graded_panels(rims, d, ends(i), ends(i + 1))]
-    end do
-  end function ending_at_breaks
-
-  !> Lengths in z of short panels between two places. They are also short in comparison with the
-  !> distance from the rim of a flat face or, beside it, with the length over which the undeformed
-  !> bodies separate there.
-  pure function graded_panels(rims, d, from, to) result(lengths)
-    real(wp), intent(in) :: rims(:), d, from, to
-    real(wp), allocatable :: lengths(:)
-    !> Number of places at which the length is evaluated.
-    integer, parameter :: places = 200
-    real(wp) :: step, z, away, panels(0:places)
-    integer :: i, n
-
-    step = (to - from)/places
-    panels(0) = 0
-    do i = 1, places
-      z = from + (i - 0.5_wp)*step
-      away = max(1.0_wp, minval(abs(rims - d*sinh(z))))
-      panels(i) = panels(i - 1) + step/(short*min(1.0_wp, away/(d*cosh(z))))
-    end do
-    n = ceiling(panels(places))
-    lengths = [(place_of(i*panels(places)/n) - place_of((i - 1)*panels(places)/n), i=1, n)]
-
-  contains
-
-    !> The length before which there is a number of panels.
-    pure real(wp) function place_of(number)
-      real(wp), intent(in) :: number
-      integer :: k
-
-      k = count(panels(1:places - 1) < number)
-      place_of = step*(k + (number - panels(k))/(panels(k + 1) - panels(k)))
-    end function place_of
-
-  end function graded_panels
 
   !> Whether a mesh up to a radius contains the end of the bodies and the force there matters.
   !> contact: the radius of a contact, 0 before contact; without adhesion the gap around the contact

@@ -68,8 +68,8 @@ module force_law
     real(wp) :: adhesion = 0, work = 0
     !> Gap of largest tension, which defines the contact edge; 0 if there is none.
     real(wp) :: edge_gap = 0
-    !> Gaps of largest tension outside the well of contact, ascending: each is the edge of a contact
-    !> in an outer minimum of the energy.
+    !> Larger gaps at which the tension has a maximum, ascending: an outer one is the edge of a
+    !> contact in an outer minimum of the energy.
     real(wp), allocatable :: outer_edges(:)
     !> Gap of zero pressure; 0 if there is none.
     real(wp) :: rest_gap = 0

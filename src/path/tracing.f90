@@ -15,7 +15,7 @@ module tracing
   use path_coordinate, only: path_control
   use continuation, only: continuation_t
   use ending, only: ending_t, beyond_rounding, no_equilibrium, path_lost
-  use traced_path, only: traced_path_t
+  use traced_path, only: traced_path_t, path_point_t
   use path_growth, only: append, add_extrema
   use further_meshes, only: further_mesh_t, further_mesh
   use mending, only: mender_t, new_mender, left_on_path, left_in_state
@@ -57,7 +57,7 @@ module tracing
 contains
 
   !> Traces the path from a state at large separation, on the mesh for the approach, until it is
-  !> stable at h0_low; into_contact: until it is also on the mesh for contact. Meshes that miss too
+  !> stable at h0_low; into_contact: until the bodies are also in contact. Meshes that miss too
   !> much of the load for the accuracy are refined. farthest: if present, the points are close
   !> enough for a smooth curve, and undeformed bodies fill the range from `farthest` to the start.
   subroutine trace(solver, start, h0_low, into_contact, accuracy, listener, known, farthest)
@@ -122,10 +122,8 @@ contains
       end if
       associate (last => known%path%point(known%path%held))
         finished = last%modes == 0 .and. last%state%h0 <= h0_low .and. &
-          last%tangent%h0 < 0 .and. &
-          (solver%meshes%in_contact(last%mesh) .or. .not. into_contact .or. &
-          solver%meshes%is_in_outer_contact(last%mesh) .or. &
-          last%state%axis_gap < solver%problem%law%edge_gap)
+          last%tangent%h0 < 0
+        if (finished .and. into_contact) finished = touches(solver%equations_t, last)
       end associate
       if (.not. mended .and. (finished .or. known%ending%early())) &
         call mender%mend(solver%equations_t, known%path, walker%mesh, .false., lost, mended)
@@ -186,6 +184,17 @@ contains
     if (walker%held > 1) &
       walker%step = walker%coordinate(walker%held) - walker%coordinate(walker%held - 1)
   end subroutine stand_at_end
+
+  !> Whether the bodies are in contact, also in an outer minimum, at a point of the path.
+  pure logical function touches(equations, point)
+    type(equations_t), intent(in) :: equations
+    type(path_point_t), intent(in) :: point
+
+    associate (meshes => equations%meshes)
+      touches = meshes%in_contact(point%mesh) .or. meshes%is_in_outer_contact(point%mesh) .or. &
+        point%state%axis_gap < equations%problem%law%edge_gap
+    end associate
+  end function touches
 
   !> Whether the contact is much larger than expected: on a mesh that is too coarse folds can be
   !> lost, and then no later state counts as stable.
