@@ -1,5 +1,5 @@
 !> Panels for shapes whose derivatives jump, as at the rim of a flat face. On meshes about the axis
-!> panels end there, and a contact on a flat face stays on such meshes while its edge passes the rim.
+!> panels end there. A contact on a flat face stays on such meshes while its edge passes the rim.
 module shape_panels
   use kinds, only: wp
   use shape, only: shape_t

@@ -9,7 +9,7 @@ from support.scenes import deck, several
 FLAT_FACES = {
     # Radius of the rim and of the face [m], stiffness [Pa].
     "a face at rest everywhere at once": (1e-6, 4.4721e-7, 1e11),
-    "a face forty widths of the cohesive zone wide": (1e-6, 2.2361e-6, 1e10),
+    "a face twenty widths of the cohesive zone wide": (1e-6, 2.2361e-6, 1e10),
     "a nucleus of contact on a soft face": (1e-6, 8.9443e-8, 1e8),
 }
 

@@ -101,10 +101,9 @@ def test_a_contact_outside_a_barrier_is_that_of_an_independent_state():
     energy, lateral = hamaker / (16 * np.pi * z0**2), np.sqrt(radius * z0)
 
     def force(gap):
-        hydration = work / energy * np.exp(-gap * z0 / decay)
-        rate = z0 / decay
-        waves = rate * hydration, -rate**2 * hydration, hydration
-        return tuple(map(sum, zip(lennard_jones(gap), waves)))
+        repulsion, rate = work / energy * np.exp(-gap * z0 / decay), z0 / decay
+        hydration = rate * repulsion, -rate**2 * repulsion, repulsion
+        return tuple(map(sum, zip(lennard_jones(gap), hydration)))
 
     states = snapin.run({
         "bodies": {"radius": radius, "stiffness": stiffness},
