@@ -20,7 +20,6 @@ module drainage
   use discretisation, only: discretisation_t
   use running_integrals, only: running_integrals_t, new_running_integrals
   use carried_values, only: carried_t, new_carried
-  use linear_algebra, only: multiply, add_by_transposed
   use besides, only: besides_t
   implicit none
   private
@@ -54,7 +53,7 @@ module drainage
     procedure :: place
     procedure :: rate
     procedure :: pressure
-    procedure :: derivatives
+    procedure :: changes
   end type drainage_t
 
   !> Relative difference of positions for the difference quotient.
@@ -153,43 +152,36 @@ contains
     class(drainage_t), intent(in) :: self
     integer, intent(in) :: mesh
     real(wp), intent(in) :: scale, gap(:), rate(:)
-    real(wp), dimension(size(gap)) :: p, gathered, m, slope
+    real(wp), dimension(size(gap)) :: p, m, slope
 
     call self%mobility(gap, m, slope)
     associate (film => self%film(mesh))
-      call multiply(film%gathered, size(gap), rate, gathered)
-      call multiply(film%beyond, size(gap), gathered/m, p)
+      p = -self%strength*scale**2*film%beyond%of(film%gathered%of(rate)/m)
     end associate
-    p = -self%strength*scale**2*p
   end function pressure
 
-  !> Derivatives of the pressure by the gaps, (nodes, nodes), and by the scale of the mesh at fixed
-  !> gaps; shape_slope: x f'(c x), the derivative of the shape by the scale.
-  subroutine derivatives(self, mesh, scale, gap, raised, shape_slope, by_gap, by_scale)
+  !> Changes of sums of the pressure with the gaps, by_gap (sums, nodes), and with the scale of the
+  !> mesh at fixed gaps, by_scale. weights (sums, nodes): of the nodes in each sum; shape_slope:
+  !> x f'(c x), the derivative of the shape by the scale.
+  subroutine changes(self, mesh, scale, gap, raised, shape_slope, weights, by_gap, by_scale)
     class(drainage_t), intent(in) :: self
     integer, intent(in) :: mesh
-    real(wp), intent(in) :: scale, gap(:), raised(:), shape_slope(:)
-    real(wp), intent(out), contiguous :: by_gap(:, :)
-    real(wp), intent(out) :: by_scale(:)
-    real(wp), dimension(size(gap)) :: now, gathered, m, slope
-    real(wp) :: flow(size(gap), size(gap)), times
-    integer :: i
+    real(wp), intent(in) :: scale, gap(:), raised(:), shape_slope(:), weights(:, :)
+    real(wp), intent(out) :: by_gap(:, :), by_scale(:)
+    real(wp), dimension(size(gap)) :: now, m, slope
+    real(wp), allocatable :: flow(:, :)
+    integer :: sums
 
     now = self%rate(scale, raised)
     call self%mobility(gap, m, slope)
-    times = -self%strength*scale**2
+    sums = size(weights, 1)
     associate (film => self%film(mesh))
-      call multiply(film%gathered, size(gap), now, gathered)
-      do i = 1, size(gap)
-        flow(:, i) = self%weight*film%gathered(:, i)/m
-        flow(i, i) = flow(i, i) - gathered(i)*slope(i)/m(i)**2
-      end do
-      by_gap = 0
-      call add_by_transposed(film%beyond, transpose(flow), by_gap)
-      by_gap = times*by_gap
-      by_scale = 2*self%pressure(mesh, scale, gap, now)/scale + self%pressure(mesh, scale, gap, &
-        self%known%growth/scale - self%weight*shape_slope)
+      flow = -self%strength*scale**2*film%beyond%after(weights)/spread(m, 1, sums)
+      by_gap = self%weight*film%gathered%after(flow) - &
+        flow*spread(film%gathered%of(now)*slope/m, 1, sums)
     end associate
-  end subroutine derivatives
+    by_scale = matmul(weights, 2*self%pressure(mesh, scale, gap, now)/scale + &
+      self%pressure(mesh, scale, gap, self%known%growth/scale - self%weight*shape_slope))
+  end subroutine changes
 
 end module drainage

@@ -4,7 +4,7 @@ module jacobian
   use kinds, only: wp, pi
   use dimensionless_problem, only: problem_t, coupling_over
   use discretisation, only: discretisation_t, axis_row, centre_row, first_node
-  use linear_algebra, only: factorisation_t, factorise, add_by_transposed
+  use linear_algebra, only: factorisation_t, factorise
   use elastic_operator, only: elastic_operator_t
   use besides, only: besides_t
   use contact_state, only: state_t
@@ -87,42 +87,35 @@ contains
     end associate
   end subroutine add_spring
 
-  !> Adds the part of the fluid, whose pressure is multiplied by the same elastic operator.
+  !> Adds the part of the fluid, whose pressure is multiplied by the same elastic operator and adds
+  !> to the load on a spring.
   subroutine add_drainage(equations, control, state, lu)
     type(equations_t), intent(inout) :: equations
     type(control_t), intent(in) :: control
     type(state_t), intent(in) :: state
     real(wp), intent(inout) :: lu(:, :)
-    real(wp), dimension(size(state%gap), size(state%gap)) :: by_gap
-    real(wp) :: slopes(size(lu, 2), size(state%gap)), yields(first_node - 1 + size(state%gap), &
-      size(state%gap)), rise(size(yields, 1), size(lu, 2)), load(size(lu, 2))
-    integer :: n, i
+    real(wp), allocatable :: yields(:, :), by_gap(:, :), by_scale(:)
+    integer :: n, rows, i
 
     n = size(state%gap)
+    rows = first_node - 1 + n
+    allocate (yields(rows, n), by_gap(rows, n), by_scale(rows))
     associate (grid => equations%meshes%grid(control%mesh), problem => equations%problem, &
       c => state%scale)
-      block
-        real(wp) :: by_scale(n)
-
-        call equations%drainage%derivatives(control%mesh, c, state%gap, &
-          equations%raised(control%mesh, state), grid%x(:n)*problem%shape%slope(c*grid%x(:n)), &
-          by_gap, by_scale)
-        slopes(:n, :) = transpose(by_gap)
-        if (size(lu, 2) > n) slopes(n + 1, :) = merge(by_scale, 0.0_wp, &
-          control%kind == at_h0_with_edge)
-      end block
       call equations%operator%matrix(problem, grid, c, spread(1.0_wp, 1, n), &
-        [(i, i=axis_row, size(yields, 1))], [(i, i=1, n)], yields)
-      rise = 0
-      call add_by_transposed(yields, slopes, rise)
-      load = 0
-      if (h0_is_prescribed(control) .and. control%compliance > 0) &
-        load = 2*pi*control%compliance*c**2*matmul(slopes, grid%weight(:n))
-      do i = 1, n
-        lu(i, :) = lu(i, :) - rise(first_node - 1 + i, :) - load
-      end do
-      if (size(lu, 1) > n) lu(n + 1, :) = lu(n + 1, :) + rise(bordered_row(control), :) + load
+        [(i, i=axis_row, rows)], [(i, i=1, n)], yields)
+      if (h0_is_prescribed(control) .and. control%compliance > 0) yields = yields + &
+        spread(2*pi*control%compliance*c**2*grid%weight(:n), 1, rows)
+      call equations%drainage%changes(control%mesh, c, state%gap, &
+        equations%raised(control%mesh, state), grid%x(:n)*problem%shape%slope(c*grid%x(:n)), &
+        yields, by_gap, by_scale)
     end associate
+    lu(:n, :n) = lu(:n, :n) - by_gap(first_node:, :)
+    if (size(lu, 1) == n) return
+    lu(n + 1, :n) = lu(n + 1, :n) + by_gap(bordered_row(control), :)
+    if (control%kind /= at_h0_with_edge) return
+    lu(:n, n + 1) = lu(:n, n + 1) - by_scale(first_node:)
+    lu(n + 1, n + 1) = lu(n + 1, n + 1) + by_scale(bordered_row(control))
   end subroutine add_drainage
 
   !> Factorises the Jacobian of bodies in static equilibrium on any mesh, locked to a given gap.

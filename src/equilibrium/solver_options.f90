@@ -7,6 +7,8 @@ module solver_options
 
   !> A tolerance well above the rounding of equations with terms of hundreds of the law's lengths.
   real(wp), parameter :: tight_tolerance = 1.0e-12_wp
+  !> Newton's method needs few iterations if it converges.
+  integer, parameter :: newton_iterations = 12
 
   type :: solver_options_t
     !> Whether the iteration is the paper's mixing, without derivatives. Otherwise it is Anderson
@@ -48,6 +50,7 @@ contains
     newton = options
     newton%patience = 1
     newton%depth = 0
+    newton%most_iterations = min(options%most_iterations, newton_iterations)
   end function newton_of
 
 end module solver_options

@@ -25,8 +25,6 @@ module fixed_jumps
     procedure, private :: goes_on
   end type fixed_jumps_t
 
-  !> Newton's method needs few iterations if it converges.
-  integer, parameter :: newton_iterations = 12
   !> Largest number of times that Newton's method helps the iteration in one step.
   integer, parameter :: most_rescues = 5
 
@@ -140,7 +138,6 @@ contains
     goes_on = .false.
     if (self%options%mixing) return
     newton = newton_of(self%options)
-    newton%most_iterations = newton_iterations
     state = before
     call solve_anderson(self%equations_t, newton, self%frozen, control_t(value=h0), state, goes_on)
     call self%frozen%forget()
