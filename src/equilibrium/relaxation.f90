@@ -23,10 +23,8 @@ module relaxation
   !> lengths.
   real(wp), parameter :: first_step = 1, growth = 3, usual_step = 0.3_wp, &
     shortest_step = 1.0e-3_wp, longest_step = 1.0e12_wp, nudge = 1.0e-4_wp
-  !> The residual before the first step is unknown. Bodies without repulsion have fallen onto each
-  !> other when the smallest gap is below this fraction of the initial one: the attraction has then
-  !> grown by more than an order, and no deformation balances it.
-  real(wp), parameter :: unknown = 1.0e100_wp, fallen = 0.3_wp
+  !> The residual before the first step is unknown.
+  real(wp), parameter :: unknown = 1.0e100_wp
   !> Largest change of the gaps in a step of the fall, in the law's lengths.
   real(wp), parameter :: travel = 0.3_wp
 
@@ -60,9 +58,7 @@ contains
       equations%cost%iterations = equations%cost%iterations + 1
       state%iterations = step
       if (.not. state%residual < huge(1.0_wp)) return
-      associate (law => equations%problem%law)
-        if (law%adhesion > 0 .and. .not. law%edge_gap > 0 .and. minval(z) < fallen*apart) return
-      end associate
+      if (minval(z) < equations%problem%law%fallen_below(apart)) return
       if (holds(equations%problem, options%tolerance, state)) then
         call factorise_jacobian(equations, control, state, factors)
         if (.not. factors%valid) return

@@ -104,7 +104,7 @@ contains
       ! A jump must start from an equilibrium.
       event%jumped = event%converged .and. change(before, landed) > jump .and. &
         holds(self%problem, self%options%tolerance, before)
-      if (.not. event%converged .and. law%adhesion > 0 .and. .not. law%edge_gap > 0) then
+      if (.not. event%converged .and. law%falls_below > 0) then
         ! Bodies without repulsion collapse.
         event%jumped = .true.
         event%ending%cause = no_equilibrium

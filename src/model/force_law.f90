@@ -13,6 +13,8 @@ module force_law
   !> Distance from a step of the pressure, in its widths, beyond which nothing of the step is left:
   !> there erfc is below rounding.
   real(wp), parameter :: whole_step = 6
+  !> Bodies have fallen onto each other at this fraction of the gap from which they fell.
+  real(wp), parameter :: fallen = 0.3_wp
 
   type, abstract :: force_law_t
     !> Set by the law: unit of gap [m] and of pressure [Pa], and the separation [m] at gap 0, which
@@ -73,6 +75,9 @@ module force_law
     real(wp), allocatable :: outer_edges(:)
     !> Gap of zero pressure; 0 if there is none.
     real(wp) :: rest_gap = 0
+    !> Gap below which the pressure decreases as far as an attraction in contact, so that bodies fall
+    !> onto each other; 0 for a law with a repulsion in contact.
+    real(wp) :: falls_below = 0
     !> Gap beyond which the repulsion is below rounding; 0 until it is known.
     real(wp) :: range = 0
   contains
@@ -84,6 +89,7 @@ module force_law
     procedure :: table_error
     procedure :: gap_of
     procedure :: separation_of
+    procedure :: fallen_below
   end type force_law_t
 
   abstract interface
@@ -131,5 +137,17 @@ contains
 
     separation = self%origin + gap*self%length
   end function separation_of
+
+  !> The gap below which bodies have fallen onto each other from a gap: they touch or, under a
+  !> singular attraction, which has then grown by more than an order, no deformation balances it.
+  elemental real(wp) function fallen_below(self, apart) result(gap)
+    class(force_law_t), intent(in) :: self
+    real(wp), intent(in) :: apart
+
+    gap = -huge(1.0_wp)
+    if (.not. self%falls_below > 0) return
+    gap = fallen*min(apart, self%falls_below)
+    if (self%smallest_gap <= self%gap_of(0.0_wp)) gap = self%gap_of(0.0_wp)
+  end function fallen_below
 
 end module force_law

@@ -134,6 +134,7 @@ contains
     law%work = 0
     law%edge_gap = 0
     law%rest_gap = 0
+    law%falls_below = 0
     law%range = 0
     law%power_from = 0
     law%smallest_gap = -huge(1.0_wp)

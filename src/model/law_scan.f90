@@ -32,11 +32,11 @@ module law_scan
 
 contains
 
-  !> Sets adhesion, work, edges, rest_gap and range of a law that has not set its range.
+  !> Sets the scales of a law that has not set its range.
   subroutine find_scales(law)
     class(force_law_t), intent(inout) :: law
     real(wp), allocatable :: gap(:), pressure(:), slope(:)
-    real(wp) :: largest
+    real(wp) :: largest, ends
     integer :: i, rest
 
     if (law%range > 0) then
@@ -50,6 +50,17 @@ contains
     gap = gap(:i)
     pressure = pressure(:i)
     slope = law%slope(gap)
+    if (pressure(1) < 0) then
+      law%falls_below = huge(1.0_wp)
+      ends = huge(1.0_wp)
+      i = next_zero(pressure, 1, falling=.false.)
+      if (i > 0) then
+        ends = zero_between(law, gap(i), gap(i + 1), of_slope=.false.)
+        law%falls_below = ends
+        i = next_zero(slope, i, falling=.true.)
+        if (i > 0) law%falls_below = zero_between(law, gap(i), gap(i + 1), of_slope=.true.)
+      end if
+    end if
     rest = next_zero(pressure, 1, falling=.true.)
     largest = 1
     if (rest > 0) then
@@ -71,10 +82,8 @@ contains
             zero_between(law, gap(i), gap(i + 1), of_slope=.true.)]
         end do
       end if
-    else if (pressure(1) < 0) then
-      ! Without a well the adhesion is the energy at one length.
-      law%adhesion = -energy_at(law, 1.0_wp)
-      law%work = law%adhesion
+    else if (law%falls_below > 0) then
+      call find_adhesion_without_rest(law, ends)
     end if
     if (law%tail_power < huge(1.0_wp)) then
       i = findloc(abs(gap*slope + law%tail_power*pressure) > settled*abs(pressure), &
@@ -85,6 +94,25 @@ contains
     i = findloc(abs(pressure) > ended*largest, .true., 1, back=.true.)
     if (i > 0 .and. i < size(gap)) law%range = min(law%range, gap(i + 1))
   end subroutine find_scales
+
+  !> Sets adhesion and work of a law without a gap at rest, whose attraction ends at a gap, or
+  !> nowhere. The work of adhesion is the energy at contact. That of a singular law is infinite, and
+  !> work is 0; adhesion is then only a scale, from a gap of one length, or half the gap at which the
+  !> attraction ends.
+  subroutine find_adhesion_without_rest(law, ends)
+    class(force_law_t), intent(inout) :: law
+    real(wp), intent(in) :: ends
+    real(wp) :: from
+
+    from = law%gap_of(0.0_wp)
+    if (law%smallest_gap <= from) then
+      law%work = -energy_at(law, from)
+    else
+      from = min(1.0_wp, 0.5_wp*ends)
+    end if
+    law%adhesion = -energy_at(law, from)
+    if (ends < huge(1.0_wp)) law%adhesion = law%adhesion + energy_at(law, ends)
+  end subroutine find_adhesion_without_rest
 
   !> Finds the features outside the well of contact.
   type(surroundings_t) function surroundings_of(law) result(found)

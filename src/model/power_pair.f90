@@ -46,6 +46,7 @@ contains
     if (part == 'repulsive') law%tail_power = law%n
     call law%set_scales()
     if (part /= 'repulsive') law%adhesion = 1
+    if (part == 'attractive') law%falls_below = huge(1.0_wp)
     if (part == 'full') then
       law%edge_gap = (law%n/law%m)**(1/(law%n - law%m))
       law%rest_gap = 1

@@ -49,11 +49,6 @@ module tracing
   !> these exceed the distance from the curve.
   real(wp), parameter :: path_tolerance = 1.0e-8_wp, curve_tolerance = 1.0e-10_wp
 
-  !> Without repulsion the bodies collapse after their jump, and the path continues to a gap of
-  !> zero. The path ends when the gap is this fraction of the gap at the first fold or, if there is
-  !> no fold, of the law's length.
-  real(wp), parameter :: collapse = 0.3_wp
-
 contains
 
   !> Traces the path from a state at large separation, on the mesh for the approach, until it is
@@ -111,12 +106,12 @@ contains
         end if
       end if
       if (.not. (lost .or. mended)) call pass_on(known%path, walker, solver, lost)
-      known%fallen = collapsed(solver%problem, known%path)
+      known%fallen = collapsed(solver%problem, known%path, lost)
       lost = lost .or. known%path%held >= longest .or. astray(solver%equations_t, known%path)
-      if (lost) then
-        known%ending%cause = path_lost
-      else if (known%fallen) then
+      if (known%fallen) then
         known%ending%cause = no_equilibrium
+      else if (lost) then
+        known%ending%cause = path_lost
       else if (blind .and. any(known%path%point(:known%path%held)%fold)) then
         known%ending%cause = beyond_rounding
       end if
@@ -208,19 +203,22 @@ contains
     end associate
   end function astray
 
-  !> Whether the newest state of a path belongs to a collapse.
-  pure logical function collapsed(problem, path)
+  !> Whether the newest state of a path belongs to a collapse. A path that is lost on an unstable
+  !> branch within the attraction has no other end.
+  pure logical function collapsed(problem, path, lost)
     type(problem_t), intent(in) :: problem
     type(traced_path_t), intent(in) :: path
-    real(wp) :: scale
+    logical, intent(in) :: lost
+    real(wp) :: apart
     integer :: first
 
-    collapsed = .false.
-    if (problem%law%edge_gap > 0) return
-    scale = 1
+    apart = 1
     first = findloc(path%point(:path%held)%fold, .true., 1)
-    if (first > 0) scale = path%point(first)%state%axis_gap
-    collapsed = path%point(path%held)%state%axis_gap < collapse*scale
+    if (first > 0) apart = path%point(first)%state%axis_gap
+    associate (last => path%point(path%held), law => problem%law)
+      collapsed = last%state%axis_gap < law%fallen_below(apart) .or. &
+        lost .and. last%modes > 0 .and. last%state%axis_gap < law%falls_below
+    end associate
   end function collapsed
 
   !> Advances the continuation by a step and appends the new point. A new path begins with the

@@ -68,7 +68,8 @@ contains
         call numbers%set('surface_energy', surface_energy(problem))
         call take_pull_offs(problem, numbers)
       end if
-      if (.not. problem%rigid) then
+      ! Without a work of adhesion or a gap at rest, adhesion is only a scale of the law.
+      if (.not. problem%rigid .and. (problem%law%work > 0 .or. problem%law%rest_gap > 0)) then
         call numbers%set('sigma', adhesion_strength(problem))
         if (problem%shape%exponent > 0) call numbers%set('tabor', tabor_parameter(problem))
       end if

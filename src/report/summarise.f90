@@ -1,8 +1,8 @@
 !> Makes the summary of the results of experiments: SI units, and warnings.
 module summarise
   use kinds, only: long
-  use numerics_choice, only: grid_names, unchosen, edge_locked
   use dimensionless_problem, only: problem_t
+  use numerics_choice, only: grid_names, unchosen, edge_locked
   use scene_groups, only: scene_t
   use text, only: brief, rounded
   use experiment_result, only: experiment_result_t

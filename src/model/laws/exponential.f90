@@ -92,6 +92,8 @@ contains
       if (allocated(error)) return
       this = new_exponential(strengths(i)/merge(lengths(i), 1.0_wp, of_energy), lengths(i))
       this%sense = sense
+      ! The scan of a law finds the scales of an attraction.
+      if (sense < 0) this%range = 0
       this%coupling_name = ''
       this%group = group
       this%strength_key = key
