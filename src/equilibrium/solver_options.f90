@@ -50,7 +50,7 @@ contains
     newton = options
     newton%patience = 1
     newton%depth = 0
-    newton%most_iterations = min(options%most_iterations, newton_iterations)
+    newton%most_iterations = newton_iterations
   end function newton_of
 
 end module solver_options

@@ -13,9 +13,9 @@ module exact_path
   use traced_path, only: traced_path_t
   use mending, only: too_much
   use path_stepper, only: path_stepper_t
-  use tracing, only: longest
+  use tracing, only: demand_t, longest
   use experiment_request, only: request_t
-  use path_demand, only: farthest_wanted
+  use path_demand, only: demand_of
   use path, only: find_finish
   use places, only: places_t
   use reported_place, only: place_t, point_of_path
@@ -49,12 +49,12 @@ contains
     type(finer_t), intent(out) :: fine
     type(places_t), intent(out) :: places
     type(mesh_store_t), intent(inout), target, optional :: store
-    real(wp), allocatable :: farthest
+    type(demand_t), allocatable :: demand
     real(wp) :: more, accuracy
     integer :: attempt
     logical :: lost, last
 
-    if (request%reads_path()) farthest = farthest_wanted(request, steps%problem)
+    if (request%reads_path()) allocate (demand, source=demand_of(request, steps%problem))
     accuracy = request%numerics%accuracy
     do attempt = 0, most_attempts
       associate (meshes => steps%meshes, known => steps%known)
@@ -66,7 +66,7 @@ contains
           steps%cost%kernel_entries = steps%cost%kernel_entries + &
             sum(meshes%grid%kernel_entries())
         end if
-        call steps%know_path(h0_high, h0_low, allocated(request%path), accuracy, listener, farthest)
+        call steps%know_path(h0_high, h0_low, allocated(request%path), accuracy, listener, demand)
         lost = known%ending%cause == path_lost
         ! A path of too many states would have as many again.
         last = attempt == most_attempts .or. known%path%held >= longest .or. &

@@ -18,7 +18,11 @@ contains
 
     start = problem%law%separation_of(beyond_contact(problem))
     if (.not. allocated(request%path)) return
-    if (allocated(request%path%h0_start)) start = request%path%h0_start
+    if (allocated(request%path%h0_start)) then
+      start = request%path%h0_start
+    else if (allocated(request%profiles)) then
+      start = max(start, maxval(request%profiles%h0))
+    end if
   end function path_start
 
   !> The range of H0 of a scene, in the law's lengths.

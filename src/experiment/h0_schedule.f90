@@ -36,6 +36,7 @@ contains
     class(request_t), intent(in) :: request
     class(force_law_t), intent(in) :: law
     real(wp), intent(in) :: far
+    real(wp), allocatable :: farther(:)
     real(wp) :: start
 
     associate (finish => request%path%h0_end)
@@ -44,7 +45,11 @@ contains
       else
         start = max(law%separation_of(far), finish + law%length)
       end if
-      plan = schedule_of('path', start, finish, abs(start - finish)/path_states, request, law)
+      allocate (farther(0))
+      if (allocated(request%profiles)) &
+        farther = law%gap_of(pack(request%profiles%h0, request%profiles%h0 > start))
+      plan = schedule_of('path', start, finish, abs(start - finish)/path_states, request, law, &
+        farther)
     end associate
     plan%unique = .true.
   end function path_plan

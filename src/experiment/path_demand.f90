@@ -6,10 +6,11 @@ module path_demand
   use contact_scales, only: beyond_contact
   use convex_contact, only: jkr_like_pull_off
   use undeformed, only: load_undeformed
+  use tracing, only: demand_t
   use experiment_request, only: request_t
   implicit none
   private
-  public :: widen_path, farthest_wanted, h0_in_contact
+  public :: widen_path, demand_of, h0_in_contact
 
   !> Deformation of the bodies, as a fraction of that at the jump, that no longer affects the load;
   !> at larger separations closed forms replace the path.
@@ -27,34 +28,62 @@ contains
     class(request_t), intent(in) :: request
     type(problem_t), intent(in) :: problem
     real(wp), intent(inout) :: low, high
-    real(wp) :: b, wanted
+    type(demand_t) :: demand
     integer :: i
 
     if (.not. problem%law%adhesion > 0) return
-    high = max(high, min(farthest_wanted(request, problem), yielding_gap(problem, no_yielding)))
+    demand = demand_of(request, problem)
+    high = max(high, min(demand%farthest, yielding_gap(problem, no_yielding)))
+    do i = 1, size(demand%until)
+      low = min(low, h0_in_contact(problem, demand%by_h0(i), demand%by_load(i), demand%until(i)))
+    end do
+  end subroutine widen_path
+
+  !> What the request reads from the path: of a drive with a spring, its position; of a fixed load,
+  !> this load.
+  pure type(demand_t) function demand_of(request, problem) result(demand)
+    class(request_t), intent(in) :: request
+    type(problem_t), intent(in) :: problem
+    real(wp) :: softness, until
+    integer :: i
+
+    demand%farthest = farthest_wanted(request, problem)
+    demand%by_h0 = [real(wp) ::]
+    demand%by_load = [real(wp) ::]
+    demand%until = [real(wp) ::]
     if (allocated(request%fixed_load)) then
       do i = 1, size(request%fixed_load%load)
-        low = min(low, h0_in_contact(problem, 0.0_wp, 1.0_wp, &
-          -max(request%fixed_load%load(i)/problem%load, 0.0_wp)))
+        call add(0.0_wp, 1.0_wp, -max(request%fixed_load%load(i)/problem%load, 0.0_wp))
       end do
     end if
     if (.not. allocated(request%device)) return
     associate (device => request%device)
       if (allocated(device%z_end) .and. size(device%stiffness) == 0) &
-        low = min(low, problem%law%gap_of(device%z_end))
+        call add(1.0_wp, 0.0_wp, problem%law%gap_of(device%z_end))
       do i = 1, size(device%stiffness)
         if (device%stiffness(i) > 0) then
           ! The drive comes at least this close, behind the highest barrier.
-          b = problem%load/(device%stiffness(i)*problem%length)
-          wanted = 1 - b*barrier_load(problem)
-          if (allocated(device%z_end)) wanted = min(wanted, problem%law%gap_of(device%z_end))
-          low = min(low, h0_in_contact(problem, 1.0_wp, b, wanted))
+          softness = problem%load/(device%stiffness(i)*problem%length)
+          until = 1 - softness*barrier_load(problem)
+          if (allocated(device%z_end)) until = min(until, problem%law%gap_of(device%z_end))
+          call add(1.0_wp, softness, until)
         else
-          low = min(low, h0_in_contact(problem, 0.0_wp, 1.0_wp, -barrier_load(problem)))
+          call add(0.0_wp, 1.0_wp, -barrier_load(problem))
         end if
       end do
     end associate
-  end subroutine widen_path
+
+  contains
+
+    pure subroutine add(by_h0, by_load, until)
+      real(wp), intent(in) :: by_h0, by_load, until
+
+      demand%by_h0 = [demand%by_h0, by_h0]
+      demand%by_load = [demand%by_load, by_load]
+      demand%until = [demand%until, until]
+    end subroutine add
+
+  end function demand_of
 
   !> The largest h0 at which a state is needed (law's lengths); 0: there is no such need.
   pure real(wp) function farthest_wanted(request, problem) result(farthest)

@@ -15,7 +15,7 @@ module path_stepper
   use traced_path, only: traced_path_t
   use path_span, only: path_span_t, new_path_span
   use path_prediction, only: missed_t, expect
-  use tracing, only: trace, trace_again
+  use tracing, only: demand_t, trace, trace_again
   use mending, only: left_on_path
   use edge_locked, only: mesh_family_t
   use discretisation, only: discretisation_t
@@ -53,15 +53,15 @@ module path_stepper
 contains
 
   !> Traces the path from h0_high, or from where the bodies hardly deform, until it is stable at
-  !> h0_low; into_contact: until the bodies are also in contact; accuracy, farthest: see
-  !> `trace`; with `farthest` the points define a smooth curve. To be called before the first step.
+  !> h0_low; into_contact: until the bodies are also in contact; accuracy, demand: see
+  !> `trace`; with `demand` the points define a smooth curve. To be called before the first step.
   !> The listener receives messages about the progress.
-  subroutine know_path(self, h0_high, h0_low, into_contact, accuracy, listener, farthest)
+  subroutine know_path(self, h0_high, h0_low, into_contact, accuracy, listener, demand)
     class(path_stepper_t), intent(inout) :: self
     real(wp), intent(in) :: h0_high, h0_low, accuracy
     logical, intent(in) :: into_contact
     class(listener_t), intent(inout) :: listener
-    real(wp), intent(in), optional :: farthest
+    type(demand_t), intent(in), optional :: demand
     type(known_path_t) :: nothing
     type(branch_point_t) :: position
     type(step_result_t) :: event
@@ -71,7 +71,7 @@ contains
     call self%begin_afar(h0_high, position, event)
     if (.not. event%ending%early()) then
       call trace(self%solver_t, position%state, h0_low, into_contact, accuracy, listener, &
-        self%known, farthest)
+        self%known, demand)
       call know_pieces(self%solver_t, self%known)
     else
       self%known%ending = event%ending

@@ -2,6 +2,7 @@
 !> other body and back.
 module measured_curve
   use kinds, only: wp
+  use noise, only: median_of
   use failure, only: failure_t, fail, bad_input
   use data_table, only: data_table_t, read_data_table
   use fit_request, only: measurement_t
@@ -26,9 +27,11 @@ module measured_curve
 
   !> Smallest number of samples of a way.
   integer, parameter :: fewest = 20
-  !> Turns over the number of samples: above `rough` a column is noise, below `even` it goes to and
-  !> fro. The longest travel of a base [m].
-  real(wp), parameter :: rough = 0.2_wp, even = 0.02_wp, longest = 1.0e-3_wp
+  !> Median over mean of the changes from part to part of a curve, and the number of parts: a base
+  !> moves evenly, and a signal changes mostly near contact. Shortest and longest travel of a base
+  !> [m].
+  real(wp), parameter :: even = 0.5_wp, uneven = 0.25_wp, shortest = 1.0e-12_wp, longest = 1.0e-3_wp
+  integer, parameter :: parts = 20
   !> The part of a way's samples at either end within which a turn does not count, and over which
   !> the ends are averaged.
   real(wp), parameter :: end_part = 0.1_wp
@@ -58,15 +61,15 @@ contains
     table%value(:, 1) = table%value(:, 1)*request%unit(1)
     table%value(:, 2) = table%value(:, 2)*request%unit(2)
     associate (z => table%value(:, 1), signal => table%value(:, 2))
-      call check_columns(table%source%file, z, signal, error)
-      if (allocated(error)) return
       if (size(z) < fewest) then
         call fail(error, bad_input, table%source%file // ': a curve needs 20 samples or more')
         return
       end if
+      call check_columns(table%source%file, z, signal, error)
+      if (allocated(error)) return
       if (size(request%columns) > 2) then
         do i = 1, size(z)
-          if (any(nint(table%value(i, 3)) == [0, 1])) cycle
+          if (any(abs(table%value(i, 3) - [0, 1]) <= 0)) cycle
           call table%source%complain(table%place(i), '', '', &
             'the segment is neither 0, approach, nor 1, retreat', error)
           return
@@ -97,24 +100,32 @@ contains
     real(wp), intent(in) :: z(:), signal(:)
     type(failure_t), allocatable, intent(inout) :: error
 
-    if (turns_of(z) > rough*size(z) .and. turns_of(signal) < even*size(z)) then
-      call fail(error, bad_input, file // ': the position goes up and down, the signal ' // &
-        'evenly; are the two columns exchanged? columns gives their order')
+    if (evenness_of(z) < uneven .and. evenness_of(signal) > even) then
+      call fail(error, bad_input, file // ': the signal changes evenly, the position does ' // &
+        'not; are the two columns exchanged? columns gives their order')
     else if (maxval(z) - minval(z) > longest) then
       call fail(error, bad_input, file // ': positions span more than a millimetre; if they ' // &
         'are not in metres, give units, such as units = ''nm'', ''nN''')
+    else if (maxval(z) - minval(z) < shortest) then
+      call fail(error, bad_input, file // ': positions span less than a picometre; check ' // &
+        'units and columns')
     end if
 
   contains
 
-    !> Number of changes of sign of the differences of a column.
-    pure integer function turns_of(number) result(turns)
+    !> Median over mean of the changes of a column between the means of its parts.
+    pure real(wp) function evenness_of(number) result(evenness)
       real(wp), intent(in) :: number(:)
-      integer :: n
+      real(wp) :: mean(parts)
+      integer :: i, n
 
       n = size(number)
-      turns = count((number(3:) - number(2:n - 1))*(number(2:n - 1) - number(:n - 2)) < 0)
-    end function turns_of
+      mean = [(sum(number(1 + (i - 1)*n/parts:i*n/parts))/(i*n/parts - (i - 1)*n/parts), i=1, &
+        parts)]
+      associate (change => abs(mean(2:) - mean(:parts - 1)))
+        evenness = median_of(change)/max(sum(change)/size(change), tiny(1.0_wp))
+      end associate
+    end function evenness_of
 
   end subroutine check_columns
 

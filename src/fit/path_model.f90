@@ -19,7 +19,7 @@ module path_model
   use h0_range, only: range_of
   use experiment, only: prepare
   use numerics_choice, only: choice_t, choose
-  use path_demand, only: farthest_wanted
+  use path_demand, only: demand_of
   use path_stepper, only: path_stepper_t
   use force_branch, only: branch_t
   use force_model, only: force_model_t, response_t, inward, outward
@@ -121,7 +121,7 @@ contains
     self%steps%options%mixing = .false.
     self%steps%meshes = new_mesh_family(problem, high, low, chosen%digits, store=self%store)
     call self%steps%know_path(high, low, .true., self%numerics%accuracy, silent, &
-      farthest_wanted(request, problem))
+      demand_of(request, problem))
     self%left_out = self%steps%known%left_out
     if (.not. self%steps%known%path%held > 1) return
     call drive_bodies(self%steps%solver_t, self%steps%known%path, &

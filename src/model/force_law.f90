@@ -75,8 +75,8 @@ module force_law
     real(wp), allocatable :: outer_edges(:)
     !> Gap of zero pressure; 0 if there is none.
     real(wp) :: rest_gap = 0
-    !> Gap below which the pressure decreases as far as an attraction in contact, so that bodies fall
-    !> onto each other; 0 for a law with a repulsion in contact.
+    !> Gap below which the pressure decreases as far as an attraction in contact, so that bodies
+    !> fall onto each other; 0 for a law with a repulsion in contact.
     real(wp) :: falls_below = 0
     !> Gap beyond which the repulsion is below rounding; 0 until it is known.
     real(wp) :: range = 0

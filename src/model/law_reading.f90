@@ -1,6 +1,7 @@
 !> Common parts of the readers of force laws.
 module law_reading
   use kinds, only: wp
+  use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
   use failure, only: failure_t
   use text, only: brief, quoted
   use deck, only: deck_t
@@ -63,9 +64,13 @@ contains
     real(wp), intent(in) :: decades
     type(failure_t), allocatable, intent(inout) :: error
 
-    if (.not. abs(decades) <= most_decades) call deck%mistake(group, key, &
-      'these values of &bodies and &'//group//' make '//what//' of 1e'// &
-      brief(nint(decades))//unit//'; allowed: from 1e-100 to 1e100', error)
+    if (ieee_is_nan(decades)) then
+      call deck%mistake(group, key, 'these values make no finite '//what(index(what, ' ') + 1:)// &
+        '; do forces cancel each other?', error)
+    else if (.not. abs(decades) <= most_decades) then
+      call deck%mistake(group, key, 'these values of &bodies and &'//group//' make '//what// &
+        ' of 1e'//brief(nint(decades))//unit//'; allowed: from 1e-100 to 1e100', error)
+    end if
   end subroutine check_decades
 
 end module law_reading

@@ -97,8 +97,8 @@ contains
 
   !> Sets adhesion and work of a law without a gap at rest, whose attraction ends at a gap, or
   !> nowhere. The work of adhesion is the energy at contact. That of a singular law is infinite, and
-  !> work is 0; adhesion is then only a scale, from a gap of one length, or half the gap at which the
-  !> attraction ends.
+  !> work is 0; adhesion is then only a scale, from a gap of one length, or half the gap at which
+  !> the attraction ends.
   subroutine find_adhesion_without_rest(law, ends)
     class(force_law_t), intent(inout) :: law
     real(wp), intent(in) :: ends

@@ -16,8 +16,10 @@ module data_table
   public :: data_table_t, read_data_table, largest_table, read_columns
   public :: split, is_header, after_mark, uncommented, point_decimals, counted
 
-  !> The columns asked for, value(row, column), and the position of each row in the file's text.
+  !> The columns asked for, value(row, column), the position of each row in the file's text, and the
+  !> number of columns in the file.
   type :: data_table_t
+    integer :: columns = 0
     type(source_t) :: source
     real(wp), allocatable :: value(:, :)
     integer, allocatable :: place(:)
@@ -41,7 +43,7 @@ contains
     type(span_t), allocatable :: cells(:), names(:)
     integer, allocatable :: at(:)
     logical, allocatable :: turned(:)
-    integer :: first, next, n, columns, named
+    integer :: first, next, n, comment, named
     logical :: header
 
     call load_source(file, table%source, error, largest_table)
@@ -51,76 +53,62 @@ contains
     allocate (table%place(n), table%value(n, size(wanted)), at(size(wanted)))
     turned = index(adjustl(wanted), '-') == 1
     n = 0
-    named = 0
+    comment = 0
     next = 1
-    call next_row(table%source, next, first, cells, named)
+    call next_row(table%source, next, first, cells, comment)
     if (first > 0) then
-      columns = size(cells)
+      named = first
+      names = cells
       header = is_header(table%source, first, cells)
-      ! The last comment before the rows may have the names.
-      if (named > 0 .and. .not. header) then
-        call split(after_mark(table%source%part(named, first - 2)), names)
-        if (size(names) /= columns) named = 0
-      else
-        named = 0
+      if (header) then
+        call next_row(table%source, next, first, cells, comment)
+      else if (comment > 0) then
+        ! The last comment before the rows may have the names.
+        named = comment
+        call split(after_mark(table%source%part(comment, first - 2)), names)
       end if
-      if (named == 0) then
-        names = cells
+      table%columns = size(names)
+      if (first > 0) table%columns = size(cells)
+      if (size(names) /= table%columns) then
+        if (header .and. any(verify(wanted, '-0123456789 ') > 0)) then
+          call table%source%complain(named, '', '', counted(size(names)) // ' where ' // &
+            counted(table%columns) // ' are expected', error)
+          return
+        end if
         named = first
+        names = cells
       end if
       call find_columns(table%source, named, names, wanted, at, error)
       if (allocated(error)) return
-      if (header) call next_row(table%source, next, first, cells, named)
     end if
     do while (first > 0)
-      if (size(cells) /= columns) then
+      if (size(cells) /= table%columns) then
         call table%source%complain(first, '', '', counted(size(cells)) // ' where ' // &
-          counted(columns) // ' are expected', error)
+          counted(table%columns) // ' are expected', error)
         return
       end if
       n = n + 1
       call read_row(table%source, first, cells(at), turned, table%value(n, :), error)
       if (allocated(error)) return
       table%place(n) = first
-      call next_row(table%source, next, first, cells, named)
+      call next_row(table%source, next, first, cells, comment)
     end do
     table%value = table%value(:n, :)
     table%place = table%place(:n)
   end subroutine read_data_table
 
-  !> Reads the file of two columns that a key of the deck names; `error` says where there are not
-  !> two numbers. Decimal commas are not accepted.
+  !> Reads the file of two columns that a key of the deck names.
   subroutine read_columns(deck, group, key, table, error)
     type(deck_t), intent(inout) :: deck
     character(len=*), intent(in) :: group, key
     type(data_table_t), intent(out) :: table
     type(failure_t), allocatable, intent(out) :: error
-    type(span_t), allocatable :: cells(:)
-    integer :: first, next, n, comment
 
-    call load_source(deck%path_of(group, key), table%source, error)
+    call read_data_table(deck%path_of(group, key), ['1', '2'], table, error)
     if (allocated(error)) return
     call deck%note_file(group, key, checksum(table%source%text))
-    n = lines_of(table%source%text)
-    allocate (table%place(n), table%value(n, 2))
-    n = 0
-    next = 1
-    do
-      call next_row(table%source, next, first, cells, comment)
-      if (first == 0) exit
-      n = n + 1
-      table%place(n) = first
-      call read_row(table%source, first, cells(:min(2, size(cells))), [.false., .false.], &
-        table%value(n, :), error)
-      if (allocated(error)) return
-      if (size(cells) == 1) call table%source%complain(first, '', '', &
-        'one number where two are expected', error)
-      if (size(cells) > 2) call table%source%complain(first + cells(3)%first - 1, '', '', &
-        'more than two numbers', error)
-      if (allocated(error)) return
-    end do
-    table%value = table%value(:n, :)
-    table%place = table%place(:n)
+    if (size(table%place) > 0 .and. table%columns > 2) call table%source%complain(table%place(1), &
+      '', '', counted(table%columns) // ' where 2 columns are expected', error)
   end subroutine read_columns
 
   !> Number of lines of a text, at most.
@@ -212,7 +200,7 @@ contains
     end do
   end subroutine split
 
-  !> Whether a line has a cell that is not a number.
+  !> Whether a line has names, and not a number.
   logical function is_header(source, start, cells)
     type(source_t), intent(in) :: source
     integer, intent(in) :: start
@@ -221,11 +209,11 @@ contains
     real(wp) :: number
     integer :: i
 
-    is_header = .false.
+    is_header = .true.
     do i = 1, size(cells)
       call parse_real(source%part(start + cells(i)%first - 1, start + cells(i)%last - 1), number, &
         what)
-      is_header = is_header .or. allocated(what)
+      is_header = is_header .and. allocated(what)
     end do
   end function is_header
 

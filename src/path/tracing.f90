@@ -21,7 +21,7 @@ module tracing
   use mending, only: mender_t, new_mender, left_on_path, left_in_state
   implicit none
   private
-  public :: tracing_t, trace, trace_again, longest
+  public :: tracing_t, demand_t, trace, trace_again, longest
 
   !> A traced path, its ending, and whether it ends in a collapse of the bodies; left_out: the
   !> largest part of the load that the nodes miss, except in a collapse.
@@ -31,6 +31,13 @@ module tracing
     logical :: fallen = .false.
     real(wp) :: left_out = 0
   end type tracing_t
+
+  !> What is read from a path: undeformed bodies fill the range from h0 = `farthest` to its start,
+  !> and at its end by_h0*h0 - by_load*load is at most `until`, for each element.
+  type :: demand_t
+    real(wp) :: farthest = 0
+    real(wp), allocatable :: by_h0(:), by_load(:), until(:)
+  end type demand_t
 
   !> Number of points beyond which a path is given up.
   integer, parameter :: longest = 3000
@@ -53,16 +60,16 @@ contains
 
   !> Traces the path from a state at large separation, on the mesh for the approach, until it is
   !> stable at h0_low; into_contact: until the bodies are also in contact. Meshes that miss too
-  !> much of the load for the accuracy are refined. farthest: if present, the points are close
-  !> enough for a smooth curve, and undeformed bodies fill the range from `farthest` to the start.
-  subroutine trace(solver, start, h0_low, into_contact, accuracy, listener, known, farthest)
+  !> much of the load for the accuracy are refined. demand: if present, the path goes as far as is
+  !> read from it, and its points are close enough for a smooth curve.
+  subroutine trace(solver, start, h0_low, into_contact, accuracy, listener, known, demand)
     class(solver_t), intent(inout) :: solver
     type(state_t), intent(in) :: start
     real(wp), intent(in) :: h0_low, accuracy
     logical, intent(in) :: into_contact
     class(listener_t), intent(inout) :: listener
     class(tracing_t), intent(inout) :: known
-    real(wp), intent(in), optional :: farthest
+    type(demand_t), intent(in), optional :: demand
     type(continuation_t) :: walker
     type(mender_t) :: mender
     character(len=40) :: so_far
@@ -77,10 +84,10 @@ contains
       largest_radius(solver%problem, h0_low, solver%meshes%level))
     tolerance = solver%options%tolerance
     solver%options%tolerance = min(tolerance, &
-      merge(curve_tolerance, path_tolerance, present(farthest)))
+      merge(curve_tolerance, path_tolerance, present(demand)))
     finished = .false.
     steps = 0
-    if (present(farthest)) call walker%follow_closely()
+    if (present(demand)) call walker%follow_closely()
     call walker%take(solver, start, approach, lost)
     if (lost) known%ending%cause = path_lost
     mender = new_mender(accuracy, solver%problem%law)
@@ -118,6 +125,8 @@ contains
       associate (last => known%path%point(known%path%held))
         finished = last%modes == 0 .and. last%state%h0 <= h0_low .and. &
           last%tangent%h0 < 0
+        if (finished .and. present(demand)) finished = all(demand%by_h0*last%state%h0 - &
+          demand%by_load*last%state%load <= demand%until)
         if (finished .and. into_contact) finished = touches(solver%equations_t, last)
       end associate
       if (.not. mended .and. (finished .or. known%ending%early())) &
@@ -130,7 +139,7 @@ contains
     end do
     solver%options%tolerance = tolerance
     if (.not. known%fallen) known%left_out = left_on_path(solver%equations_t, known%path)
-    if (present(farthest)) call known%path%begin_undeformed(solver%problem, farthest)
+    if (present(demand)) call known%path%begin_undeformed(solver%problem, demand%farthest)
     known%path%last = known%path%held
   end subroutine trace
 

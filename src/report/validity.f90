@@ -36,7 +36,7 @@ contains
     ! Other shapes than parabolas, circles and ellipses have no radius on the axis.
     if (abs(problem%shape%exponent - 2) > 0) return
     call judge(summary, 'range_over_radius', range_of(problem)/problem%radius, &
-      'the range of the force', &
+      'the range of the force over the radius of the bodies', &
       'Derjaguin''s approximation needs forces of short range')
   end subroutine judge_law
 
@@ -75,7 +75,7 @@ contains
 
     if (quality%contact_radius > 0) call judge(summary, 'contact_over_radius', &
       problem%shape%slope(quality%contact_radius/problem%lateral)*problem%length/problem%lateral, &
-      'the contact radius', 'the model is for half-spaces with small slopes')
+      'the slope at the contact''s edge', 'the model is for half-spaces with small slopes')
     if (problem%rigid .or. .not. quality%pressure > 0) return
     strain = quality%pressure*problem%pressure/problem%stiffness
     call summary%set('pressure_over_stiffness', strain)
@@ -91,11 +91,9 @@ contains
 
     call summary%set(key, part)
     if (part > warned) then
-      call summary%warn('beyond the model: ' // what // ' is ' // rounded(part) // &
-        ' of the radius of the bodies; ' // why)
+      call summary%warn('beyond the model: ' // what // ' is ' // rounded(part) // '; ' // why)
     else if (part > noted) then
-      call summary%note(what // ' is ' // rounded(part) // &
-        ' of the radius of the bodies, which is not small; ' // why)
+      call summary%note(what // ' is ' // rounded(part) // ', which is not small; ' // why)
     end if
   end subroutine judge
 

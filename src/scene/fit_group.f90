@@ -40,7 +40,8 @@ contains
       real_key('measurement', 'sensitivity', 'm/V', 'Deflection of the spring for one volt; 1 ' &
                // 'for a deflection in metres.', above=zero, otherwise='the signal is the force'), &
       real_key('measurement', 'contact_point', 'm', 'Position of the base at which undeformed ' // &
-               'bodies would touch.', otherwise='found by the fit'), &
+               'bodies would touch.', &
+               otherwise='an unknown of &fit, whose parameters must name it'), &
       names_key('measurement', 'units', 2, 'Units of position (m, mm, um, nm, pm) and signal ' // &
                 '(N, mN, uN, nN, pN, V, mV) in the file.', otherwise='m and N or V'), &
       list_key('measurement', 'skip', 'm', 'Pairs of positions of the base, SI; samples ' // &
@@ -112,6 +113,11 @@ contains
       call deck%note_file('measurement', 'file', checksum(source%text))
       call deck%assume('measurement', 'columns', '1 2')
       call deck%get('measurement', 'columns', names)
+      if (word_count(names) < 2) then
+        call deck%mistake('measurement', 'columns', 'names the columns of position and ' // &
+          'signal, and of the segment if the file has one', error)
+        return
+      end if
       allocate (measurement%columns(word_count(names)))
       do i = 1, size(measurement%columns)
         measurement%columns(i) = word_of(names, i)
@@ -148,6 +154,9 @@ contains
         trim(merge('position', 'signal  ', i == 1)) // ' such as ' // &
         trim(merge('nm', 'nN', i == 1)), error)
     end do
+    if (index(names, 'V') > 0 .and. .not. deck%is_set('measurement', 'sensitivity')) &
+      call deck%mistake('measurement', 'units', 'a signal in volts needs sensitivity, the ' // &
+      'deflection of the spring for one volt', error)
   end subroutine take_units
 
   !> Reads the ranges of position that are left out.
@@ -227,7 +236,8 @@ contains
     end do
     if (.not. any(scene%fit%unknown%role == of_contact_point) .and. &
       .not. allocated(scene%measurement%contact_point)) call scene%deck%mistake('fit', &
-      'parameters', 'measurement.contact_point is neither here nor given in &measurement', error)
+      'parameters', 'the contact point is unknown: add measurement.contact_point here, or ' // &
+      'give contact_point in &measurement', error)
     call take_bounds(scene%deck, scene%fit%unknown, error)
   end subroutine take_unknowns
 

@@ -136,6 +136,7 @@ contains
     allocate (scene%profiles)
     call scene%deck%get('profiles', 'h0', scene%profiles%h0)
     do i = 1, size(scene%profiles%h0)
+      if (allocated(scene%drive)) exit
       if (reached(scene%profiles%h0(i))) cycle
       call scene%deck%mistake('profiles', 'h0', brief(scene%profiles%h0(i)) // &
                               ' m is outside the range of &loading and &equilibrium_path', error)

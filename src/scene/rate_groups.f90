@@ -87,8 +87,9 @@ contains
       call deck%assume('numerics', 'accuracy', usual_accuracy)
       if (drive%z_start <= drive%z_turn) call deck%mistake('drive', 'z_start', &
         brief(drive%z_start) // ' is not above z_turn = ' // brief(drive%z_turn) // ' m', error)
-      if (drive%z_end <= drive%z_turn) call deck%mistake('drive', 'z_end', &
-        brief(drive%z_end) // ' is not above z_turn = ' // brief(drive%z_turn) // ' m', error)
+      if (deck%is_set('drive', 'z_end') .and. drive%z_end <= drive%z_turn) &
+        call deck%mistake('drive', 'z_end', brief(drive%z_end) // ' is not above z_turn = ' // &
+        brief(drive%z_turn) // ' m', error)
       if (allocated(drive%time_step)) then
         time = (drive%z_start - 2*drive%z_turn + drive%z_end)/drive%velocity + drive%dwell
         if (time > most_steps*drive%time_step) call deck%mistake('drive', 'time_step', &
@@ -130,7 +131,8 @@ contains
         call deck%mistake('viscoelastic', 'stiffness_relaxed', &
           'give one of: stiffness_relaxed; compliance', error)
       else if (allocated(relaxed)) then
-        if (relaxed > bodies%stiffness) call deck%mistake('viscoelastic', 'stiffness_relaxed', &
+        if (relaxed > bodies%stiffness .and. .not. bodies%rigid) call deck%mistake( &
+          'viscoelastic', 'stiffness_relaxed', &
           brief(relaxed) // ' is above the instantaneous stiffness, ' // &
           brief(bodies%stiffness) // ' Pa', error)
         compliance = [1/relaxed - 1/bodies%stiffness]

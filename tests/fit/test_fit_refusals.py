@@ -87,7 +87,7 @@ BAD_DECKS = {
     "name": ({"fit": {"parameters": ["force.strength", POINT]}}, "force.strength"),
     "numerics": ({"fit": {"parameters": ["numerics.accuracy", POINT]}}, "numerics.accuracy"),
     "twice": ({"fit": {"parameters": [STRENGTH, STRENGTH, POINT]}}, "is there twice"),
-    "no contact point": ({"fit": {"parameters": [STRENGTH]}}, "contact_point is neither here"),
+    "no contact point": ({"fit": {"parameters": [STRENGTH]}}, "the contact point is unknown"),
     "no volts": ({"fit": {"parameters": [POINT, "measurement.sensitivity"]}},
                  "the signal is a force"),
     "not to be fitted": ({"fit": {"parameters": [POINT, "measurement.file"]}}, "cannot be fitted"),

@@ -171,8 +171,8 @@ GOOD = [f"{gap:.6e} {(Z0 / gap) ** 9 - (Z0 / gap) ** 3:.6e}" for gap in points(8
     [
         ([*GOOD[:3], "nan 1", *GOOD[3:]], 4, "not a finite number"),
         ([*GOOD[:3], "1e-9 inf", *GOOD[3:]], 4, "not a finite number"),
-        ([*GOOD[:3], "1e-9", *GOOD[3:]], 4, "one number"),
-        ([*GOOD[:3], "1e-9 2 3", *GOOD[3:]], 4, "more than two"),
+        ([*GOOD[:3], "1e-9", *GOOD[3:]], 4, "1 column where 2"),
+        ([*GOOD[:3], "1e-9 2 3", *GOOD[3:]], 4, "3 columns where 2"),
         ([*GOOD[:3], "1e-9 two", *GOOD[3:]], 4, "not a number"),
         ([*GOOD[:3], GOOD[2], *GOOD[3:]], 4, "neither increase"),
         ([*GOOD[:3], GOOD[0], *GOOD[3:]], 4, "neither increase"),
