@@ -141,6 +141,7 @@ contains
   !> larger one of rigid bodies and JKR theory. Thin films reach up to twice this tension.
   pure real(wp) function largest_pull(problem) result(tension)
     type(problem_t), intent(in) :: problem
+    real(wp) :: well
     integer :: step
 
     if (problem%shape%parabolic) then
@@ -149,10 +150,12 @@ contains
     end if
     tension = 0
     if (problem%law%work > 0) tension = -jkr_like_pull_off(problem)
-    do step = -tried/2, tried/2
-      tension = max(tension, -load_undeformed(problem, &
-        max(problem%law%edge_gap, problem%law%rest_gap)*ratio**step))
-    end do
+    associate (law => problem%law)
+      well = law%separation_of(max(law%edge_gap, law%rest_gap))
+      do step = -tried/2, tried/2
+        tension = max(tension, -load_undeformed(problem, law%gap_of(well*ratio**step)))
+      end do
+    end associate
   end function largest_pull
 
   !> An h0 below the one at which a h0 - b load in contact is `wanted`, by JKR theory (10), (11).
