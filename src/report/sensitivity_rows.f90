@@ -19,8 +19,8 @@ module sensitivity_rows
   public :: write_sensitivity, write_curve_sensitivity
 
   !> z turns where it changes along the path by less than this part of its terms, or of the law's
-  !> units.
-  real(wp), parameter :: turning = 1.0e-8_wp
+  !> units: folds are found with a millionth of a unit of the coordinate.
+  real(wp), parameter :: turning = 1.0e-6_wp
 
 contains
 
