@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from support.scenes import lennard_jones, loading, several
+from support.scenes import deck, lennard_jones, loading, several
 
 # The first scene: the table that an independent splining of a path of accuracy 1e-8 gave. Position
 # of the drive [nm], load before and after [uN], of the jumps in and out, and energy lost [J].
@@ -192,3 +192,16 @@ def test_jumps_of_stiff_springs_have_the_errors_of_their_own_turns(run, stiffnes
     assert not found.warnings
     for name in ("device_jump_in_load", "device_jump_out_load"):
         assert found.summary[f"{name}_error"] < 1e-6 * abs(found.summary[name])
+
+
+@pytest.mark.parametrize("shape", [None, "sphere"])
+def test_a_spring_lets_go_outside_a_capillary_bridge(run, shape):
+    """The largest pull of a sphere was once looked for behind the wall, at separations below zero,
+    where it was found: the drive went to 1e159 m."""
+    found = run(deck(
+        bodies={"radius": 1.5e-2, "stiffness": 2.6e13}, capillary={"humidity": 0.37},
+        force={"law": "lennard_jones", "hamaker": 1e-19, "z0": 0.5e-9},
+        shape={"kind": shape} if shape else None, equilibrium_path={"h0_end": -1.2e-9},
+        device={"stiffness": [2e6]}))
+    assert not found.warnings
+    assert numbers(found, "jump_out_z")[0] == pytest.approx(4.7550698e-9, rel=1e-6)

@@ -214,3 +214,34 @@ def test_what_is_beyond_the_model_is_said(run):
                 force={"law": "lennard_jones", "surface_energy": 0.05, "z0": 1e-9},
                 equilibrium_path={"h0_end": -3e-6})
     assert any("strain below the top layer is about" in text for text in warnings(run(skin)))
+
+
+# Young's moduli of the bodies; a layer on the first; what is read.
+DEEP = {
+    "film": ([1e11, 1e11], {"thickness": 3e-6, "young": 1e10, "poisson": 0.3, "base": "rigid"},
+             {"fixed_load": {"load": [0.0]}}),
+    "pressed film": ([2.65e12, 6.44e12], {"thickness": 1.29e-6, "young": 3.22e10, "poisson": 0.5,
+                                          "base": "rigid"}, {"fixed_load": {"load": [3.375e-3]}}),
+    "spring": ([4.32e10, 9.15e12], {"thickness": 8.81e-7, "young": 2.95e10, "poisson": 0.3,
+                                    "base": "rigid"},
+               {"device": {"stiffness": [1.7e5], "z_end": -5e-9}}),
+}
+
+
+@pytest.mark.parametrize("name", DEEP)
+def test_a_path_goes_on_until_what_is_read_from_it_is_reached(run, name):
+    """Where the path had to end was taken from the theory of half-spaces, and contacts of films
+    under a load were beyond its end."""
+    young, layer, read = DEEP[name]
+    shallow, deep = (run(deck(
+        bodies={"radius": 1.5e-2, "young": young, "poisson": [0.3, 0.3]},
+        layer={**layer, "body": "1"}, force={"law": "lennard_jones", "hamaker": 1e-19, "z0": 5e-10},
+        equilibrium_path={"h0_end": h0_end}, numerics={"accuracy": 1e-5}, **read))
+        for h0_end in (2e-10, -1e-8))
+    if name == "spring":
+        assert shallow.table("device.csv")["z"].min() <= -5e-9
+        return
+    for key in ("h0", "displacement"):
+        assert shallow.table("fixed_load.csv")[key] == pytest.approx(
+            deep.table("fixed_load.csv")[key], rel=1e-5)
+    assert (shallow.table("fixed_load.csv")["stable"] == 1).any()

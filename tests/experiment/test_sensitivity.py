@@ -203,3 +203,17 @@ def test_nothing_else_changes(run):
     for name in ("curve.csv", "device.csv", "device_jumps.csv", "fixed_load.csv"):
         assert (beside.folder / name).read_bytes() == (without.folder / name).read_bytes()
     assert not (without.folder / "sensitivity.csv").exists()
+
+
+@pytest.mark.parametrize("accuracy", [1e-5, 1e-8])
+def test_the_curve_has_no_derivative_at_its_folds(run, accuracy):
+    """Some rows of folds had the inverse of a rounding error."""
+    found = run(deck(
+        bodies={"radius": 1.5e-2, "stiffness": 4.04e9}, numerics={"accuracy": accuracy},
+        van_der_waals={"hamaker": 1e-19, "retardation_length": 98e-9},
+        born={"hamaker": 1e-19, "z0": 4.63e-10}, equilibrium_path={"h0_end": -2.4e-9},
+        sensitivity={"parameters": ["bodies.stiffness"]}))
+    table, folds = found.table("curve_sensitivity.csv"), np.array(found.summary["folds_h0"])
+    at_fold = abs(table["h0"][:, None] / folds - 1).min(axis=1) < 1e-14
+    assert at_fold.sum() == folds.size
+    assert (np.isnan(table["load_derivative"]) == at_fold).all()

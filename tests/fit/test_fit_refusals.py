@@ -30,7 +30,11 @@ BAD_DATA = {
     "exchanged segments": (lambda z, f, s, rng: (z, f, 1 - s),
                            "approach and retreat are exchanged"),
     "reversed rows": (lambda z, f, s, rng: (z[::-1], f[::-1], s), "in reverse order"),
+    "noisy columns": (lambda z, f, s, rng: (f, z + 1e-9 * rng.standard_normal(len(z)), s),
+                      "columns exchanged"),
     "nanometres": (lambda z, f, s, rng: (1e9 * z, 1e9 * f, s), "give units"),
+    "picometres": (lambda z, f, s, rng: (1e-9 * z, f, s), "less than a picometre"),
+    "heights": (lambda z, f, s, rng: (z, f, 1e6 * z), "neither 0, approach, nor 1, retreat"),
 }
 
 

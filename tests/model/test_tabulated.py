@@ -161,6 +161,14 @@ def test_example_is_the_first_scene():
     assert 1e-6 < found["table_error"] < 3e-5
 
 
+def test_a_line_of_names_is_no_row(tmp_path):
+    groups = lennard_jones(tmp_path)
+    file = tmp_path / "named.txt"
+    file.write_text("gap pressure\n" + (tmp_path / "law.txt").read_text())
+    named = {"tabulated": {**groups["tabulated"], "file": str(file)}}
+    assert snapin.law_numbers(named) == snapin.law_numbers(groups)
+
+
 # --- Mistakes
 
 GOOD = [f"{gap:.6e} {(Z0 / gap) ** 9 - (Z0 / gap) ** 3:.6e}" for gap in points(8)]

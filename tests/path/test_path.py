@@ -154,6 +154,16 @@ def test_profiles_of_a_path_are_given_on_every_stretch(run):
     assert (on_axis & (profiles["h0"] == 0.0)).sum() == 1
 
 
+@pytest.mark.parametrize("part", ["full", "repulsive"])
+def test_a_path_without_a_start_begins_at_its_farthest_profile(run, part):
+    """Profiles beyond the usual start were left out without a word."""
+    result = run(lennard_jones(0.87, part=part, equilibrium_path={"h0_end": -2.0},
+                               profiles={"h0": [100.0, 0.0]}))
+    profiles, curve = result.table("profiles.csv"), result.curve
+    assert list(profiles["h0"][profiles["r"] == 0]) == [100.0, 0.0]
+    assert curve["h0"][0] == 100.0
+
+
 # --- Other laws
 
 

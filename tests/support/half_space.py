@@ -233,6 +233,12 @@ def behind_a_barrier(gap):
     return tuple(one + more for one, more in zip(lennard_jones(gap), (push, -push / 10, 10 * push)))
 
 
+def sticky(gap):
+    """An exponential attraction, and a repulsion of four times its range."""
+    pull, push = 2 * np.exp(-2 * gap), 0.25 * np.exp(-gap / 2)
+    return push - pull, 2 * pull - push / 2, 2 * push - pull / 2
+
+
 def dlvo(z0, **keys):
     """DLVO forces in units of z0 and of the surface energy of the Lennard-Jones part over it."""
     law = Dlvo(z0=z0, **keys)
@@ -272,6 +278,7 @@ def main():
     task = json.load(sys.stdin)
     law = {
         "exponential": exponential, "lennard_jones": lennard_jones, "barrier": behind_a_barrier,
+        "sticky": sticky,
     }.get(task["law"]) or dlvo(**task["keys"])
     half_space = HalfSpace(task["ends"], image=task.get("image"), layer=task.get("layer"))
     states = half_space.with_axis(law, task["s"], task["axis"])
