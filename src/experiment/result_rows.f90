@@ -50,7 +50,8 @@ module result_rows
       'with &layer and &classical: E* of half-spaces with the load of hertz_layered by Hertz', &
       layer), &
     row_t('surface_energy', 'J/m^2', &
-      'surface energy of the force law, the depth of its minimum', always), &
+      'surface energy of the force law: the depth of its minimum, or its energy at contact', &
+      always), &
     row_t('work_of_adhesion', 'J/m^2', &
       'energy needed to separate unit area from contact; negative: contact is metastable', &
       forces), &
