@@ -14,7 +14,6 @@ module represented_pressure
   use discretisation, only: discretisation_t, local_nodes_t, gauss_nodes
   use panel_map, only: algebraic_map
   use linear_algebra, only: add_by_transposed
-  use quadrature, only: lagrange_basis
   implicit none
   private
   public :: pressure_slope_t, pressure_on, slope_on, panel_pressure, pressure_at_nodes
@@ -241,10 +240,18 @@ contains
     type(local_nodes_t), intent(in) :: local
     real(wp), intent(in) :: s(:)
     real(wp) :: basis(size(local%node), size(s))
-    integer :: i
+    real(wp) :: share(size(s), size(local%node)), shares(size(s)), apart(size(s))
+    integer :: j
 
-    do i = 1, size(s)
-      basis(:, i) = lagrange_basis(local%node, local%barycentric, s(i))
+    shares = 0
+    do j = 1, size(local%node)
+      apart = s - local%node(j)
+      ! At a node its own polynomial is 1 and the others are negligible.
+      share(:, j) = local%barycentric(j)/merge(apart, tiny(1.0_wp), abs(apart) > tiny(1.0_wp))
+      shares = shares + share(:, j)
+    end do
+    do j = 1, size(local%node)
+      basis(j, :) = share(:, j)/shares
     end do
   end function bases
 
