@@ -3,7 +3,7 @@ module solver_options
   use kinds, only: wp
   implicit none
   private
-  public :: solver_options_t, tightened, newton_of
+  public :: solver_options_t, tightened, newton_of, rescue_of
 
   !> A tolerance well above the rounding of equations with terms of hundreds of the law's lengths.
   real(wp), parameter :: tight_tolerance = 1.0e-12_wp
@@ -50,7 +50,14 @@ contains
     newton = options
     newton%patience = 1
     newton%depth = 0
-    newton%most_iterations = newton_iterations
   end function newton_of
+
+  !> Newton's method for a state at which the accelerated iteration has failed.
+  pure type(solver_options_t) function rescue_of(options) result(rescue)
+    type(solver_options_t), intent(in) :: options
+
+    rescue = newton_of(options)
+    rescue%most_iterations = newton_iterations
+  end function rescue_of
 
 end module solver_options

@@ -3,7 +3,7 @@ module fixed_jumps
   use kinds, only: wp
   use contact_state, only: state_t, radius_of_gap
   use equilibrium, only: control_t, holds
-  use solver_options, only: solver_options_t, newton_of
+  use solver_options, only: rescue_of
   use anderson, only: solve_anderson
   use relaxation, only: relax
   use contact_scales, only: largest_radius, lost_in_rounding
@@ -133,13 +133,12 @@ contains
     real(wp), intent(in) :: h0
     type(state_t), intent(in) :: before
     type(state_t), intent(out) :: state
-    type(solver_options_t) :: newton
 
     goes_on = .false.
     if (self%options%mixing) return
-    newton = newton_of(self%options)
     state = before
-    call solve_anderson(self%equations_t, newton, self%frozen, control_t(value=h0), state, goes_on)
+    call solve_anderson(self%equations_t, rescue_of(self%options), self%frozen, &
+      control_t(value=h0), state, goes_on)
     call self%frozen%forget()
     goes_on = goes_on .and. change(before, state) <= jump
   end function goes_on

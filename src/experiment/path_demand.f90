@@ -152,7 +152,8 @@ contains
     if (problem%law%work > 0) tension = -jkr_like_pull_off(problem)
     associate (law => problem%law)
       well = law%separation_of(max(law%edge_gap, law%rest_gap))
-      do step = -tried/2, tried/2
+      if (law%falls_below > 0) well = max(well, law%length)
+      do step = merge(0, -tried/2, law%falls_below > 0), tried/2
         tension = max(tension, -load_undeformed(problem, law%gap_of(well*ratio**step)))
       end do
     end associate

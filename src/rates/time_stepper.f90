@@ -11,7 +11,7 @@ module time_stepper
   use next_mesh, only: radius_for
   use regridding, only: regrid
   use anderson, only: solve_anderson
-  use solver_options, only: newton_of
+  use solver_options, only: rescue_of
   use time_instant, only: instant_t, extrapolate
   use draining, only: draining_t
   implicit none
@@ -70,7 +70,7 @@ contains
       if (.not. done .and. allocated(self%drainage)) then
         ! The fluid's part of the Jacobian changes considerably where gaps close.
         call self%guess(from, time, position, control, to%state)
-        call solve_anderson(self%equations_t, newton_of(self%options), self%frozen, control, &
+        call solve_anderson(self%equations_t, rescue_of(self%options), self%frozen, control, &
           to%state, done)
       end if
       if (done .and. self%meshes%traceable) done = &

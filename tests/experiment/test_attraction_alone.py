@@ -73,7 +73,20 @@ def test_the_folds_at_a_barrier_are_those_of_dense_states(run):
     # In units of 1 nm and 10 MPa, the attraction's stress over two.
     softness = 1e7 * math.sqrt(1.5e-2 / 1e-9) / 1e10
     _, folds = path_by_axis("sticky", softness, AXIS, ENDS)
-    assert np.sort(1e9 * np.array(summary["folds_h0"])) == pytest.approx(np.sort(folds[0]), abs=1e-6)
+    h0 = 1e9 * np.sort(summary["folds_h0"])
+    assert h0 == pytest.approx(np.sort(folds[0]), abs=1e-6)
     unit = 2 * math.pi * 1.5e-2 * 1e7 * 1e-9
     assert np.sort(summary["folds_load"]) == pytest.approx(
         np.sort(folds[1] * unit / (2 * math.pi * softness)), rel=1e-6)
+
+
+@pytest.mark.parametrize("shape", [{"kind": "sphere"}, {"kind": "cone", "half_angle": 1.3}])
+def test_a_spring_pulls_bodies_of_any_shape_together_for_good(run, shape):
+    """Once a crash: the largest pull was looked for at a separation of zero."""
+    bodies = {"stiffness": 1e9} | ({"radius": RADIUS} if shape["kind"] == "sphere" else {})
+    force = {"law": "lennard_jones", "hamaker": 1e-20, "z0": 0.3e-9, "part": "attractive"}
+    found = run(deck(bodies=bodies, shape=shape, force=force,
+                     equilibrium_path={"h0_end": -1e-9}, device={"stiffness": [1.0]}))
+    assert FALLS in " ".join(found.warnings)
+    assert found.summary["device_jump_in_z"] > 0
+    assert np.isnan(found.summary["device_jump_in_load_after"])
