@@ -239,6 +239,8 @@ contains
     gap = [gap, (base + nearest*(farthest/nearest)**(real(i, wp)/geometric), i=0, geometric)]
     if (.not. law%step_width > 0) return
     through = law%step_at + law%step_width*[(0.5_wp*i, i=-16, 16)]
+    ! A wide step begins at contact.
+    through = pack(through, through > gap(1))
     gap = [pack(gap, gap < through(1)), through, pack(gap, gap > through(size(through)))]
   end function gaps_of
 

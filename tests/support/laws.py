@@ -27,6 +27,10 @@ LAWS = {
     # Steps of no width that rounding knows of, alone, in a sum, and two of them.
     "sharp": {"dugdale": {"stress": 1e7, "range": 1.7e-9, "smoothing": 1e-24}},
     "sharp sum": {**WALL, "dugdale": {"stress": 1e7, "range": 1.7e-9, "smoothing": 1e-20}},
+    # A step so wide that it begins at contact.
+    "wide step": {
+        "van_der_waals": {"hamaker": 1e-20}, "born": {"z0": 1.84e-9},
+        "depletion": {"osmotic_pressure": 1e4, "diameter": 12e-9, "smoothing": 3e-9}},
     "two steps": {
         **WALL, "dugdale": {"stress": 1e7, "range": 1.7e-9, "smoothing": 1e-13},
         "depletion": {"osmotic_pressure": 1e6, "diameter": 5e-9, "smoothing": 1e-11}},
