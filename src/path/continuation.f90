@@ -29,6 +29,9 @@ module continuation
   real(wp), parameter :: wanted_miss = 1.5e-3_wp, growth = 2.5_wp, shrinkage = 0.3_wp, &
     rung = 1.2_wp
   integer, parameter :: order = 8
+  !> Distance between the guess and the state beyond which a step may have passed folds unseen, and
+  !> is repeated as a shorter one; length of a step that is not repeated.
+  real(wp), parameter :: too_far = 0.1_wp, short = 1.0e-3_wp
   !> Relative error of slopes that serve only for predictions.
   real(wp), parameter :: slope_error = 1.0e-7_wp
   !> Distance between guess and state in h0 and load, and longest step, on a path whose points
@@ -120,25 +123,29 @@ contains
     logical, intent(out) :: lost
     type(state_t) :: state
     type(tangent_t) :: tangent
-    real(wp) :: s, miss(3)
+    real(wp) :: step, s, miss(3)
     logical :: converged
 
     lost = .false.
     do
-      s = self%coordinate(self%held) + self%next_step(solver%equations_t)
+      step = self%next_step(solver%equations_t)
+      s = self%coordinate(self%held) + step
       ! After a step of this length the earlier factors are no longer a good approximation.
       call solver%frozen%forget()
       call self%state_at(solver, s, state, tangent, converged, self%slope_error, miss)
-      if (converged) exit
+      if (converged) then
+        ! The kind of guess that was better for this state is that for the next one.
+        self%moved = self%moved .neqv. miss(2) < miss(1)
+        self%step = min(self%longest_step, step*factor_for(minval([wanted_miss, &
+          self%miss_of_curve]/max([minval(miss(:2)), miss(3)], tiny(1.0_wp)))))
+        if (max(minval(miss(:2)), miss(3)) < too_far .or. step < short) exit
+      else
+        self%step = shrinkage*self%step
+      end if
       solver%cost%rejected_steps = solver%cost%rejected_steps + 1
-      self%step = shrinkage*self%step
       lost = self%step < shortest_step
       if (lost) return
     end do
-    ! The kind of guess that was better for this state is that for the next one.
-    self%moved = self%moved .neqv. miss(2) < miss(1)
-    self%step = min(self%longest_step, abs(s - self%coordinate(self%held))*factor_for(minval( &
-      [wanted_miss, self%miss_of_curve]/max([minval(miss(:2)), miss(3)], tiny(1.0_wp)))))
     if (self%is_full()) call self%drop_first()
     call self%add(s, state, tangent)
   end subroutine advance

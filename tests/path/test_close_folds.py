@@ -1,7 +1,9 @@
 """Claims about folds that a step could pass over, and about errors of paths."""
 
+import numpy as np
 import pytest
-from support.scenes import lennard_jones
+import snapin
+from support.scenes import deck, lennard_jones
 
 
 # --- Folds that a step passes over
@@ -19,6 +21,53 @@ def test_folds_however_close_are_found(run, sigma):
     assert result.summary["energy_lost"] == pytest.approx(
         2.57 * beyond**2, rel=0.2, abs=result.summary["energy_lost_uncertainty"])
     assert result.summary["energy_lost_uncertainty"] < 1e-11
+
+
+LAYERS = {
+    "force": {"law": "lennard_jones", "hamaker": 1.244e-20, "z0": 6.459e-10},
+    "structural": {"amplitude": 4246900.0, "period": 1.8129e-9, "decay_length": 1.5087e-9},
+    "van_der_waals": {"hamaker": 7.9044e-22, "retardation_length": 3.5266e-8}}
+
+
+@pytest.mark.parametrize("accuracy", [1e-3, 1e-6])
+@pytest.mark.parametrize("amplitude", [1e6, 4.2469e6, 2e7])
+def test_loads_of_stiff_bodies_turn_where_the_pressure_vanishes(run, amplitude, accuracy):
+    laws = {**LAYERS, "structural": {**LAYERS["structural"], "amplitude": amplitude}}
+    found = run(deck(bodies={"radius": 4.6e-7, "stiffness": 1e14}, **laws,
+                     equilibrium_path={"h0_start": 6e-9, "h0_end": 5.4e-10},
+                     numerics={"accuracy": accuracy})).summary
+    gap = np.linspace(5.4e-10, 6e-9, 200001)
+    zeros = gap[1:][np.diff(np.sign(snapin.force_law(laws, gap).pressure)) != 0]
+    assert np.sort(found["load_folds_h0"]) == pytest.approx(zeros, abs=2e-12)
+
+
+# Scenes, lists of the summary, and their values from runs of many accuracies, to 1e-8 and beyond.
+STEPPED_OVER = {
+    "spheroid": (
+        {"bodies": {"stiffness": 1e12},
+         "shape": {"kind": "spheroid", "radius": 3.042432e-6, "semi_axis": 4.2564e-6},
+         "van_der_waals": {"hamaker": 1.065e-19}, "born": {"hamaker": 1.065e-19, "z0": 1.152e-10},
+         "dugdale": {"stress": 1.4339e9, "range": 3.1408e-10},
+         "hydration": {"energy": [0.010454, 0.065234], "decay_length": [8.3359e-11, 1.4308e-10]}},
+        "folds_h0", [3.33302e-10, 3.48254e-10, 3.42281e-10, 3.42916e-10]),
+    "punch": (
+        {"bodies": {"stiffness": 1.0924e10},
+         "shape": {"kind": "rounded_punch", "radius": 4.564e-7, "flat_radius": 2.4123e-7},
+         **LAYERS, "double_layer": {
+             "potential": -0.0088055, "regulation": [0.68155, 0.18133],
+             "debye_length": 3.9684e-9, "valence": 2, "model": "linear"}},
+        "load_folds_h0", [3.57946e-9, 2.59521e-9, 1.83539e-9, 7.87204e-10, 6.24064e-10]),
+}
+
+
+@pytest.mark.parametrize("accuracy", [1e-5, 6e-5, 5e-5, 1e-6])
+@pytest.mark.parametrize("name", STEPPED_OVER)
+def test_a_step_whose_end_is_far_from_its_guess_is_repeated(run, name, accuracy):
+    """Two folds were within such a step, and nothing said so."""
+    scene, key, folds = STEPPED_OVER[name]
+    summary = run(deck(**scene, equilibrium_path={"h0_end": -1.5e-9},
+                       numerics={"accuracy": accuracy})).summary
+    assert summary[key] == pytest.approx(folds, abs=1e-13)
 
 
 @pytest.mark.parametrize("sigma", [0.1, 0.28, 0.29, 0.29108])
