@@ -7,7 +7,10 @@
 !> this is the pressure at the node. On a panel where the gap passes a kink of the law, the integral
 !> is computed in pieces that end at the kink. The polynomial with the values p_i is then the
 !> projection of the pressure: loads and deformations are nearly as accurate as for a smooth
-!> pressure, and change smoothly as the kink moves over the nodes.
+!> pressure, and change smoothly as the kink moves over the nodes. On a panel whose gaps are near a
+!> kink, the projection has a share that grows to 1 as the kink comes to the panel: the projection
+!> differs from the pressures at the nodes by the error of the mesh, and no iteration would end at a
+!> jump by so much.
 module represented_pressure
   use kinds, only: wp
   use force_law, only: force_law_t
@@ -88,14 +91,21 @@ contains
     real(wp), intent(in) :: gap(:)
     real(wp) :: pressure(size(gap))
     real(wp), allocatable :: s(:), weight(:), basis(:, :)
+    real(wp) :: share
 
-    if (allocated(law%kinks)) call split(law, local, gap, s, weight)
-    if (.not. allocated(s)) then
-      pressure = law%pressure(gap)
-      return
-    end if
+    share = 0
+    if (allocated(law%kinks)) call split(law, local, gap, s, weight, share)
+    if (share < 1) pressure = law%pressure(gap)
+    if (.not. share > 0) return
     basis = bases(local, s)
-    pressure = matmul(basis, weight*law%pressure(matmul(gap, basis)))/local%weight
+    associate (projected => &
+      matmul(basis, weight*law%pressure(matmul(gap, basis)))/local%weight)
+      if (share < 1) then
+        pressure = pressure + share*(projected - pressure)
+      else
+        pressure = projected
+      end if
+    end associate
   end function panel_pressure
 
   !> The derivative of `pressure_on` by the gaps.
@@ -106,7 +116,8 @@ contains
     type(pressure_slope_t) :: slope
     type(panel_slope_t) :: panel
     real(wp), allocatable :: s(:), weight(:), basis(:, :), part(:)
-    integer :: k
+    real(wp) :: share
+    integer :: k, i
 
     slope%at_node = law%slope(gap)
     allocate (slope%mixed(0))
@@ -116,14 +127,17 @@ contains
       associate (local => grid%local(grid%which(k)))
         panel%first = grid%first(k)
         panel%last = panel%first + size(local%node) - 1
-        call split(law, local, gap(panel%first:panel%last), s, weight)
-        if (.not. allocated(s)) cycle
+        call split(law, local, gap(panel%first:panel%last), s, weight, share)
+        if (.not. share > 0) cycle
         basis = bases(local, s)
         part = weight*law%slope(matmul(gap(panel%first:panel%last), basis))
         if (allocated(panel%by_gap)) deallocate (panel%by_gap)
         allocate (panel%by_gap(size(local%node), size(local%node)), source=0.0_wp)
         call add_by_transposed(basis*spread(part, 1, size(local%node)), basis, panel%by_gap)
-        panel%by_gap = panel%by_gap/spread(local%weight, 2, size(local%node))
+        panel%by_gap = share*panel%by_gap/spread(local%weight, 2, size(local%node))
+        do i = 1, size(local%node)
+          panel%by_gap(i, i) = panel%by_gap(i, i) + (1 - share)*slope%at_node(panel%first - 1 + i)
+        end do
         slope%mixed = [slope%mixed, panel]
       end associate
     end do
@@ -184,14 +198,14 @@ contains
   end function can_mix
 
   !> Points and weights for integrals over a panel with the gaps h at its nodes, in pieces that end
-  !> at the law's kinks; not allocated if there is no kink on the panel. Under a law with many kinks
-  !> there are points on every panel: otherwise the represented pressure of gaps that the nodes do
-  !> not resolve would jump where a kink enters a panel, and iterations would converge slowly.
-  pure subroutine split(law, local, h, s, weight)
+  !> at the law's kinks. share: of the projection in the represented pressure: 1 if there is a kink
+  !> on the panel, or if the law has many; 0, without points, if none is near (`share_near`).
+  pure subroutine split(law, local, h, s, weight, share)
     class(force_law_t), intent(in) :: law
     type(local_nodes_t), intent(in) :: local
     real(wp), intent(in) :: h(:)
     real(wp), allocatable, intent(out) :: s(:), weight(:)
+    real(wp), intent(out) :: share
     real(wp), dimension(0:size(h) + 1) :: x, y
     real(wp), allocatable :: place(:), length(:)
     type(local_nodes_t) :: rule
@@ -200,8 +214,11 @@ contains
 
     x = [0.0_wp, local%node, 1.0_wp]
     y = [local%value(h, 0.0_wp), h, local%value(h, 1.0_wp)]
-    if (size(law%kinks) <= few .and. &
-      .not. any(law%kinks > minval(y) .and. law%kinks < maxval(y))) return
+    share = 1
+    if (size(law%kinks) <= few) then
+      share = maxval([(share_near(law%kinks(i), y), i=1, size(law%kinks))])
+      if (.not. share > 0) return
+    end if
     place = [0.0_wp]
     do i = 0, size(h)
       above = law%kinks > y(i)
@@ -213,6 +230,22 @@ contains
     s = [(place(i) + length(i)*rule%node, i=1, size(place))]
     weight = [(length(i)*rule%weight, i=1, size(place))]
   end subroutine split
+
+  !> The share of the projection on a panel with the gaps y at its begin, nodes and end: from 1 for
+  !> a kink between these gaps to 0 for one that is as far outside as the end is from its node.
+  pure real(wp) function share_near(kink, y) result(share)
+    real(wp), intent(in) :: kink, y(0:)
+    real(wp) :: off, reach
+
+    share = 1
+    off = max(minval(y) - kink, kink - maxval(y))
+    if (.not. off > 0) return
+    associate (n => ubound(y, 1))
+      reach = merge(abs(y(1) - y(0)), abs(y(n) - y(n - 1)), abs(kink - y(0)) < abs(kink - y(n)))
+    end associate
+    off = min(1.0_wp, off/max(reach, tiny(1.0_wp)))
+    share = (1 - off)**2*(1 + 2*off)
+  end function share_near
 
   !> The places between two positions x, where the gaps are y, at which the panel's polynomial
   !> passes kinks.

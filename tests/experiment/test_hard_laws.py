@@ -321,3 +321,17 @@ def test_no_fold_is_made_by_the_mesh(run, scene):
         for name in ("max_tension", "folds_h0", "end_load"):
             assert several(found.get(name, [])) == pytest.approx(
                 several(exact.get(name, [])), rel=1.2 * accuracy), (accuracy, name)
+
+
+@pytest.mark.parametrize("accuracy", [1e-4, 3e-6, 1e-6, 1e-8])
+def test_states_whose_kink_is_at_the_end_of_a_panel_converge(run, accuracy):
+    """The represented pressure jumped there by the error of the mesh: one or two states of such a
+    cycle were lost."""
+    way = {"h0_start": 2.8326e-9, "h0_end": -4.7839e-9, "h0_step": 3.0466e-10}
+    run(deck(
+        bodies={"stiffness": 6.1039e8}, shape={"kind": "cone", "half_angle": 1.2806},
+        van_der_waals={"hamaker": 3.393e-20}, born={"z0": 3.257e-10},
+        steric={"model": "alexander_de_gennes", "brush_thickness": 1.6765e-9,
+                "grafting_density": 6.1578e17, "sides": 1},
+        loading=way, unloading={"from": [-4.7839e-9, -2.4989e-9]},
+        numerics={"accuracy": accuracy}))
