@@ -39,8 +39,7 @@ contains
     end do
   end subroutine widen_path
 
-  !> What the request reads from the path: of a drive with a spring, its position; of a fixed load,
-  !> this load.
+  !> What the request reads from the path: states at the position of a drive, and at fixed loads.
   pure type(demand_t) function demand_of(request, problem) result(demand)
     class(request_t), intent(in) :: request
     type(problem_t), intent(in) :: problem
@@ -151,8 +150,9 @@ contains
     tension = 0
     if (problem%law%work > 0) tension = -jkr_like_pull_off(problem)
     associate (law => problem%law)
-      well = law%separation_of(max(law%edge_gap, law%rest_gap))
-      if (law%falls_below > 0) well = max(well, law%length)
+      well = law%length
+      if (law%rest_gap > 0) well = law%separation_of(law%rest_gap)
+      ! Within an attraction in contact, tensions have no limit.
       do step = merge(0, -tried/2, law%falls_below > 0), tried/2
         tension = max(tension, -load_undeformed(problem, law%gap_of(well*ratio**step)))
       end do
