@@ -121,8 +121,8 @@ contains
   end subroutine make_exact
 
   !> Whether finer meshes may make a path more accurate. They do not help if the path was lost,
-  !> since the finer path may end earlier; if nodes miss too much of the load, since this needs
-  !> other panels; or if rounding limits the digits.
+  !> since the finer path may end earlier; or if nodes miss too much of the load, since this needs
+  !> other panels.
   pure logical function finer_helps(steps, accuracy)
     class(path_stepper_t), intent(in) :: steps
     real(wp), intent(in) :: accuracy
@@ -130,7 +130,7 @@ contains
     associate (known => steps%known)
       ! A collapse of bodies without repulsion is not an early end.
       finer_helps = .not. (known%ending%early() .and. .not. known%fallen .or. &
-        known%left_out > too_much*accuracy .or. steps%meshes%digits + more_digits > most_digits)
+        known%left_out > too_much*accuracy)
     end associate
   end function finer_helps
 

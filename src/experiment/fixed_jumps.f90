@@ -104,8 +104,9 @@ contains
       ! A jump must start from an equilibrium.
       event%jumped = event%converged .and. change(before, landed) > jump .and. &
         holds(self%problem, self%options%tolerance, before)
-      if (.not. event%converged .and. law%falls_below > 0) then
-        ! Bodies without repulsion collapse.
+      if (.not. event%converged .and. law%falls_below > 0 .and. &
+        any(landed%gap < law%falls_below)) then
+        ! Bodies collapse where nothing repels them.
         event%jumped = .true.
         event%ending%cause = no_equilibrium
       end if

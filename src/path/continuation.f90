@@ -31,7 +31,7 @@ module continuation
   integer, parameter :: order = 8
   !> Distance between the guess and the state beyond which a step may have passed folds unseen, and
   !> is repeated as a shorter one; length of a step that is not repeated.
-  real(wp), parameter :: too_far = 0.01_wp, short = 1.0e-3_wp
+  real(wp), parameter :: too_far = 0.03_wp, short = 1.0e-3_wp
   !> Relative error of slopes that serve only for predictions.
   real(wp), parameter :: slope_error = 1.0e-7_wp
   !> Distance between guess and state in h0 and load, and longest step, on a path whose points
@@ -123,7 +123,7 @@ contains
     logical, intent(out) :: lost
     type(state_t) :: state
     type(tangent_t) :: tangent
-    real(wp) :: step, s, miss(3)
+    real(wp) :: step, s, miss(3), off(2)
     logical :: converged
 
     lost = .false.
@@ -136,9 +136,10 @@ contains
       if (converged) then
         ! The kind of guess that was better for this state is that for the next one.
         self%moved = self%moved .neqv. miss(2) < miss(1)
-        self%step = min(self%longest_step, step*factor_for(minval([wanted_miss, &
-          self%miss_of_curve]/max([minval(miss(:2)), miss(3)], tiny(1.0_wp)))))
-        if (max(minval(miss(:2)), miss(3)) < too_far .or. step < short) exit
+        off = [minval(miss(:2)), miss(3)]
+        self%step = min(self%longest_step, &
+          step*factor_for(minval([wanted_miss, self%miss_of_curve]/max(off, tiny(1.0_wp)))))
+        if (maxval(off) < too_far .or. step < short) exit
       else
         self%step = shrinkage*self%step
       end if
