@@ -207,13 +207,14 @@ contains
   end function step_past_step
 
   !> Whether the contact radius has crossed the passage to the next mesh, and the previous state is
-  !> near the passage or beyond it.
+  !> near the passage or beyond it. A path stays on its first mesh for two steps, since the last
+  !> step before a passage is on the next mesh.
   pure logical function has_come_to_next(self, equations) result(come)
     class(continuation_t), intent(in) :: self
     type(equations_t), intent(in) :: equations
 
     associate (meshes => equations%meshes)
-      come = self%held > 1 .and. equations%problem%law%edge_gap > 0 .and. &
+      come = self%held > 2 .and. equations%problem%law%edge_gap > 0 .and. &
         self%mesh < size(meshes%grid)
       if (come) come = radius_for(equations, self%mesh, self%mesh + 1, self%state(self%held)) >= &
         meshes%passage(self%mesh)
