@@ -13,7 +13,8 @@ module exact_path
   use traced_path, only: traced_path_t
   use mending, only: too_much
   use path_stepper, only: path_stepper_t
-  use tracing, only: demand_t, longest
+  use path_end, only: demand_t
+  use tracing, only: longest
   use experiment_request, only: request_t
   use path_demand, only: demand_of
   use path, only: find_finish

@@ -6,7 +6,7 @@ module path_demand
   use contact_scales, only: beyond_contact
   use convex_contact, only: jkr_like_pull_off
   use undeformed, only: load_undeformed
-  use tracing, only: demand_t
+  use path_end, only: demand_t
   use experiment_request, only: request_t
   implicit none
   private

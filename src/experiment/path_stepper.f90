@@ -15,7 +15,8 @@ module path_stepper
   use traced_path, only: traced_path_t
   use path_span, only: path_span_t, new_path_span
   use path_prediction, only: missed_t, expect
-  use tracing, only: demand_t, trace, trace_again
+  use path_end, only: demand_t
+  use tracing, only: trace, trace_again
   use mending, only: left_on_path
   use edge_locked, only: mesh_family_t
   use discretisation, only: discretisation_t

@@ -3,7 +3,6 @@
 module tracing
   use kinds, only: wp
   use listener, only: listener_t
-  use dimensionless_problem, only: problem_t
   use contact_state, only: state_t, undeformed_state
   use discretisation, only: discretisation_t
   use regridding, only: regrid
@@ -15,13 +14,14 @@ module tracing
   use path_coordinate, only: path_control
   use continuation, only: continuation_t
   use ending, only: ending_t, beyond_rounding, no_equilibrium, path_lost
-  use traced_path, only: traced_path_t, path_point_t
+  use traced_path, only: traced_path_t
+  use path_end, only: demand_t, touches, astray, collapsed
   use path_growth, only: append, add_extrema
   use further_meshes, only: further_mesh_t, further_mesh
   use mending, only: mender_t, new_mender, left_on_path, left_in_state
   implicit none
   private
-  public :: tracing_t, demand_t, trace, trace_again, longest
+  public :: tracing_t, trace, trace_again, longest
 
   !> A traced path, its ending, and whether it ends in a collapse of the bodies; left_out: the
   !> largest part of the load that the nodes miss, except in a collapse.
@@ -32,17 +32,8 @@ module tracing
     real(wp) :: left_out = 0
   end type tracing_t
 
-  !> What is read from a path: undeformed bodies fill the range from h0 = `farthest` to its start,
-  !> and at its end by_h0*h0 - by_load*load is at most `until`, for each element.
-  type :: demand_t
-    real(wp) :: farthest = 0
-    real(wp), allocatable :: by_h0(:), by_load(:), until(:)
-  end type demand_t
-
   !> Number of points beyond which a path is given up.
   integer, parameter :: longest = 3000
-  !> Contact radius, over the largest expected, that no path reaches.
-  real(wp), parameter :: too_large = 5
   !> Part of the load missed by the nodes at which a mesh is refined before the path has reached its
   !> end, since later states would mean nothing; and number of steps between these checks.
   real(wp), parameter :: most_adrift = 0.1_wp
@@ -125,8 +116,7 @@ contains
       associate (last => known%path%point(known%path%held))
         finished = last%modes == 0 .and. last%state%h0 <= h0_low .and. &
           last%tangent%h0 < 0
-        if (finished .and. present(demand)) finished = all(demand%by_h0*last%state%h0 - &
-          demand%by_load*last%state%load <= demand%until)
+        if (finished .and. present(demand)) finished = demand%is_met(last%state)
         if (finished .and. into_contact) finished = touches(solver%equations_t, last)
       end associate
       if (.not. mended .and. (finished .or. known%ending%early())) &
@@ -188,47 +178,6 @@ contains
     if (walker%held > 1) &
       walker%step = walker%coordinate(walker%held) - walker%coordinate(walker%held - 1)
   end subroutine stand_at_end
-
-  !> Whether the bodies are in contact, also in an outer minimum, at a point of the path.
-  pure logical function touches(equations, point)
-    type(equations_t), intent(in) :: equations
-    type(path_point_t), intent(in) :: point
-
-    associate (meshes => equations%meshes)
-      touches = meshes%in_contact(point%mesh) .or. meshes%is_in_outer_contact(point%mesh) .or. &
-        point%state%axis_gap < equations%problem%law%edge_gap
-    end associate
-  end function touches
-
-  !> Whether the contact is much larger than expected: on a mesh that is too coarse folds can be
-  !> lost, and then no later state counts as stable.
-  pure logical function astray(equations, path)
-    type(equations_t), intent(in) :: equations
-    type(traced_path_t), intent(in) :: path
-
-    associate (last => path%point(path%held), meshes => equations%meshes)
-      astray = meshes%in_contact(last%mesh) .and. &
-        last%state%scale > too_large*meshes%passage(size(meshes%passage))
-    end associate
-  end function astray
-
-  !> Whether the newest state of a path belongs to a collapse. A path that is lost on an unstable
-  !> branch within the attraction has no other end.
-  pure logical function collapsed(problem, path, lost)
-    type(problem_t), intent(in) :: problem
-    type(traced_path_t), intent(in) :: path
-    logical, intent(in) :: lost
-    real(wp) :: apart
-    integer :: first
-
-    apart = 1
-    first = findloc(path%point(:path%held)%fold, .true., 1)
-    if (first > 0) apart = path%point(first)%state%axis_gap
-    associate (last => path%point(path%held), law => problem%law)
-      collapsed = last%state%axis_gap < law%fallen_below(apart) .or. &
-        lost .and. last%modes > 0 .and. last%state%axis_gap < law%falls_below
-    end associate
-  end function collapsed
 
   !> Advances the continuation by a step and appends the new point. A new path begins with the
   !> newest state of the continuation. lost: no step, however small, converged.
