@@ -10,6 +10,7 @@ module scene_keys
   use rate_groups, only: rate_keys
   use theory_groups, only: theory_keys
   use sweep_group, only: sweep_keys
+  use measurement_group, only: measurement_keys
   use fit_group, only: fit_keys
   use numerics_group, only: numerics_keys
   implicit none
@@ -35,6 +36,7 @@ contains
       profiles_keys(), &
       theory_keys(), &
       stability_keys(), &
+      measurement_keys(), &
       fit_keys(), &
       sweep_keys(), &
       numerics_keys(), &

@@ -1,0 +1,128 @@
+!> &measurement: a measured force curve.
+module measurement_group
+  use kinds, only: wp
+  use checksums, only: checksum
+  use failure, only: failure_t
+  use text, only: quoted, word_count, word_of
+  use deck, only: deck_t
+  use deck_source, only: source_t, load_source
+  use data_table, only: largest_table
+  use deck_keys, only: key_spec, group, real_key, list_key, text_key, word_key, names_key
+  use scene_groups, only: scene_t
+  implicit none
+  private
+  public :: measurement_keys, take_measurement
+
+  integer, parameter :: most_skipped = 40
+
+contains
+
+  !> The rows of &measurement.
+  pure function measurement_keys() result(specs)
+    type(key_spec), allocatable :: specs(:)
+    real(wp), parameter :: zero = 0
+
+    specs = [ &
+      group('measurement', 'A measured force curve, for &fit.'), &
+      text_key('measurement', 'file', 1000, 'File of the curve: a table of numbers, # before ' // &
+               'comments, perhaps a line of names; a relative path begins at the deck''s folder.', &
+               required=.true.), &
+      names_key('measurement', 'columns', 3, 'Name or number of the columns of the base''s ' // &
+                'position [m], the signal (force [N], positive: repulsion, or [V]) and, if ' // &
+                'there is one, the segment: 0 approach, 1 retreat. A minus changes the sign.', &
+                otherwise='the first two'), &
+      real_key('measurement', 'spring_constant', 'N/m', 'Stiffness of the spring.', above=zero, &
+               required=.true.), &
+      real_key('measurement', 'sensitivity', 'm/V', 'Deflection of the spring for one volt; 1 ' &
+               // 'for a deflection in metres.', above=zero, otherwise='the signal is the force'), &
+      real_key('measurement', 'contact_point', 'm', 'Position of the base at which undeformed ' // &
+               'bodies would touch.', &
+               otherwise='an unknown of &fit, whose parameters must name it'), &
+      names_key('measurement', 'units', 2, 'Units of position (m, mm, um, nm, pm) and signal ' // &
+                '(N, mN, uN, nN, pN, V, mV) in the file.', otherwise='m and N or V'), &
+      list_key('measurement', 'skip', 'm', 'Pairs of positions of the base, SI; samples ' // &
+               'between the two of a pair are left out.', most=most_skipped, otherwise='none'), &
+      word_key('measurement', 'segment', 'both approach retreat', 'The branches to fit.', &
+               default='both')]
+  end function measurement_keys
+
+  !> Reads &measurement.
+  subroutine take_measurement(scene, error)
+    type(scene_t), intent(inout) :: scene
+    type(failure_t), allocatable, intent(inout) :: error
+    type(source_t) :: source
+    type(failure_t), allocatable :: trouble
+    character(len=:), allocatable :: names
+    integer :: i
+
+    associate (deck => scene%deck, measurement => scene%measurement)
+      measurement%file = deck%path_of('measurement', 'file')
+      call load_source(measurement%file, source, trouble, largest_table)
+      if (allocated(trouble)) then
+        call deck%mistake('measurement', 'file', trouble%message, error)
+        return
+      end if
+      call deck%note_file('measurement', 'file', checksum(source%text))
+      call deck%assume('measurement', 'columns', '1 2')
+      call deck%get('measurement', 'columns', names)
+      if (word_count(names) < 2) then
+        call deck%mistake('measurement', 'columns', 'names the columns of position and ' // &
+          'signal, and of the segment if the file has one', error)
+        return
+      end if
+      allocate (measurement%columns(word_count(names)))
+      do i = 1, size(measurement%columns)
+        measurement%columns(i) = word_of(names, i)
+      end do
+      call deck%get('measurement', 'spring_constant', measurement%spring_constant)
+      call deck%get_optional('measurement', 'sensitivity', measurement%sensitivity)
+      call deck%get_optional('measurement', 'contact_point', measurement%contact_point)
+      call deck%get('measurement', 'segment', measurement%segment)
+      call take_skipped(deck, measurement%skip, error)
+      call take_units(deck, measurement%unit, error)
+      call deck%get_optional('fit', 'noise', scene%fit%noise)
+    end associate
+  end subroutine take_measurement
+
+  !> Reads the units of the file's columns: metres, newtons and volts with SI prefixes.
+  subroutine take_units(deck, unit, error)
+    type(deck_t), intent(inout) :: deck
+    real(wp), intent(out) :: unit(2)
+    type(failure_t), allocatable, intent(inout) :: error
+    character(len=*), parameter :: prefixes = 'munp', bases(2) = ['m ', 'NV']
+    integer, parameter :: powers(*) = [-3, -6, -9, -12]
+    character(len=:), allocatable :: names, name
+    integer :: i, k
+
+    unit = 1
+    call deck%get('measurement', 'units', names)
+    do i = 1, min(2, word_count(names))
+      name = word_of(names, i)
+      k = 0
+      if (len(name) == 2) k = index(prefixes, name(1:1))
+      if (k > 0) unit(i) = 10.0_wp**powers(k)
+      if (index(trim(bases(i)), name(len(name):)) == 0 .or. (k == 0 .and. len(name) /= 1)) &
+        call deck%mistake('measurement', 'units', quoted(name) // ' is not a unit of ' // &
+        trim(merge('position', 'signal  ', i == 1)) // ' such as ' // &
+        trim(merge('nm', 'nN', i == 1)), error)
+    end do
+    if (index(names, 'V') > 0 .and. .not. deck%is_set('measurement', 'sensitivity')) &
+      call deck%mistake('measurement', 'units', 'a signal in volts needs sensitivity, the ' // &
+      'deflection of the spring for one volt', error)
+  end subroutine take_units
+
+  !> Reads the ranges of position that are left out.
+  subroutine take_skipped(deck, skip, error)
+    type(deck_t), intent(inout) :: deck
+    real(wp), allocatable, intent(out) :: skip(:)
+    type(failure_t), allocatable, intent(inout) :: error
+
+    call deck%get('measurement', 'skip', skip)
+    if (mod(size(skip), 2) == 1) then
+      call deck%mistake('measurement', 'skip', 'positions come in pairs: from and to', error)
+    else if (any(skip(1::2) > skip(2::2))) then
+      call deck%mistake('measurement', 'skip', 'the first of each pair must be the smaller', error)
+    end if
+  end subroutine take_skipped
+
+end module measurement_group
