@@ -108,6 +108,7 @@ contains
         call judge_places(fine, steps, places, .true.)
         cost%estimate_seconds = cost%estimate_seconds + seconds() - began
         if (.not. allocated(places%place)) return
+        call doubt_pairs(places%place)
         errors = [(places%place(i)%relative_error(.false.), i=1, size(places%place))]
         if (.not. maxval(errors) > accuracy .or. maxval(errors) > helped*before) return
         if (round == most_rounds .or. .not. finer_helps(steps, accuracy)) return
@@ -120,6 +121,27 @@ contains
       end do
     end associate
   end subroutine make_exact
+
+  !> Two successive turns of a quantity whose values differ by less than the error of the difference
+  !> are not known: on meshes that are too coarse there are pairs of turns that bodies do not have.
+  !> place: in the order of the path.
+  pure subroutine doubt_pairs(place)
+    type(place_t), intent(inout) :: place(:)
+    real(wp) :: change(2)
+    integer :: i, j
+
+    do i = 1, size(place)
+      if (.not. place(i)%turns()) cycle
+      do j = i + 1, size(place)
+        if (all(abs(place(j)%turn_of - place(i)%turn_of) <= 0)) exit
+      end do
+      if (j > size(place)) cycle
+      associate (a => place(i), b => place(j))
+        change = matmul(a%turn_of, reshape([b%at(:2) - a%at(:2), b%fine(:2) - a%fine(:2)], [2, 2]))
+        if (abs(change(1)) <= a%margin*abs(change(2) - change(1))) place([i, j])%known = .false.
+      end associate
+    end do
+  end subroutine doubt_pairs
 
   !> Whether finer meshes may make a path more accurate. They do not help if the path was lost,
   !> since the finer path may end earlier; or if nodes miss too much of the load, since this needs
