@@ -32,14 +32,21 @@ contains
     is_met = all(self%by_h0*state%h0 - self%by_load*state%load <= self%until)
   end function is_met
 
-  !> Whether the bodies are in contact, also in an outer minimum, at a point of the path.
+  !> Whether the bodies are in contact, also in an outer minimum, at a point of the path. In contact
+  !> they repel each other somewhere if they can: just before the fold at which a barrier gives way
+  !> they come near, and the path goes on.
   pure logical function touches(equations, point)
     type(equations_t), intent(in) :: equations
     type(path_point_t), intent(in) :: point
 
-    associate (meshes => equations%meshes)
-      touches = meshes%in_contact(point%mesh) .or. meshes%is_in_outer_contact(point%mesh) .or. &
-        point%state%axis_gap < equations%problem%law%edge_gap
+    associate (meshes => equations%meshes, law => equations%problem%law, state => point%state)
+      touches = meshes%is_in_outer_contact(point%mesh)
+      if (touches) return
+      if (law%rest_gap > 0) then
+        touches = min(state%axis_gap, minval(state%gap)) < law%rest_gap
+      else
+        touches = meshes%in_contact(point%mesh) .or. state%axis_gap < law%edge_gap
+      end if
     end associate
   end function touches
 

@@ -54,6 +54,25 @@ def test_the_path_does_not_depend_on_gaps_where_no_force_acts(h0_end):
     assert found["jump_out_h0"] == pytest.approx(3.360222026703, rel=1e-11)
 
 
+@pytest.mark.parametrize("accuracy", [2e-5, 1e-5])
+def test_a_path_does_not_end_just_before_a_barrier_gives_way(accuracy):
+    """Bodies that are stable at h0_end come near before the barrier gives way, far below h0_end; a
+    path that ended there, as some accuracies had it, had no contact at h0_end."""
+    def path(accuracy):
+        return snapin.run({
+            "bodies": {"radius": 0.015, "stiffness": 125465636.12137541},
+            "van_der_waals": {"hamaker": 1e-19},
+            "born": {"hamaker": 1e-19, "z0": 4.842064940925915e-10},
+            "double_layer": {"potential": -0.09329605816529256, "regulation": 0.17932669570039272,
+                             "salt": 18.12033177346722, "valence": 1},
+            "equilibrium_path": {"h0_end": -2.0483375925639015e-09},
+            "numerics": {"accuracy": accuracy}}).summary
+
+    found, finer = path(accuracy), path(1e-6)
+    for name in ("folds_h0", "folds_load", "jump_out_load", "end_load"):
+        assert found[name] == pytest.approx(finer[name], rel=1e-5)
+
+
 def test_jumps_of_a_law_with_a_barrier_are_those_of_independent_states():
     _, (h0, load) = path_by_axis("barrier", 1.0, AXIS, ENDS)
     found = behind_a_barrier(1.0, 1e-8)

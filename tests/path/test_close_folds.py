@@ -70,6 +70,21 @@ def test_a_step_whose_end_is_far_from_its_guess_is_repeated(run, name, accuracy)
     assert summary[key] == pytest.approx(folds, abs=1e-13)
 
 
+@pytest.mark.parametrize("stiffness, range_, h0_end, accuracies", [
+    (2.047627728863176e9, 1.8378672890277213e-9, -8.066445348379321e-10, (2e-4,)),
+    (3.2874751938112336e8, 1.8819993963801085e-9, -3.7388340973471256e-9, (3e-5, 1e-5))])
+def test_a_coarse_mesh_has_no_pairs_of_folds_of_its_own(run, stiffness, range_, h0_end, accuracies):
+    """As the step of the tension passes the nodes, h0 has waves of the size of the mesh's error."""
+    found = [run(deck(
+        bodies={"radius": 0.015, "stiffness": stiffness},
+        force={"law": "lennard_jones", "hamaker": 1e-19, "z0": 5e-10},
+        dugdale={"stress": 1e7, "range": range_}, equilibrium_path={"h0_end": h0_end},
+        numerics={"accuracy": accuracy})).summary for accuracy in (*accuracies, 1e-6)]
+    for one in found:
+        assert not one.get("warnings")
+        assert one["folds_h0"] == pytest.approx(found[-1]["folds_h0"], rel=1e-4)
+
+
 @pytest.mark.parametrize("sigma", [0.1, 0.28, 0.29, 0.29108])
 def test_below_the_first_jump_there_is_no_fold(run, sigma):
     assert "folds_h0" not in run(lennard_jones(sigma, equilibrium_path={"h0_end": -2.0})).summary
