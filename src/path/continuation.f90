@@ -227,8 +227,7 @@ contains
   !> called after each `advance`). The last two states are transferred, so that the next mesh has
   !> the interval between them too. A mesh that was laid out for predicted gaps is laid out anew for
   !> those of the path if it does not resolve the first of the two states. h0 and load must change
-  !> in the same sense on both meshes there; otherwise an extremum would be found twice or not at
-  !> all.
+  !> in the same sense on both meshes there.
   subroutine change_mesh(self, solver, lost)
     class(continuation_t), intent(inout) :: self
     class(solver_t), intent(inout) :: solver
@@ -251,9 +250,7 @@ contains
       call transfer(self, solver, next, lost)
     end if
     if (lost .or. next%held < 2) return
-    associate (here => self%tangent(self%held - 1), there => next%tangent(1))
-      if (.not. (here%h0*there%h0 > 0 .and. here%load*there%load > 0)) return
-    end associate
+    if (.not. self%tangent(self%held - 1)%goes_with(next%tangent(1))) return
     self%arc_t = next
     self%step = 0.5_wp*self%step
   end subroutine change_mesh

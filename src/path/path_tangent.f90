@@ -26,6 +26,7 @@ module path_tangent
     real(wp) :: h0 = 0, scale = 0, axis_gap = 0, load = 0
   contains
     procedure :: of
+    procedure :: goes_with
     procedure :: become
   end type tangent_t
 
@@ -56,6 +57,15 @@ contains
 
     of = dot_product(weights, [self%h0, self%load])
   end function of
+
+  !> Whether h0 and load change in the same sense along two tangents. Where the path passes to
+  !> another mesh, an extremum would otherwise be found twice or not at all.
+  pure logical function goes_with(self, other)
+    class(tangent_t), intent(in) :: self
+    type(tangent_t), intent(in) :: other
+
+    goes_with = self%h0*other%h0 > 0 .and. self%load*other%load > 0
+  end function goes_with
 
   !> The derivatives by the coordinate s at an equilibrium. error: permitted relative error, if
   !> larger than that of the options. found = .false.: the Jacobian is singular.

@@ -222,8 +222,8 @@ contains
   end subroutine change_mesh
 
   !> Traces a path again over one mesh, at the same coordinates, from its states on this mesh.
-  !> before: the earlier version of the mesh. lost: a solve failed, or the new folds disagree with
-  !> the stability on the next mesh; in both cases the path is unchanged.
+  !> before: the earlier version of the mesh. lost: a solve failed, or the new extrema disagree with
+  !> the path on the meshes before and after; in both cases the path is unchanged.
   subroutine trace_again(solver, before, mesh, path, lost)
     class(solver_t), intent(inout) :: solver
     type(discretisation_t), intent(in) :: before
@@ -236,17 +236,18 @@ contains
     type(control_t) :: control
     real(wp) :: tolerance
     logical :: led_on, done
-    integer :: i, last
+    integer :: i, first, last
 
     tolerance = solver%options%tolerance
     solver%options%tolerance = min(tolerance, curve_tolerance)
     call walker%follow_closely()
     anew = path
-    anew%held = findloc(path%point(:path%held)%mesh, mesh, 1) - 1
+    first = findloc(path%point(:path%held)%mesh, mesh, 1)
+    anew%held = first - 1
     last = findloc(path%point(:path%held)%mesh, mesh, 1, back=.true.)
     led_on = .false.
     lost = .false.
-    do i = anew%held + 1, last
+    do i = first, last
       associate (point => path%point(i), grid => solver%meshes%grid(mesh))
         if (point%fold .or. point%load_extremum) cycle
         state = regrid(solver%problem%shape, point%state, before, grid, point%state%scale)
@@ -270,6 +271,12 @@ contains
     end do
     solver%options%tolerance = tolerance
     lost = lost .or. anew%point(anew%held)%modes /= path%point(last)%modes
+    ! The first state is the last but one on the mesh before; the last but one is the first on the
+    ! mesh after.
+    if (.not. lost .and. first > path%undeformed + 1) &
+      lost = .not. path%point(first - 2)%tangent%goes_with(anew%point(first)%tangent)
+    if (.not. lost .and. last < path%held) &
+      lost = .not. path%point(last + 1)%tangent%goes_with(anew%point(anew%held - 1)%tangent)
     if (lost) return
     do i = last + 1, path%held
       call anew%insert(anew%held + 1, path%point(i))

@@ -85,6 +85,19 @@ def test_a_coarse_mesh_has_no_pairs_of_folds_of_its_own(run, stiffness, range_, 
         assert one["folds_h0"] == pytest.approx(found[-1]["folds_h0"], rel=1e-4)
 
 
+def test_an_extremum_beside_a_passage_between_meshes_stays_on_the_path(run):
+    """Traced again on a finer mesh, it moved over the passage and was on neither mesh."""
+    found = [run(deck(
+        bodies={"radius": 0.015, "stiffness": 36259225492.46833},
+        force={"law": "lennard_jones", "hamaker": 1e-19, "z0": 5e-10},
+        structural={"amplitude": 2963782.395744549, "period": 1.0024841277431275e-09,
+                    "decay_length": 1e-09},
+        equilibrium_path={"h0_end": -2.7455057304047334e-09},
+        numerics={"accuracy": accuracy})).summary for accuracy in (1e-3, 2e-4, 1e-4, 1e-6)]
+    for one in found:
+        assert one["load_folds_load"] == pytest.approx(found[-1]["load_folds_load"], rel=1e-4)
+
+
 @pytest.mark.parametrize("sigma", [0.1, 0.28, 0.29, 0.29108])
 def test_below_the_first_jump_there_is_no_fold(run, sigma):
     assert "folds_h0" not in run(lennard_jones(sigma, equilibrium_path={"h0_end": -2.0})).summary
