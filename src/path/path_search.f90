@@ -19,11 +19,10 @@ module path_search
   private
   public :: found_t, find_extrema, may_turn, find_place, place_on
 
-  !> Places of an interval at which the slope of the curve is evaluated; fraction of the mean slope
-  !> below which the least slope suggests two extrema; multiple of the slope's error within which
-  !> the sign of the least slope is doubtful.
+  !> Places of an interval at which the slope of the curve is evaluated; multiple of the slope's
+  !> error within which the sign of the least slope is doubtful.
   integer, parameter :: places = 16
-  real(wp), parameter :: suspicious = 0.15_wp, doubtful = 2
+  real(wp), parameter :: doubtful = 2
   !> Steps of the search for the least slope; fraction of an interval that counts as its end.
   integer, parameter :: golden_steps = 30
   real(wp), parameter :: at_end = 1.0e-5_wp
@@ -120,13 +119,14 @@ contains
 
   !> Whether extrema lie between two neighbouring states at the coordinates x. The slopes `ends` at
   !> the states are exact. turns: one extremum; doubt: perhaps two more extrema, to be decided by a
-  !> state at s. The argument `error` is the error of the curve's slope, huge if unknown.
+  !> state at s, since the slope is least between the states. The argument `error` is the error of
+  !> the curve's slope, huge if unknown.
   pure subroutine look(curve, x, ends, error, turns, doubt, s)
     type(hermite_t), intent(in) :: curve
     real(wp), intent(in) :: x(2), ends(2), error
     logical, intent(out) :: turns, doubt
     real(wp), intent(out) :: s
-    real(wp) :: course, mean, least, slope, step
+    real(wp) :: course, least, slope, step
     integer :: k
 
     ! A zero slope counts as positive, so that an extremum at a state is in one of two intervals
@@ -137,7 +137,6 @@ contains
     ! differ in sign, `course` changes its sign at the first extremum.
     course = merge(-1.0_wp, 1.0_wp, ends(1) < 0)
     step = (x(2) - x(1))/places
-    mean = abs(curve%value(x(2)) - curve%value(x(1)))/(x(2) - x(1))
     least = merge(0.0_wp, minval(abs(ends)), turns)
     s = x(minloc(abs(ends), 1))
     do k = 1, places - 1
@@ -154,7 +153,6 @@ contains
       doubt = least < 0
       return
     end if
-    if (.not. least < suspicious*mean) return
     call descend(curve, course, [max(s - step, x(1)), min(s + step, x(2))], s, least)
     doubt = minval(abs(s - x)) > at_end*(x(2) - x(1)) .and. &
       (least/doubtful < error .or. .not. error < huge(1.0_wp))

@@ -70,6 +70,21 @@ def test_a_step_whose_end_is_far_from_its_guess_is_repeated(run, name, accuracy)
     assert summary[key] == pytest.approx(folds, abs=1e-13)
 
 
+@pytest.mark.parametrize("accuracy", [1e-4, 1e-6, 1e-7])
+def test_two_folds_within_a_step_whose_slope_is_least_inside_are_found(run, accuracy):
+    """The polynomial between the states did not turn there; the slope had a least value of two
+    thirds of its mean. Dense independent states, by the gap on the axis, have these folds."""
+    found = run(deck(
+        bodies={"radius": 0.015, "stiffness": 78722523.35448572},
+        force={"law": "lennard_jones", "hamaker": 1e-19, "z0": 5e-10},
+        structural={"amplitude": 982565.7098164434, "period": 8.720519021717652e-10,
+                    "decay_length": 1e-9},
+        equilibrium_path={"h0_end": -3.52e-9}, numerics={"accuracy": accuracy})).summary
+    assert found["folds_h0"][:3] == pytest.approx([11.933793e-9, 11.933928e-9, 11.930680e-9],
+                                                  abs=1e-14)
+    assert found["jump_in_load"] == pytest.approx(-2.97126e-6, rel=1e-4)
+
+
 @pytest.mark.parametrize("stiffness, range_, h0_end, accuracies", [
     (2.047627728863176e9, 1.8378672890277213e-9, -8.066445348379321e-10, (2e-4,)),
     (3.2874751938112336e8, 1.8819993963801085e-9, -3.7388340973471256e-9, (3e-5, 1e-5))])
