@@ -77,6 +77,9 @@ contains
       row%profile = any(abs(profiles - h0_end) <= 0)
       call take(steps, row, observer, path)
     end do
+    ! The tension is largest at an extremum or an end. Where the path passes to another mesh, the
+    ! errors of the meshes would decide.
+    if (row%converged) call lower(path, place_of_row(steps, row))
     path%last_piece = piece_of(steps%known, last)
     if (row%modes == 0 .and. row%converged) path%finish = place_of_row(steps, row)
     steps%cost%states = steps%cost%states + path%states
@@ -153,6 +156,18 @@ contains
     end associate
   end function place_of_row
 
+  !> Makes a place that of the largest tension if its tension is larger.
+  pure subroutine lower(path, place)
+    type(path_t), intent(inout) :: path
+    type(place_t), intent(in) :: place
+
+    if (.not. allocated(path%lowest)) then
+      path%lowest = place
+    else if (place%at(of_load) < path%lowest%at(of_load)) then
+      path%lowest = place
+    end if
+  end subroutine lower
+
   !> Gives a row to the observer and stores its reported places.
   subroutine take(steps, row, observer, path)
     type(path_stepper_t), intent(in) :: steps
@@ -177,32 +192,17 @@ contains
     if (row%for_curve) return
     reported = place_of_row(steps, row)
     if (row%profile) call add_place(path%profile, reported)
-    if (lowers(path%lowest)) path%lowest = reported
+    if (path%states == 1) path%lowest = reported
     if (row%point == 0) return
     associate (point => steps%known%path%point(row%point))
-      if (point%load_extremum) call add_place(path%extremum, reported)
+      if (point%load_extremum) then
+        call add_place(path%extremum, reported)
+        call lower(path, reported)
+      end if
       if (.not. point%fold) return
       call add_place(path%fold, reported)
       path%unstable_after = [path%unstable_after, point%modes]
     end associate
-
-  contains
-
-    !> Whether the row's tension is the largest so far. Between an extremum and another point, such
-    !> as one where the path passes to the next mesh, the error of the meshes must not decide.
-    logical function lowers(lowest)
-      type(place_t), allocatable, intent(in) :: lowest
-      real(wp) :: handicap
-
-      lowers = .true.
-      if (.not. allocated(lowest)) return
-      handicap = 0
-      if (lowest%point > 0 .and. row%point > 0 .and. reported%point == 0) handicap = 1
-      if (lowest%point == 0 .and. reported%point > 0) handicap = -1
-      lowers = reported%at(of_load) < lowest%at(of_load) - &
-        handicap*10.0_wp**(-steps%meshes%digits)*abs(lowest%at(of_load))
-    end function lowers
-
   end subroutine take
 
 end module path

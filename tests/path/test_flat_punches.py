@@ -68,3 +68,17 @@ def test_a_stiff_flat_face_is_pressed_far_within_the_gap_at_rest(run):
     found, exact = path(1e-4), path(1e-7)
     assert found["end_load"] == pytest.approx(exact["end_load"], rel=1e-4)
     assert found["max_tension"] == pytest.approx(exact["max_tension"], rel=1e-4)
+
+
+def test_the_largest_tension_is_that_of_an_extremum_although_meshes_differ_by_more(run):
+    """A state with which the path passes to another mesh had a larger tension by its mesh's error,
+    and its h0 was given an error of zero."""
+    found = run(deck(
+        bodies={"radius": 0.015, "stiffness": 567468086777.6749},
+        shape={"kind": "rounded_punch", "flat_radius": 9.569216047281413e-06},
+        van_der_waals={"hamaker": 1e-19}, born={"hamaker": 1e-19, "z0": 2.2645387901298425e-10},
+        equilibrium_path={"h0_end": -3.47533519966291e-10}, numerics={"accuracy": 1e-4})).summary
+    assert found["max_tension_h0"] == found["load_folds_h0"][-1]
+    assert found["max_tension"] == -found["load_folds_load"][-1]
+    assert found["max_tension_h0"] == pytest.approx(2.9035747e-9, rel=1e-5)
+    assert found["max_tension_h0_error"] > 0
