@@ -9,6 +9,7 @@ module fit_doubts
   use curve_fit, only: fitted_t
   use held_numbers, only: held_t
   use fit_run, only: fit_outcome_t
+  use measured_checks, only: open_end
   implicit none
   private
   public :: doubts_of
@@ -44,6 +45,7 @@ contains
         'combination of the parameters: identifiable = ' // rounded(fitted%identifiable))
     end associate
     call doubt_jumps(outcome, lines)
+    call doubt_end(outcome, lines)
   end function doubts_of
 
   !> Doubts about numbers that the deck holds fixed: the one that the data contradict most.
@@ -107,6 +109,23 @@ contains
         rounded(fitted%correlation(i, k)) // '; fix one of them, or give a prior')
     end do
   end subroutine doubt_pairs
+
+  !> Doubt about a retreat that ends before the bodies part, since the model takes its end for a part
+  !> of the baseline.
+  subroutine doubt_end(outcome, lines)
+    type(fit_outcome_t), intent(in) :: outcome
+    type(line_t), allocatable, intent(inout) :: lines(:)
+    real(wp) :: below
+
+    associate (data => outcome%curve%data)
+      if (.not. (any(data%way == 1) .and. any(data%way == 2))) return
+      below = open_end(data%measured, data%noise)
+      if (below > 0) call add(lines, 'the retreat ends below the approach by ' // &
+        rounded(below/data%noise%deviation) // ' times the noise: if the bodies have not ' // &
+        'parted there, measure farther, or fit segment = ''approach''; if the baseline ' // &
+        'drifts, correct it')
+    end associate
+  end subroutine doubt_end
 
   !> Doubts about jumps of the data that the model does not have there.
   subroutine doubt_jumps(outcome, lines)

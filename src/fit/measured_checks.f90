@@ -8,7 +8,7 @@ module measured_checks
   use far_samples, only: off_baseline
   implicit none
   private
-  public :: check_measured
+  public :: check_measured, open_end
 
   !> Limits: a signal in standard deviations of the noise; the part of the travel that counts as an
   !> end; the slope of an end in contact, over that of the spring; standard errors of a certain
@@ -59,13 +59,10 @@ contains
     character(len=:), allocatable, intent(inout) :: trouble
     real(wp) :: position(size(measured%z)), above(parts), error(parts), slope(2), slope_error(2)
     real(wp) :: taken(2), sure
-    integer :: i
 
     if (.not. (any(measured%inward) .and. .not. all(measured%inward))) return
     position = measured%facing*measured%z
-    do i = 1, parts
-      call compare(i, above(i), error(i))
-    end do
+    call compare_ways(measured, noise, above, error)
     call slope_at(position, slope(1), slope_error(1))
     call slope_at(-position, slope(2), slope_error(2))
     ! The signal has the opposite sign: both ends bend down.
@@ -85,36 +82,6 @@ contains
 
   contains
 
-    !> Height of the approach above the retreat in a part of the travel, without their common slope.
-    pure subroutine compare(part, above, error)
-      integer, intent(in) :: part
-      real(wp), intent(out) :: above, error
-      logical :: mask(size(position)), mine(size(position))
-      real(wp) :: least, width, x(size(position)), y(size(position)), middle(2, 2), slope
-      integer :: way
-
-      least = minval(position)
-      width = (maxval(position) - least)/parts
-      mask = measured%usable .and. min(parts, 1 + int((position - least)/width)) == part
-      above = 0
-      error = 0
-      x = 0
-      y = 0
-      do way = 1, 2
-        mine = mask .and. (measured%inward .eqv. way == 1)
-        if (.not. any(mine)) return
-        middle(:, way) = [sum(position, mine), sum(measured%signal, mine)]/count(mine)
-        where (mine)
-          x = position - middle(1, way)
-          y = measured%signal - middle(2, way)
-        end where
-        error = error + noise%long_deviation()**2/count(mine)
-      end do
-      slope = sum(x*y)/max(sum(x**2), tiny(1.0_wp))
-      above = middle(2, 1) - middle(2, 2) - slope*(middle(1, 1) - middle(1, 2))
-      error = sqrt(error)
-    end subroutine compare
-
     !> Minus the slope of the signal at the samples with the smallest `place`.
     pure subroutine slope_at(place, slope, error)
       real(wp), intent(in) :: place(:)
@@ -131,6 +98,59 @@ contains
     end subroutine slope_at
 
   end subroutine check_ways
+
+  !> Height of the approach above the retreat in each part of the travel, nearest first, without
+  !> their common slope; zeros where one of them has no samples.
+  pure subroutine compare_ways(measured, noise, above, error)
+    type(measured_t), intent(in) :: measured
+    type(noise_t), intent(in) :: noise
+    real(wp), intent(out) :: above(parts), error(parts)
+    real(wp), dimension(size(measured%z)) :: position, x, y
+    logical, dimension(size(measured%z)) :: mask, mine
+    real(wp) :: least, width, middle(2, 2), slope
+    integer :: part, way
+
+    above = 0
+    error = 0
+    position = measured%facing*measured%z
+    least = minval(position)
+    width = (maxval(position) - least)/parts
+    do part = 1, parts
+      mask = measured%usable .and. min(parts, 1 + int((position - least)/width)) == part
+      if (.not. (any(mask .and. measured%inward) .and. any(mask .and. .not. measured%inward))) cycle
+      x = 0
+      y = 0
+      do way = 1, 2
+        mine = mask .and. (measured%inward .eqv. way == 1)
+        middle(:, way) = [sum(position, mine), sum(measured%signal, mine)]/count(mine)
+        where (mine)
+          x = position - middle(1, way)
+          y = measured%signal - middle(2, way)
+        end where
+        error(part) = error(part) + noise%long_deviation()**2/count(mine)
+      end do
+      slope = sum(x*y)/max(sum(x**2), tiny(1.0_wp))
+      above(part) = middle(2, 1) - middle(2, 2) - slope*(middle(1, 1) - middle(1, 2))
+      error(part) = sqrt(error(part))
+    end do
+  end subroutine compare_ways
+
+  !> How far the retreat ends below the approach if this is more than noise and more than half of
+  !> what lies between them anywhere, as if it ended before the bodies part; otherwise 0.
+  pure real(wp) function open_end(measured, noise) result(below)
+    type(measured_t), intent(in) :: measured
+    type(noise_t), intent(in) :: noise
+    real(wp) :: above(parts), error(parts)
+    integer :: last
+
+    call compare_ways(measured, noise, above, error)
+    last = findloc(error > 0, .true., 1, back=.true.)
+    below = 0
+    if (last == 0) return
+    above = above - above(1)
+    if (above(last) > surely*(error(1) + error(last)) .and. &
+      above(last) > 0.5_wp*maxval(above)) below = above(last)
+  end function open_end
 
   !> The mean residual of the samples nearest to the other body, that of as many before them, and
   !> the distance between the two groups.
