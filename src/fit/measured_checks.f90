@@ -117,7 +117,7 @@ contains
     width = (maxval(position) - least)/parts
     do part = 1, parts
       mask = measured%usable .and. min(parts, 1 + int((position - least)/width)) == part
-      if (.not. (any(mask .and. measured%inward) .and. any(mask .and. .not. measured%inward))) cycle
+      if (all(measured%inward .or. .not. mask) .or. .not. any(measured%inward .and. mask)) cycle
       x = 0
       y = 0
       do way = 1, 2
