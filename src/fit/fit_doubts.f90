@@ -110,8 +110,8 @@ contains
     end do
   end subroutine doubt_pairs
 
-  !> Doubt about a retreat that ends before the bodies part, since the model takes its end for a part
-  !> of the baseline.
+  !> Doubt about a retreat that ends before the bodies part: the model takes its end for a part of
+  !> the baseline.
   subroutine doubt_end(outcome, lines)
     type(fit_outcome_t), intent(in) :: outcome
     type(line_t), allocatable, intent(inout) :: lines(:)
