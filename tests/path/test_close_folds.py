@@ -113,6 +113,22 @@ def test_an_extremum_beside_a_passage_between_meshes_stays_on_the_path(run):
         assert one["load_folds_load"] == pytest.approx(found[-1]["load_folds_load"], rel=1e-4)
 
 
+def test_a_fold_where_the_path_passes_to_a_refined_mesh_later_is_reported(run):
+    """The path seemed to be interrupted between the states with which it had first passed."""
+    found = [run(deck(
+        bodies={"radius": 0.015, "stiffness": 9867995842.805944},
+        force={"law": "lennard_jones", "hamaker": 1e-19, "z0": 5e-10},
+        depletion={"osmotic_pressure": 1e5, "diameter": 2.0335697223412008e-09},
+        double_layer={"potential": -0.09218970162280453, "regulation": 0.09738767408196936,
+                      "salt": 0.673547496781325, "valence": 1},
+        structural={"amplitude": 312505.9625710812, "period": 1.0229219159148328e-09,
+                    "decay_length": 1e-09},
+        equilibrium_path={"h0_end": -2.0156122752850073e-09},
+        numerics={"accuracy": accuracy})).summary for accuracy in (3e-6, 1e-5)]
+    assert len(found[0]["folds_h0"]) == 4
+    assert found[0]["folds_load"] == pytest.approx(found[1]["folds_load"], rel=1e-4)
+
+
 @pytest.mark.parametrize("sigma", [0.1, 0.28, 0.29, 0.29108])
 def test_below_the_first_jump_there_is_no_fold(run, sigma):
     assert "folds_h0" not in run(lennard_jones(sigma, equilibrium_path={"h0_end": -2.0})).summary
