@@ -24,7 +24,7 @@ module path_demand
 contains
 
   !> Extends a range of h0 (law's lengths) to the range that must be traced.
-  pure subroutine widen_path(request, problem, low, high)
+  subroutine widen_path(request, problem, low, high)
     class(request_t), intent(in) :: request
     type(problem_t), intent(in) :: problem
     real(wp), intent(inout) :: low, high
@@ -40,7 +40,7 @@ contains
   end subroutine widen_path
 
   !> What the request reads from the path: states at the position of a drive, and at fixed loads.
-  pure type(demand_t) function demand_of(request, problem) result(demand)
+  type(demand_t) function demand_of(request, problem) result(demand)
     class(request_t), intent(in) :: request
     type(problem_t), intent(in) :: problem
     real(wp) :: softness, until
@@ -74,7 +74,7 @@ contains
 
   contains
 
-    pure subroutine add(by_h0, by_load, until)
+    subroutine add(by_h0, by_load, until)
       real(wp), intent(in) :: by_h0, by_load, until
 
       demand%by_h0 = [demand%by_h0, by_h0]
