@@ -108,7 +108,7 @@ contains
         call judge_places(fine, steps, places, .true.)
         cost%estimate_seconds = cost%estimate_seconds + seconds() - began
         if (.not. allocated(places%place)) return
-        call doubt_pairs(places%place)
+        call doubt_close_turns(places%place)
         errors = [(places%place(i)%relative_error(.false.), i=1, size(places%place))]
         if (.not. maxval(errors) > accuracy .or. maxval(errors) > helped*before) return
         if (round == most_rounds .or. .not. finer_helps(steps, accuracy)) return
@@ -122,12 +122,12 @@ contains
     end associate
   end subroutine make_exact
 
-  !> Two successive turns of a quantity whose values differ by less than the error of the difference
-  !> are not known: on meshes that are too coarse there are pairs of turns that bodies do not have.
+  !> Two successive turns of a quantity are not known if their values differ by less than the error
+  !> of this difference: coarse meshes have pairs of turns that bodies do not have.
   !> place: in the order of the path.
-  pure subroutine doubt_pairs(place)
+  pure subroutine doubt_close_turns(place)
     type(place_t), intent(inout) :: place(:)
-    real(wp) :: change(2)
+    real(wp) :: change, finer_change
     integer :: i, j
 
     do i = 1, size(place)
@@ -137,11 +137,12 @@ contains
       end do
       if (j > size(place)) cycle
       associate (a => place(i), b => place(j))
-        change = matmul(a%turn_of, reshape([b%at(:2) - a%at(:2), b%fine(:2) - a%fine(:2)], [2, 2]))
-        if (abs(change(1)) <= a%margin*abs(change(2) - change(1))) place([i, j])%known = .false.
+        change = dot_product(a%turn_of, b%at(:2) - a%at(:2))
+        finer_change = dot_product(a%turn_of, b%fine(:2) - a%fine(:2))
+        if (abs(change) <= a%margin*abs(finer_change - change)) place([i, j])%known = .false.
       end associate
     end do
-  end subroutine doubt_pairs
+  end subroutine doubt_close_turns
 
   !> Whether finer meshes may make a path more accurate. They do not help if the path was lost,
   !> since the finer path may end earlier; or if nodes miss too much of the load, since this needs

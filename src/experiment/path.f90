@@ -44,6 +44,7 @@ contains
     real(wp), intent(in), optional :: h0_start
     type(row_t) :: row
     type(row_t), allocatable :: between(:)
+    type(place_t) :: reported
     real(wp) :: until, widest
     integer :: i, k, first, last
     logical :: ends_between
@@ -77,11 +78,14 @@ contains
       row%profile = any(abs(profiles - h0_end) <= 0)
       call take(steps, row, observer, path)
     end do
-    ! The tension is largest at an extremum or an end. Where the path passes to another mesh, the
-    ! errors of the meshes would decide.
-    if (row%converged) call lower(path, place_of_row(steps, row))
+    ! The tension is largest at an extremum or an end. States with which the path passes to another
+    ! mesh do not count: their errors would decide.
+    if (row%converged) then
+      reported = place_of_row(steps, row)
+      call lower(path, reported)
+      if (row%modes == 0) path%finish = reported
+    end if
     path%last_piece = piece_of(steps%known, last)
-    if (row%modes == 0 .and. row%converged) path%finish = place_of_row(steps, row)
     steps%cost%states = steps%cost%states + path%states
   end subroutine follow_path
 

@@ -135,8 +135,8 @@ contains
     end do
   end subroutine compare_ways
 
-  !> How far the retreat ends below the approach if this is more than noise and more than half of
-  !> what lies between them anywhere, as if it ended before the bodies part; otherwise 0.
+  !> How far the retreat ends below the approach; 0 if this is within the noise, or less than half
+  !> of the largest distance between them. A retreat that ends before the bodies part ends below.
   pure real(wp) function open_end(measured, noise) result(below)
     type(measured_t), intent(in) :: measured
     type(noise_t), intent(in) :: noise

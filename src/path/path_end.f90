@@ -32,9 +32,9 @@ contains
     is_met = all(self%by_h0*state%h0 - self%by_load*state%load <= self%until)
   end function is_met
 
-  !> Whether the bodies are in contact, also in an outer minimum, at a point of the path. In contact
-  !> they repel each other somewhere if they can: just before the fold at which a barrier gives way
-  !> they come near, and the path goes on.
+  !> Whether the bodies are in contact, also in an outer minimum, at a point of the path. Under a
+  !> law with repulsion, bodies in contact repel each other somewhere. Bodies that are only near, as
+  !> just before a barrier gives way, do not.
   pure logical function touches(equations, point)
     type(equations_t), intent(in) :: equations
     type(path_point_t), intent(in) :: point

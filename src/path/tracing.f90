@@ -148,7 +148,7 @@ contains
     call walker%forget()
     call solver%frozen%forget()
     if (path%held > 0) then
-      ! The path may pass to the refined mesh later.
+      ! The path ended between its last two points; now it may pass to the refined mesh later.
       path%point(path%held - 1)%leads_on = .true.
       call stand_at_end(path, walker)
       call pass_on(path, walker, solver, lost)

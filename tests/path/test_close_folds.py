@@ -72,8 +72,8 @@ def test_a_step_whose_end_is_far_from_its_guess_is_repeated(run, name, accuracy)
 
 @pytest.mark.parametrize("accuracy", [1e-4, 1e-6, 1e-7])
 def test_two_folds_within_a_step_whose_slope_is_least_inside_are_found(run, accuracy):
-    """The polynomial between the states did not turn there; the slope had a least value of two
-    thirds of its mean. Dense independent states, by the gap on the axis, have these folds."""
+    """The polynomial between the states did not turn there, although its slope was least inside.
+    Dense independent states, by the gap on the axis, have these folds."""
     found = run(deck(
         bodies={"radius": 0.015, "stiffness": 78722523.35448572},
         force={"law": "lennard_jones", "hamaker": 1e-19, "z0": 5e-10},
