@@ -180,11 +180,13 @@ contains
   end function guess
 
   !> The state at s by the polynomial through the states `nodes` of the arc, in the arrays that
-  !> `expected` has. The gaps are interpolated and so are the heights of the shape at the nodes;
-  !> since the exact heights are known, the error of the polynomial in the heights is subtracted
-  !> from the guess. Near an end of the bodies or a kink of their profile this error is most of the
-  !> error of the guess. A parabola's heights are proportional to the square of the scale and need
-  !> no such correction. moved: gaps outside the edge are those of `outside`; .false. if absent.
+  !> `expected` has. The gaps are interpolated and, outside the edge, so are the heights of the shape
+  !> at the nodes; since the exact heights are known, the error of the polynomial in the heights is
+  !> subtracted from the guess. Near an end of the bodies or a kink of their profile this error is
+  !> most of the error of the guess. Inside the edge bodies in contact follow each other's shape, so
+  !> that the gap is smooth where the shape is not. A parabola's heights are proportional to the
+  !> square of the scale and need no such correction. moved: gaps outside the edge are those of
+  !> `outside`; .false. if absent.
   pure subroutine guess_from(self, shape, grid, nodes, s, expected, moved)
     class(arc_t), intent(in) :: self
     class(shape_t), intent(in) :: shape
@@ -195,8 +197,9 @@ contains
     logical, intent(in), optional :: moved
     real(wp), dimension(most_hermite_nodes) :: at, of_value, of_slope
     real(wp) :: h0, scale
-    integer :: j, n
+    integer :: j, n, from
 
+    from = count(grid%x <= grid%centre) + 1
     n = size(nodes)
     at(:n) = self%coordinate(nodes)
     call hermite_weights(at(:n), s, of_value(:n), of_slope(:n))
@@ -210,14 +213,15 @@ contains
         h0 = h0 + of_value(j)*state%h0 + of_slope(j)*tangent%h0
         scale = scale + of_value(j)*state%scale + of_slope(j)*tangent%scale
         if (shape%parabolic) cycle
-        expected%pressure = expected%pressure - of_value(j)*shape%height(state%scale*grid%x) - &
-          of_slope(j)*tangent%scale*grid%x*shape%slope(state%scale*grid%x)
+        expected%pressure(from:) = expected%pressure(from:) - &
+          of_value(j)*shape%height(state%scale*grid%x(from:)) - &
+          of_slope(j)*tangent%scale*grid%x(from:)*shape%slope(state%scale*grid%x(from:))
       end associate
     end do
     if (.not. shape%parabolic) &
-      expected%pressure = expected%pressure + shape%height(scale*grid%x)
+      expected%pressure(from:) = expected%pressure(from:) + shape%height(scale*grid%x(from:))
     if (present(moved)) then
-      if (moved) expected%pressure(count(grid%x <= grid%centre) + 1:) = &
+      if (moved) expected%pressure(from:) = &
         self%outside(shape, grid, nodes, of_value(:n), of_slope(:n), scale)
     end if
     call take_if_sound(h0, scale, expected)
