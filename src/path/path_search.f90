@@ -11,7 +11,7 @@ module path_search
   use represented_pressure, only: pressure_slope_t, slope_on
   use contact_state, only: state_t
   use solver, only: solver_t
-  use interpolation, only: hermite_t
+  use interpolation, only: hermite_t, hermite_through
   use root_finding, only: bracket_t, root_search_t, new_root_search, resolution
   use path_tangent, only: tangent_t
   use arc, only: arc_t, most_states
@@ -94,12 +94,19 @@ contains
 
   contains
 
+    !> Two extrema are doubtful also if the cubic between the two states alone has them: it does not
+    !> smooth what happens between them by what was before.
     subroutine look_at(near)
       type(arc_t), intent(in) :: near
+      real(wp) :: value(2), slope(2)
+      integer :: j
 
-      associate (x => near%coordinate(i:i + 1))
-        call look(near%curve(weights, x(1) + 0.5_wp*(x(2) - x(1))), x, &
-          [near%tangent(i)%of(weights), near%tangent(i + 1)%of(weights)], error, turns, doubt, s)
+      associate (x => near%coordinate(i:i + 1), states => near%state(i:i + 1))
+        value = [(dot_product(weights, [states(j)%h0, states(j)%load]), j=1, 2)]
+        slope = [(near%tangent(j)%of(weights), j=i, i + 1)]
+        call look(near%curve(weights, x(1) + 0.5_wp*(x(2) - x(1))), x, slope, error, turns, doubt, s)
+        if (turns .or. doubt) return
+        call look(hermite_through(x, value, slope), x, slope, 0.0_wp, turns, doubt, s)
       end associate
     end subroutine look_at
 
