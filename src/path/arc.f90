@@ -18,7 +18,7 @@ module arc
 
   integer, parameter :: most_states = 8
   !> Number of states from which a state beyond an end is extrapolated.
-  integer, parameter :: extrapolated_from = 4
+  integer, parameter :: extrapolated_from = 3
 
   !> Some states of the path on one mesh with their coordinates s and their tangents (derivatives by
   !> s), in the order of s.

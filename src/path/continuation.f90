@@ -28,10 +28,10 @@ module continuation
   !> which this ratio is a power.
   real(wp), parameter :: wanted_miss = 1.5e-3_wp, growth = 2.5_wp, shrinkage = 0.3_wp, &
     rung = 1.2_wp
-  integer, parameter :: order = 8
+  integer, parameter :: order = 6
   !> Distance between the guess and the state beyond which a step may have passed folds unseen, and
   !> is repeated as a shorter one; length of a step that is not repeated.
-  real(wp), parameter :: too_far = 0.03_wp, short = 1.0e-3_wp
+  real(wp), parameter :: too_far = 0.01_wp, short = 1.0e-3_wp
   !> Relative error of slopes that serve only for predictions.
   real(wp), parameter :: slope_error = 1.0e-7_wp
   !> Distance between guess and state in h0 and load, and longest step, on a path whose points
