@@ -28,6 +28,9 @@ module preflight
   !> Number of cells in a row of the curve, of a profile, of a table of theories and of a sweep;
   !> bytes of a step in the journal.
   integer, parameter :: of_curve = 10, of_profile = 7, of_theory = 5, of_case = 60, kept = 900
+  !> Digits of meshes that are laid out only to count their nodes. The number of nodes grows at most
+  !> in proportion to the digits.
+  real(wp), parameter :: few_digits = 3
   !> Approximate number of nodes of a mesh.
   real(wp), parameter :: of_mesh = 200
   !> Size of results above which they are announced, and the free disk space is checked [bytes].
@@ -90,7 +93,8 @@ contains
     type(problem_t) :: problem
     type(choice_t) :: chosen, other
     type(mesh_family_t) :: meshes
-    real(wp) :: low, high, entries, matrices
+    real(wp), allocatable :: of_meshes(:)
+    real(wp) :: low, high, digits, entries, matrices
 
     bytes = 0
     nodes = 0
@@ -101,11 +105,13 @@ contains
     chosen = choose(scene%numerics, problem, low, allocated(scene%profiles))
     entries = 0
     if (allocated(scene%path) .or. .not. chosen%is_fixed()) then
-      meshes = new_mesh_family(problem, high, low, chosen%digits, shape_only=.true.)
-      nodes = maxval(meshes%grid%nodes)
+      digits = min(chosen%digits, few_digits)
+      meshes = new_mesh_family(problem, high, low, digits, shape_only=.true.)
+      of_meshes = chosen%digits/digits*meshes%grid%nodes
+      nodes = ceiling(maxval(of_meshes))
       ! Kernels, one factorisation and another for a fold, and about half as much again for the
       ! finer meshes of the error estimate, which exist at the same time.
-      entries = 2.6_wp*sum(real(meshes%grid%nodes, wp)**2) + 3.6_wp*real(nodes, wp)**2
+      entries = 2.6_wp*sum(of_meshes**2) + 3.6_wp*real(nodes, wp)**2
       if (scene%has_eigenvalues()) entries = entries + eigenvalue_matrices*real(nodes, wp)**2
     end if
     if (chosen%is_fixed()) then

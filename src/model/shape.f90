@@ -160,15 +160,13 @@ contains
     opening = ((self%indentation(a*(1 + part)) - self%indentation(a*(1 - part)))/(4*part*a))**2/a
   end function opening
 
-  !> `indentation` by the fewest points that suffice for estimates; shapes with a closed form have
-  !> the same value for both.
-  elemental real(wp) function rough_indentation(self, a) result(indentation)
+  !> `indentation` for estimates, at several radii.
+  pure function rough_indentation(self, a) result(indentation)
     class(shape_t), intent(in) :: self
-    real(wp), intent(in) :: a
-    real(wp) :: node(rough), weight(rough)
+    real(wp), intent(in) :: a(:)
+    real(wp) :: indentation(size(a))
 
-    call gauss_legendre(node, weight)
-    indentation = 0.5_wp*pi*a*sum(weight*self%slope(a*sin(0.5_wp*pi*node)))
+    indentation = self%indentation(a)
   end function rough_indentation
 
   !> The gap outside a contact of radius a without adhesion, at a (1 + beyond) from the axis,
@@ -177,16 +175,13 @@ contains
     class(shape_t), intent(in) :: self
     real(wp), intent(in) :: a, beyond(:)
     real(wp) :: gap(size(beyond))
-    real(wp) :: node(rough), weight(rough), angle(size(beyond))
+    real(wp) :: node(rough), weight(rough), angle(size(beyond)), depth(0:size(beyond)*rough)
     integer :: k
 
     call gauss_legendre(node, weight)
     angle = atan(sqrt(beyond*(2 + beyond)))
-    gap = -self%rough_indentation(a)
-    do k = 1, rough
-      gap = gap + weight(k)*self%rough_indentation(a*(1 + beyond)*cos(angle*node(k)))
-    end do
-    gap = 2/pi*angle*gap
+    depth = self%rough_indentation([a, (a*(1 + beyond)*cos(angle*node(k)), k=1, rough)])
+    gap = 2/pi*angle*(matmul(reshape(depth(1:), [size(beyond), rough]), weight) - depth(0))
   end function hertz_gap
 
   !> Position beyond which, up to its end, the body is smooth; 0 if it is smooth except on the axis.

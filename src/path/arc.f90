@@ -180,13 +180,13 @@ contains
   end function guess
 
   !> The state at s by the polynomial through the states `nodes` of the arc, in the arrays that
-  !> `expected` has. The gaps are interpolated and, outside the edge, so are the heights of the shape
-  !> at the nodes; since the exact heights are known, the error of the polynomial in the heights is
-  !> subtracted from the guess. Near an end of the bodies or a kink of their profile this error is
-  !> most of the error of the guess. Inside the edge bodies in contact follow each other's shape, so
-  !> that the gap is smooth where the shape is not. A parabola's heights are proportional to the
-  !> square of the scale and need no such correction. moved: gaps outside the edge are those of
-  !> `outside`; .false. if absent.
+  !> `expected` has. The gaps are interpolated and, outside the edge, so are the heights of the
+  !> shape at the nodes; since the exact heights are known, the error of the polynomial in the
+  !> heights is subtracted from the guess. Near an end of the bodies or a kink of their profile this
+  !> error is most of the error of the guess. Inside the edge bodies in contact follow each other's
+  !> shape, so that the gap is smooth where the shape is not. A parabola's heights are proportional
+  !> to the square of the scale and need no such correction. moved: gaps outside the edge are those
+  !> of `outside`; .false. if absent.
   pure subroutine guess_from(self, shape, grid, nodes, s, expected, moved)
     class(arc_t), intent(in) :: self
     class(shape_t), intent(in) :: shape

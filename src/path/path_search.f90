@@ -104,7 +104,8 @@ contains
       associate (x => near%coordinate(i:i + 1), states => near%state(i:i + 1))
         value = [(dot_product(weights, [states(j)%h0, states(j)%load]), j=1, 2)]
         slope = [(near%tangent(j)%of(weights), j=i, i + 1)]
-        call look(near%curve(weights, x(1) + 0.5_wp*(x(2) - x(1))), x, slope, error, turns, doubt, s)
+        call look(near%curve(weights, x(1) + 0.5_wp*(x(2) - x(1))), x, slope, error, &
+          turns, doubt, s)
         if (turns .or. doubt) return
         call look(hermite_through(x, value, slope), x, slope, 0.0_wp, turns, doubt, s)
       end associate

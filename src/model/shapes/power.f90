@@ -22,7 +22,6 @@ module power
     procedure :: slope
     procedure :: position_of
     procedure :: indentation
-    procedure :: rough_indentation => indentation
     procedure :: indentation_load
     procedure :: contact_radius
   end type power_t

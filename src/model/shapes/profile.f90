@@ -1,13 +1,14 @@
 !> A shape from a file of positions and heights: a cubic spline of continuous curvature, flat on the
 !> axis, which continues beyond the last point as a parabola.
 module profile
-  use kinds, only: wp
+  use kinds, only: wp, pi
   use failure, only: failure_t
   use deck, only: deck_t
   use deck_keys, only: key_spec, text_key
   use data_table, only: data_table_t, read_columns
   use cubic, only: spline
   use interpolation, only: interval_of
+  use quadrature, only: gauss_legendre
   use law_reading, only: check_decades
   use shape, only: shape_t
   use shape_reading, only: require, refuse_radius
@@ -22,9 +23,11 @@ module profile
   contains
     procedure :: height
     procedure :: slope
+    procedure :: rough_indentation
   end type profile_t
 
-  integer, parameter :: fewest = 5
+  !> Smallest number of points of a profile, and number of those of a rough quadrature.
+  integer, parameter :: fewest = 5, points = 12
   !> Largest curvature of the wrong sign, over the largest curvature, which may come from the digits
   !> of a table, or from a spline through a body that is flat at its tip.
   real(wp), parameter :: straight = 0.02_wp
@@ -162,5 +165,17 @@ contains
       value = c(2) + t*(2*c(3) + 3*t*c(4))
     end associate
   end function slope
+
+  !> By the fewest points that suffice, without regard to the pieces.
+  pure function rough_indentation(self, a) result(indentation)
+    class(profile_t), intent(in) :: self
+    real(wp), intent(in) :: a(:)
+    real(wp) :: indentation(size(a)), node(points), weight(points)
+    integer :: k
+
+    call gauss_legendre(node, weight)
+    node = sin(0.5_wp*pi*node)
+    indentation = [(0.5_wp*pi*a(k)*sum(weight*self%slope(a(k)*node)), k=1, size(a))]
+  end function rough_indentation
 
 end module profile

@@ -19,7 +19,6 @@ module rounded_punch
     procedure :: bend
     procedure :: position_of
     procedure :: indentation
-    procedure :: rough_indentation => indentation
   end type rounded_punch_t
 
 contains

@@ -20,7 +20,6 @@ module spheroid
     procedure :: slope
     procedure :: position_of
     procedure :: indentation
-    procedure :: rough_indentation => indentation
   end type spheroid_t
 
   !> Radius of the end of the body over the radius of the equator.
