@@ -19,8 +19,7 @@ from others import ciavarella_2017, indentation_of_layers, wu_2010, zheng_yu_200
 
 PAGE = pages.ROOT / "docs" / "formulas.md"
 PICTURE = pages.ROOT / "docs" / "formulas.png"
-TABORS = tuple(float(each) for each in np.geomspace(0.01, 100, 65))
-JUMPING = tuple(float(each) for each in np.geomspace(0.7, 100, 40))
+TABORS, JUMPING = spheres.spaced(0.01, 100, 65), spheres.spaced(0.7, 100, 40)
 LOADED = 10.0
 NAMES = {"dmt": "DMT", "jkr": "JKR", "maugis": "Maugis-Dugdale", "carpick": "Carpick et al.",
          "pietrement": "Piétrement and Troyon", "hertz": "Hertz"}
@@ -93,23 +92,16 @@ def formulas():
 def good(errors, grid, symbol, within):
     """Return in words the range with errors within a bound: from the first good value to the
     last."""
-    fine = abs(errors) <= within
-    spans, start = [], None
-    for i, each in enumerate([*fine, False]):
-        if each and start is None:
-            start = i
-        elif not each and start is not None:
-            # A curve that only crosses zero has no such range.
-            if i - start > 2:
-                spans.append((start, i - 1))
-            start = None
+    edges = np.flatnonzero(np.diff([False, *(abs(errors) <= within), False]))
     words = []
-    for first, last in spans:
-        low, high = _short(grid[first]), _short(grid[last])
-        if first == 0 and last == len(grid) - 1:
+    for first, end in zip(edges[::2], edges[1::2]):
+        low, high = _short(grid[first]), _short(grid[end - 1])
+        if first == 0 and end == len(grid):
             return "everywhere"
-        words.append(f"{symbol} ≤ {high}" if first == 0 else f"{symbol} ≥ {low}"
-                     if last == len(grid) - 1 else f"{low} to {high}")
+        # A curve that only crosses zero has no such range.
+        if end - first > 2:
+            words.append(f"{symbol} ≤ {high}" if first == 0 else f"{symbol} ≥ {low}"
+                         if end == len(grid) else f"{low} to {high}")
     return ", ".join(words) or "nowhere"
 
 

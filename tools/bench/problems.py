@@ -37,10 +37,9 @@ class Problem:
         return self._deck(f"&loading h0_start = {2 * h0!r}, h0_end = {h0!r}, h0_step = {h0!r} /",
                           numerics)
 
-    def path(self, numerics="", more=""):
+    def path(self, numerics=""):
         """Return a deck for the whole path of equilibria, down to the turning point."""
-        return self._deck(f"&equilibrium_path h0_end = {self.turn * self.length!r} /\n{more}",
-                          numerics)
+        return self._deck(f"&equilibrium_path h0_end = {self.turn * self.length!r} /", numerics)
 
     def _deck(self, parts, numerics):
         return f"&scene title = '{self.name}' /\n{self.physics}\n{parts}\n&numerics {numerics} /\n"
@@ -103,9 +102,7 @@ def sweep_of_paths(count):
     """Return a deck of `count` paths, sigma from 1e-3 to 1e3."""
     # The stiffness is proportional to 1/sigma.
     soft, stiff = (_stiffness_of(sigma) for sigma in (1e3, 1e-3))
-    return (f"&bodies radius = {_RADIUS}, stiffness = {soft!r} /\n"
-            f"&force law = 'lennard_jones', hamaker = {_HAMAKER}, z0 = {_Z0} /\n"
-            f"&equilibrium_path h0_end = {-5 * _Z0!r} /\n"
+    return (f"{lennard_jones(1e3).physics}\n&equilibrium_path h0_end = {-5 * _Z0!r} /\n"
             f"&sweep key = 'bodies.stiffness', from = {soft!r}, to = {stiff!r}, count = {count}, "
             "scale = 'log' /\n&numerics accuracy = 1e-6 /\n")
 

@@ -53,6 +53,10 @@ class Run:
     warning: str = ""
     values: dict = dataclasses.field(default_factory=dict)
 
+    def cells(self, *names):
+        """Return some of the numbers and texts by name, for a row of a table."""
+        return {name: getattr(self, name) for name in names}
+
     @property
     def price(self):
         """Time in G."""
@@ -91,7 +95,7 @@ class Program:
         # A copy, so that all measurements use one program even if it is rebuilt meanwhile.
         self.snapin = pathlib.Path(shutil.copy2(self.build / "snapin", self.scratch))
         self._references = {}
-        self.gauge = Gauge(self.environment)
+        self.gauge = Gauge(self.environment())
 
     def environment(self, threads=1):
         """Return an environment with the given number of threads."""

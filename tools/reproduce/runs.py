@@ -61,8 +61,7 @@ class Results:
 
 def path_name(deck):
     """Return the stem of a deck given by its stem or its path."""
-    name = pathlib.Path(deck).name
-    return name[: -len(".nml")] if name.endswith(".nml") else name
+    return pathlib.Path(deck).name.removesuffix(".nml")
 
 
 class Runs:
@@ -233,10 +232,8 @@ class Runs:
         return self.root / f"{path.stem}.json"
 
     def _problem_of(self, path, done):
-        if done.returncode == 1 and "_paper" in path.stem:
-            if (self.root / path.stem / "summary.nml").is_file():
-                return None
-        elif done.returncode == 0:
+        by_rule = "_paper" in path.stem and (self.root / path.stem / "summary.nml").is_file()
+        if done.returncode == 0 or done.returncode == 1 and by_rule:
             return None
         # The first line is the error; the line of the deck may follow.
         messages = [line for line in done.stderr.splitlines() if line and ": warning: " not in line]

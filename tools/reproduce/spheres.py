@@ -14,6 +14,7 @@ import numpy as np
 import pages  # noqa: F401 (one thread)
 import runs  # noqa: F401 (makes the pictures' style importable)
 import snapin
+import style
 
 ACCURACY = 1e-8
 # Largest tension of the law over w/z0, at h = 3^(1/6) z0.
@@ -43,6 +44,12 @@ def tabor_of(lam):
 def spaced(low, high, count):
     """Return numbers evenly spaced in the logarithm."""
     return tuple(float(each) for each in np.geomspace(low, high, count))
+
+
+# Maugis parameters of pictures, and the looks of curves in them.
+LAMBDAS = spaced(0.01, 100, 81)
+SOLVED = {"color": style.BLACK, "label": "Lennard-Jones, solved"}
+MAUGIS = {"color": style.VERMILION, "dashes": (5, 1.5), "label": "Maugis-Dugdale theory"}
 
 
 def theory(name, lam, load=0.0):
@@ -140,6 +147,16 @@ def contact(tabor, load):
                                    surface_energy=sigma(tabor))
     return Contact(jkr / (1 + errors["jkr"][1]) / unit(tabor), (1 - h0) / unit(tabor) ** 2,
                    errors)
+
+
+def solved_at(lam):
+    """Return pull-off [pi w R] and radius without load of solved spheres at a Maugis parameter."""
+    return sphere(tabor_of(lam)).tension, contact(tabor_of(lam), 0.0).radius
+
+
+def errors(name, lam, load=0.0):
+    """Return the errors of a theory at a Maugis parameter in pull-off, radius and indentation."""
+    return contact(tabor_of(lam), load).errors[name]
 
 
 def _deep(tabor, load):
