@@ -154,14 +154,12 @@ def coated(sigma, thin=None, ratio=0, nu=0.0):
     if thin is None:
         return half.path(numerics)
     # E* of the half-space's deck is half of the stiffness there: here one body is elastic.
-    bodies, force = half.physics.split("\n")
-    stiffness = float(bodies.split("=")[-1].strip(" /")) / 2
-    radius = float(bodies.split("=")[1].split(",")[0])
-    young = stiffness * (1 - nu**2)
-    thickness = thin * math.sqrt(radius * half.length) * (9 * math.pi * sigma) ** (1 / 3)
+    young = problems.stiffness_of(sigma) / 2 * (1 - nu**2)
+    thickness = thin * math.sqrt(problems.RADIUS * half.length) * (9 * math.pi * sigma) ** (1 / 3)
     base = f"young = {young / ratio!r}, poisson = {nu}" if ratio else "rigid = .true."
-    physics = (f"&bodies radius = {radius!r}, {base} /\n&layer thickness = {thickness!r}, "
-               f"young = {young!r}, poisson = {nu}, partner = 'rigid' /\n{force}")
+    bodies = (f"&bodies radius = {problems.RADIUS}, {base} /\n&layer thickness = {thickness!r}, "
+              f"young = {young!r}, poisson = {nu}, partner = 'rigid' /")
+    physics = half.physics.replace(half.physics.split("\n")[0], bodies)
     return dataclasses.replace(half, physics=physics).path(numerics)
 
 

@@ -122,8 +122,8 @@ def _reach_rows(program, problem, reaches):
 
 
 def _law_row(problem, knob, value, run, reference):
-    spacing = run.summary.get("spacing_over_neck", math.nan) if run.states else math.nan
-    return {"knob": knob, "value": value, "spacing_over_neck": spacing,
+    return {"knob": knob, "value": value,
+            "spacing_over_neck": run.summary.get("spacing_over_neck", math.nan),
             **_row(problem, "path" if knob != "nodes" else "cycle", 0, run, reference)}
 
 

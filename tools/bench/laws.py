@@ -7,6 +7,7 @@ calculation alone.
 import math
 import shutil
 
+import numpy as np
 import pictures
 import problems
 from tables import chosen, earlier
@@ -117,16 +118,11 @@ def _error_over_estimate(run, reference):
     """Return the largest error of a number over its estimate, if the reference is good enough."""
     ratios = []
     for key in reference.summary:
-        if f"{key}_error" not in reference.summary or f"{key}_error" not in run.summary:
-            continue
-        values, exact, estimates, least = (
-            _listed(summary[name]) for name in (key, f"{key}_error")
-            for summary in (run.summary, reference.summary))
-        ratios += [abs(value - right) / estimate
-                   for value, right, estimate, known in zip(values, exact, estimates, least)
-                   if estimate > _BETTER * known > 0]
+        if f"{key}_error" in reference.summary and f"{key}_error" in run.summary:
+            values, exact, estimates, least = (
+                np.ravel(summary[name]) for name in (key, f"{key}_error")
+                for summary in (run.summary, reference.summary))
+            ratios += [abs(value - right) / estimate
+                       for value, right, estimate, known in zip(values, exact, estimates, least)
+                       if estimate > _BETTER * known > 0]
     return max(ratios, default=math.nan)
-
-
-def _listed(value):
-    return value if isinstance(value, list) else [value]

@@ -14,8 +14,8 @@ def numbers(runs):
     found = {}
     for i, deck in enumerate(DECKS):
         summary, curve = runs[deck].summary, runs[deck].branch("loading")
-        pressed = curve["load"] > 0
-        exact = np.interp(_LOAD, curve["load"][pressed], curve["displacement"][pressed])
+        pressed = curve[curve["load"] > 0]
+        exact = np.interp(_LOAD, pressed["load"], pressed["displacement"])
         _, displacement, load = curves.jkr_curve(curves.RADIUS, _STIFFNESS,
                                                  summary["surface_energy"], 4 * _LOAD)
         lowest = int(np.argmin(load))

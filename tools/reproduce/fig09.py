@@ -16,7 +16,7 @@ def _columns(results):
     found = {"sigma": sweep["sigma"], "jump": -sweep["jump_in_load"] / unit,
              "largest": sweep["max_tension"] / unit}
     for name in ("criterion_29", "equation_37"):
-        if f"jump_{name}_load" in sweep:
+        if f"jump_{name}_load" in sweep.dtype.names:
             found[name] = -sweep[f"jump_{name}_load"] / unit
     return found
 

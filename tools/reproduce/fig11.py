@@ -43,19 +43,18 @@ def _radius(results, branch, h0):
 
 def both_in_contact(results):
     """Return contact radii of loading and deepest unloading at the h0 with contact on both."""
-    loading, unloading = map(results.branch, ("loading", penetrations.branches(results)[-1]))
-    here = curves.at(unloading["h0"], loading, "contact_radius")
-    both = ((unloading["h0"] <= loading["h0"][curves.jump(loading, "contact")[1]])
-            & (unloading["contact_radius"] > 0))
-    return here[both], unloading["contact_radius"][both]
+    loading, unloading = penetrations.outermost(results)
+    last = loading["h0"][curves.jump(loading, "contact")[1]]
+    unloading = unloading[(unloading["h0"] <= last) & (unloading["contact_radius"] > 0)]
+    return curves.at(unloading["h0"], loading, "contact_radius"), unloading["contact_radius"]
 
 
 def least_excess(results):
     """Return the least excess of the unloading tension at the same h0, over JKR's pull-off."""
-    loading, unloading = map(results.branch, ("loading", penetrations.branches(results)[-1]))
+    loading, unloading = penetrations.outermost(results)
+    unloading = unloading[unloading["h0"] <= loading["h0"].max()]
     excess = curves.at(unloading["h0"], loading, "load") - unloading["load"]
-    inside = unloading["h0"] <= loading["h0"].max()
-    return float(excess[inside].min() / results.summary["jkr_pull_off"])
+    return float(excess.min() / results.summary["jkr_pull_off"])
 
 
 def numbers(runs):

@@ -6,7 +6,6 @@ The program has one of these readings: `inputs/fig10c_paper.nml`.
 
 import dataclasses
 import math
-import typing
 
 import numpy as np
 from misprints import elliptic
@@ -44,18 +43,6 @@ class Reading:
     interpolated: bool = True
 
 
-class Branch(typing.NamedTuple):
-    """States at h0 [z0]: loads [gamma R], displacements [z0], largest residuals [z0], iterations, and
-    the mixing ratio at the end."""
-
-    h0: np.ndarray
-    load: np.ndarray
-    displacement: np.ndarray
-    residual: np.ndarray
-    iterations: np.ndarray
-    ratio: np.ndarray
-
-
 class Scene:
     """Bodies of one sigma on a uniform grid."""
 
@@ -80,7 +67,10 @@ def pressure(gap):
 
 def cycle(scene, reading, turns, start, end, z0):
     """Return the loading from `start` and one unloading for each turning point, to `end` or to the
-    separation of the bodies, as Branches; h0 in z0, `turns` decreasing, `z0` in nm."""
+    separation of the bodies; h0 in z0, `turns` decreasing, `z0` in nm.
+
+    Each is a record array of the rows of `settle`.
+    """
     step = reading.step / z0
     places = np.arange(start, turns[-1] - step / 2, -step)
     gap, memory, loading, kept = places[0] + scene.shape, [reading.limit], [], {}
@@ -104,12 +94,13 @@ def cycle(scene, reading, turns, start, end, z0):
 
 
 def _branch(rows):
-    return Branch(*np.array(rows).T)
+    return np.rec.fromrecords(rows, names="h0, load, displacement, residual, iterations, ratio")
 
 
 def settle(scene, reading, gap, h0, memory, z0):
-    """Iterate at an h0 according to the reading; return the gap and (h0, load, displacement,
-    residual, iterations, ratio). `memory` holds the mixing ratio."""
+    """Iterate at an h0 according to the reading; return the gap and a row: h0 [z0], load [gamma R],
+    displacement and largest residual [z0], number of iterations, and mixing ratio at the end.
+    `memory` holds the mixing ratio."""
     ratio = memory[0] if reading.carried else reading.limit
     tolerance, before = reading.tolerance / z0, 0.0
     most = reading.passes or reading.most

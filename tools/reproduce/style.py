@@ -12,6 +12,7 @@ from drawing import BLACK, BLUE, GREEN, ORANGE, PURPLE, SKY, VERMILION, arrow  #
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import BoundaryNorm, ListedColormap
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 from PIL import Image
 
@@ -68,6 +69,11 @@ def legend(page, columns, panel=None):
     """Put the legend of a panel, by default the first, below the picture, outside the data."""
     handles, names = (panel or page.axes[0]).get_legend_handles_labels()
     page.legend(handles, names, loc="outside lower center", ncols=columns, columnspacing=1.6)
+
+
+def explain(panel, entries, **kwargs):
+    """Put a legend into a panel: pairs of a look of lines and what it means."""
+    panel.legend(handles=[Line2D([], [], **look, label=name) for look, name in entries], **kwargs)
 
 
 def statement(panel, text, x, y, align="left"):

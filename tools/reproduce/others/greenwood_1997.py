@@ -34,10 +34,9 @@ def numbers(_):
 def draw(_):
     page, (left, right) = style.figure(1, 2, height=3.9)
     for tabor, color in zip(_SHOWN, _COLORS):
-        h0, load = spheres.curve(tabor)
         found = spheres.sphere(tabor)
-        left.plot(-h0, load, color=color, linestyle=":" if found.jump_in else "-", linewidth=1)
-        for part in _stable(h0, load, found):
+        left.plot(-found.h0, found.load, color=color, linestyle=":" if found.jump_in else "-", linewidth=1)
+        for part in _stable(found):
             left.plot(*part, color=color, linewidth=1.8)
         left.plot([], [], color=color, label=f"$\\mu$ = {tabor:g}")
     style.label(left, "approach $-h_0/z_0$", "load $F/\\pi wR$", "xy", xlim=(-10, 4),
@@ -59,13 +58,14 @@ def draw(_):
     return page
 
 
-def _stable(h0, load, found):
+def _stable(found):
     """Return the pieces of a path on an approach and a retreat."""
     if found.jump_in is None:
-        return [(-h0, load)]
-    first = int(np.argmin(abs(h0 - found.jump_in[0]) + abs(load + found.jump_in[1])))
-    last = int(np.argmin(abs(h0 - found.jump_out[0]) + abs(load + found.jump_out[1])))
-    return [(-h0[: first + 1], load[: first + 1]), (-h0[last:], load[last:])]
+        return [(-found.h0, found.load)]
+    first, last = (int(np.argmin(abs(found.h0 - h0) + abs(found.load + tension)))
+                   for h0, tension in (found.jump_in, found.jump_out))
+    return [(-found.h0[: first + 1], found.load[: first + 1]),
+            (-found.h0[last:], found.load[last:])]
 
 
 def rows(_):
