@@ -85,7 +85,8 @@ def formulas():
     chis = tuple(float(each) for each in np.arange(0.05, 2.001, 0.05))
     found += [Formula("load on a thin layer, ν = 0.5", name,
                       lambda chi, key=key: indentation_of_layers.error(key, chi) / 100, chis, "χ")
-              for key, name in (("dimitriadis", "Dimitriadis et al."), ("garcia", "García and García"))]
+              for key, name in (("dimitriadis", "Dimitriadis et al."),
+                                ("garcia", "García and García"))]
     return found
 
 
@@ -146,7 +147,8 @@ def draw(found):
                                else "-")
         panel.set_ylim(-30, 35)
         style.heading(panel, title)
-        style.label(panel, "Tabor's parameter $\\mu$", "error [%]" if panel is panels[0] else "", "y")
+        style.label(panel, "Tabor's parameter $\\mu$", zero_lines="y",
+                    y="error [%]" if panel is panels[0] else "")
     style.legend(page, 5)
     return page
 

@@ -82,9 +82,10 @@ def write_table():
     columns["garcia_2018_nu_0.5"] = [garcia(chi) for chi in CHI]
     columns |= {f"film_over_base_{ratio:g}": [over_hertz(chi, 0.5, ratio) for chi in CHI]
                 for ratio in ON_ELASTIC}
-    header = ["# Load over Hertz's load on a half-space of the film, at the same indentation delta.",
-              "# chi = sqrt(R delta)/thickness; sphere rigid, parabola; film bonded, no adhesion.",
-              "# film_over_base: ratio of moduli, film and base incompressible.", ",".join(columns)]
+    header = (
+        "# Load over Hertz's load on a half-space of the film, at the same indentation delta.",
+        "# chi = sqrt(R delta)/thickness; sphere rigid, parabola; film bonded, no adhesion.",
+        "# film_over_base: ratio of moduli, film and base incompressible.", ",".join(columns))
     np.savetxt(TABLE, np.transpose([*columns.values()]), "%.6g", ",", header="\n".join(header),
                comments="")
     return columns

@@ -5,8 +5,8 @@
     pages.py --mark PAGE  records that all figures of PAGE were measured just now
 
 A page has the line `<!-- measured at DIGEST -->`. The digest is that of the sources that
-determine numbers. A command that renews a whole page marks the page; after a measurement by hand use
---mark.
+determine numbers. A command that renews a whole page marks the page; after a measurement by hand
+use --mark.
 """
 
 import argparse

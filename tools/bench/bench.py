@@ -7,9 +7,9 @@
     ./bench --resume                 the rest of an interrupted run
     ./bench --draw                   pictures and tables again, from the present measurements
 
-Times are in G, one DGESV of 400 unknowns on one core in the same run. Beside them is the time of the
-same linear algebra and rows alone. Measurements of earlier sources are kept as NAME_before.csv, for
-the comparison in the table of costs.
+Times are in G, one DGESV of 400 unknowns on one core in the same run. Beside them is the time of
+the same linear algebra and rows alone. Measurements of earlier sources are kept as NAME_before.csv,
+for the comparison in the table of costs.
 """
 
 import argparse

@@ -5,8 +5,8 @@
 
 Strength of adhesion, spring, noise, number of samples, outliers and where the search starts are
 drawn for each curve by its number. A fit arrives if no estimate is 6 standard errors off.
---wrong fits with z0 fixed at twice the truth, which the fit must detect. Rows go to standard output,
-followed by the table.
+--wrong fits with z0 fixed at twice the truth, which the fit must detect. Rows go to standard
+output, followed by the table.
 """
 
 import argparse
@@ -91,7 +91,8 @@ class Outcome:
             fit = fitted["fit"]
             estimate, error = np.array(fit["estimate"]), np.array(fit["standard_error"])
             with np.errstate(all="ignore"):
-                far = np.where(case.truths == 0, estimate, np.log(estimate / case.truths) * estimate)
+                far = np.where(case.truths == 0, estimate,
+                               np.log(estimate / case.truths) * estimate)
             self.off = far / error
             self.reduced = fit["chi_squared"][0] / fit["degrees_of_freedom"][0]
             self.noise = fit["noise"][0] / curve.noise

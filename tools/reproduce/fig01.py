@@ -44,7 +44,8 @@ def draw(runs):
     adhesion, summary = (runs["fig01_lennard_jones"].branch("loading"),
                          runs["fig01_lennard_jones"].summary)
     load = np.linspace(0, 1.6e-3, 2000) ** 2 / 1.6e-3
-    _, jkr, jkr_load = curves.jkr_curve(curves.RADIUS, _STIFFNESS, summary["surface_energy"], 1.6e-3)
+    _, jkr, jkr_load = curves.jkr_curve(
+        curves.RADIUS, _STIFFNESS, summary["surface_energy"], 1.6e-3)
     (x, y), (_, after) = curves.drawn(adhesion), curves.jump(adhesion, "contact")
     tail, head = curves.jump_ends(adhesion, "contact")
     for panel, text, x_range, y_range in ((whole, "whole range", (-120, 1450), (-1.8, 14.8)),

@@ -19,9 +19,10 @@ def numbers(runs):
         _, displacement, load = curves.jkr_curve(curves.RADIUS, _STIFFNESS,
                                                  summary["surface_energy"], 4 * _LOAD)
         lowest = int(np.argmin(load))
+        jkr = np.interp(_LOAD, load[lowest:], displacement[lowest:])
         jumps = "jump_in_h0" in summary
         found |= {f"sigma_{i}": summary["sigma"],
-                  f"off_{i}": 100 * (np.interp(_LOAD, load[lowest:], displacement[lowest:]) / exact - 1),
+                  f"off_{i}": 100 * (jkr / exact - 1),
                   f"ratio_{i}": summary["max_tension"] / summary["jkr_pull_off"],
                   f"jumps_{i}": "yes" if jumps else "no",
                   f"where_{i}": f"into contact at h0 = {summary['jump_in_h0'] * 1e9:.4f} nm, from "

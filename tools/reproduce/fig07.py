@@ -22,8 +22,8 @@ _MARKERS = (
 
 
 def _paper(runs):
-    """Return sigma, turning point and, in rows, the ratios of all runs with the paper's grid and rule,
-    for each sigma and penetration."""
+    """Return sigma, turning point and, in rows, the ratios of all runs with the paper's grid and
+    rule, for each sigma and penetration."""
     sweeps = [results.sweep for results in runs.draws("fig07_paper")]
     ratios = np.moveaxis([penetrations.of_sweep(sweep, len(_TURNS)) for sweep in sweeps], 0, -1)
     rows = sorted(((sigma, turn, ratio) for turn, each in zip(_TURNS, ratios)

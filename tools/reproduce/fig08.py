@@ -53,7 +53,8 @@ def numbers(runs):
     for name in ("displacement", "load"):
         # At the jump by (29), at the same gap on the axis, and at a state far from the jump.
         for key, h0, states in (("", at, path), ("_far", 4e-9, _before(runs))):
-            found[name + key] = 100 * abs(curves.at(h0, full, name) / curves.at(h0, states, name) - 1)
+            ratio = curves.at(h0, full, name) / curves.at(h0, states, name)
+            found[name + key] = 100 * abs(ratio - 1)
         same = curves.at(at + full["displacement"][-1], path, name, "h_centre")
         found[f"{name}_gap"] = 100 * abs(full[name][-1] / same - 1)
     end = part["h0"][-1]

@@ -39,14 +39,16 @@ def _loading_over_unloading(results):
 
 def numbers(runs):
     rule, true = penetrations.of_rule(runs), penetrations.converged(runs)
-    uniform, coarse = (penetrations.over_jkr(runs[f"fig10c_{kind}"]) for kind in ("uniform", "coarse"))
+    uniform, coarse = (penetrations.over_jkr(runs[f"fig10c_{kind}"])
+                       for kind in ("uniform", "coarse"))
     some = {letter: runs.draws(f"fig10{letter}_paper") for letter in rule}
     converged = {letter: runs[f"fig10{letter}_converged"] for letter in rule}
     turns = {letter: penetrations.turns(one.summary["unload_from"])
              for letter, one in converged.items()}
     sweep = runs["fig07_converged"].sweep
     first = int(np.flatnonzero(np.isfinite(sweep["jump_in_h0"]))[0])
-    left = {letter: [one.summary["worst_residual"] for one in each] for letter, each in some.items()}
+    left = {letter: [one.summary["worst_residual"] for one in each]
+            for letter, each in some.items()}
     iterations = np.concatenate([one.curve["iterations"] for each in some.values() for one in each])
     products = np.concatenate([one.curve["iterations"] for one in converged.values()])
     apart = {letter: 100 * penetrations.jkr_apart(one) for letter, one in converged.items()}

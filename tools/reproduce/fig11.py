@@ -111,7 +111,8 @@ def _draw_spring(panel):
                va="baseline")
     # Shifts [points] and sides of the words at start and end.
     for jump, color, name, words in (
-            (inward, style.BLUE, "approach", (("starts", (8, 8), "left"), ("ends", (4, -18), "left"))),
+            (inward, style.BLUE, "approach",
+             (("starts", (8, 8), "left"), ("ends", (4, -18), "left"))),
             (outward, style.VERMILION, "retreat",
              (("starts", (-9, 4), "right"), ("ends", (8, 7), "left")))):
         def pull(gap, rest=jump.rest):

@@ -1,4 +1,4 @@
-"""The paper's iteration on its uniform grid; details that the paper gives only in words are parameters.
+"""The paper's iteration on its uniform grid; what the paper gives only in words are parameters.
 
 Units are z0, sqrt(R z0) and gamma/z0, in which sigma is the only parameter; a load is in gamma R.
 The program has one of these readings: `inputs/fig10c_paper.nml`.
@@ -18,8 +18,8 @@ _CLOSEST = 0.25
 class Reading:
     """One reading of the paper's rule; lengths in nm.
 
-    `fall` is the factor of the mixing ratio if the change of the central displacement changes its sign
-    or grows by more than `growth`, `rise` the factor otherwise; `least` is the smallest ratio.
+    `fall` is the factor of the mixing ratio if the change of the central displacement changes its
+    sign or grows by more than `growth`, `rise` the factor otherwise; `least` is the smallest ratio.
     `carried`: the ratio is kept from one h0 to the next. The iteration ends if the change is below
     `tolerance`; `unmixed`: the change before mixing; `everywhere`: at every node; or after `most`
     iterations. `passes`, if not 0, is a fixed number of iterations.
@@ -132,8 +132,8 @@ def settle(scene, reading, gap, h0, memory, z0):
 def _kernel(r, interpolated):
     """Return the matrix of int p(t) k(r, t) t dt for pressures at nodes, with k of (15).
 
-    The pressure is linear between nodes, or constant between midpoints; the integrals are by the Gauss
-    rule with points graded towards r = t, where the kernel is logarithmic.
+    The pressure is linear between nodes, or constant between midpoints; the integrals are by the
+    Gauss rule with points graded towards r = t, where the kernel is logarithmic.
     """
     n, spacing = r.size, r[1]
     matrix = np.zeros((n, n))

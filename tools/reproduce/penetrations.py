@@ -19,8 +19,8 @@ def of_sweep(cases, count):
 
 
 def of_rule(runs):
-    """Return the ratios of each cycle of Fig. 10 by the paper's rule: a row for each unloading, with
-    all runs."""
+    """Return the ratios of each cycle of Fig. 10 by the paper's rule: a row for each unloading,
+    with all runs."""
     return {letter: np.transpose([*map(over_jkr, runs.draws(f"fig10{letter}_paper"))])
             for letter in FIG10}
 

@@ -108,7 +108,8 @@ def between(branches, sigma):
     low, high = (curves.at(at, branch[branch.displacement > -4.0], "load", "displacement")
                  for branch in (branches[0], branches[-1]))
     # Unloading is under more tension.
-    return float(np.mean(low - theory) / np.mean(low - high)) if np.mean(low - high) > 0.1 else np.nan
+    loop = np.mean(low - high)
+    return float(np.mean(low - theory) / loop) if loop > 0.1 else np.nan
 
 
 def statements(branches, sigma):
@@ -146,7 +147,8 @@ def numbers(runs):
     for letter, branches in nearest.items():
         loading, *pulls = tensions(branches)
         true = penetrations.over_jkr(runs[f"fig10{letter}_converged"])
-        found |= {letter: penetrations.listed(pulls), f"{letter}_true": penetrations.listed(true, 4),
+        found |= {letter: penetrations.listed(pulls),
+                  f"{letter}_true": penetrations.listed(true, 4),
                   f"true_{letter}": max(true), "loading": loading / min(pulls),
                   f"{letter}_turns": penetrations.listed(_CASES[letter], 0)}
     return found

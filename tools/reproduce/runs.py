@@ -171,7 +171,8 @@ class Runs:
         `say(text)` is called for each deck that ends.
         """
         decks = list(dict.fromkeys(decks))
-        waiting = [deck for deck in decks if not (self.path_of(deck).is_file() and self.is_done(deck))]
+        waiting = [deck for deck in decks
+                   if not (self.path_of(deck).is_file() and self.is_done(deck))]
         if len(waiting) < len(decks):
             say(f"{len(decks) - len(waiting)} of {len(decks)} runs are there already")
         # Long decks first, so that none runs alone at the end.

@@ -1,4 +1,4 @@
-"""Solved spheres under a Lennard-Jones law at any Tabor parameter: common to the chapters on others.
+"""Solved spheres under a Lennard-Jones law at any Tabor parameter, for the chapters on others.
 
 Units are z0 of the law, R and E/(1-nu^2) of two identical bodies, twice E*. Loads are in pi w R,
 radii and displacements in Maugis' units, (pi w R^2/K)^(1/3) with K = 4 E*/3 and its square over R;
@@ -65,8 +65,8 @@ def theory(name, lam, load=0.0):
 class Sphere(NamedTuple):
     """The results at one Tabor parameter; a jump that does not exist is None.
 
-    Loads in pi w R, tension positive but for `load`; h0 in z0; `lost` in w R z0. `h0` and `load` are
-    those along the path.
+    Loads in pi w R, tension positive but for `load`; h0 in z0; `lost` in w R z0. `h0` and `load`
+    are those along the path.
     """
 
     tension: float

@@ -5,11 +5,11 @@ repulsion; negative: attraction). Without force the gap would be h_rest, so that
 
     stiffness (h - h_rest) = p(h).
 
-Approach and retreat change h_rest. At p'(h) = stiffness the equilibrium is lost, since the two forces
-change at the same rate. The spring jumps to the next gap at which the forces balance. By the mean-value
-theorem p' equals the stiffness once more between start and end of a jump. If p' exceeds the
-stiffness on one interval of gaps only, its two ends are the starts, and each jump ends beyond the
-start of the other: no gap within the interval is a stable equilibrium.
+Approach and retreat change h_rest. At p'(h) = stiffness the equilibrium is lost, since the two
+forces change at the same rate. The spring jumps to the next gap at which the forces balance. By the
+mean-value theorem p' equals the stiffness once more between start and end of a jump. If p' exceeds
+the stiffness on one interval of gaps only, its two ends are the starts, and each jump ends beyond
+the start of the other: no gap within the interval is a stable equilibrium.
 
 Forces are functions of arrays of gaps; units are the caller's.
 """

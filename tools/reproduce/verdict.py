@@ -28,4 +28,5 @@ def numbers(runs):
            for kind, each in pulls.items()},
         "paper": draws.several(paper.T), "count": len(rule),
         "residual": draws.ranged([results.summary["worst_residual"] for results in rule], 0),
-        "shallowest": pulls["converged"][0], "paper_ends": "; ".join(map(draws.ranged, paper.T[[0, -1]]))}
+        "shallowest": pulls["converged"][0],
+        "paper_ends": "; ".join(map(draws.ranged, paper.T[[0, -1]]))}

@@ -2,9 +2,9 @@
 
     guards.py [NAME ...]
 
-A guard is a statement of a module, identified by words in it, never by its text. It is removed from a
-copy of src/ with its own build; `meson` and the tests are those of this checkout. Prints a table, and
-ends with status 1 if no test in a guard's list fails without the guard.
+A guard is a statement of a module, identified by words in it, never by its text. It is removed from
+a copy of src/ with its own build; `meson` and the tests are those of this checkout. Prints a table,
+and ends with status 1 if no test in a guard's list fails without the guard.
 """
 
 import os
@@ -19,16 +19,20 @@ from typing import NamedTuple
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 MESON = ROOT / ".venv" / "bin" / "meson"
 
-ANY_SIGMA = "experiment/test_hard_cases.py::test_cycle_at_any_sigma_is_solved_and_agrees_with_the_path"
+ANY_SIGMA = ("experiment/test_hard_cases.py"
+             "::test_cycle_at_any_sigma_is_solved_and_agrees_with_the_path")
 NOT_PASSED = "equilibrium/test_iterations.py"
 STARVED = "app/test_unconverged.py::test_what_does_not_converge_says_so_and_invents_nothing"
 UNCONVERGED_ROW = ("app/test_unconverged.py"
                    "::test_a_row_that_is_no_equilibrium_is_neither_stable_nor_unstable")
 BEYOND_ROUNDING = ("app/test_ranges.py"
                    "::test_sigma_out_of_any_range_is_solved_or_said_to_be_beyond_rounding")
-NO_LENGTH = "model/test_forces.py::test_a_power_has_no_length_that_others_could_be_too_long_or_short_for"
-POWER_CUT = "system/test_faults.py::test_a_power_failure_at_any_call_leaves_one_set_of_results_or_says_so"
-LIMITED = "resume/test_unwritable.py::test_a_limit_on_the_size_of_files_stops_a_run_that_then_goes_on"
+NO_LENGTH = ("model/test_forces.py"
+             "::test_a_power_has_no_length_that_others_could_be_too_long_or_short_for")
+POWER_CUT = ("system/test_faults.py"
+             "::test_a_power_failure_at_any_call_leaves_one_set_of_results_or_says_so")
+LIMITED = ("resume/test_unwritable.py"
+           "::test_a_limit_on_the_size_of_files_stops_a_run_that_then_goes_on")
 FAULTS = "system/test_faults.py"
 
 

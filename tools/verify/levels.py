@@ -1,15 +1,15 @@
-"""Measure how results depend on the compiler and its options, on threads, and on OpenBLAS's kernels.
+"""Measure how results depend on compiler and options, on threads, and on OpenBLAS's kernels.
 
     levels.py [--builds] REFERENCE [NAME=PROGRAM ...]
 
 runs decks with the program REFERENCE on one thread, and with every other PROGRAM: the decks below,
 and those of inputs/ except LEFT_OUT. Without --builds the decks below are also run with REFERENCE
 on 1, 2 and 4 threads, twice, and with the kernels for other processors that this one can run.
-It compares all columns of all tables, relative to the largest value of the column, and all numbers of
-the summary, except ROUNDED. Prints a table: the largest difference, its place, and the number of rows
-with a different number of iterations, which is not judged. Ends with status 1 if a difference exceeds
-the deck's limit, if a repeated run gives other bytes, or if threads change a byte of a deck whose
-matrices are too small to be shared between threads.
+It compares all columns of all tables, relative to the largest value of the column, and all numbers
+of the summary, except ROUNDED. Prints a table: the largest difference, its place, and the number of
+rows with a different number of iterations, which is not judged. Ends with status 1 if a difference
+exceeds the deck's limit, if a repeated run gives other bytes, or if threads change a byte of a deck
+whose matrices are too small to be shared between threads.
 """
 
 import argparse

@@ -3,8 +3,8 @@
 # results.
 #
 # A stage is the function below with its name. Without a stage: all stages, about two hours on two
-# cores. Ends with status 1 if one fails. EXTREMES (200) is the number of decks, FIRST (5000) the
-# first of them, FUZZ (240) the seconds of the search, SEED (1) the seed of the judge's random decks.
+# cores. Ends with status 1 if one fails. EXTREMES (200) is the number of random decks, FIRST (5000)
+# the first of them, FUZZ (240) the seconds of the search, SEED (1) that of the judge's decks.
 set -u
 here=$(dirname -- "$(readlink -f -- "$0")")
 top=$(dirname -- "$(dirname -- "$here")")
@@ -67,8 +67,9 @@ coverage() {
   return $tested
 }
 
-# Differences of results between builds at -O0, -O2, -O3 and -march=native, on 1, 2 and 4 threads, and
-# on OpenBLAS's kernels for other processors; then the tests on other linear algebra and compilers.
+# Differences of results between builds at -O0, -O2, -O3 and -march=native, on 1, 2 and 4 threads,
+# and on OpenBLAS's kernels for other processors; then the tests on other linear algebra and
+# compilers.
 levels() {
   builds build-O0 -Dpython=disabled -Doptimization=0 -Ddebug=false &&
     builds build-O2 -Dpython=disabled -Doptimization=2 -Ddebug=false &&

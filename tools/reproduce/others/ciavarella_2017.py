@@ -8,7 +8,8 @@ import style
 from others import greenwood_1997, wu_2010
 from report import Comparison
 
-# A cycle of JKR theory at fixed displacement: in at displacement 0, out where d(displacement)/da = 0.
+# A cycle of JKR theory at fixed displacement: in at displacement 0, out where
+# d(displacement)/da = 0.
 # In A = a/(pi w R^2/K)^(1/3), P = A^3 - A sqrt(6 A), D = A^2 - (2/3) sqrt(6 A); the loss in
 # pi w R (pi^2 w^2 R/K^2)^(1/3) is the area between the jumps.
 TABORS = (0.8, 1.0, 2.0, 5.0, 10.0, 100.0)

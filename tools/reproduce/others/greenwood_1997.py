@@ -35,7 +35,8 @@ def draw(_):
     page, (left, right) = style.figure(1, 2, height=3.9)
     for tabor, color in zip(_SHOWN, _COLORS):
         found = spheres.sphere(tabor)
-        left.plot(-found.h0, found.load, color=color, linestyle=":" if found.jump_in else "-", linewidth=1)
+        left.plot(-found.h0, found.load, color=color, linewidth=1,
+                  linestyle=":" if found.jump_in else "-")
         for part in _stable(found):
             left.plot(*part, color=color, linewidth=1.8)
         left.plot([], [], color=color, label=f"$\\mu$ = {tabor:g}")

@@ -66,7 +66,8 @@ def draw(_):
                      norm=BoundaryNorm(np.arange(-0.5, 6), 6), alpha=0.75)
     error = np.array([[worst("jkr", lam, load) for lam in LAMBDAS] for load in loads])
     panel.contour(LAMBDAS, loads, error, levels=[0.01], colors=["black"], linewidths=1)
-    style.label(panel, "Maugis' parameter $\\lambda$", "load $F/\\pi wR$", log="xy", ylim=(0.07, 1500))
+    style.label(panel, "Maugis' parameter $\\lambda$", "load $F/\\pi wR$", log="xy",
+                ylim=(0.07, 1500))
     page.legend(handles=[Patch(facecolor=color, edgecolor="#888888", alpha=0.75, label=name)
                          for name, color in zip(_NAMES, _COLORS)],
                 loc="outside lower center", ncols=6, columnspacing=1, handlelength=1.4)

@@ -10,7 +10,7 @@ from report import Comparison
 _SOURCE = "Maugis-Dugdale theory as src/theory/maugis.f90 solves it; the print was not read"
 LAMBDAS = (0.1, 0.3, 0.5, 1.0, 2.0, 5.0)
 _MANY = spheres.LAMBDAS
-# Smoothing of the step over the range of the tension; the decay length of the repulsion is half of it.
+# Smoothing of the step over the range of the tension; the decay length of the repulsion is half.
 SMOOTHINGS = (0.1, 0.04, 0.02, 0.01)
 _SOLVED = (0.3, 1.0, 3.0)
 
@@ -27,7 +27,8 @@ def dugdale(lam, smoothing):
         force={"law": "exponential", "p0": 3 * stress, "decay_length": smoothing / 2},
         equilibrium_path={"h0_end": -(1.5 * np.pi * stress) ** (2 / 3)}, classical={}).summary
     work = np.pi * summary["work_of_adhesion"]
-    return summary["max_tension"] / work, summary["maugis_pull_off"] / work, summary["maugis_lambda"]
+    return (summary["max_tension"] / work, summary["maugis_pull_off"] / work,
+            summary["maugis_lambda"])
 
 
 def _error(lam, number=0):
@@ -75,6 +76,6 @@ def rows(_):
         for smoothing in SMOOTHINGS:
             solved, theory, exact = dugdale(lam, smoothing)
             found.append(Comparison(
-                f"lambda = {exact:.4g}, pull-off of Dugdale's law, smoothed over {smoothing:g} of its "
-                "range", "theory", theory, solved, "pi w R", _SOURCE))
+                f"lambda = {exact:.4g}, pull-off of Dugdale's law, smoothed over {smoothing:g} of "
+                "its range", "theory", theory, solved, "pi w R", _SOURCE))
     return found

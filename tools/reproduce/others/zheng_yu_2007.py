@@ -1,4 +1,4 @@
-"""Zheng and Yu (2007), Grierson et al. (2013): bodies f = B r^n, JKR theory beside Lennard-Jones."""
+"""Zheng and Yu (2007), Grierson et al. (2013): bodies f = B r^n, JKR theory and Lennard-Jones."""
 
 import functools
 import math
@@ -84,7 +84,8 @@ def draw(_):
 
 
 def rows(_):
-    works = {(exponent, tabor): _work(exponent, tabor) for exponent in EXPONENTS for tabor in _TABORS}
+    works = {(exponent, tabor): _work(exponent, tabor)
+             for exponent in EXPONENTS for tabor in _TABORS}
     found = [Comparison(f"f = B r^{exponent:g}, mu_n = {tabor:g}, pull-off", "formula",
                         formula(exponent, work)[1] / work, solved(exponent, tabor) / work,
                         "w, B = 1/(2 z0^(n-1)), lateral unit z0", _SOURCE)
