@@ -1,7 +1,5 @@
 """Fig. 11: a spring in a field of force, and profiles of loading and unloading at the same h0."""
 
-import functools
-
 import curves
 import draws
 import numpy as np
@@ -29,13 +27,6 @@ def _jumps(fraction):
     return spring.jumps(force, slope, fraction * largest, 0.6 * _Z0, 100 * _Z0, count=100001)
 
 
-@functools.cache
-def _brackets(fractions):
-    """Return the number of stiffnesses for which the ends of jumps bracket their starts."""
-    return sum(inward.end < outward.start < inward.start < outward.end
-               for inward, outward in map(_jumps, fractions))
-
-
 def _radius(results, branch, h0):
     rows = results.branch(branch)
     return float(rows["contact_radius"][np.argmin(abs(rows["h0"] - h0))])
@@ -59,7 +50,9 @@ def least_excess(results):
 
 def numbers(runs):
     converged, coarse = runs["fig10c_converged"], runs["fig10c_coarse"]
-    held, count = _brackets(tuple(FRACTIONS)), FRACTIONS.size
+    held, count = 0, FRACTIONS.size
+    for inward, outward in map(_jumps, FRACTIONS):
+        held += inward.end < outward.start < inward.start < outward.end
     if held != count:
         raise ValueError(f"jump ends bracket the starts for {held} of {count} springs")
     (caught, freed), (in_, out) = both_in_contact(coarse), both_in_contact(converged)

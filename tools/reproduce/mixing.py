@@ -178,10 +178,9 @@ def _graded(points):
 def _ring_weights(r, interpolated):
     """Return the weights of int p t dt."""
     x, weight = _gauss(4)
+    right = x if interpolated else (x > 0.5).astype(float)
+    values = weight * r[1] * (r[:-1, None] + r[1] * x)
     result = np.zeros(r.size)
-    for panel in range(r.size - 1):
-        t = r[panel] + r[1] * x
-        right = x if interpolated else (x > 0.5).astype(float)
-        result[panel] += np.sum(weight * r[1] * t * (1 - right))
-        result[panel + 1] += np.sum(weight * r[1] * t * right)
+    result[:-1] += values @ (1 - right)
+    result[1:] += values @ right
     return result

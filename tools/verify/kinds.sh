@@ -99,15 +99,15 @@ failed=
 for kind in ${KINDS:-Prescott Haswell SkylakeX Zen reference flang-22 gfortran-11}; do
   reason=
   case $kind in
-    reference) sort=reference what='the reference LAPACK' ;;
-    flang-* | gfortran-*) sort=compiler what="a build by $kind" ;;
-    *) sort=kernel what="OpenBLAS's $kind kernels" ;;
+    reference) sort=reference title='the reference LAPACK' ;;
+    flang-* | gfortran-*) sort=compiler title="a build by $kind" ;;
+    *) sort=kernel title="OpenBLAS's $kind kernels" ;;
   esac
   if "has_$sort" "$kind"; then
-    say "tests on $what"
+    say "tests on $title"
     ("$sort" "$kind" "$@") || failed="$failed $kind"
   else
-    say "skipped: $what: $reason"
+    say "skipped: $title: $reason"
   fi
 done
 [ -z "$failed" ] || { say "failed:$failed"; exit 1; }
