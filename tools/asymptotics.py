@@ -9,7 +9,7 @@ import pathlib
 import sys
 
 import pages
-from snapin.results import read_table
+from snapin import read_results
 
 DOCS = pages.ROOT / "docs"
 EVERY = 8
@@ -39,13 +39,12 @@ def main():
     file = pathlib.Path(sys.argv[1]) if len(sys.argv) > 1 else default
     if not file.is_file():
         sys.exit(f"no {file}; first: ./run inputs/table_lennard_jones.nml")
-    columns = read_table(file.parent, file.name)
-    if not (columns["converged"] == 1).all():
+    sweep = read_results(file.parent).sweep
+    if not (sweep["converged"] == 1).all():
         sys.exit(f"{file}: not every case converged")
     (DOCS / "table_lennard_jones.csv").write_bytes(file.read_bytes())
-    rows = list(zip(*columns.values()))[::EVERY]
     pages.insert(DOCS / "asymptotics.md", "table",
-                 pages.table(HEADER, [cells(dict(zip(columns, row))) for row in rows]))
+                 pages.table(HEADER, [cells(row) for row in sweep[::EVERY]]))
 
 
 if __name__ == "__main__":

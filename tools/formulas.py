@@ -19,8 +19,7 @@ from others import ciavarella_2017, indentation_of_layers, wu_2010, zheng_yu_200
 
 PAGE = pages.ROOT / "docs" / "formulas.md"
 PICTURE = pages.ROOT / "docs" / "formulas.png"
-TABORS = tuple(float(each) for each in np.geomspace(0.01, 100, 65))
-JUMPING = tuple(float(each) for each in np.geomspace(0.7, 100, 40))
+TABORS, JUMPING = spheres.spaced(0.01, 100, 65), spheres.spaced(0.7, 100, 40)
 LOADED = 10.0
 NAMES = {"dmt": "DMT", "jkr": "JKR", "maugis": "Maugis-Dugdale", "carpick": "Carpick et al.",
          "pietrement": "Piétrement and Troyon", "hertz": "Hertz"}
@@ -86,30 +85,24 @@ def formulas():
     chis = tuple(float(each) for each in np.arange(0.05, 2.001, 0.05))
     found += [Formula("load on a thin layer, ν = 0.5", name,
                       lambda chi, key=key: indentation_of_layers.error(key, chi) / 100, chis, "χ")
-              for key, name in (("dimitriadis", "Dimitriadis et al."), ("garcia", "García and García"))]
+              for key, name in (("dimitriadis", "Dimitriadis et al."),
+                                ("garcia", "García and García"))]
     return found
 
 
 def good(errors, grid, symbol, within):
     """Return in words the range with errors within a bound: from the first good value to the
     last."""
-    fine = abs(errors) <= within
-    spans, start = [], None
-    for i, each in enumerate([*fine, False]):
-        if each and start is None:
-            start = i
-        elif not each and start is not None:
-            # A curve that only crosses zero has no such range.
-            if i - start > 2:
-                spans.append((start, i - 1))
-            start = None
+    edges = np.flatnonzero(np.diff([False, *(abs(errors) <= within), False]))
     words = []
-    for first, last in spans:
-        low, high = _short(grid[first]), _short(grid[last])
-        if first == 0 and last == len(grid) - 1:
+    for first, end in zip(edges[::2], edges[1::2]):
+        low, high = _short(grid[first]), _short(grid[end - 1])
+        if first == 0 and end == len(grid):
             return "everywhere"
-        words.append(f"{symbol} ≤ {high}" if first == 0 else f"{symbol} ≥ {low}"
-                     if last == len(grid) - 1 else f"{low} to {high}")
+        # A curve that only crosses zero has no such range.
+        if end - first > 2:
+            words.append(f"{symbol} ≤ {high}" if first == 0 else f"{symbol} ≥ {low}"
+                         if end == len(grid) else f"{low} to {high}")
     return ", ".join(words) or "nowhere"
 
 
@@ -154,7 +147,8 @@ def draw(found):
                                else "-")
         panel.set_ylim(-30, 35)
         style.heading(panel, title)
-        style.label(panel, "Tabor's parameter $\\mu$", "error [%]" if panel is panels[0] else "", "y")
+        style.label(panel, "Tabor's parameter $\\mu$", zero_lines="y",
+                    y="error [%]" if panel is panels[0] else "")
     style.legend(page, 5)
     return page
 

@@ -82,13 +82,13 @@ def write_table():
     columns["garcia_2018_nu_0.5"] = [garcia(chi) for chi in CHI]
     columns |= {f"film_over_base_{ratio:g}": [over_hertz(chi, 0.5, ratio) for chi in CHI]
                 for ratio in ON_ELASTIC}
-    lines = ["# Load over Hertz's load on a half-space of the film, at the same indentation delta.",
-             "# chi = sqrt(R delta)/thickness; sphere rigid, parabola; film bonded, no adhesion.",
-             "# film_over_base: ratio of moduli, film and base incompressible.",
-             ",".join(columns)]
-    lines += [",".join(f"{value:.6g}" for value in row) for row in zip(*columns.values())]
-    TABLE.write_text("\n".join(lines) + "\n", encoding="utf-8")
-    return {name: np.array(column) for name, column in columns.items()}
+    header = (
+        "# Load over Hertz's load on a half-space of the film, at the same indentation delta.",
+        "# chi = sqrt(R delta)/thickness; sphere rigid, parabola; film bonded, no adhesion.",
+        "# film_over_base: ratio of moduli, film and base incompressible.", ",".join(columns))
+    np.savetxt(TABLE, np.transpose([*columns.values()]), "%.6g", ",", header="\n".join(header),
+               comments="")
+    return columns
 
 
 def draw(table):
@@ -155,14 +155,12 @@ def coated(sigma, thin=None, ratio=0, nu=0.0):
     if thin is None:
         return half.path(numerics)
     # E* of the half-space's deck is half of the stiffness there: here one body is elastic.
-    bodies, force = half.physics.split("\n")
-    stiffness = float(bodies.split("=")[-1].strip(" /")) / 2
-    radius = float(bodies.split("=")[1].split(",")[0])
-    young = stiffness * (1 - nu**2)
-    thickness = thin * math.sqrt(radius * half.length) * (9 * math.pi * sigma) ** (1 / 3)
+    young = problems.stiffness_of(sigma) / 2 * (1 - nu**2)
+    thickness = thin * math.sqrt(problems.RADIUS * half.length) * (9 * math.pi * sigma) ** (1 / 3)
     base = f"young = {young / ratio!r}, poisson = {nu}" if ratio else "rigid = .true."
-    physics = (f"&bodies radius = {radius!r}, {base} /\n&layer thickness = {thickness!r}, "
-               f"young = {young!r}, poisson = {nu}, partner = 'rigid' /\n{force}")
+    bodies = (f"&bodies radius = {problems.RADIUS}, {base} /\n&layer thickness = {thickness!r}, "
+              f"young = {young!r}, poisson = {nu}, partner = 'rigid' /")
+    physics = half.physics.replace(half.physics.split("\n")[0], bodies)
     return dataclasses.replace(half, physics=physics).path(numerics)
 
 

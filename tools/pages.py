@@ -5,8 +5,8 @@
     pages.py --mark PAGE  records that all figures of PAGE were measured just now
 
 A page has the line `<!-- measured at DIGEST -->`. The digest is that of the sources that
-determine numbers. A command that renews a whole page marks the page; after a measurement by hand use
---mark.
+determine numbers. A command that renews a whole page marks the page; after a measurement by hand
+use --mark.
 """
 
 import argparse
@@ -39,12 +39,12 @@ PAGES = {
 # Files that read decks, write files or print messages change no number. A new file counts until it
 # is listed here.
 _NO_NUMBERS = (
-    "namelist_writer", "clock", "command_line", "c_library", "decimal", "deck", "deck_keys",
-    "deck_number", "deck_numbers", "deck_scan", "deck_source", "deck_store", "text",
-    "deck_values",
-    "failure", "checksums", "files", "folder_lock", "journal", "memory",
-    "case_rows", "dispatch", "launch", "preflight", "ranks", "result_listing", "result_rows", "result_tables", "state_records", "byte_record", "progress",
-    "publication", "run_identity", "snapin", "text_file",
+    "byte_record", "c_library", "case_rows", "checksums", "clock", "command_line", "decimal",
+    "deck", "deck_keys", "deck_number", "deck_numbers", "deck_scan", "deck_source",
+    "deck_store", "deck_values", "dispatch", "failure", "files", "folder_lock", "journal",
+    "launch", "memory", "namelist_writer", "preflight", "progress", "publication", "ranks",
+    "result_listing", "result_rows", "result_tables", "run_identity", "snapin", "state_records",
+    "text", "text_file",
 )
 _MARK = re.compile(r"<!-- measured at (\w+) -->")
 

@@ -78,14 +78,29 @@ install_packages() {
     give_up "missing: $packages (Debian's names); install these with this system's tools"
   [ "$(id -u)" = 0 ] ||
     give_up "missing: $packages; install with: sudo apt-get install -y $packages"
-  export DEBIAN_FRONTEND=noninteractive
   logged 'updating the package lists' apt-get update
   # shellcheck disable=SC2086 # a list of words is meant
-  logged "installing $packages" \
-    apt-get install -y --no-install-recommends -o DPkg::Lock::Timeout=300 $packages
+  from_debian $packages
   packages=$(missing_packages)
   [ -z "$packages" ] ||
     give_up "still missing for $(command -v python3) and ${FC:-gfortran}: $packages"
+}
+
+from_debian() {
+  export DEBIAN_FRONTEND=noninteractive
+  logged "installing $*" \
+    apt-get install -y --no-install-recommends -o DPkg::Lock::Timeout=300 "$@"
+}
+
+# provides PACKAGE...: installs packages if Debian offers them, otherwise sets `reason`. A failed
+# installation ends the shell.
+provides() {
+  dpkg -s "$@" > /dev/null 2>&1 && return
+  reason="missing: $*"
+  { has apt-get && [ "$(id -u)" = 0 ]; } || return
+  logged 'updating the package lists' apt-get update
+  apt-cache show "$@" > /dev/null 2>&1 || { reason="not in the package lists: $*"; return 1; }
+  from_debian "$@"
 }
 
 make_environment() {
@@ -125,6 +140,16 @@ builds() {
   [ -f "$folder/build.ninja" ] || "$venv/bin/meson" setup "$folder" "$@" > /dev/null || return
   "$venv/bin/meson" compile -C "$folder" > "$folder/compile.log" ||
     { tail -n 25 "$folder/compile.log"; return 1; }
+}
+
+tests() { "$venv/bin/python" -m pytest -q -n auto --dist worksteal "$@"; }
+
+# tests_of FOLDER [PYTEST ARGUMENTS]: the tests on another build, from the top of the checkout.
+tests_of() {
+  folder=$1
+  shift
+  SNAPIN=$top/$folder/snapin tests -o pythonpath="pywrap $folder/pywrap tests pywrap/plots tools \
+tools/verify tools/reproduce" "$@"
 }
 
 # The conditions of environment and build: their place, since both contain absolute paths, the

@@ -7,9 +7,9 @@
     ./bench --resume                 the rest of an interrupted run
     ./bench --draw                   pictures and tables again, from the present measurements
 
-Times are in G, one DGESV of 400 unknowns on one core in the same run. Beside them is the time of the
-same linear algebra and rows alone. Measurements of earlier sources are kept as NAME_before.csv, for
-the comparison in the table of costs.
+Times are in G, one DGESV of 400 unknowns on one core in the same run. Beside them is the time of
+the same linear algebra and rows alone. Measurements of earlier sources are kept as NAME_before.csv,
+for the comparison in the table of costs.
 """
 
 import argparse
@@ -56,48 +56,53 @@ def main():
     """Run the requested parts."""
     options = _options()
     build = options.build.resolve()
-    quick = options.quick
-    folder = (options.out or ROOT / ("results/bench" if quick else "docs/bench")).resolve()
+    folder = (options.out or ROOT / ("results/bench" if options.quick else "docs/bench")).resolve()
     with tempfile.TemporaryDirectory() as scratch:
         runner = program.Program(build, scratch)
-        version = subprocess.run([str(runner.snapin), "--version"], check=True,
-                                 capture_output=True, text=True).stdout.split("\n")[0]
-        for name in options.only or _PARTS:
+        for name in () if options.draw else options.only or _PARTS:
             path = folder / f"{name}.csv"
             fresh = path.is_file() and path.stat().st_mtime > runner.snapin.stat().st_mtime
-            if options.draw or options.resume and fresh:
-                continue
-            began = time.perf_counter()
-            _say(name)
-            rows = _PARTS[name][0](runner, quick, lambda text: _say(f"  {text}"))
-            sources = f"sources {pages.digest(build.parent / 'src')}"
-            if name in _COMPARED and path.is_file() and _sources(path) not in ("", sources):
-                path.replace(_before(path))
-            tables.write(path, rows, [f"./bench --only {name}{' --quick' if quick else ''}",
-                                      version, sources, tables.machine()])
-            _say(f"  {time.perf_counter() - began:.0f} s; {path}")
-    in_guide = not quick and options.out is None
+            if not (options.resume and fresh):
+                _measure(name, path, runner, f"sources {pages.digest(build.parent / 'src')}",
+                         options.quick)
+    in_guide = not options.quick and options.out is None
     _present(folder, in_guide)
     if in_guide and not options.only and not options.draw:
         pages.mark(_GUIDE)
 
 
+def _measure(name, path, runner, sources, quick):
+    """Measure a part and write its table; that of earlier sources is kept for comparison."""
+    began = time.perf_counter()
+    _say(name)
+    rows = _PARTS[name][0](runner, quick, lambda text: _say(f"  {text}"))
+    if name in _COMPARED and path.is_file() and _sources(path) != sources:
+        path.replace(_before(path))
+    version = subprocess.run([str(runner.snapin), "--version"], check=True, capture_output=True,
+                             text=True).stdout.split("\n")[0]
+    tables.write(path, rows, [f"./bench --only {name}{' --quick' if quick else ''}", version,
+                              sources, tables.machine()])
+    _say(f"  {time.perf_counter() - began:.0f} s; {path}")
+
+
 def _present(folder, in_guide):
     """Draw the available measurements; with `in_guide`, renew the guide's tables."""
-    found = {}
+    found, measured = {}, {}
     for name, (_, draw, make_tables) in _PARTS.items():
-        rows = tables.read(folder / f"{name}.csv")
-        if not _sources(folder / f"{name}.csv"):
-            # Measured in seconds, by an earlier version of the bench.
-            continue
+        path = folder / f"{name}.csv"
+        rows = tables.read(path)
+        if rows:
+            measured.setdefault((_sources(path), tables.notes(path)[-1]), []).append(name)
         if rows and draw:
             draw(rows, folder)
         if rows and make_tables:
-            found.update(make_tables(rows, tables.read(_before(folder / f"{name}.csv"))))
+            found |= make_tables(rows, tables.read(_before(path)))
     if (folder / "accuracy.csv").is_file():
-        found.update(accuracy.honesty(folder))
+        found |= accuracy.honesty(folder)
     if in_guide:
-        pages.insert(_GUIDE, "version", _versions(folder), measured=False)
+        pages.insert(_GUIDE, "version", [
+            f"Measured with {sources} ({machine}): {', '.join(names)}."
+            for (sources, machine), names in measured.items()], measured=False)
     for name, (header, lines) in found.items():
         table = pages.table(header, lines, tables.short)
         if in_guide:
@@ -106,20 +111,8 @@ def _present(folder, in_guide):
             print("\n".join(["", name, "", *table]))
 
 
-def _versions(folder):
-    """Return the sources of the measurements, as a sentence for each."""
-    by_sources = {}
-    for name in _PARTS:
-        path = folder / f"{name}.csv"
-        if path.is_file():
-            sources = _sources(path) or "sources before these, in seconds"
-            by_sources.setdefault((sources, tables.notes(path)[-1]), []).append(name)
-    return [f"Measured with {sources} ({machine}): {', '.join(names)}."
-            for (sources, machine), names in by_sources.items()]
-
-
 def _sources(path):
-    """Return the note of a table about its sources; empty without one."""
+    """Return the note of a table about its sources."""
     return next((note for note in tables.notes(path) if note.startswith("sources ")), "")
 
 

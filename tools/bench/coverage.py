@@ -5,8 +5,8 @@
 
 Strength of adhesion, spring, noise, number of samples, outliers and where the search starts are
 drawn for each curve by its number. A fit arrives if no estimate is 6 standard errors off.
---wrong fits with z0 fixed at twice the truth, which the fit must detect. Rows go to standard output,
-followed by the table.
+--wrong fits with z0 fixed at twice the truth, which the fit must detect. Rows go to standard
+output, followed by the table.
 """
 
 import argparse
@@ -77,33 +77,27 @@ class Outcome:
             warnings.simplefilter("ignore", snapin.SnapinWarning)
             curve = case.curve
             file = write(f"{folder}/curve.csv", curve.z, curve.force, curve.segment, digits=6)
-            result, self.warnings = None, []
+            fitted, self.warnings = None, []
             try:
                 result = snapin.run(case.deck(file))
-                self.warnings = list(result.summary.get("warnings", []))
+                fitted, self.warnings = result.fitted, list(result.summary.get("warnings", []))
             except snapin.SnapinError as refused:
                 self.warnings = [str(refused)]
         self.seconds = time.perf_counter() - began
+        # Errors over standard errors; those of numbers that are positive from their logarithms.
         self.off = np.full(len(case.truths), np.inf)
         self.reduced = self.noise = math.nan
-        if result is not None and result.fitted:
-            fit = result.fitted["fit"]
-            logs = np.array([1, 1, 0, 1][:len(self.off)], bool)
+        if fitted:
+            fit = fitted["fit"]
             estimate, error = np.array(fit["estimate"]), np.array(fit["standard_error"])
             with np.errstate(all="ignore"):
-                far = np.where(logs, np.log(estimate / np.where(logs, case.truths, 1)) * estimate,
-                               estimate - case.truths)
+                far = np.where(case.truths == 0, estimate,
+                               np.log(estimate / case.truths) * estimate)
             self.off = far / error
             self.reduced = fit["chi_squared"][0] / fit["degrees_of_freedom"][0]
             self.noise = fit["noise"][0] / curve.noise
-
-    @property
-    def arrived(self):
-        return bool(np.abs(self.off).max() < 6)
-
-    @property
-    def found_wrong(self):
-        return any(WRONG in text for text in self.warnings)
+        self.arrived = bool(np.abs(self.off).max() < 6)
+        self.found_wrong = any(WRONG in text for text in self.warnings)
 
 
 def line_of(case, outcome):

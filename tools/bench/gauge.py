@@ -5,7 +5,7 @@ vary with the load of the machine.
 """
 
 import bisect
-import io
+import csv
 import math
 import os
 import pathlib
@@ -28,7 +28,7 @@ class Gauge:
 
     def __init__(self, environment):
         self.build, self.environment = ROOT / "build", environment
-        self._unit, self._measured, self._pieces, self._row = None, -1e9, None, None
+        self._unit, self._measured, self._pieces, self._row = None, -math.inf, None, None
         subprocess.run([str(ROOT / ".venv/bin/ninja"), "-C", str(self.build), "linear_limits"],
                        check=True, capture_output=True)
 
@@ -39,14 +39,13 @@ class Gauge:
             self._measured = time.monotonic()
         return self._unit
 
-    def pieces(self, nodes, names=(), threads=1):
+    def pieces(self, nodes, names=()):
         """Return a dict of seconds for each number of nodes, of all pieces or of the given ones."""
         output = subprocess.run(
             [str(self.build / "linear_limits"), *names, *map(str, nodes)],
-            env=self.environment(threads), check=True, capture_output=True, text=True).stdout
-        lines = io.StringIO(output)
-        header = next(lines).strip().split(",")
-        return [dict(zip(header, map(float, line.split(",")))) for line in lines]
+            env=self.environment, check=True, capture_output=True, text=True).stdout
+        return [{name: float(cell) for name, cell in row.items()}
+                for row in csv.DictReader(output.splitlines())]
 
     def limit(self, run):
         """Return the seconds of a run's products, solutions, factorisations and rows alone.
@@ -65,11 +64,12 @@ class Gauge:
                 + run.factorisations * (dgesv - dgetrs) + run.states * self._row)
 
     def _at(self, size, name):
-        """Return the seconds of a piece at a size, by a power law between measured sizes."""
+        """Return the seconds of a piece at a size, by a power law between measured sizes; beyond
+        them by that of the nearest two."""
         i = min(max(bisect.bisect(_SIZES, size) - 1, 0), len(_SIZES) - 2)
         low, high = (self._pieces[j][name] for j in (i, i + 1))
-        return low * (high / low) ** (math.log(max(size, 1) / _SIZES[i])
-                                      / math.log(_SIZES[i + 1] / _SIZES[i]))
+        # The sizes are powers of two.
+        return low * (high / low) ** math.log2(max(size, 1) / _SIZES[i])
 
 
 def _seconds_of_row():

@@ -5,6 +5,7 @@ import shutil
 import subprocess
 
 import problems
+from tables import chosen
 
 # Functions that do not call each other, so that their shares add up.
 _PIECES = (
@@ -16,7 +17,6 @@ _PIECES = (
     ("interpolation", r"__discretisation_MOD_interpolate"),
     ("rows of results", r"__results_MOD_take"),
 )
-
 
 
 def measure(program, quick, say):
@@ -72,10 +72,7 @@ def tables(rows, before):
     lines = []
     for kind, name in (("seconds", "time: "), ("instructions", "instructions: ")):
         for what in dict.fromkeys(row["what"] for row in rows if row["kind"] == kind):
-            cells = [name + what]
-            for case in cases:
-                share = next((row["share"] for row in rows if row["case"] == case
-                              and row["what"] == what and row["kind"] == kind), 0.0)
-                cells.append(f"{100 * share:.1f} %")
-            lines.append(cells)
+            shares = (sum(row["share"] for row in chosen(rows, case=case, what=what, kind=kind))
+                      for case in cases)
+            lines.append([name + what, *(f"{100 * share:.1f} %" for share in shares)])
     return {"hot_spots": (["share of", *cases], lines)}

@@ -7,8 +7,10 @@ calculation alone.
 import math
 import shutil
 
+import numpy as np
 import pictures
 import problems
+from tables import chosen, earlier
 
 ACCURACIES = (1e-3, 1e-6, 1e-9)
 # Accuracy of the reference of all runs; largest number of seconds of a run.
@@ -54,21 +56,19 @@ def measure_experiments(program, quick, say):
 
 def draw(rows, folder):
     """Draw the cost of each law and shape at each accuracy, the cheapest at the top."""
-    names = sorted({row["problem"] for row in rows}, reverse=True, key=lambda name: [
-        row["price"] for row in rows if row["problem"] == name and row["accuracy"] == 1e-6])
-    page, panels = pictures.figure(1, 1, (8.0, 0.28 * len(names) + 1.4))
-    panel = panels[0, 0]
+    middle = chosen(rows, accuracy=1e-6)
+    names = [row["problem"] for row in sorted(middle, key=lambda row: -row["price"])]
+    page, panel = pictures.figure(1, 1, (8.0, 0.28 * len(names) + 1.4))
     pictures.dress(panel, "", "time of a path [G]", log="x")
-    for accuracy, colour, marker in zip(ACCURACIES, pictures.COLOURS, pictures.MARKERS):
-        mine = [row for row in rows if row["accuracy"] == accuracy]
+    for accuracy, look in zip(ACCURACIES, pictures.LOOKS):
         for reached in (True, False):
-            these = [row for row in mine if (row["error"] <= accuracy) == reached]
-            panel.plot([row["price"] for row in these], [names.index(row["problem"])
-                                                         for row in these], marker,
-                       color=colour, markerfacecolor=colour if reached else "white",
-                       linestyle="none", label=f"accuracy {accuracy:g}" if reached else None)
-    panel.plot([], [], "o", color="#555555", markerfacecolor="white", linestyle="none",
-               label="accuracy missed, or not known")
+            these = [row for row in chosen(rows, accuracy=accuracy)
+                     if (row["error"] <= accuracy) == reached]
+            panel.plot([row["price"] for row in these],
+                       [names.index(row["problem"]) for row in these], **look, linestyle="none",
+                       markerfacecolor=look["color"] if reached else "white",
+                       label=f"accuracy {accuracy:g}" if reached else None)
+    pictures.explain(panel, "accuracy missed, or not known", linestyle="none", **pictures.OPEN)
     panel.set_yticks(range(len(names)), names)
     pictures.legend(page, 4)
     pictures.save(page, folder / "laws.png")
@@ -85,12 +85,11 @@ def tables_experiments(rows, before):
 
 
 def _price_list(rows, before, judged, title):
-    earlier = {(row["problem"], row["accuracy"]): row["price"] for row in before}
+    price_before = earlier(before, "price", "problem", "accuracy")
     return (
         ["", "accuracy", "G, calculation", "before", "nodes", "states", "factorisations",
          "error_estimate", title],
-        [[row["problem"], f"{row['accuracy']:.0e}", row["price"],
-          earlier.get((row["problem"], row["accuracy"]), math.nan),
+        [[row["problem"], f"{row['accuracy']:.0e}", row["price"], price_before(row),
           *(f"{row[key]:.0f}" if row[key] else math.nan
             for key in ("nodes", "states", "factorisations")), row["estimate"], row[judged]]
          for row in rows])
@@ -119,16 +118,11 @@ def _error_over_estimate(run, reference):
     """Return the largest error of a number over its estimate, if the reference is good enough."""
     ratios = []
     for key in reference.summary:
-        if f"{key}_error" not in reference.summary or f"{key}_error" not in run.summary:
-            continue
-        values, exact, estimates, least = (
-            _listed(summary[name]) for name in (key, f"{key}_error")
-            for summary in (run.summary, reference.summary))
-        ratios += [abs(value - right) / estimate
-                   for value, right, estimate, known in zip(values, exact, estimates, least)
-                   if estimate > _BETTER * known > 0]
+        if f"{key}_error" in reference.summary and f"{key}_error" in run.summary:
+            values, exact, estimates, least = (
+                np.ravel(summary[name]) for name in (key, f"{key}_error")
+                for summary in (run.summary, reference.summary))
+            ratios += [abs(value - right) / estimate
+                       for value, right, estimate, known in zip(values, exact, estimates, least)
+                       if estimate > _BETTER * known > 0]
     return max(ratios, default=math.nan)
-
-
-def _listed(value):
-    return value if isinstance(value, list) else [value]

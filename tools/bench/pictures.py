@@ -1,31 +1,56 @@
 """The common parts of the pictures."""
 
+import math
+
 import program  # noqa: F401 (makes drawing importable)
 from drawing import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILION
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullLocator
 
-COLOURS = (BLUE, VERMILION, GREEN, ORANGE, PURPLE, SKY, BLACK, GREY)
+DARK = "#555555"
 MARKERS = ("o", "s", "^", "D", "v", "P", "X", "h")
+# Colours and markers of problems, methods and kinds, in their order.
+LOOKS = tuple({"color": colour, "marker": marker} for colour, marker in zip(
+    (BLUE, VERMILION, GREEN, ORANGE, PURPLE, SKY, BLACK, GREY), MARKERS))
+OPEN = {"markerfacecolor": "white"}
+THIN = {"color": GREY, "linewidth": 1, "linestyle": (0, (4, 2))}
 
 
-def figure(rows, columns, size=None, **options):
-    """Return a figure of a README's width, and its panels."""
-    page = Figure(figsize=size or (9.0, 3.6 * rows), layout="constrained")
-    return page, page.subplots(rows, columns, squeeze=False, **options)
+def figure(rows, columns, size, **options):
+    """Return a figure, and its panels like those of matplotlib's `subplots`."""
+    page = Figure(figsize=size, layout="constrained")
+    return page, page.subplots(rows, columns, **options)
 
 
 def dress(panel, title="", x="", y="", log="xy"):
     """Set the names and the scales of a panel."""
     panel.set_title(title, fontsize=11)
-    panel.set_xlabel(x)
-    panel.set_ylabel(y)
-    if "x" in log:
-        panel.set_xscale("log")
-    if "y" in log:
-        panel.set_yscale("log")
+    panel.set(xlabel=x, ylabel=y, **{f"{axis}scale": "log" for axis in log})
     panel.grid(True, color="#dddddd", linewidth=0.6)
     panel.spines[["top", "right"]].set_visible(False)
+
+
+def plain_ticks(axis, *values):
+    """Put ticks at values of a logarithmic axis of a panel with data, written out."""
+    axis.set_ticks(values, [f"{value:g}" for value in values])
+    axis.set_minor_locator(NullLocator())
+
+
+def line(panel, rows, x, y, least=-math.inf, **look):
+    """Draw a column of rows against another; values below `least` are drawn there."""
+    panel.plot([row[x] for row in rows], [max(row[y], least) for row in rows], **look)
+
+
+def marks(panel, rows, x, y, look, least=-math.inf, **options):
+    """Draw the marks of rows without a line; those of runs with a warning are open."""
+    for row in rows:
+        line(panel, [row], x, y, least, **look, **options, linestyle="none",
+             markerfacecolor="white" if row["warning"] else look["color"])
+
+
+def explain(panel, name, marker="o", **look):
+    """Put a grey mark or line with a meaning of its own into the legend."""
+    panel.plot([], [], marker, **{"color": DARK, "label": name, **look})
 
 
 def legend(page, columns=3):
@@ -40,17 +65,9 @@ def legend(page, columns=3):
 
 def guide(panel, x, y, power, text):
     """Draw a thin line of a power law through the first point, with its name there."""
-    values = [y * (value / x[0]) ** power for value in x]
-    panel.plot(x, values, color=GREY, linewidth=1.0, linestyle=(0, (4, 2)), zorder=0)
-    panel.annotate(text, (x[0], values[0]), (6, 4), textcoords="offset points", color="#555555",
+    panel.plot(x, [y * (value / x[0]) ** power for value in x], **THIN, zorder=0)
+    panel.annotate(text, (x[0], y), (6, 4), textcoords="offset points", color=DARK,
                    fontsize=10, ha="left", va="bottom")
-
-
-def plain_ticks(panel, values, axis="x"):
-    """Put ticks at the given values of a logarithmic axis, written out."""
-    axis = getattr(panel, f"{axis}axis")
-    axis.set_ticks(values, [f"{value:g}" for value in values])
-    axis.set_minor_locator(NullLocator())
 
 
 def save(page, path):

@@ -6,7 +6,7 @@ import pathlib
 import re
 
 EXAMPLES = pathlib.Path(__file__).resolve().parents[2] / "inputs" / "examples"
-_RADIUS, _Z0, _HAMAKER = 1.5e-2, 0.5e-9, 1e-19
+RADIUS, _Z0, _HAMAKER = 1.5e-2, 0.5e-9, 1e-19
 _P0, _DECAY = 2.5e8, 0.2e-9
 
 
@@ -37,10 +37,9 @@ class Problem:
         return self._deck(f"&loading h0_start = {2 * h0!r}, h0_end = {h0!r}, h0_step = {h0!r} /",
                           numerics)
 
-    def path(self, numerics="", more=""):
+    def path(self, numerics=""):
         """Return a deck for the whole path of equilibria, down to the turning point."""
-        return self._deck(f"&equilibrium_path h0_end = {self.turn * self.length!r} /\n{more}",
-                          numerics)
+        return self._deck(f"&equilibrium_path h0_end = {self.turn * self.length!r} /", numerics)
 
     def _deck(self, parts, numerics):
         return f"&scene title = '{self.name}' /\n{self.physics}\n{parts}\n&numerics {numerics} /\n"
@@ -48,13 +47,13 @@ class Problem:
 
 def lennard_jones(sigma):
     """Return the Lennard-Jones problem of a strength of adhesion sigma, (40) of the paper."""
-    stiffness = _stiffness_of(sigma)
+    stiffness = stiffness_of(sigma)
     # The retreat jumps apart at about this h0, in units of z0, and a little more.
     start = 5 + 3.2 * sigma ** (2 / 3)
     start, turn = float(f"{start:.2g}"), -float(f"{0.25 * start:.1g}")
     return Problem(
         f"sigma_{sigma:g}", f"σ = {sigma:g}",
-        f"&bodies radius = {_RADIUS}, stiffness = {stiffness!r} /\n"
+        f"&bodies radius = {RADIUS}, stiffness = {stiffness!r} /\n"
         f"&force law = 'lennard_jones', hamaker = {_HAMAKER}, z0 = {_Z0} /",
         _Z0, start, turn, (start - turn) / 50)
 
@@ -82,19 +81,19 @@ def experiment(name, accuracy):
     return re.sub(r"&numerics\b[^/]*/.*\n?", "", deck) + f"&numerics accuracy = {accuracy} /\n"
 
 
-def _stiffness_of(sigma):
+def stiffness_of(sigma):
     """Return the E/(1-nu^2) [Pa] for a sigma."""
     gamma = _HAMAKER / (16 * math.pi * _Z0**2)
-    return gamma / sigma * math.sqrt(_RADIUS / _Z0**3)
+    return gamma / sigma * math.sqrt(RADIUS / _Z0**3)
 
 
 def exponential(big_lambda):
     """Return the problem of an exponential repulsion, Lambda (39) of the paper at h0 = 0."""
-    stiffness = _P0 / big_lambda * math.sqrt(_RADIUS / _DECAY)
+    stiffness = _P0 / big_lambda * math.sqrt(RADIUS / _DECAY)
     start = 3 + math.ceil(math.log(big_lambda))
     return Problem(
         f"lambda_{big_lambda:g}", f"exponential, Λ = {big_lambda:g}",
-        f"&bodies radius = {_RADIUS}, stiffness = {stiffness!r} /\n"
+        f"&bodies radius = {RADIUS}, stiffness = {stiffness!r} /\n"
         f"&force law = 'exponential', p0 = {_P0}, decay_length = {_DECAY} /",
         _DECAY, float(start), 0.0, start / 30, adhesive=False)
 
@@ -102,10 +101,8 @@ def exponential(big_lambda):
 def sweep_of_paths(count):
     """Return a deck of `count` paths, sigma from 1e-3 to 1e3."""
     # The stiffness is proportional to 1/sigma.
-    soft, stiff = (_stiffness_of(sigma) for sigma in (1e3, 1e-3))
-    return (f"&bodies radius = {_RADIUS}, stiffness = {soft!r} /\n"
-            f"&force law = 'lennard_jones', hamaker = {_HAMAKER}, z0 = {_Z0} /\n"
-            f"&equilibrium_path h0_end = {-5 * _Z0!r} /\n"
+    soft, stiff = (stiffness_of(sigma) for sigma in (1e3, 1e-3))
+    return (f"{lennard_jones(1e3).physics}\n&equilibrium_path h0_end = {-5 * _Z0!r} /\n"
             f"&sweep key = 'bodies.stiffness', from = {soft!r}, to = {stiff!r}, count = {count}, "
             "scale = 'log' /\n&numerics accuracy = 1e-6 /\n")
 

@@ -9,9 +9,8 @@ import shutil
 import subprocess
 import sys
 
-import f90nml
 from gauge import Gauge
-from snapin.results import read_table
+from snapin import read_results
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 # The folder of the plots' colours.
@@ -52,6 +51,11 @@ class Run:
     failure: str = ""
     warning: str = ""
     values: dict = dataclasses.field(default_factory=dict)
+    summary: dict = dataclasses.field(default_factory=dict)
+
+    def cells(self, *names):
+        """Return some of the numbers and texts by name, for a row of a table."""
+        return {name: getattr(self, name) for name in names}
 
     @property
     def price(self):
@@ -91,7 +95,7 @@ class Program:
         # A copy, so that all measurements use one program even if it is rebuilt meanwhile.
         self.snapin = pathlib.Path(shutil.copy2(self.build / "snapin", self.scratch))
         self._references = {}
-        self.gauge = Gauge(self.environment)
+        self.gauge = Gauge(self.environment())
 
     def environment(self, threads=1):
         """Return an environment with the given number of threads."""
@@ -171,20 +175,17 @@ class Program:
         return self._references[key]
 
     def _read(self, returncode):
-        folder = self.scratch / "deck"
-        groups = f90nml.read(folder / "summary.nml")
-        summary, cost = groups["summary"], groups["cost"]
+        found = read_results(self.scratch / "deck")
+        summary, cost = found.summary, found.cost
         warnings = summary.get("warnings", [])
-        warnings = [warnings] if isinstance(warnings, str) else warnings
         run = Run(
             wall=cost["wall_seconds"], kernel_seconds=cost["kernel_seconds"],
             solve_seconds=cost["solve_seconds"],
             estimate_seconds=cost.get("estimate_seconds", 0.0), nodes=cost.get("nodes", 0),
             states=cost["states"], products=cost["operator_products"],
-            columns=cost["operator_columns"],
-            factorisations=cost["factorisations"],
+            columns=cost["operator_columns"], factorisations=cost["factorisations"],
             estimate=float(summary.get("error_estimate", math.nan)),
-            warning="; ".join(warnings))
+            warning="; ".join(warnings), summary=summary)
         if returncode:
             run.failure = "; ".join(text for text in warnings if not text.startswith(_TOLERATED))
         if "max_tension" in summary and "jkr_pull_off" in summary:
@@ -193,15 +194,10 @@ class Program:
             if f"{key}_h0" in summary:
                 run.values[key] = summary[f"{key}_h0"]
                 run.values[f"{key}_load"] = summary[f"{key}_load"]
-        run.summary = summary
-        # A sweep has no such entry.
-        if not (folder / "curve.csv").is_file():
-            return run
-        curve = read_table(folder, "curve.csv")
-        branch = curve["branch"] == curve["branch"][0]
-        # Loading and path both end at the turning point.
-        for key in ("load", "displacement"):
-            run.values[key] = float(curve[key][branch][-1])
+        # A sweep has no curve. Loading and path both end at the turning point.
+        if "curve" in found.tables:
+            end = found.curve[found.curve["branch"] == found.curve["branch"][0]][-1]
+            run.values |= {key: float(end[key]) for key in ("load", "displacement")}
         return run
 
 

@@ -15,6 +15,8 @@ import tempfile
 import time
 from pathlib import Path
 
+import f90nml
+
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.append(str(ROOT / "tools"))
 
@@ -62,10 +64,8 @@ class Bench:
         """Seconds of the program's sweep from its own summary, and processor seconds."""
         before = sum(os.times()[2:4])
         self.run(workers, [self.build / "snapin", "--quiet", "map.nml"], threads)
-        summary = (self.scratch / "results/map/summary.nml").read_text()
-        seconds = next(line.split("=")[1].split("!")[0] for line in summary.splitlines()
-                       if "wall_seconds" in line)
-        return float(seconds), sum(os.times()[2:4]) - before
+        cost = f90nml.read(self.scratch / "results/map/summary.nml")["cost"]
+        return cost["wall_seconds"], sum(os.times()[2:4]) - before
 
     def dispatch(self, workers, cases, milliseconds, *folder):
         """(cases, seconds, messages) of the dispatcher."""

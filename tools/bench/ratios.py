@@ -3,6 +3,7 @@
 import math
 
 import problems
+from tables import earlier
 
 # sigma, the goal for its path [G], steps of the loading of its cycle, and the goal for that.
 _GOALS = ((0.0087, 3, 0, 0), (0.87, 3, 0, 0), (8.7, 4, 350, 10), (1000.0, 10, 500, 20))
@@ -29,14 +30,13 @@ def measure(program, quick, say):
     for sigma, path_goal, steps, cycle_goal in _GOALS:
         problem = problems.lennard_jones(sigma)
         # The goal for three digits is half of that for six.
-        for accuracy, part, at in (("1e-6", 1, ""), ("1e-3", 0.5, ", accuracy 1e-3")):
-            cases[f"{problem.label} path{at}"] = (
-                part * path_goal, problem.path(f"accuracy = {accuracy}"))
+        for numerics, part, at in (("accuracy = 1e-6", 1, ""),
+                                   ("accuracy = 1e-3", 0.5, ", accuracy 1e-3")):
+            cases[f"{problem.label} path{at}"] = part * path_goal, problem.path(numerics)
             if steps:
-                deck = problem.cycle(f"accuracy = {accuracy}",
-                                     (problem.start - problem.turn) / steps)
                 cases[f"{problem.label} cycle, {2 * steps + 2} states{at}"] = (
-                    part * cycle_goal, deck)
+                    part * cycle_goal,
+                    problem.cycle(numerics, (problem.start - problem.turn) / steps))
     cases["Fig. 10(c) cycle"] = 10, problems.FIGURE_10C + "&numerics accuracy = 1e-6 /\n"
     runs = program.best_of(3 if quick else 9, {case: deck for case, (_, deck) in cases.items()})
     for case, (goal, _) in cases.items():
@@ -68,10 +68,9 @@ def measure(program, quick, say):
 
 def tables(rows, before):
     """Return the guide's table."""
-    earlier = {(row["quantity"], row["case"]): row["measured"] for row in before}
+    measured_before = earlier(before, "measured", "quantity", "case")
     return {"ratios": (
         ["", "", "measured", "limit", "before", "goal", "holds"],
-        [[row["quantity"], row["case"], row["measured"], row["limit"],
-          earlier.get((row["quantity"], row["case"]), math.nan),
+        [[row["quantity"], row["case"], row["measured"], row["limit"], measured_before(row),
           "–" if math.isnan(row["goal"]) else f"at most {row['goal']:g}", row["holds"]]
          for row in rows])}

@@ -1,6 +1,7 @@
 """Tables of measurements: CSV files, and cells for the guide."""
 
 import csv
+import math
 import os
 import platform
 
@@ -14,8 +15,7 @@ def write(path, rows, notes):
     """Write rows (dicts with the same keys) after lines of notes."""
     path.parent.mkdir(parents=True, exist_ok=True)
     with path.open("w", encoding="utf-8", newline="") as file:
-        for note in notes:
-            file.write(f"# {note}\n")
+        file.writelines(f"# {note}\n" for note in notes)
         table = csv.DictWriter(file, list(rows[0]), lineterminator="\n")
         table.writeheader()
         for row in rows:
@@ -24,19 +24,29 @@ def write(path, rows, notes):
 
 def read(path):
     """Return the rows of a table, numbers as floats; an empty list if there is no such file."""
-    if not path.is_file():
-        return []
-    with path.open(encoding="utf-8", newline="") as file:
-        rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
-    return [{key: _value(cell) for key, cell in row.items()} for row in rows]
+    lines = csv.DictReader(line for line in _lines(path) if not line.startswith("#"))
+    return [{key: _value(cell) for key, cell in row.items()} for row in lines]
 
 
 def notes(path):
     """Return the lines of notes of a table; none if there is no such file."""
-    if not path.is_file():
-        return []
-    with path.open(encoding="utf-8") as file:
-        return [line[1:].strip() for line in file if line.startswith("#")]
+    return [line[1:].strip() for line in _lines(path) if line.startswith("#")]
+
+
+def chosen(rows, **values):
+    """Return the rows that have these values."""
+    return [row for row in rows if all(row[key] == value for key, value in values.items())]
+
+
+def earlier(before, name, *keys):
+    """Return a function of a row: the value of the row with the same keys in `before`, or NaN."""
+    values = {tuple(row[key] for key in keys): row.get(name, math.nan) for row in before}
+    return lambda row: values.get(tuple(row[key] for key in keys), math.nan)
+
+
+def whole(row, *names):
+    """Return counts of a row as text."""
+    return [f"{row[name]:.0f}" for name in names]
 
 
 def short(value):
@@ -51,6 +61,10 @@ def short(value):
         return f"{value:.0f}" if abs(value) >= 100 else f"{value:.2g}"
     mantissa, exponent = f"{value:.1e}".split("e")
     return f"{mantissa}e{int(exponent)}"
+
+
+def _lines(path):
+    return path.read_text(encoding="utf-8").splitlines() if path.is_file() else []
 
 
 def _cell(value):

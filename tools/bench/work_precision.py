@@ -5,6 +5,7 @@ import math
 import pictures
 import problems
 from program import QUANTITIES, Run
+from tables import chosen
 
 NAMES = {"pull_off": "pull-off", "jump_in": "jump-in $h_0$", "load": "load at fixed $h_0$"}
 
@@ -30,34 +31,35 @@ _METHODS = (
 
 def measure(program, quick, say):
     """Return one row for every problem, method and fineness."""
-    cap = _CAP[quick]
-    nodes = (50, 100) if quick else (100, 200, 400, 800)
-    accuracy = _ACCURACY[1::2] if quick else _ACCURACY
+    fineness = {"nodes": (50, 100) if quick else (100, 200, 400, 800),
+                "accuracy": _ACCURACY[1::2] if quick else _ACCURACY}
     rows = []
     for problem in problems.ALL:
         reference = program.reference(problem)
         for method, numerics, knob, power in _METHODS:
-            last, begun = None, len(rows)
-            for value in nodes if knob == "nodes" else accuracy:
-                last = _one(program, problem, method, numerics, knob, value, power, cap, quick,
-                            last)
-                rows.append(_row(problem, method, knob, value, last[1], reference))
-            say(f"{problem.label}: {method}: {', '.join(map(_outcome, rows[begun:]))}")
+            make = problem.path if method == "whole path" else problem.cycle
+            decks = {value: make(f"{numerics}{',' if numerics else ''} {knob} = {value}")
+                     for value in fineness[knob]}
+            mine = [_row(problem, method, knob, value, run, reference)
+                    for value, run in _runs(program, decks, power, quick)]
+            say(f"{problem.label}: {method}: {', '.join(map(_outcome, mine))}")
+            rows += mine
     return rows
 
 
-def _one(program, problem, method, numerics, knob, value, power, cap, quick, last):
-    """Run one case, unless the last one of its kind shows that it would not finish."""
-    if last is not None:
-        before, run = last
-        if run.failure.startswith("not ") or run.seconds * (value / before) ** power > 2 * cap:
-            hopeless = Run(failure="not run: a coarser one took "
-                           f"{'all its time' if run.failure else f'{run.seconds:.0f} s'}")
-            return value, hopeless
-    make = problem.path if method == "whole path" else problem.cycle
-    deck = make(f"{numerics}{',' if numerics else ''} {knob} = {value}")
-    best = program.best_of(1 if quick else 3, {0: deck}, cap, enough=0.5)
-    return value, best[0]
+def _runs(program, decks, power, quick):
+    """Yield the run of each deck by its fineness, unless the one before shows that it would not
+    finish."""
+    cap, before, run = _CAP[quick], None, None
+    for value, deck in decks.items():
+        if run is not None and (run.failure.startswith("not ") or
+                                run.seconds * (value / before) ** power > 2 * cap):
+            run = Run(failure="not run: a coarser one took "
+                      f"{'all its time' if run.failure else f'{run.seconds:.0f} s'}")
+        else:
+            run = program.best_of(1 if quick else 3, {0: deck}, cap, enough=0.5)[0]
+        before = value
+        yield value, run
 
 
 def _row(problem, method, knob, value, run, reference):
@@ -73,9 +75,9 @@ def _row(problem, method, knob, value, run, reference):
         failure = f"found no {' and no '.join(lost)}"
     return {
         "problem": problem.name, "method": method, "knob": knob, "value": value,
-        "price": run.price_of_run if run.states else run.price, "least_price": run.least_price,
-        "products": run.products, "factorisations": run.factorisations, "states": run.states,
-        "nodes": run.nodes, **{f"error_{key}": errors.get(key, math.nan) for key in QUANTITIES},
+        "price": run.price_of_run if run.states else run.price,
+        **run.cells("least_price", "products", "factorisations", "states", "nodes"),
+        **{f"error_{key}": errors.get(key, math.nan) for key in QUANTITIES},
         "error": max(known, default=math.nan), "error_claimed": max(claimed, default=math.nan),
         "estimate": run.estimate, "failure": failure, "warning": run.warning}
 
@@ -109,20 +111,15 @@ def draw(rows, folder):
 
 def _panel(panel, rows, problem, key, cost):
     """Draw one problem: filled marks are valid runs, open marks have a warning, crosses failed."""
-    for place, ((method, *_), colour, marker) in enumerate(
-            zip(_METHODS, pictures.COLOURS, pictures.MARKERS)):
-        mine = [row for row in rows if row["problem"] == problem.name and row["method"] == method]
+    for place, ((method, *_), look) in enumerate(zip(_METHODS, pictures.LOOKS)):
+        mine = chosen(rows, problem=problem.name, method=method)
         done = [row for row in mine if not row["failure"] and row[key] == row[key]]
-        x = [row[cost] for row in done]
-        y = [max(row[key], 1e-13) for row in done]
-        panel.plot(x, y, color=colour, linewidth=1.0, alpha=0.7)
-        for row, at, error in zip(done, x, y):
-            panel.plot(at, error, marker, color=colour, markersize=6, linestyle="none",
-                       markerfacecolor="white" if row["warning"] else colour)
-        panel.plot([], [], marker, color=colour, label=method, linestyle="-", linewidth=1.0)
+        pictures.line(panel, done, cost, key, 1e-13, color=look["color"], linewidth=1.0, alpha=0.7)
+        pictures.marks(panel, done, cost, key, look, 1e-13, markersize=6)
+        panel.plot([], [], **look, label=method, linewidth=1.0)
         failed = [row[cost] for row in mine if row["failure"] and row[cost] > 0]
         # Runs stopped at the same time would coincide.
-        panel.plot(failed, [1e2 * 6.0**place] * len(failed), "x", color=colour, markersize=7,
+        panel.plot(failed, [1e2 * 6.0**place] * len(failed), "x", color=look["color"], markersize=7,
                    markeredgewidth=1.8)
     panel.axhline(30, color=pictures.GREY, linewidth=0.8)
     panel.set_ylim(5e-14, 1e9)
@@ -131,22 +128,20 @@ def _panel(panel, rows, problem, key, cost):
 
 def _finish(page, panel):
     """Explain the marks below the panels."""
-    panel.plot([], [], "o", color="#555555", markerfacecolor="white", linestyle="none",
-               label="with a warning")
-    panel.plot([], [], "x", color="#555555", markersize=8, markeredgewidth=2, linestyle="none",
-               label="failed (above the line)")
+    pictures.explain(panel, "with a warning", linestyle="none", **pictures.OPEN)
+    pictures.explain(panel, "failed (above the line)", "x", markersize=8, markeredgewidth=2,
+                     linestyle="none")
     pictures.legend(page)
 
 
 def tables(rows, before):
     """Return the guide's table: the cheapest run of each method within an error of 1e-3."""
-    text = []
-    for method, *_ in _METHODS:
-        cells = [method]
-        for problem in problems.ALL:
-            good = [row for row in rows if row["problem"] == problem.name
-                    and row["method"] == method and not row["failure"] and row["error"] <= 1e-3]
-            best = min(good, key=lambda row: row["price"], default=None)
-            cells.append(f"{best['price']:.2g}" if best else "–")
-        text.append(cells)
-    return {"work_precision": (["G", *(p.label for p in problems.ALL)], text)}
+    def cheapest(method, problem):
+        prices = [row["price"] for row in chosen(rows, problem=problem.name, method=method,
+                                                 failure="") if row["error"] <= 1e-3]
+        return f"{min(prices):.2g}" if prices else "–"
+
+    return {"work_precision": (
+        ["G", *(problem.label for problem in problems.ALL)],
+        [[method, *(cheapest(method, problem) for problem in problems.ALL)]
+         for method, *_ in _METHODS])}

@@ -82,7 +82,8 @@ find "$folder/lines" -name '*.gcda' -delete
 find "$folder/found" -path '*/queue/id:*' -print0 |
   xargs -0 -n 500 "$folder/lines/snapin" --check > "$folder/check.log" 2>&1 || true
 cd "$folder/lines"
-gcov libsnapin.a.p/src_namelist_*.gcda libsnapin.a.p/src_scene_*.gcda 2>/dev/null > "$folder/coverage.txt"
+gcov libsnapin.a.p/src_namelist_*.gcda libsnapin.a.p/src_scene_*.gcda \
+  2> /dev/null > "$folder/coverage.txt"
 for name in traps sanitizers; do
   echo "$name:"
   grep -E 'run_time|execs_done|corpus_count|edges_found|saved_crashes|saved_hangs' \

@@ -1,6 +1,5 @@
 """Formulas and small operations on curves and profiles that several figures need."""
 
-import drawing
 import numpy as np
 
 RADIUS = 1.5e-2
@@ -62,6 +61,17 @@ def jump_ends(curve, towards):
     return [(x[i], y[i]) for i in jump(curve, towards)]
 
 
+def bisected(found, low, high, accuracy=0.0):
+    """Return the number at which `found(x)` turns from false to true, between two numbers, by
+    default to rounding."""
+    while high - low > accuracy:
+        middle = (low + high) / 2
+        if not low < middle < high:
+            break
+        low, high = (low, middle) if found(middle) else (middle, high)
+    return (low + high) / 2
+
+
 def cubic(at, x, y):
     """Return y at points between x by cubics through the four nearest."""
     values = []
@@ -76,13 +86,14 @@ def cubic(at, x, y):
 
 def at(x, columns, name, by="h0"):
     """Return a column of a branch at values of another column, by linear interpolation."""
-    order = np.argsort(columns[by])
-    return np.interp(x, columns[by][order], columns[name][order])
+    rows = columns[np.argsort(columns[by])]
+    return np.interp(x, rows[by], rows[name])
 
 
 def states(results, branch="loading"):
-    """Return the profiles of a branch in order, each a dict of arrays that begin at r = 0."""
-    return drawing.states_of(results.branch(branch, "profiles"))
+    """Return the profiles of a branch in order, each a table that begins at r = 0."""
+    rows = results.branch(branch, "profiles")
+    return np.split(rows, np.flatnonzero(rows["r"] == 0)[1:])
 
 
 def curvature(state, within):

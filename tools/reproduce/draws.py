@@ -2,7 +2,8 @@
 by rounding alone.
 
 Each run has the Hamaker constant changed in its twelfth digit, which changes the solution of the
-equations equally little. Another build, kernel of the linear algebra or processor has the same effect.
+equations equally little. Another build, kernel of the linear algebra or processor has the same
+effect.
 """
 
 import numpy as np

@@ -32,10 +32,9 @@ def numbers(runs):
 def _window(runs):
     """Return the range of h0 [m] in which the tension is above the published one."""
     curve = runs["fig01_lennard_jones"].branch("unloading_1")
-    inside = curve["h_centre"] < 1e-9
-    h0, tension = curve["h0"][inside], -curve["load"][inside]
-    fine = np.linspace(h0[0], h0[-1], 100001)
-    above = fine[np.interp(fine, h0, tension) > _PUBLISHED]
+    curve = curve[curve["h_centre"] < 1e-9]
+    fine = np.linspace(*curve["h0"][[0, -1]], 100001)
+    above = fine[np.interp(fine, curve["h0"], -curve["load"]) > _PUBLISHED]
     return above[-1] - above[0]
 
 
@@ -45,7 +44,8 @@ def draw(runs):
     adhesion, summary = (runs["fig01_lennard_jones"].branch("loading"),
                          runs["fig01_lennard_jones"].summary)
     load = np.linspace(0, 1.6e-3, 2000) ** 2 / 1.6e-3
-    _, jkr, jkr_load = curves.jkr_curve(curves.RADIUS, _STIFFNESS, summary["surface_energy"], 1.6e-3)
+    _, jkr, jkr_load = curves.jkr_curve(
+        curves.RADIUS, _STIFFNESS, summary["surface_energy"], 1.6e-3)
     (x, y), (_, after) = curves.drawn(adhesion), curves.jump(adhesion, "contact")
     tail, head = curves.jump_ends(adhesion, "contact")
     for panel, text, x_range, y_range in ((whole, "whole range", (-120, 1450), (-1.8, 14.8)),

@@ -47,7 +47,8 @@ def numbers(runs):
     sign."""
     found = errors(runs)
     named = {f"{key}_{name}": at(found, key, value) for key, *_ in _LINES
-             for name, value in (("1e-3", 1e-3), ("001", 0.01), ("1", 1), ("1e4", 1e4), ("1e6", 1e6))}
+             for name, value in (("1e-3", 1e-3), ("001", 0.01), ("1", 1), ("1e4", 1e4),
+                                 ("1e6", 1e6))}
     # The Lambda at which (32) becomes worse than Hertz theory.
     excess = found["load"] - found["hertz"]
     i = int(np.flatnonzero(excess > 0)[-1])

@@ -14,7 +14,8 @@ def numbers(runs):
     steady = all((np.diff(state["pressure"]) <= 0).all() for state in states)
     hertz = curves.hertz_displacement(curve["load"][-1], 1e10)
     return {"gap": last["separation"][0] * 1e9, "curved": 100 * curves.curvature(last, _WITHIN),
-            "first": 100 * curves.curvature(first, _WITHIN), "least": last["separation"].min() * 1e9,
+            "first": 100 * curves.curvature(first, _WITHIN),
+            "least": last["separation"].min() * 1e9,
             "steady": "decays monotonically" if steady else "does not",
             "pressure": last["pressure"][0] / 1e6, "load": curve["load"][-1] * 1e6,
             "hertz": 100 * (hertz / curve["displacement"][-1] - 1)}

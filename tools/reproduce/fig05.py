@@ -14,14 +14,15 @@ def numbers(runs):
     found = {}
     for i, deck in enumerate(DECKS):
         summary, curve = runs[deck].summary, runs[deck].branch("loading")
-        pressed = curve["load"] > 0
-        exact = np.interp(_LOAD, curve["load"][pressed], curve["displacement"][pressed])
+        pressed = curve[curve["load"] > 0]
+        exact = np.interp(_LOAD, pressed["load"], pressed["displacement"])
         _, displacement, load = curves.jkr_curve(curves.RADIUS, _STIFFNESS,
                                                  summary["surface_energy"], 4 * _LOAD)
         lowest = int(np.argmin(load))
+        jkr = np.interp(_LOAD, load[lowest:], displacement[lowest:])
         jumps = "jump_in_h0" in summary
         found |= {f"sigma_{i}": summary["sigma"],
-                  f"off_{i}": 100 * (np.interp(_LOAD, load[lowest:], displacement[lowest:]) / exact - 1),
+                  f"off_{i}": 100 * (jkr / exact - 1),
                   f"ratio_{i}": summary["max_tension"] / summary["jkr_pull_off"],
                   f"jumps_{i}": "yes" if jumps else "no",
                   f"where_{i}": f"into contact at h0 = {summary['jump_in_h0'] * 1e9:.4f} nm, from "

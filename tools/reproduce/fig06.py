@@ -16,16 +16,14 @@ _PANELS = (("a", "separation", 1e-9, "separation [nm]", (0, 16), (0, 15)),
 
 def _radii_differ(results):
     """Return the largest relative excess of the retreat's contact radius at the same load."""
-    loading, retreat = results.branch("loading"), results.branch("unloading_1")
     # In this part of the approach the load increases, so that a load belongs to one state.
-    inside = (loading["contact_radius"] > 0) & (loading["load"] > 0)
-    back = (retreat["contact_radius"] > 0) & (retreat["load"] > 0)
-    order = np.argsort(loading["load"][inside])
-    load = loading["load"][inside][order]
-    at = np.clip(retreat["load"][back], load[0], load[-1])
-    keep = at == retreat["load"][back]
-    radius = curves.cubic(at, load, loading["contact_radius"][inside][order])
-    return float(np.max(abs(retreat["contact_radius"][back] / radius - 1)[keep]))
+    loading, retreat = (rows[(rows["contact_radius"] > 0) & (rows["load"] > 0)]
+                        for rows in map(results.branch, ("loading", "unloading_1")))
+    loading = np.sort(loading, order="load")
+    low, high = loading["load"][[0, -1]]
+    retreat = retreat[(retreat["load"] >= low) & (retreat["load"] <= high)]
+    radius = curves.cubic(retreat["load"], loading["load"], loading["contact_radius"])
+    return float(np.max(abs(retreat["contact_radius"] / radius - 1)))
 
 
 def _edge(state):
@@ -115,9 +113,9 @@ def _inset(inset, runs):
     for branch, name in (("loading", "approach"), ("unloading_1", "retreat")):
         for source, look, color in looks:
             curve = source.branch(branch)
-            inside = curve["contact_radius"] > 0
-            inset.plot(curve["load"][inside] * 1e6, curve["contact_radius"][inside] * 1e6, "o",
-                       markerfacecolor="white" if branch == "loading" else color, **look,
+            curve = curve[curve["contact_radius"] > 0]
+            inset.plot(curve["load"] * 1e6, curve["contact_radius"] * 1e6, "o", **look,
+                       markerfacecolor="white" if branch == "loading" else color,
                        label=name if source is results else None)
     inset.plot([], [], "o", color=style.GREY, markersize=2.5, label="paper's rule")
     inset.set(xlim=(-980, 800), ylim=(0, 9))

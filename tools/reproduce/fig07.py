@@ -22,11 +22,17 @@ _MARKERS = (
 
 
 def _paper(runs):
-    """Return the Pulls with the paper's grid and rule: one tuple for each sigma and penetration,
-    with all runs."""
-    found = list(zip(*(penetrations.of_sweep(results, _TURNS)
-                       for results in runs.draws("fig07_paper"))))
-    return found + [pulls for cycle in penetrations.of_rule(runs).values() for pulls in cycle]
+    """Return sigma, turning point and, in rows, the ratios of all runs with the paper's grid and
+    rule, for each sigma and penetration."""
+    sweeps = [results.sweep for results in runs.draws("fig07_paper")]
+    ratios = np.moveaxis([penetrations.of_sweep(sweep, len(_TURNS)) for sweep in sweeps], 0, -1)
+    rows = sorted(((sigma, turn, ratio) for turn, each in zip(_TURNS, ratios)
+                   for sigma, ratio in zip(sweeps[0]["sigma"], each)), key=lambda row: row[:2])
+    for letter, cycle in penetrations.of_rule(runs).items():
+        summary = runs[f"fig10{letter}_paper"].summary
+        rows += [(summary["sigma"], turn, ratio)
+                 for turn, ratio in zip(summary["unload_from"], cycle)]
+    return [np.array(column) for column in zip(*rows)]
 
 
 def _converged(runs, deck="fig07_converged"):
@@ -36,43 +42,40 @@ def _converged(runs, deck="fig07_converged"):
 
 def numbers(runs):
     (sigma, ratio), (_, exact) = _converged(runs), _converged(runs, "fig07_exact_sigma")
-    paper, rule, cycles = _paper(runs), penetrations.of_rule(runs), penetrations.converged(runs)
-    coarse = penetrations.of_cycle(runs["fig10c_uniform"])
-    columns, best = runs["fig07_converged"].sweep, runs["fig10c_converged"].summary
-    # One list for each run; sigma is the same in all of them to twelve digits.
-    true = [curves.cubic(np.log(pulls[0].sigma), np.log(sigma), ratio)[0] for pulls in paper]
-    scattered = [[pull for pull, value in zip(run, true) if abs(pull.ratio / value - 1) > 0.1]
-                 for run in zip(*paper)]
-    factors = [max(ratios) / min(ratios) for pulls in paper if pulls[0].sigma > 1
-               for ratios in [[pull.ratio for pull in pulls]]]
-    weak = [pulls for pulls in paper if pulls[0].turn == 0 and pulls[0].sigma < 0.02]
-    one = [pulls for pulls in paper[::-1] if abs(pulls[0].sigma - 0.8717) < 0.01]
+    rule, cycles, (sigmas, turns, ratios) = (
+        penetrations.of_rule(runs), penetrations.converged(runs), _paper(runs))
+    coarse, columns = penetrations.over_jkr(runs["fig10c_uniform"]), runs["fig07_converged"].sweep
+    best = runs["fig10c_converged"].summary
+    true = curves.cubic(np.log(sigmas), np.log(sigma), ratio)
+    scattered = abs(ratios / true[:, None] - 1) > 0.1
+    factors = (ratios.max(axis=1) / ratios.min(axis=1))[sigmas > 1]
+    weak = np.flatnonzero((turns == 0) & (sigmas < 0.02))[0]
+    one = np.flatnonzero(abs(sigmas - 0.8717) < 0.01)[::-1]
     slopes = 1 + np.gradient(np.log(ratio), np.log(sigma))
     found = {
         "at_small": ratio[0], "at_large": ratio[-1], "at_087": exact[0], "at_87": exact[1],
-        "agree": draws.within(max(map(penetrations.spread, cycles.values()))),
-        "coarse_count": len(coarse),
-        "coarse_off": 100 * (coarse[0].ratio / (best["max_tension"] / best["jkr_pull_off"]) - 1),
-        "scattered": draws.ranged([len(run) for run in scattered], 0), "count": len(scattered),
-        "first": min(pull.sigma for run in scattered for pull in run), "points": len(paper),
-        "outside": draws.ranged([sum(pull.ratio > _BROKEN for pull in run)
-                                 for run in zip(*paper)], 0),
-        "factor": np.median(factors), "factor_most": max(factors), "broken": _BROKEN,
-        "weak": penetrations.ranged(weak[:1], 5), "weak_sigma": weak[0][0].sigma,
-        "least_sigma": sigma[0], "near_one": penetrations.ranged(one, 3),
-        "one_turns": penetrations.turns([pulls[0] for pulls in one]),
-        "coarse": penetrations.listed(coarse, 4), "coarse_turns": penetrations.turns(coarse),
+        "agree": draws.within(max(map(np.ptp, cycles.values()))), "coarse_count": coarse.size,
+        "coarse_off": 100 * (coarse[0] / (best["max_tension"] / best["jkr_pull_off"]) - 1),
+        "scattered": draws.ranged(scattered.sum(axis=0), 0), "count": ratios.shape[1],
+        "first": sigmas[scattered.any(axis=1)].min(), "points": sigmas.size,
+        "outside": draws.ranged((ratios > _BROKEN).sum(axis=0), 0),
+        "factor": np.median(factors), "factor_most": factors.max(), "broken": _BROKEN,
+        "weak": draws.ranged(ratios[weak], 5), "weak_sigma": sigmas[weak],
+        "least_sigma": sigma[0], "near_one": draws.several(ratios[one], 3),
+        "one_turns": penetrations.turns(turns[one]), "coarse": penetrations.listed(coarse, 4),
+        "coarse_turns": penetrations.turns(runs["fig10c_uniform"].summary["unload_from"]),
         "most_sigma": sigma[-1], "over_jkr": 100 * (ratio[-1] - 1),
         # The paper's figures for mica: gamma 0.1 J/m^2, E 1e10 Pa, R 1e-2 m, z0 0.1 nm.
         "mica": 0.1 / 1e10 * np.sqrt(1e-2 / 1e-10**3),
         "apart": -columns["jump_out_load"][-1] / columns["jkr_pull_off"][-1],
         "steepest": slopes.min(), "steepest_at": sigma[np.argmin(slopes)]}
-    for letter, pulls in cycles.items():
-        found |= {f"sigma_{letter}": rule[letter][0][0].sigma,
-                  f"rule_{letter}": penetrations.ranged(rule[letter]),
-                  f"true_{letter}": f"{pulls[0].ratio:.6f}", f"runs_{letter}": len(rule[letter][0]),
-                  f"turns_{letter}": penetrations.turns([each[0] for each in rule[letter]]),
-                  f"agree_{letter}": draws.within(penetrations.spread(pulls))}
+    for letter, cycle in cycles.items():
+        summary = runs[f"fig10{letter}_paper"].summary
+        found |= {f"sigma_{letter}": summary["sigma"],
+                  f"rule_{letter}": draws.several(rule[letter]),
+                  f"true_{letter}": f"{cycle[0]:.6f}", f"runs_{letter}": rule[letter].shape[1],
+                  f"turns_{letter}": penetrations.turns(summary["unload_from"]),
+                  f"agree_{letter}": draws.within(np.ptp(cycle))}
     found["error_0"], found["error_1"] = runs["fig07_exact_sigma"].sweep["error_estimate"]
     return found
 
@@ -81,31 +84,29 @@ def draw(runs):
     """Return the picture; its axis is broken at a range with unconverged values only."""
     page, (upper, lower) = style.figure(
         2, 1, height=5.0, sharex=True, gridspec_kw={"height_ratios": (1, 2.3), "hspace": 0.03})
-    paper = _paper(runs)
+    sigmas, turns, ratios = _paper(runs)
     for panel in (upper, lower):
         panel.plot(*_converged(runs), color=style.BLACK, zorder=4, label="the equations")
         shallowest = 1.0
         for number, (deepest, marker, color, name) in enumerate(_MARKERS):
-            chosen = [pulls for pulls in paper if deepest < pulls[0].turn <= shallowest]
-            ratios = np.array([[pull.ratio for pull in pulls] for pulls in chosen])
+            chosen = (deepest < turns) & (turns <= shallowest)
             # Penetrations side by side, so that their bars do not hide each other.
-            x = np.array([pulls[0].sigma for pulls in chosen]) * (1 + 0.09 * number)
-            panel.vlines(x, ratios.min(axis=1), ratios.max(axis=1), color=color, linewidth=1.1,
-                         zorder=4.5)
-            middle = np.median(ratios, axis=1)
+            x = sigmas[chosen] * (1 + 0.09 * number)
+            panel.vlines(x, ratios[chosen].min(axis=1), ratios[chosen].max(axis=1), color=color,
+                         linewidth=1.1, zorder=4.5)
+            middle = np.median(ratios[chosen], axis=1)
             here = (middle > _BROKEN) == (panel is upper)
             panel.plot(x[here], middle[here], marker, color=color, markerfacecolor="white",
                        markersize=4.5, zorder=5, linestyle="none", markeredgewidth=1.2, label=name)
             shallowest = deepest
-        cycles = [pull for pulls in penetrations.converged(runs).values() for pull in pulls
-                  if panel is lower]
-        panel.plot([pull.sigma for pull in cycles], [pull.ratio for pull in cycles], "x",
+        cycles = [(runs[f"fig10{letter}_converged"].summary["sigma"], ratio)
+                  for letter, cycle in penetrations.converged(runs).items() for ratio in cycle]
+        panel.plot(*(np.transpose(cycles) if panel is lower else ([], [])), "x",
                    color=style.VERMILION, markersize=6.5, markeredgewidth=1.6, zorder=6,
                    label="cycles of Fig. 10")
-    found = [pull.ratio for pulls in paper for pull in pulls]
-    upper.set_ylim(_BROKEN - 0.1, 1.12 * max(found))
+    upper.set_ylim(_BROKEN - 0.1, 1.12 * ratios.max())
     style.label(lower, "$\\sigma$", "pull-off / JKR", log="x", xlim=(0.28e-3, 1.3e3),
-                ylim=(min(0.75, 0.96 * min(found)), _BROKEN), ticks=[10.0 ** np.arange(-3, 4)])
+                ylim=(min(0.75, 0.96 * ratios.min()), _BROKEN), ticks=[10.0 ** np.arange(-3, 4)])
     lower.axhline(1, color=style.GREY, linewidth=0.9, linestyle="--", zorder=1)
     style.word(lower, 0.31e-3, 0.99, "JKR theory")
     style.arrow(lower, (0.3e-3, 4 / 3), (0.62e-3, 4 / 3), style.BLACK)

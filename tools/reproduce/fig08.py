@@ -18,37 +18,31 @@ _FORMS = {
 def _before(runs):
     """Return the states of the approach before the jump."""
     curve = runs["fig08"].branch("loading")
-    last = int(np.argmin(np.diff(curve["h_centre"])))
-    return {name: values[:last + 1] for name, values in curve.items()}
+    return curve[:np.argmin(np.diff(curve["h_centre"])) + 1]
 
 
 def _form(runs, name):
     """Return one approximation, in order of falling h0, up to its jump."""
     rows = runs["fig08"].branch(name, "approximations")
     jump = runs["fig08"].branch(_FORMS[name][0], "approximations")
-    keep = rows["h0"] > jump["h0"][0]
-    order = np.argsort(-rows["h0"][keep])
-    return {column: np.append(rows[column][keep][order], jump[column])
-            for column in ("h0", "displacement", "load")}
+    rows = rows[rows["h0"] > jump["h0"][0]]
+    return np.append(rows[np.argsort(-rows["h0"])], jump)
 
 
 def _path(runs):
-    """Return the path of equilibria from large separation to its first fold, with the gap on the
-    axis."""
+    """Return the path of equilibria from large separation to its first fold."""
     curve = runs["fig08"].branch("path")
-    order = slice(None) if curve["h0"][0] > curve["h0"][-1] else slice(None, None, -1)
-    fold = int(np.flatnonzero(np.diff(curve["h0"][order]) > 0)[0])
-    found = {name: curve[name][order][:fold + 1] for name in ("h0", "displacement", "load")}
-    return {**found, "gap": found["h0"] + found["displacement"]}
+    curve = curve if curve["h0"][0] > curve["h0"][-1] else curve[::-1]
+    return curve[:np.flatnonzero(np.diff(curve["h0"]) > 0)[0] + 1]
 
 
 def exact(runs):
     """Return jumps at sigma = 8.7 in units of z0 and gamma R."""
-    columns = runs["fig07_exact_sigma"].sweep
-    unit = columns["surface_energy"][1] * curves.RADIUS
-    return {name: values[1] / (unit if name.endswith("_load") else _Z0)
-            for name, values in columns.items()
-            if name.startswith(("jump_", "fold_")) and values.dtype.kind == "f"}
+    case = runs["fig07_exact_sigma"].sweep[1]
+    unit = case["surface_energy"] * curves.RADIUS
+    return {name: case[name] / (unit if name.endswith("_load") else _Z0)
+            for name in case.dtype.names
+            if name.startswith(("jump_", "fold_")) and case.dtype[name].kind == "f"}
 
 
 def numbers(runs):
@@ -59,8 +53,9 @@ def numbers(runs):
     for name in ("displacement", "load"):
         # At the jump by (29), at the same gap on the axis, and at a state far from the jump.
         for key, h0, states in (("", at, path), ("_far", 4e-9, _before(runs))):
-            found[name + key] = 100 * abs(curves.at(h0, full, name) / curves.at(h0, states, name) - 1)
-        same = curves.at(at + full["displacement"][-1], path, name, "gap")
+            ratio = curves.at(h0, full, name) / curves.at(h0, states, name)
+            found[name + key] = 100 * abs(ratio - 1)
+        same = curves.at(at + full["displacement"][-1], path, name, "h_centre")
         found[f"{name}_gap"] = 100 * abs(full[name][-1] / same - 1)
     end = part["h0"][-1]
     return {

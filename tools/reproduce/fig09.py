@@ -16,58 +16,53 @@ def _columns(results):
     found = {"sigma": sweep["sigma"], "jump": -sweep["jump_in_load"] / unit,
              "largest": sweep["max_tension"] / unit}
     for name in ("criterion_29", "equation_37"):
-        if f"jump_{name}_load" in sweep:
+        if f"jump_{name}_load" in sweep.dtype.names:
             found[name] = -sweep[f"jump_{name}_load"] / unit
     return found
 
 
-def _at_jumps_of_the_rule(rule, exact):
-    """Return sigma, the tension by the paper's rule and the exact one for runs in which both
-    jump."""
-    jumps = np.isfinite(exact["jump"])
-    both = np.isfinite(rule["jump"]) & (rule["sigma"] >= exact["sigma"][jumps][0])
-    true = np.exp(np.interp(np.log(rule["sigma"][both]), np.log(exact["sigma"][jumps]),
-                            np.log(exact["jump"][jumps])))
-    return rule["sigma"][both], rule["jump"][both], true
+def _rule(runs):
+    """Return sigma and, in rows for runs by the paper's rule, tensions of jumps and the largest."""
+    columns = [_columns(results) for results in runs.draws("fig09_paper")]
+    return columns[0]["sigma"], *(np.array([each[name] for each in columns])
+                                  for name in ("jump", "largest"))
 
 
 def numbers(runs):
-    exact = _columns(runs["fig09_converged"])
-    jumps = [_at_jumps_of_the_rule(_columns(results), exact)
-             for results in runs.draws("fig09_paper")]
+    exact, (sigma, rule, _) = _columns(runs["fig09_converged"]), _rule(runs)
+    jumps = np.isfinite(exact["jump"])
+    # Where the equations have a jump too.
+    rule = np.where(sigma >= exact["sigma"][jumps][0], rule, np.nan)
+    true = np.exp(np.interp(np.log(sigma), np.log(exact["sigma"][jumps]),
+                            np.log(exact["jump"][jumps])))
     off = 100 * (1 - exact["criterion_29"] / exact["jump"])
     both = np.flatnonzero(np.isfinite(off))
     ten = int(np.argmin(abs(np.log(exact["sigma"] / 10))))
     found = {
         "close": off[both[-1]], "far": off[both[0]], "lowest": exact["sigma"][both[0]],
         "apart": 100 * abs(exact["equation_37"][ten] / exact["criterion_29"][ten] - 1),
-        "rule": draws.ranged([100 * abs(rule / true - 1)[sigma > 1].max()
-                              for sigma, rule, true in jumps], 0),
-        "late": draws.ranged([sigma[0] for sigma, *_ in jumps]), "count": len(jumps),
+        "rule": draws.ranged(np.nanmax(100 * abs(rule / true - 1)[:, sigma > 1], axis=1), 0),
+        "late": draws.ranged([sigma[np.isfinite(run)][0] for run in rule]), "count": len(rule),
         "high": exact["sigma"][-1], "low_close": -off[both[-1]], "low_far": -off[both[0]]}
     for key, name in (("", "jump"), ("_29", "criterion_29")):
         # The last sigma without a jump and the first with a jump.
         first = int(np.flatnonzero(np.isfinite(exact[name]))[0])
         found[f"none{key}"], found[f"some{key}"] = exact["sigma"][first - 1 : first + 1]
+    some = np.flatnonzero(np.isfinite(rule).any(axis=0))
     for number, wanted in enumerate(_CHOSEN):
-        # For the runs with a jump, the nearest one.
-        near = [int(np.argmin(abs(np.log(sigma / wanted)))) for sigma, *_ in jumps]
-        away = [abs(np.log(sigma[i] / wanted)) for (sigma, *_), i in zip(jumps, near)]
-        here = [(run, i) for run, i, one in zip(jumps, near, away) if one < min(away) + 1e-6]
-        (sigma, _, true), i = here[0]
+        i = some[np.argmin(abs(np.log(sigma[some] / wanted)))]
+        here = rule[np.isfinite(rule[:, i]), i]
         estimate = np.exp(np.interp(np.log(sigma[i]), np.log(exact["sigma"]),
                                     np.log(exact["criterion_29"])))
         found |= {f"sigma_{number}": sigma[i], f"estimate_{number}": estimate,
-                  f"rule_{number}": draws.ranged([run[1][j] for run, j in here], 4),
-                  f"true_{number}": true[i], f"off_{number}": 100 * (estimate / true[i] - 1),
-                  f"runs_{number}": len(here)}
+                  f"rule_{number}": draws.ranged(here, 4), f"true_{number}": true[i],
+                  f"off_{number}": 100 * (estimate / true[i] - 1), f"runs_{number}": here.size}
     return found
 
 
 def draw(runs):
     page, panel = style.figure(height=4.3)
     exact = _columns(runs["fig09_converged"])
-    rules = [_columns(results) for results in runs.draws("fig09_paper")]
     sigma, jumps = exact["sigma"], np.isfinite(exact["jump"])
     told = np.isfinite(exact["criterion_29"])
     panel.plot(sigma, exact["equation_37"], color=style.BLACK, zorder=2, label="(37)")
@@ -82,12 +77,12 @@ def draw(runs):
              "(36a), no jump: largest tension")):
         panel.plot(sigma[shown], values[shown], marker, color=color, markersize=4.8, zorder=order,
                    markerfacecolor=fill or color, label=name)
-    found = np.array([rule["jump"] for rule in rules])
-    largest = np.where(np.isfinite(found), np.nan, [rule["largest"] for rule in rules])
+    places, found, largest = _rule(runs)
+    largest = np.where(np.isfinite(found), np.nan, largest)
     for values, marker, size, name in ((found, "x", 7, "paper's grid and rule"),
                                        (largest, "+", 8, "the same, no jump found")):
         some = np.isfinite(values).any(axis=0)
-        style.spread(panel, rules[0]["sigma"][some], values[:, some], marker, style.VERMILION, name,
+        style.spread(panel, places[some], values[:, some], marker, style.VERMILION, name,
                      markersize=size, markeredgewidth=1.5)
     style.label(panel, "$\\sigma$", "tension before the jump [$\\gamma R$]", log="xy",
                 xlim=(0.7e-2, 1.3e2), ylim=(0.07, 22),

@@ -5,7 +5,6 @@ import draws
 import numpy as np
 import penetrations
 import style
-from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
 DECKS = ("fig10a_paper", "fig10b_paper", "fig10c_paper", "fig10a_converged", "fig10b_converged",
@@ -27,12 +26,10 @@ def _reached(converged):
 
 def _common(results):
     """Return the largest tension over JKR's of each retreat for h0 that all retreats pass."""
-    summary, found = results.summary, []
-    for branch in penetrations.branches(results):
-        curve = results.branch(branch)
-        inside = curve["h0"] > np.max(summary["unload_from"]) - 1e-13
-        found.append(-curve["load"][inside].min() / summary["jkr_pull_off"])
-    return found
+    summary = results.summary
+    passed = np.max(summary["unload_from"]) - 1e-13
+    return [-curve["load"][curve["h0"] > passed].min() / summary["jkr_pull_off"]
+            for curve in map(results.branch, penetrations.branches(results))]
 
 
 def _loading_over_unloading(results):
@@ -42,25 +39,27 @@ def _loading_over_unloading(results):
 
 def numbers(runs):
     rule, true = penetrations.of_rule(runs), penetrations.converged(runs)
-    uniform, coarse = (penetrations.of_cycle(runs[f"fig10c_{kind}"]) for kind in ("uniform", "coarse"))
+    uniform, coarse = (penetrations.over_jkr(runs[f"fig10c_{kind}"])
+                       for kind in ("uniform", "coarse"))
     some = {letter: runs.draws(f"fig10{letter}_paper") for letter in rule}
     converged = {letter: runs[f"fig10{letter}_converged"] for letter in rule}
+    turns = {letter: penetrations.turns(one.summary["unload_from"])
+             for letter, one in converged.items()}
     sweep = runs["fig07_converged"].sweep
     first = int(np.flatnonzero(np.isfinite(sweep["jump_in_h0"]))[0])
-    left = {letter: [one.summary["worst_residual"] for one in each] for letter, each in some.items()}
+    left = {letter: [one.summary["worst_residual"] for one in each]
+            for letter, each in some.items()}
     iterations = np.concatenate([one.curve["iterations"] for each in some.values() for one in each])
     products = np.concatenate([one.curve["iterations"] for one in converged.values()])
     apart = {letter: 100 * penetrations.jkr_apart(one) for letter, one in converged.items()}
     found = {
-        "runs": len(rule["c"][0]), "others": len(rule["c"][0]) - 1,
-        "turns": penetrations.turns([pulls[0] for pulls in rule["c"]]),
-        "deeper": sum(two.ratio > one.ratio for one, two in zip(rule["c"][0], rule["c"][-1])),
-        "residual": draws.ranged(left["c"], 0),
-        "agree": draws.within(max(map(penetrations.spread, true.values()))),
-        "uniform": uniform[-1].ratio, "coarse": coarse[-1].ratio,
+        "runs": len(some["c"]), "others": len(some["c"]) - 1, "turns": turns["c"],
+        "deeper": (rule["c"][-1] > rule["c"][0]).sum(), "residual": draws.ranged(left["c"], 0),
+        "agree": draws.within(max(map(np.ptp, true.values()))),
+        "uniform": uniform[-1], "coarse": coarse[-1],
         "uniform_listed": penetrations.listed(uniform, 3),
         "coarse_listed": penetrations.listed(coarse, 3),
-        "coarse_turns": penetrations.turns(coarse),
+        "coarse_turns": penetrations.turns(runs["fig10c_coarse"].summary["unload_from"]),
         "fraction": penetrations.between(runs["fig10c_coarse"]),
         "fraction_100": penetrations.between(runs["fig10c_uniform"]),
         "neck": 100 / runs["fig10c_uniform"].summary["spacing_over_neck"],
@@ -73,14 +72,13 @@ def numbers(runs):
         "left": draws.ranged([0.5 * max(worst) for worst in zip(*left.values())], 0),
         "left_true": draws.within(
             max(one.summary["worst_residual"] for one in converged.values()) * 0.5),
-        "too_high": 100 * (uniform[0].ratio / true["c"][0].ratio - 1)}
+        "too_high": 100 * (uniform[0] / true["c"][0] - 1)}
     for key, values in (("iterations", iterations), ("products", products)):
         found[f"{key}_median"], found[f"{key}_most"] = np.percentile(values, (50, 95))
-    for letter, pulls in true.items():
-        found |= {letter: pulls[0].ratio, f"{letter}_each": penetrations.ranged(rule[letter]),
-                  f"{letter}_true": penetrations.listed(pulls, 5),
-                  f"{letter}_turns": penetrations.turns(pulls),
-                  f"{letter}_runs": len(some[letter]),
+    for letter, ratios in true.items():
+        found |= {letter: ratios[0], f"{letter}_each": draws.several(rule[letter]),
+                  f"{letter}_true": penetrations.listed(ratios, 5),
+                  f"{letter}_turns": turns[letter], f"{letter}_runs": len(some[letter]),
                   f"{letter}_common": draws.several(zip(*map(_common, some[letter]))),
                   f"{letter}_common_true": penetrations.listed(_common(converged[letter]))}
     return found
@@ -107,9 +105,9 @@ def draw(runs):
     _legend(panels[3, 0], runs["fig10c_uniform"])
     style.statement(panels[3, 1], "paper: unloading differs\nwith penetration, JKR\nlies between",
                     0.985, 0.32, align="right")
-    panels[0, 1].legend(
-        *_handles([({"color": style.BLUE}, "loading"), ({"color": style.ORANGE}, "unloading: all"),
-                   ({"color": style.BLACK, **style.DASHED}, "JKR theory")]), loc="lower right")
+    style.explain(panels[0, 1], (
+        ({"color": style.BLUE}, "loading"), ({"color": style.ORANGE}, "unloading: all"),
+        ({"color": style.BLACK, **style.DASHED}, "JKR theory")), loc="lower right")
     return page
 
 
@@ -124,17 +122,13 @@ def _dress(panel, results, letter, title, how, x_range, y_range):
     style.heading(panel, f"$\\sigma$ = {title}", loc="center", fontsize=9.5)
 
 
-def _handles(entries):
-    return [Line2D([], [], **kind) for kind, _ in entries], [name for _, name in entries]
-
-
 def _legend(panel, results):
-    entries = [({"color": color, "marker": marker, "markersize": 3.5, "linewidth": 0.5}, name)
-               for (_, color, marker, _), name in zip(_kinds(results), (
-                   "loading", *(style.signed(f"from {penetrations.turns([pull])} nm")
-                                for pull in penetrations.of_cycle(results))))]
-    panel.legend(*_handles(entries), loc="lower right", bbox_to_anchor=(1.02, 0.05),
-                 handlelength=1.4, labelspacing=0.35)
+    names = ["loading", *(style.signed(f"from {penetrations.turns([turn])} nm")
+                          for turn in results.summary["unload_from"])]
+    style.explain(panel, [
+        ({"color": color, "marker": marker, "markersize": 3.5, "linewidth": 0.5}, name)
+        for (_, color, marker, _), name in zip(_kinds(results), names)],
+        loc="lower right", bbox_to_anchor=(1.02, 0.05), handlelength=1.4, labelspacing=0.35)
 
 
 def _kinds(results):
@@ -179,10 +173,10 @@ def _draw_converged(panel, results, x_range, y_range):
     for branch, way, color in (("loading", "contact", style.BLUE),
                                (penetrations.branches(results)[-1], "apart", style.VERMILION)):
         style.arrow(panel, *curves.jump_ends(results.branch(branch), way), color)
-    for branch, pull in zip(penetrations.branches(results), penetrations.of_cycle(results)):
+    for branch, turn in zip(penetrations.branches(results), results.summary["unload_from"]):
         x, y = (values[0] for values in curves.drawn(results.branch(branch)))
         if x_range[0] < x < x_range[1] and y_range[0] < y < y_range[1]:
             panel.plot(x, y, "o", color=style.VERMILION, markersize=4.5, zorder=7)
-            panel.annotate(style.signed(f"{penetrations.turns([pull])} nm"), (x, y), (-8, 0),
+            panel.annotate(style.signed(f"{penetrations.turns([turn])} nm"), (x, y), (-8, 0),
                            textcoords="offset points", fontsize=8.5, ha="right", va="center",
                            color=style.VERMILION)

@@ -1,7 +1,5 @@
 """Fig. 11: a spring in a field of force, and profiles of loading and unloading at the same h0."""
 
-import functools
-
 import curves
 import draws
 import numpy as np
@@ -29,13 +27,6 @@ def _jumps(fraction):
     return spring.jumps(force, slope, fraction * largest, 0.6 * _Z0, 100 * _Z0, count=100001)
 
 
-@functools.cache
-def _brackets(fractions):
-    """Return the number of stiffnesses for which the ends of jumps bracket their starts."""
-    return sum(inward.end < outward.start < inward.start < outward.end
-               for inward, outward in map(_jumps, fractions))
-
-
 def _radius(results, branch, h0):
     rows = results.branch(branch)
     return float(rows["contact_radius"][np.argmin(abs(rows["h0"] - h0))])
@@ -43,24 +34,25 @@ def _radius(results, branch, h0):
 
 def both_in_contact(results):
     """Return contact radii of loading and deepest unloading at the h0 with contact on both."""
-    loading, unloading = map(results.branch, ("loading", penetrations.branches(results)[-1]))
-    here = curves.at(unloading["h0"], loading, "contact_radius")
-    both = ((unloading["h0"] <= loading["h0"][curves.jump(loading, "contact")[1]])
-            & (unloading["contact_radius"] > 0))
-    return here[both], unloading["contact_radius"][both]
+    loading, unloading = penetrations.outermost(results)
+    last = loading["h0"][curves.jump(loading, "contact")[1]]
+    unloading = unloading[(unloading["h0"] <= last) & (unloading["contact_radius"] > 0)]
+    return curves.at(unloading["h0"], loading, "contact_radius"), unloading["contact_radius"]
 
 
 def least_excess(results):
     """Return the least excess of the unloading tension at the same h0, over JKR's pull-off."""
-    loading, unloading = map(results.branch, ("loading", penetrations.branches(results)[-1]))
+    loading, unloading = penetrations.outermost(results)
+    unloading = unloading[unloading["h0"] <= loading["h0"].max()]
     excess = curves.at(unloading["h0"], loading, "load") - unloading["load"]
-    inside = unloading["h0"] <= loading["h0"].max()
-    return float(excess[inside].min() / results.summary["jkr_pull_off"])
+    return float(excess.min() / results.summary["jkr_pull_off"])
 
 
 def numbers(runs):
     converged, coarse = runs["fig10c_converged"], runs["fig10c_coarse"]
-    held, count = _brackets(tuple(FRACTIONS)), FRACTIONS.size
+    held, count = 0, FRACTIONS.size
+    for inward, outward in map(_jumps, FRACTIONS):
+        held += inward.end < outward.start < inward.start < outward.end
     if held != count:
         raise ValueError(f"jump ends bracket the starts for {held} of {count} springs")
     (caught, freed), (in_, out) = both_in_contact(coarse), both_in_contact(converged)
@@ -112,7 +104,8 @@ def _draw_spring(panel):
                va="baseline")
     # Shifts [points] and sides of the words at start and end.
     for jump, color, name, words in (
-            (inward, style.BLUE, "approach", (("starts", (8, 8), "left"), ("ends", (4, -18), "left"))),
+            (inward, style.BLUE, "approach",
+             (("starts", (8, 8), "left"), ("ends", (4, -18), "left"))),
             (outward, style.VERMILION, "retreat",
              (("starts", (-9, 4), "right"), ("ends", (8, 7), "left")))):
         def pull(gap, rest=jump.rest):

@@ -20,12 +20,9 @@ _RESOLVED = 0.2
 def _pulls(results, turns):
     """Return spacings over the neck, finest first, largest residuals, and pull-offs over JKR's,
     one row for each turning point."""
-    columns = results.sweep
-    order = np.argsort(columns["spacing_over_neck"])
-    pulls = [columns[f"unload_max_tension_{number}"] / columns["jkr_pull_off"]
-             for number in range(1, len(turns) + 1)]
-    return columns["spacing_over_neck"][order], columns["worst_residual"][order], np.array(
-        pulls)[:, order]
+    cases = np.sort(results.sweep, order="spacing_over_neck")
+    pulls = penetrations.of_sweep(cases, len(turns))
+    return cases["spacing_over_neck"], cases["worst_residual"], pulls
 
 
 def _by_rule(runs, letter):
@@ -36,7 +33,7 @@ def _by_rule(runs, letter):
 
 
 def _true(runs, letter):
-    return penetrations.of_cycle(runs[f"fig10{letter}_converged"])[-1].ratio
+    return penetrations.over_jkr(runs[f"fig10{letter}_converged"])[-1]
 
 
 def _at(spacing, wanted):

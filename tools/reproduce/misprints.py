@@ -20,7 +20,8 @@ def numbers(runs):
     nodes, weights = (nodes + 1) / 2, weights / 2
     # Displacement 2 (1-nu^2)/E * Int p k t dt on the axis over a^2/R, for p of (3) and t = a sin x.
     x = np.pi / 2 * nodes
-    axis = 2 * np.sum(np.pi / 2 * weights * np.cos(x) / np.pi * 4 / np.pi * elliptic(0.0) * np.cos(x))
+    pressure, kernel = np.cos(x) / np.pi, 4 / np.pi * elliptic(0.0)
+    axis = 2 * np.sum(np.pi / 2 * weights * pressure * kernel * np.cos(x))
     angular = np.sum(2 * np.pi * weights / np.sqrt(1 + 0.25 - np.cos(2 * np.pi * nodes)))
     # d/da of the elastic energy E*(delta^2 a - 2 delta a^3/(3 R) + a^5/(5 R^2)) at fixed delta must
     # be c*2*pi*a*gamma, with E* = stiffness/2.

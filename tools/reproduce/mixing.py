@@ -1,4 +1,4 @@
-"""The paper's iteration on its uniform grid; details that the paper gives only in words are parameters.
+"""The paper's iteration on its uniform grid; what the paper gives only in words are parameters.
 
 Units are z0, sqrt(R z0) and gamma/z0, in which sigma is the only parameter; a load is in gamma R.
 The program has one of these readings: `inputs/fig10c_paper.nml`.
@@ -6,7 +6,6 @@ The program has one of these readings: `inputs/fig10c_paper.nml`.
 
 import dataclasses
 import math
-import typing
 
 import numpy as np
 from misprints import elliptic
@@ -19,8 +18,8 @@ _CLOSEST = 0.25
 class Reading:
     """One reading of the paper's rule; lengths in nm.
 
-    `fall` is the factor of the mixing ratio if the change of the central displacement changes its sign
-    or grows by more than `growth`, `rise` the factor otherwise; `least` is the smallest ratio.
+    `fall` is the factor of the mixing ratio if the change of the central displacement changes its
+    sign or grows by more than `growth`, `rise` the factor otherwise; `least` is the smallest ratio.
     `carried`: the ratio is kept from one h0 to the next. The iteration ends if the change is below
     `tolerance`; `unmixed`: the change before mixing; `everywhere`: at every node; or after `most`
     iterations. `passes`, if not 0, is a fixed number of iterations.
@@ -42,18 +41,6 @@ class Reading:
     most: int = 1000
     passes: int = 0
     interpolated: bool = True
-
-
-class Branch(typing.NamedTuple):
-    """States at h0 [z0]: loads [gamma R], displacements [z0], largest residuals [z0], iterations, and
-    the mixing ratio at the end."""
-
-    h0: np.ndarray
-    load: np.ndarray
-    displacement: np.ndarray
-    residual: np.ndarray
-    iterations: np.ndarray
-    ratio: np.ndarray
 
 
 class Scene:
@@ -80,7 +67,10 @@ def pressure(gap):
 
 def cycle(scene, reading, turns, start, end, z0):
     """Return the loading from `start` and one unloading for each turning point, to `end` or to the
-    separation of the bodies, as Branches; h0 in z0, `turns` decreasing, `z0` in nm."""
+    separation of the bodies; h0 in z0, `turns` decreasing, `z0` in nm.
+
+    Each is a record array of the rows of `settle`.
+    """
     step = reading.step / z0
     places = np.arange(start, turns[-1] - step / 2, -step)
     gap, memory, loading, kept = places[0] + scene.shape, [reading.limit], [], {}
@@ -104,12 +94,13 @@ def cycle(scene, reading, turns, start, end, z0):
 
 
 def _branch(rows):
-    return Branch(*np.array(rows).T)
+    return np.rec.fromrecords(rows, names="h0, load, displacement, residual, iterations, ratio")
 
 
 def settle(scene, reading, gap, h0, memory, z0):
-    """Iterate at an h0 according to the reading; return the gap and (h0, load, displacement,
-    residual, iterations, ratio). `memory` holds the mixing ratio."""
+    """Iterate at an h0 according to the reading; return the gap and a row: h0 [z0], load [gamma R],
+    displacement and largest residual [z0], number of iterations, and mixing ratio at the end.
+    `memory` holds the mixing ratio."""
     ratio = memory[0] if reading.carried else reading.limit
     tolerance, before = reading.tolerance / z0, 0.0
     most = reading.passes or reading.most
@@ -141,8 +132,8 @@ def settle(scene, reading, gap, h0, memory, z0):
 def _kernel(r, interpolated):
     """Return the matrix of int p(t) k(r, t) t dt for pressures at nodes, with k of (15).
 
-    The pressure is linear between nodes, or constant between midpoints; the integrals are by the Gauss
-    rule with points graded towards r = t, where the kernel is logarithmic.
+    The pressure is linear between nodes, or constant between midpoints; the integrals are by the
+    Gauss rule with points graded towards r = t, where the kernel is logarithmic.
     """
     n, spacing = r.size, r[1]
     matrix = np.zeros((n, n))
@@ -187,10 +178,9 @@ def _graded(points):
 def _ring_weights(r, interpolated):
     """Return the weights of int p t dt."""
     x, weight = _gauss(4)
+    right = x if interpolated else (x > 0.5).astype(float)
+    values = weight * r[1] * (r[:-1, None] + r[1] * x)
     result = np.zeros(r.size)
-    for panel in range(r.size - 1):
-        t = r[panel] + r[1] * x
-        right = x if interpolated else (x > 0.5).astype(float)
-        result[panel] += np.sum(weight * r[1] * t * (1 - right))
-        result[panel + 1] += np.sum(weight * r[1] * t * right)
+    result[:-1] += values @ (1 - right)
+    result[1:] += values @ right
     return result

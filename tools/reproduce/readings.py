@@ -14,7 +14,6 @@ import pages
 import penetrations
 import report
 import style
-from matplotlib.lines import Line2D
 
 DECKS = ("fig10a_converged", "fig10b_converged", "fig10c_converged")
 # Turning points [nm] of the table and of the picture, by letter of Fig. 10; sigma.
@@ -85,7 +84,7 @@ def tensions(branches):
 
 def _contact(branch):
     """Return the rows that are certainly in contact."""
-    return np.flatnonzero(branch.displacement > -1.0)
+    return branch[branch.displacement > -1.0]
 
 
 def scatter(branches):
@@ -93,11 +92,10 @@ def scatter(branches):
     branch."""
     worst = 0.0
     for branch in branches:
-        rows = _contact(branch)
-        rows = rows[(rows > 0) & (rows < branch.load.size - 1)]
-        if rows.size > 2:
-            between = (branch.load[rows - 1] + branch.load[rows + 1]) / 2
-            worst = max(worst, float(np.sqrt(np.mean((branch.load[rows] - between) ** 2))))
+        away = branch.load[1:-1] - (branch.load[:-2] + branch.load[2:]) / 2
+        away = away[branch.displacement[1:-1] > -1.0]
+        if away.size > 2:
+            worst = max(worst, float(np.sqrt(np.mean(away**2))))
     return worst / (1.5 * math.pi)
 
 
@@ -107,15 +105,11 @@ def between(branches, sigma):
     at = np.linspace(-1, 1, 41) / _Z0
     _, displacement, load = curves.jkr_curve(1.0, 1.0, sigma, 40 * sigma)
     theory = np.interp(at, displacement, load / sigma)
-    low, high = (_load_at(branch, at) for branch in (branches[0], branches[-1]))
+    low, high = (curves.at(at, branch[branch.displacement > -4.0], "load", "displacement")
+                 for branch in (branches[0], branches[-1]))
     # Unloading is under more tension.
-    return float(np.mean(low - theory) / np.mean(low - high)) if np.mean(low - high) > 0.1 else np.nan
-
-
-def _load_at(branch, displacement):
-    rows = np.flatnonzero(branch.displacement > -4.0)
-    rows = rows[np.argsort(branch.displacement[rows])]
-    return np.interp(displacement, branch.displacement[rows], branch.load[rows])
+    loop = np.mean(low - high)
+    return float(np.mean(low - theory) / loop) if loop > 0.1 else np.nan
 
 
 def statements(branches, sigma):
@@ -131,7 +125,7 @@ def _line(reading):
     """Return a line of the table."""
     runs = [_all()[reading, "c", _TURNS, draw] for draw in range(_RUNS)]
     columns = list(zip(*map(tensions, runs)))
-    left = [np.median(np.concatenate([branch.residual[_contact(branch)] for branch in run]))
+    left = [np.median(np.concatenate([_contact(branch).residual for branch in run]))
             for run in runs]
     steps = [np.median(np.concatenate([branch.iterations for branch in run])) for run in runs]
     held = [sum(statements(run, sigma_of("c"))) for run in runs]
@@ -142,19 +136,19 @@ def _line(reading):
 
 def numbers(runs):
     nearest = {letter: _all()[NEAREST, letter, turns, 0] for letter, turns in _CASES.items()}
-    contact = [(branch, _contact(branch)) for branch in nearest["c"]]
+    contact = [*map(_contact, nearest["c"])]
     table = pages.table(("reading", "loading", "unloading", "scatter", "left [z0]", "iterations",
                          "of 5"), map(_line, _readings()), report.escaped)
     found = {"runs": _RUNS, "turns": penetrations.listed(_TURNS, 0), "smooth": _SMOOTH,
              "much": 1 - _MUCH, "table": "\n".join(table), "passes": NEAREST.passes,
              "between": between(nearest["c"], sigma_of("c")),
-             "ratio": float(np.median(np.concatenate([one.ratio[rows] for one, rows in contact]))),
-             "left": draws.ranged([np.median(one.residual[rows]) for one, rows in contact
-                                   if rows.size], 1)}
+             "ratio": float(np.median(np.concatenate([rows.ratio for rows in contact]))),
+             "left": draws.ranged([np.median(rows.residual) for rows in contact if rows.size], 1)}
     for letter, branches in nearest.items():
         loading, *pulls = tensions(branches)
-        true = [pull.ratio for pull in penetrations.of_cycle(runs[f"fig10{letter}_converged"])]
-        found |= {letter: penetrations.listed(pulls), f"{letter}_true": penetrations.listed(true, 4),
+        true = penetrations.over_jkr(runs[f"fig10{letter}_converged"])
+        found |= {letter: penetrations.listed(pulls),
+                  f"{letter}_true": penetrations.listed(true, 4),
                   f"true_{letter}": max(true), "loading": loading / min(pulls),
                   f"{letter}_turns": penetrations.listed(_CASES[letter], 0)}
     return found
@@ -176,16 +170,17 @@ def draw(_):
         panel.plot(load / sigma * unit, displacement * _Z0, color=style.BLACK, **style.DASHED,
                    linewidth=1.2, zorder=6)
         names = ["loading", *(style.signed(f"from {turn:g} nm") for turn in _CASES[letter])]
-        handles = []
-        for branch, (color, marker) in zip(_all()[reading, letter, _CASES[letter], 0],
-                                           ((style.BLUE, "o"), *style.RETREATS)):
-            panel.plot(branch.load * unit, branch.displacement * _Z0, color=color, marker=marker,
-                       markersize=2.4, linewidth=0.6, markeredgewidth=0)
-            handles.append(Line2D([], [], color=color, marker=marker, markersize=3.5, linewidth=0.6))
+        lines = [{"color": color, "marker": marker, "linewidth": 0.6}
+                 for color, marker in ((style.BLUE, "o"), *style.RETREATS)]
+        for branch, line in zip(_all()[reading, letter, _CASES[letter], 0], lines):
+            panel.plot(branch.load * unit, branch.displacement * _Z0, **line, markersize=2.4,
+                       markeredgewidth=0)
         style.label(panel, "load [µN]", "central displacement [nm]", "xy",
                     "d" if reading is BASE else letter, xlim=(least * pull, 2 * pull), ylim=y_range)
         style.heading(panel, f"$\\sigma$ = {penetrations.FIG10[letter]}, "
                       + ("as read for Fig. 10" if reading is BASE else "ratio kept"), loc="center",
                       fontsize=9.5)
-        panel.legend(handles, names, loc="lower right", handlelength=1.4, labelspacing=0.3)
+        style.explain(panel, [({**line, "markersize": 3.5}, name)
+                              for line, name in zip(lines, names)],
+                      loc="lower right", handlelength=1.4, labelspacing=0.3)
     return page

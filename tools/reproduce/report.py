@@ -71,37 +71,45 @@ REPORTS = {
     "others": Report("others", "others", (
         "item", "kind", "published", "converged", "error %", "unit", "source"), "others."),
 }
-_CHAPTER = re.compile(r"^## (\w+): (.*)\n", re.MULTILINE)
 
 
-def texts():
-    """Return the text of each report: its beginning, and title and text of each chapter."""
-    found = {}
+class Chapter(NamedTuple):
+    """A chapter of a page: the key of its report, its title, and its text with fields."""
+
+    report: str
+    title: str
+    text: str
+
+
+def _read():
+    """Return the beginning of each page and the chapters of all pages, by name."""
+    starts, chapters = {}, {}
     for key in REPORTS:
         text = pathlib.Path(__file__).with_name(f"{key}.md").read_text(encoding="utf-8")
-        start, *parts = _CHAPTER.split(text)
-        found[key] = start, {name: (title, body.strip()) for name, title, body in
-                             zip(parts[::3], parts[1::3], parts[2::3])}
-    return found
+        starts[key], *parts = re.split(r"^## (\w+): (.*)\n", text, flags=re.MULTILINE)
+        chapters |= {name: Chapter(key, title, body.strip())
+                     for name, title, body in zip(parts[::3], parts[1::3], parts[2::3])}
+    return starts, chapters
+
+
+_STARTS, CHAPTERS = _read()
 
 
 def names(which=tuple(REPORTS)):
     """Return the names of the chapters of some reports, by default of all."""
-    return [name for key in which for name in texts()[key][1]]
+    return [name for name, chapter in CHAPTERS.items() if chapter.report in which]
 
 
 def module(name):
     """Return the module of a chapter."""
-    (package,) = (REPORTS[key].package for key, (_, chapters) in texts().items() if name in chapters)
-    return importlib.import_module(package + name)
+    return importlib.import_module(REPORTS[CHAPTERS[name].report].package + name)
 
 
 def filled(name, runs):
     """Return the text of a chapter and the cells of its rows."""
-    ((_, text),) = (chapters[name] for _, chapters in texts().values() if name in chapters)
     chapter = module(name)
-    text = text.format(**chapter.numbers(runs) if hasattr(chapter, "numbers") else {})
-    lines = text.split("\n")
+    fields = chapter.numbers(runs) if hasattr(chapter, "numbers") else {}
+    lines = CHAPTERS[name].text.format(**fields).split("\n")
     # A table in the text has an empty line or a head before it; a row begins `| = `.
     rows = [line[4:].split(" |") for line in lines if line.startswith("| = ")]
     caption = "\n".join(line for line in lines if not line.startswith("| = ")).strip()
@@ -129,8 +137,8 @@ def write(folder, key, part, made, runs, version):
     rows = [row for chapter in made for row in chapter["rows"]]
     csv.writer(text, lineterminator="\n").writerows([book.columns, *rows])
     write_whole(folder / table, text.getvalue())
-    lines = [texts()[key][0].format(table=table, count=draws.COUNT,
-                                    fewer=len(draws.names("history_c_paper")))]
+    lines = [_STARTS[key].format(table=table, count=draws.COUNT,
+                                 fewer=len(draws.names("history_c_paper")))]
     lines += [f"- [{each['title']}](#{_anchor(each['title'])})" for each in made]
     for each in made:
         lines += ["", f"## {each['title']}", ""]

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Run the paper's decks, draw its figures, and compare the numbers of the paper, and of others, with
-the computed ones.
+"""Run the paper's decks, draw its figures, and compare the numbers of the paper, and of others,
+with the computed ones.
 
     ./reproduce                 everything, into reproduction/: report.md and others.md
     ./reproduce paper           the paper alone
@@ -44,14 +44,14 @@ def main():
     version = subprocess.run([str(runs.program), "--version"], check=False, capture_output=True,
                              text=True).stdout.strip()
     whole = []
-    for key, (_, chapters) in report.texts().items():
-        chosen = [name for name in chapters if name in modules]
+    for key in report.REPORTS:
+        chosen = [name for name in report.names([key]) if name in modules]
         if not chosen:
             continue
-        made = [_chapter(name, chapters[name][0], modules[name], runs, folder) for name in chosen]
+        made = [_chapter(name, modules[name], runs, folder) for name in chosen]
         problems |= {one["name"]: one["problem"] for one in made if one["problem"]}
         # A report of some chapters does not replace the whole report.
-        part = "" if len(chosen) == len(chapters) else "_part"
+        part = "" if chosen == report.names([key]) else "_part"
         rows = report.write(folder, key, part, made, runs, version)
         whole += [key] if not part else []
         _say(f"{folder / report.REPORTS[key].page}{part}.md: {len(made)} chapters, {rows} numbers, "
@@ -64,10 +64,11 @@ def main():
     sys.exit(1 if problems else 0)
 
 
-def _chapter(name, title, module, runs, folder):
+def _chapter(name, module, runs, folder):
     """Return a chapter of the report, its picture drawn."""
-    chapter = {"name": name, "title": title, "decks": getattr(module, "DECKS", ()), "caption": "",
-               "rows": [], "picture": hasattr(module, "draw"), "problem": None}
+    chapter = {"name": name, "title": report.CHAPTERS[name].title, "caption": "", "rows": [],
+               "decks": getattr(module, "DECKS", ()), "picture": hasattr(module, "draw"),
+               "problem": None}
     try:
         chapter["caption"], chapter["rows"] = report.filled(name, runs)
         if chapter["picture"]:

@@ -1,7 +1,6 @@
 """Runs decks and returns their results; a deck that has not changed is not run again."""
 
 import concurrent.futures
-import functools
 import hashlib
 import json
 import os
@@ -15,7 +14,7 @@ import draws
 import f90nml
 import numpy as np
 from pages import ROOT
-from snapin.results import read_summary, read_table
+from snapin.results import Result, read_results
 
 INPUTS = ROOT / "inputs"
 # The folder of the plots' curves and colours.
@@ -23,30 +22,18 @@ sys.path.insert(0, str(ROOT / "pywrap" / "plots"))
 
 # After this number of seconds without a message, the running decks are named.
 _HEARTBEAT = 10.0
-_TABLES = ("curve", "profiles", "approximations", "sweep")
 
 
 class RunError(Exception):
     """A deck could not be run, or left no results; the message gives the reason."""
 
 
-class Results:
-    """A folder of results; its files are read on demand."""
+class Results(Result):
+    """The results of a run: its tables are structured arrays, and have branches."""
 
     def __init__(self, folder):
-        self.folder = pathlib.Path(folder)
-
-    @functools.cached_property
-    def summary(self):
-        """The group &summary as a dict."""
-        return read_summary(self.folder)
-
-    def __getattr__(self, name):
-        """The columns of a table, by its name without `.csv`; read once."""
-        if name not in _TABLES:
-            raise AttributeError(name)
-        setattr(self, name, read_table(self.folder, f"{name}.csv"))
-        return getattr(self, name)
+        found = read_results(folder)
+        super().__init__(found.tables, found.summary, found.cost)
 
     def last(self, key):
         """Return a number of the summary; for an array, the value of the last turning point."""
@@ -54,15 +41,13 @@ class Results:
 
     def branch(self, name, table="curve"):
         """Return the rows of one branch, or of one theory."""
-        columns = getattr(self, table)
-        rows = columns["branch" if "branch" in columns else "theory"] == name
-        return {column: values[rows] for column, values in columns.items()}
+        rows = getattr(self, table)
+        return rows[rows["branch" if "branch" in rows.dtype.names else "theory"] == name]
 
 
 def path_name(deck):
     """Return the stem of a deck given by its stem or its path."""
-    name = pathlib.Path(deck).name
-    return name[: -len(".nml")] if name.endswith(".nml") else name
+    return pathlib.Path(deck).name.removesuffix(".nml")
 
 
 class Runs:
@@ -186,7 +171,8 @@ class Runs:
         `say(text)` is called for each deck that ends.
         """
         decks = list(dict.fromkeys(decks))
-        waiting = [deck for deck in decks if not (self.path_of(deck).is_file() and self.is_done(deck))]
+        waiting = [deck for deck in decks
+                   if not (self.path_of(deck).is_file() and self.is_done(deck))]
         if len(waiting) < len(decks):
             say(f"{len(decks) - len(waiting)} of {len(decks)} runs are there already")
         # Long decks first, so that none runs alone at the end.
@@ -233,10 +219,8 @@ class Runs:
         return self.root / f"{path.stem}.json"
 
     def _problem_of(self, path, done):
-        if done.returncode == 1 and "_paper" in path.stem:
-            if (self.root / path.stem / "summary.nml").is_file():
-                return None
-        elif done.returncode == 0:
+        by_rule = "_paper" in path.stem and (self.root / path.stem / "summary.nml").is_file()
+        if done.returncode == 0 or done.returncode == 1 and by_rule:
             return None
         # The first line is the error; the line of the deck may follow.
         messages = [line for line in done.stderr.splitlines() if line and ": warning: " not in line]

@@ -1,4 +1,4 @@
-"""Solved spheres under a Lennard-Jones law at any Tabor parameter: common to the chapters on others.
+"""Solved spheres under a Lennard-Jones law at any Tabor parameter, for the chapters on others.
 
 Units are z0 of the law, R and E/(1-nu^2) of two identical bodies, twice E*. Loads are in pi w R,
 radii and displacements in Maugis' units, (pi w R^2/K)^(1/3) with K = 4 E*/3 and its square over R;
@@ -10,10 +10,12 @@ import math
 import warnings
 from typing import NamedTuple
 
+import curves
 import numpy as np
 import pages  # noqa: F401 (one thread)
 import runs  # noqa: F401 (makes the pictures' style importable)
 import snapin
+import style
 
 ACCURACY = 1e-8
 # Largest tension of the law over w/z0, at h = 3^(1/6) z0.
@@ -45,6 +47,12 @@ def spaced(low, high, count):
     return tuple(float(each) for each in np.geomspace(low, high, count))
 
 
+# Maugis parameters of pictures, and the looks of curves in them.
+LAMBDAS = spaced(0.01, 100, 81)
+SOLVED = {"color": style.BLACK, "label": "Lennard-Jones, solved"}
+MAUGIS = {"color": style.VERMILION, "dashes": (5, 1.5), "label": "Maugis-Dugdale theory"}
+
+
 def theory(name, lam, load=0.0):
     """Return pull-off, positive, and radius at a load, on the stable branch, of a theory at a
     Maugis parameter, in pi w R and Maugis' units."""
@@ -57,7 +65,8 @@ def theory(name, lam, load=0.0):
 class Sphere(NamedTuple):
     """The results at one Tabor parameter; a jump that does not exist is None.
 
-    Loads in pi w R, tension positive; h0 in z0; `lost` in w R z0. `rest_h0` is h0 without load.
+    Loads in pi w R, tension positive but for `load`; h0 in z0; `lost` in w R z0. `h0` and `load`
+    are those along the path.
     """
 
     tension: float
@@ -65,7 +74,8 @@ class Sphere(NamedTuple):
     jump_in: tuple
     jump_out: tuple
     lost: float
-    rest_h0: float
+    h0: np.ndarray
+    load: np.ndarray
 
 
 def solved(**groups):
@@ -86,24 +96,13 @@ def run(tabor, h0_end, **groups):
 def sphere(tabor):
     """Return the Sphere of a Tabor parameter."""
     loads = math.pi * sigma(tabor)
-    found = run(tabor, _deep(tabor, 0), fixed_load={"load": [0.0]})
+    found = run(tabor, _deep(tabor, 0))
     summary = found.summary
-
-    def jump(way):
-        if f"jump_{way}_h0" not in summary:
-            return None
-        return summary[f"jump_{way}_h0"], -summary[f"jump_{way}_load"] / loads
-
-    return Sphere(summary["max_tension"] / loads, summary["max_tension_h0"], jump("in"),
-                  jump("out"), summary.get("energy_lost", 0.0) / sigma(tabor),
-                  float(found.fixed_load["h0"][-1]))
-
-
-@functools.lru_cache(maxsize=None)
-def curve(tabor):
-    """Return h0 [z0] and load [pi w R] along the path."""
-    path = run(tabor, _deep(tabor, 0)).curve
-    return path["h0"], path["load"] / (math.pi * sigma(tabor))
+    jumps = ((summary[f"jump_{way}_h0"], -summary[f"jump_{way}_load"] / loads)
+             if f"jump_{way}_h0" in summary else None for way in ("in", "out"))
+    return Sphere(summary["max_tension"] / loads, summary["max_tension_h0"], *jumps,
+                  summary.get("energy_lost", 0.0) / sigma(tabor), found.curve["h0"],
+                  found.curve["load"] / loads)
 
 
 class Contact(NamedTuple):
@@ -142,6 +141,16 @@ def contact(tabor, load):
                    errors)
 
 
+def solved_at(lam):
+    """Return pull-off [pi w R] and radius without load of solved spheres at a Maugis parameter."""
+    return sphere(tabor_of(lam)).tension, contact(tabor_of(lam), 0.0).radius
+
+
+def errors(name, lam, load=0.0):
+    """Return the errors of a theory at a Maugis parameter in pull-off, radius and indentation."""
+    return contact(tabor_of(lam), load).errors[name]
+
+
 def _deep(tabor, load):
     """Return an h0 at which the load is certainly larger; DMT theory has the deepest h0, and the
     gap on the axis is between 0 and 1."""
@@ -151,8 +160,5 @@ def _deep(tabor, load):
 def where(found, low, high, accuracy):
     """Return the number at which `found(x)` turns from false to true, between two numbers, in
     the logarithm."""
-    low, high = np.log([low, high])
-    while high - low > accuracy:
-        middle = (low + high) / 2
-        low, high = (low, middle) if found(float(np.exp(middle))) else (middle, high)
-    return float(np.exp((low + high) / 2))
+    return float(np.exp(curves.bisected(lambda x: found(float(np.exp(x))), *np.log([low, high]),
+                                        accuracy)))

@@ -5,21 +5,20 @@ repulsion; negative: attraction). Without force the gap would be h_rest, so that
 
     stiffness (h - h_rest) = p(h).
 
-Approach and retreat change h_rest. At p'(h) = stiffness the equilibrium is lost, since the two forces
-change at the same rate. The spring jumps to the next gap at which the forces balance. By the mean-value
-theorem p' equals the stiffness once more between start and end of a jump. If p' exceeds the
-stiffness on one interval of gaps only, its two ends are the starts, and each jump ends beyond the
-start of the other: no gap within the interval is a stable equilibrium.
+Approach and retreat change h_rest. At p'(h) = stiffness the equilibrium is lost, since the two
+forces change at the same rate. The spring jumps to the next gap at which the forces balance. By the
+mean-value theorem p' equals the stiffness once more between start and end of a jump. If p' exceeds
+the stiffness on one interval of gaps only, its two ends are the starts, and each jump ends beyond
+the start of the other: no gap within the interval is a stable equilibrium.
 
 Forces are functions of arrays of gaps; units are the caller's.
 """
 
 from typing import NamedTuple
 
+import curves
 import numpy as np
 
-# Number of halvings that reduce any bracket to rounding.
-_HALVINGS = 200
 # Of a walk: steps in one go, growth from one step to the next, and the most goes.
 _STEPS, _GROWTH, _GOES = 400, 1.002, 30
 
@@ -110,12 +109,4 @@ def _at(function, gap):
 def _root(function, low, high):
     """Return a zero between two gaps at which the signs differ."""
     above = _at(function, high) > 0
-    for _ in range(_HALVINGS):
-        middle = 0.5 * (low + high)
-        if not low < middle < high:
-            break
-        if (_at(function, middle) > 0) == above:
-            high = middle
-        else:
-            low = middle
-    return 0.5 * (low + high)
+    return curves.bisected(lambda gap: (_at(function, gap) > 0) == above, low, high)

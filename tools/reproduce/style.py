@@ -12,6 +12,7 @@ from drawing import BLACK, BLUE, GREEN, ORANGE, PURPLE, SKY, VERMILION, arrow  #
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import BoundaryNorm, ListedColormap
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 from PIL import Image
 
@@ -34,14 +35,17 @@ def figure(rows=1, columns=1, height=4.2, width=WIDTH, mosaic=None, **kwargs):
     # Settings take effect when objects are made and when they are drawn.
     matplotlib.rcParams.update(_SETTINGS)
     page = Figure(figsize=(width, height), layout="constrained")
-    return page, (page.subplot_mosaic(mosaic, **kwargs) if mosaic else page.subplots(rows, columns, **kwargs))
+    if mosaic:
+        return page, page.subplot_mosaic(mosaic, **kwargs)
+    return page, page.subplots(rows, columns, **kwargs)
 
 
 def label(panel, x, y, zero_lines="", letter="", log="", ticks=None, **limits):
     """Name the axes and set their limits.
 
-    `zero_lines` ("x", "y", "xy") draws thin lines where these are zero, `log` makes axes logarithmic,
-    `letter` is placed above the upper left corner, `ticks` are the ticks of x and y, written out.
+    `zero_lines` ("x", "y", "xy") draws thin lines where these are zero, `log` makes axes
+    logarithmic, `letter` is placed above the upper left corner, `ticks` are the ticks of x and y,
+    written out.
     """
     panel.set_xlabel(x)
     panel.set_ylabel(y)
@@ -70,6 +74,11 @@ def legend(page, columns, panel=None):
     page.legend(handles, names, loc="outside lower center", ncols=columns, columnspacing=1.6)
 
 
+def explain(panel, entries, **kwargs):
+    """Put a legend into a panel: pairs of a look of lines and what it means."""
+    panel.legend(handles=[Line2D([], [], **look, label=name) for look, name in entries], **kwargs)
+
+
 def statement(panel, text, x, y, align="left"):
     """Write the paper's statement in a box at fractions `x`, `y` of the panel."""
     panel.text(x, y, text, transform=panel.transAxes, ha=align, va="top", fontsize=8.5, zorder=10,
@@ -90,7 +99,7 @@ def note(panel, text, at, to, align="left", color=BLACK):
 
 
 def spread(panel, x, values, marker, color, name=None, line=0.0, **kwargs):
-    """Draw the medians of several runs, rows of `values`, with bars from the least to the largest."""
+    """Draw the medians of several runs, rows of `values`, with bars from least to largest."""
     panel.vlines(x, np.nanmin(values, axis=0), np.nanmax(values, axis=0), color=color,
                  linewidth=1.1, zorder=4.5)
     panel.plot(x, np.nanmedian(values, axis=0), marker, color=color, label=name, linewidth=line,

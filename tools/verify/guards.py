@@ -2,9 +2,9 @@
 
     guards.py [NAME ...]
 
-A guard is a statement of a module, identified by words in it, never by its text. It is removed from a
-copy of src/ with its own build; `meson` and the tests are those of this checkout. Prints a table, and
-ends with status 1 if no test in a guard's list fails without the guard.
+A guard is a statement of a module, identified by words in it, never by its text. It is removed from
+a copy of src/ with its own build; `meson` and the tests are those of this checkout. Prints a table,
+and ends with status 1 if no test in a guard's list fails without the guard.
 """
 
 import os
@@ -19,16 +19,20 @@ from typing import NamedTuple
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 MESON = ROOT / ".venv" / "bin" / "meson"
 
-ANY_SIGMA = "experiment/test_hard_cases.py::test_cycle_at_any_sigma_is_solved_and_agrees_with_the_path"
+ANY_SIGMA = ("experiment/test_hard_cases.py"
+             "::test_cycle_at_any_sigma_is_solved_and_agrees_with_the_path")
 NOT_PASSED = "equilibrium/test_iterations.py"
 STARVED = "app/test_unconverged.py::test_what_does_not_converge_says_so_and_invents_nothing"
 UNCONVERGED_ROW = ("app/test_unconverged.py"
                    "::test_a_row_that_is_no_equilibrium_is_neither_stable_nor_unstable")
 BEYOND_ROUNDING = ("app/test_ranges.py"
                    "::test_sigma_out_of_any_range_is_solved_or_said_to_be_beyond_rounding")
-NO_LENGTH = "model/test_forces.py::test_a_power_has_no_length_that_others_could_be_too_long_or_short_for"
-POWER_CUT = "system/test_faults.py::test_a_power_failure_at_any_call_leaves_one_set_of_results_or_says_so"
-LIMITED = "resume/test_unwritable.py::test_a_limit_on_the_size_of_files_stops_a_run_that_then_goes_on"
+NO_LENGTH = ("model/test_forces.py"
+             "::test_a_power_has_no_length_that_others_could_be_too_long_or_short_for")
+POWER_CUT = ("system/test_faults.py"
+             "::test_a_power_failure_at_any_call_leaves_one_set_of_results_or_says_so")
+LIMITED = ("resume/test_unwritable.py"
+           "::test_a_limit_on_the_size_of_files_stops_a_run_that_then_goes_on")
 FAULTS = "system/test_faults.py"
 
 
@@ -52,98 +56,77 @@ class Guard(NamedTuple):
 
 GONE, NEVER, ALWAYS = ("gone",), ("never",), ("always",)
 GUARDS = {
-    "smallest_gap": Guard(
-        "gaps that the law is not asked for", "equilibrium", "least smallest_gap",
+    "smallest_gap": Guard("gaps that the law is not asked for", "equilibrium", "least smallest_gap",
         ("swap", "smallest_gap", "-largest_unknown"),
         ("app/test_unconverged.py::test_what_came_before_the_fall_is_kept",), traps=True),
-    "defined": Guard(
-        "what is outside the law's domain has no residual", "equilibrium", "if defined problem", NEVER,
-        (NOT_PASSED,), also=("if error huge", NEVER)),
-    "largest_step": Guard(
-        "a step keeps every gap within the law's closure limit", "equilibrium", "limit min minval",
-        ("swap", "min", "max"), (ANY_SIGMA,)),
-    "largest_floor": Guard(
-        "rounding excuses residuals only up to 1e-3", "equilibrium",
+    "defined": Guard("what is outside the law's domain has no residual", "equilibrium",
+        "if defined problem", NEVER, (NOT_PASSED,), also=("if error huge", NEVER)),
+    "largest_step": Guard("a step keeps every gap within the law's closure limit", "equilibrium",
+        "limit min minval", ("swap", "min", "max"), (ANY_SIGMA,)),
+    "largest_floor": Guard("rounding excuses residuals only up to 1e-3", "equilibrium",
         "residual_floor min largest_floor", GONE,
         ("app/test_ranges.py::test_no_residual_above_a_thousandth_is_put_down_to_rounding",)),
-    "lost_in_rounding": Guard(
-        "adhesion beyond rounding is refused", "contact_scales", "coupling_over largest_floor",
-        ("swap", "largest_floor", "huge(1.0_wp)"), (BEYOND_ROUNDING,)),
-    "anderson_nan": Guard(
-        "Anderson's convergence is a comparison that NaN fails", "anderson", "converged holds",
-        ("or", ".not. state%residual < huge(1.0_wp)"), (NOT_PASSED,)),
-    "hidden_folds": Guard(
-        "folds that a step passes over are looked for", "path_search", "if doubt held most_states",
-        ("swap", "most_states", "0"),
+    "lost_in_rounding": Guard("adhesion beyond rounding is refused", "contact_scales",
+        "coupling_over largest_floor", ("swap", "largest_floor", "huge(1.0_wp)"),
+        (BEYOND_ROUNDING,)),
+    "anderson_nan": Guard("Anderson's convergence is a comparison that NaN fails", "anderson",
+        "converged holds", ("or", ".not. state%residual < huge(1.0_wp)"), (NOT_PASSED,)),
+    "hidden_folds": Guard("folds that a step passes over are looked for", "path_search",
+        "if doubt held most_states", ("swap", "most_states", "0"),
         ("path/test_close_folds.py::test_folds_however_close_are_found",)),
-    "converged_column": Guard(
-        "a row that is no equilibrium says so", "curve_rows", "merge converged",
-        ("swap", "converged", ".true."), (STARVED,)),
-    "unconverged_stable": Guard(
-        "a row that is no equilibrium is not stable", "stability_records", "if converged", ALWAYS,
-        (UNCONVERGED_ROW,)),
-    "known_stability": Guard(
-        "an eigenvalue does not change what is known of stability", "stability_records",
-        "if stable stable_unasked", ALWAYS,
+    "converged_column": Guard("a row that is no equilibrium says so", "curve_rows",
+        "merge converged", ("swap", "converged", ".true."), (STARVED,)),
+    "unconverged_stable": Guard("a row that is no equilibrium is not stable", "stability_records",
+        "if converged", ALWAYS, (UNCONVERGED_ROW,)),
+    "known_stability": Guard("an eigenvalue does not change what is known of stability",
+        "stability_records", "if stable stable_unasked", ALWAYS,
         ("equilibrium/test_stability.py::test_the_group_leaves_the_path_as_it_is",)),
-    "failed_case": Guard(
-        "a case of a sweep that fails is counted", "sweeps", "if converged failed", GONE,
-        ("report/test_sweep_columns.py", "report/test_results.py")),
-    "memory": Guard(
-        "matrices larger than the memory are refused", "preflight", "if bytes available then", NEVER,
+    "failed_case": Guard("a case of a sweep that fails is counted", "sweeps", "if converged failed",
+        GONE, ("report/test_sweep_columns.py", "report/test_results.py")),
+    "memory": Guard("matrices larger than the memory are refused", "preflight",
+        "if bytes available then", NEVER,
         ("app/test_preflight.py::test_what_does_not_fit_leaves_older_results_and_can_be_resumed",)),
-    "under_resolved": Guard(
-        "under-resolved meshes are warned of", "quality_warnings", "call warn under-resolved", GONE,
-        ("experiment/test_cycle_grids.py",)),
-    "folder_lock": Guard(
-        "one run at a time in a folder", "folder_lock", "if locked_elsewhere return", ALWAYS,
+    "under_resolved": Guard("under-resolved meshes are warned of", "quality_warnings",
+        "call warn under-resolved", GONE, ("experiment/test_cycle_grids.py",)),
+    "folder_lock": Guard("one run at a time in a folder", "folder_lock",
+        "if locked_elsewhere return", ALWAYS,
         ("resume/test_resume_whose.py::test_a_second_run_is_refused_and_touches_nothing",)),
-    "checksum": Guard(
-        "a damaged record of the journal does not count", "journal", "if checksum words", GONE,
+    "checksum": Guard("a damaged record of the journal does not count", "journal",
+        "if checksum words", GONE,
         ("resume/test_resume_sweep.py::test_a_damaged_record_is_computed_again",)),
-    "owner": Guard(
-        "a journal of another deck or program is not continued", "journal", "if other owner", NEVER,
+    "owner": Guard("a journal of another deck or program is not continued", "journal",
+        "if other owner", NEVER,
         ("resume/test_resume_whose.py::test_another_deck_is_refused_and_told_apart",)),
-    "files": Guard(
-        "results of another table or profile are not taken for those of this one", "data_table",
-        "call note_file", GONE, ("resume/test_resume_files.py",)),
-    "far_gaps": Guard(
-        "a path is not lost for gaps where no force acts", "equilibrium", "closure harmless far_gap",
-        ("swap", "harmless", "0.0_wp"),
+    "files": Guard("results of another table or profile are not taken for those of this one",
+        "data_table", "call note_file", GONE, ("resume/test_resume_files.py",)),
+    "far_gaps": Guard("a path is not lost for gaps where no force acts", "equilibrium",
+        "closure harmless far_gap", ("swap", "harmless", "0.0_wp"),
         ("path/test_barrier.py::test_the_path_does_not_depend_on_gaps_where_no_force_acts",)),
-    "no_length": Guard(
-        "a sum is not scanned in the units of a term that has none", "van_der_waals",
+    "no_length": Guard("a sum is not scanned in the units of a term that has none", "van_der_waals",
         "has_length false", GONE, (NO_LENGTH,)),
-    "torn": Guard(
-        "what was torn is cut off the journal", "journal", "c_cut descriptor whole",
+    "torn": Guard("what was torn is cut off the journal", "journal", "c_cut descriptor whole",
         ("swap", "whole", "self%room*word"),
         ("resume/test_resume_sweep.py::test_what_was_torn_is_cut_off",)),
-    "journal_flush": Guard(
-        "a record of the journal that the system could not write stops the run", "journal",
-        "call system_failure trouble write", GONE, (LIMITED,)),
-    "table_flush": Guard(
-        "a table that the system could not write is an error", "text_file",
+    "journal_flush": Guard("a record of the journal that the system could not write stops the run",
+        "journal", "call system_failure trouble write", GONE, (LIMITED,)),
+    "table_flush": Guard("a table that the system could not write is an error", "text_file",
         "call system_failure cannot write status", GONE,
         ("report/test_results.py", "resume/test_unwritable.py")),
     "intent_last": Guard(
         "a folder says that its files may not belong together until they are cleaned up",
         "publication", "call rename_file intent_name partial", GONE, (FAULTS,)),
-    "folder_name": Guard(
-        "results in a new folder are not complete before its name is on the disk", "publication",
-        "call sync_above", GONE, (POWER_CUT,)),
-    "table_sync": Guard(
-        "a table is on the disk before it gets its name", "text_file", "synced c_sync",
-        ("value", "0"), (FAULTS,)),
-    "regular": Guard("what is no file is not opened as one", "posix", "else if S_ISREG st_mode", NEVER,
-                     (FAULTS,)),
-    "duplicate_key": Guard(
-        "a key given twice is a mistake", "deck", "what given twice", GONE,
+    "folder_name": Guard("results in a new folder are not complete before its name is on the disk",
+        "publication", "call sync_above", GONE, (POWER_CUT,)),
+    "table_sync": Guard("a table is on the disk before it gets its name", "text_file",
+        "synced c_sync", ("value", "0"), (FAULTS,)),
+    "regular": Guard("what is no file is not opened as one", "posix", "else if S_ISREG st_mode",
+        NEVER, (FAULTS,)),
+    "duplicate_key": Guard("a key given twice is a mistake", "deck", "what given twice", GONE,
         ("namelist/test_deck.py::test_bad_deck_is_refused_by_line_group_and_key",)),
-    "magnitudes": Guard(
-        "units that would overflow are refused", "law_reading", "if abs decades most_decades", NEVER,
+    "magnitudes": Guard("units that would overflow are refused", "law_reading",
+        "if abs decades most_decades", NEVER,
         ("app/test_ranges.py::test_units_that_would_overflow_together_are_refused",)),
-    "order": Guard(
-        "numbers beyond 1e50 are refused", "deck_number", "parameter largest_order",
+    "order": Guard("numbers beyond 1e50 are refused", "deck_number", "parameter largest_order",
         ("value", "300"), ("namelist/test_deck.py", "app/test_ranges.py")),
 }
 

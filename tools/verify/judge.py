@@ -1,6 +1,6 @@
 """Compares the program with the independent reference of tests/support: studies with tables.
 
-    .venv/bin/python tools/verify/judge.py [STUDY ...] [--count N] [--seed N] [--out FILE]
+    .venv/bin/python tools/verify/judge.py [STUDY ...] [--count N] [--seed N]
 
     estimates   true error over estimated error of every number of the summary
     cycles      random cycles with any steps: jumps, tensions, ends, rows
@@ -69,22 +69,17 @@ def main():
     parser.add_argument("--count", type=int, help="decks, scenes or strengths")
     parser.add_argument("--seed", type=int, default=1, help="of the random decks")
     parser.add_argument("--workers", type=int, default=2)
-    parser.add_argument("--out", type=pathlib.Path, help="a file that the tables go to as well")
     arguments = parser.parse_args()
     unknown = [name for name in arguments.studies if name not in STUDIES]
     if unknown:
         parser.error(f"no study called {unknown[0]}; there are: {', '.join(STUDIES)}")
     if not program_path().is_file():
         parser.error("no executable: build the program first, or set SNAPIN")
-    total, lines = 0, []
+    total = 0
     with tempfile.TemporaryDirectory() as folder:
         for name in arguments.studies:
             table, bad = study(name, arguments, pathlib.Path(folder))
-            lines = [f"{name}: {bad} findings", *table, ""]
-            print("\n".join(lines), flush=True)
-            if arguments.out:
-                with arguments.out.open("a") as file:
-                    file.write("\n".join(lines) + "\n")
+            print("\n".join([f"{name}: {bad} findings", *table, ""]), flush=True)
             total += bad
     return 1 if total else 0
 

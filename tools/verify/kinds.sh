@@ -13,8 +13,6 @@ top=$(dirname -- "$(dirname -- "$here")")
 prepare
 cd "$top" || exit
 PATH=$venv/bin:$PATH
-# The folders in which tests find the tools.
-tools="pywrap/plots tools tools/verify tools/reproduce"
 export PATH
 [ $# -gt 0 ] || set -- -m 'not slow and not long'
 
@@ -37,19 +35,6 @@ has_kernel() {
     grep -qix "core: $1" || { reason='this build has no such kernel'; return 1; }
 }
 
-# provides PACKAGE...: installs packages if Debian offers them. A failed installation ends the
-# script.
-provides() {
-  dpkg -s "$@" > /dev/null 2>&1 && return
-  reason="missing: $*"
-  { has apt-get && [ "$(id -u)" = 0 ]; } || return
-  logged 'updating the package lists' apt-get update
-  apt-cache show "$@" > /dev/null 2>&1 || { reason="not in the package lists: $*"; return 1; }
-  export DEBIAN_FRONTEND=noninteractive
-  logged "installing $*" \
-    apt-get install -y --no-install-recommends -o DPkg::Lock::Timeout=300 "$@"
-}
-
 # Debian installs the reference libraries beside OpenBLAS's, which have the same names.
 reference_libraries() {
   for folder in /usr/lib/*/lapack /usr/lib/*/blas; do
@@ -68,25 +53,15 @@ c_compiler() {
 }
 
 has_compiler() {
-  case $1 in
-    flang-*) provides "$1" "$(c_compiler "$1")" "libomp-${1#*-}-dev" ;;
-    *) provides "$1" "$(c_compiler "$1")" ;;
-  esac
-}
-
-tests() { "$venv/bin/python" -m pytest -q -n auto --dist worksteal -p no:cacheprovider "$@"; }
-
-# tests_of FOLDER [PYTEST ARGUMENTS]: the tests of another build.
-tests_of() {
-  folder=$1
-  shift
-  SNAPIN=$top/$folder/snapin tests -o pythonpath="pywrap $folder/pywrap tests $tools" "$@"
+  case $1 in flang-*) openmp=libomp-${1#*-}-dev ;; *) openmp= ;; esac
+  # shellcheck disable=SC2086 # without OpenMP, no word
+  provides "$1" "$(c_compiler "$1")" $openmp
 }
 
 kernel() {
   export OPENBLAS_CORETYPE="$1"
   shift
-  tests "$@"
+  tests -p no:cacheprovider "$@"
 }
 
 reference() {
@@ -98,7 +73,7 @@ reference() {
     say 'build-lapack runs on OpenBLAS after all'
     return 1
   fi
-  tests_of build-lapack "$@"
+  tests_of build-lapack -p no:cacheprovider "$@"
 }
 
 # The results of all decks are compared too.
@@ -112,7 +87,7 @@ compiler() {
   # LLVM's OpenMP leaves an empty file if a process is killed during its start, and a later process
   # with the same number crashes because of the file (SIGBUS).
   rm -f /dev/shm/__KMP_REGISTERED_LIB_* /tmp/__KMP_REGISTERED_LIB_*
-  tests_of "build-$name" "$@"
+  tests_of "build-$name" -p no:cacheprovider "$@"
   tested=$?
   "$venv/bin/python" "$here/levels.py" --builds "$build/snapin" "$name=build-$name/snapin" \
     > "build-$name/levels.log" 2>&1 || { cat "build-$name/levels.log"; return 1; }
@@ -124,15 +99,15 @@ failed=
 for kind in ${KINDS:-Prescott Haswell SkylakeX Zen reference flang-22 gfortran-11}; do
   reason=
   case $kind in
-    reference) sort=reference what='the reference LAPACK' ;;
-    flang-* | gfortran-*) sort=compiler what="a build by $kind" ;;
-    *) sort=kernel what="OpenBLAS's $kind kernels" ;;
+    reference) sort=reference title='the reference LAPACK' ;;
+    flang-* | gfortran-*) sort=compiler title="a build by $kind" ;;
+    *) sort=kernel title="OpenBLAS's $kind kernels" ;;
   esac
   if "has_$sort" "$kind"; then
-    say "tests on $what"
+    say "tests on $title"
     ("$sort" "$kind" "$@") || failed="$failed $kind"
   else
-    say "skipped: $what: $reason"
+    say "skipped: $title: $reason"
   fi
 done
 [ -z "$failed" ] || { say "failed:$failed"; exit 1; }

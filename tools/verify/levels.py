@@ -1,15 +1,15 @@
-"""Measure how results depend on the compiler and its options, on threads, and on OpenBLAS's kernels.
+"""Measure how results depend on compiler and options, on threads, and on OpenBLAS's kernels.
 
     levels.py [--builds] REFERENCE [NAME=PROGRAM ...]
 
 runs decks with the program REFERENCE on one thread, and with every other PROGRAM: the decks below,
 and those of inputs/ except LEFT_OUT. Without --builds the decks below are also run with REFERENCE
 on 1, 2 and 4 threads, twice, and with the kernels for other processors that this one can run.
-It compares all columns of all tables, relative to the largest value of the column, and all numbers of
-the summary, except ROUNDED. Prints a table: the largest difference, its place, and the number of rows
-with a different number of iterations, which is not judged. Ends with status 1 if a difference exceeds
-the deck's limit, if a repeated run gives other bytes, or if threads change a byte of a deck whose
-matrices are too small to be shared between threads.
+It compares all columns of all tables, relative to the largest value of the column, and all numbers
+of the summary, except ROUNDED. Prints a table: the largest difference, its place, and the number of
+rows with a different number of iterations, which is not judged. Ends with status 1 if a difference
+exceeds the deck's limit, if a repeated run gives other bytes, or if threads change a byte of a deck
+whose matrices are too small to be shared between threads.
 """
 
 import argparse
@@ -88,11 +88,8 @@ DECKS = {
     "uniform grid, Newton": (
         lennard_jones(0.87, **CYCLE, numerics={**FIXED, "method": "newton"}), EXACT),
     "2600 nodes": (lennard_jones(0.2, loading=loading(3, 1, 1), numerics=THREADED), EXACT),
-    "mixing": (
-        lennard_jones(
-            0.17, loading=loading(6, 0, 0.5), numerics={"method": "mixing", "nodes": 100}),
-        STOPPED,
-    ),
+    "mixing": (lennard_jones(0.17, loading=loading(6, 0, 0.5),
+                             numerics={"method": "mixing", "nodes": 100}), STOPPED),
 }
 
 
@@ -109,45 +106,23 @@ class Difference(NamedTuple):
 
 def kernels():
     """The kernels that this processor can run."""
-    try:
-        features = set(pathlib.Path("/proc/cpuinfo").read_text().split())
-    except OSError:
-        features = set()
+    processor = pathlib.Path("/proc/cpuinfo")
+    features = set(processor.read_text().split()) if processor.is_file() else set()
     return [name for name, needed in KERNELS.items() if needed <= features]
 
 
 def input_decks():
     """The decks of inputs/, as files."""
-    return {
-        str(file.relative_to(ROOT)): file
-        for file in sorted((ROOT / "inputs").rglob("*.nml"))
-        if not any(word in file.stem for word in LEFT_OUT)
-    }
-
-
-def run(program, name, deck, threads, folder, kernel=None):
-    """The results of a deck, which is a text or a file."""
-    folder.mkdir(parents=True)
-    file = deck
-    if isinstance(deck, str):
-        file = folder / "deck.nml"
-        file.write_text(deck)
-    chosen = {"OPENBLAS_CORETYPE": kernel} if kernel else {}
-    done = subprocess.run(
-        [program, "--quiet", "--out", folder, file], env=threaded(threads, **chosen),
-        capture_output=True, text=True, check=False)
-    if done.returncode:
-        sys.exit(f"{name}: status {done.returncode}\n{done.stderr}")
-    return Run(done.returncode, done.stderr, folder / file.stem)
+    return {str(file.relative_to(ROOT)): file
+            for file in sorted((ROOT / "inputs").rglob("*.nml"))
+            if not any(word in file.stem for word in LEFT_OUT)}
 
 
 def numbers_of(one):
     """The columns of all tables, and the numbers of the summary, by name."""
-    found = {
-        f"{path.name}: {name}": column
-        for path in sorted(one.folder.glob("*.csv"))
-        for name, column in one.table(path.name).columns.items()
-    }
+    found = {f"{path.name}: {name}": column
+             for path in sorted(one.folder.glob("*.csv"))
+             for name, column in one.table(path.name).columns.items()}
     for key, value in one.summary.items():
         if not isinstance(several(value)[0], str):
             found[key] = np.array(several(value), float)
@@ -206,10 +181,8 @@ def limit_of(one):
 
 def same_bytes(one, other):
     """Whether two runs of a deck have left the same tables."""
-    return all(
-        path.read_bytes() == (other.folder / path.name).read_bytes()
-        for path in one.folder.glob("*.csv")
-    )
+    return all(path.read_bytes() == (other.folder / path.name).read_bytes()
+               for path in one.folder.glob("*.csv"))
 
 
 class Comparison:
@@ -222,10 +195,22 @@ class Comparison:
         print("| variant | deck | largest difference | limit | of | other counts |")
         print("|---|---|---|---|---|---|")
 
-    def run(self, program, deck_name, deck, threads=1, kernel=None):
+    def run(self, program, name, deck, threads=1, kernel=None):
+        """Runs a deck, which is a text or a file, in a folder of its own; returns the results."""
         self.runs += 1
         folder = self.folder / str(self.runs)
-        return run(program, deck_name, deck, threads, folder, kernel)
+        folder.mkdir()
+        file = deck
+        if isinstance(deck, str):
+            file = folder / "deck.nml"
+            file.write_text(deck)
+        chosen = {"OPENBLAS_CORETYPE": kernel} if kernel else {}
+        done = subprocess.run(
+            [program, "--quiet", "--out", folder, file], env=threaded(threads, **chosen),
+            capture_output=True, text=True, check=False)
+        if done.returncode:
+            sys.exit(f"{name}: status {done.returncode}\n{done.stderr}")
+        return Run(done.returncode, done.stderr, folder / file.stem)
 
     def note(self, variant, deck_name, limit, one, other):
         """Adds a row to the table."""
@@ -234,11 +219,8 @@ class Comparison:
             print(f"| {variant} | {deck_name} | other rows or entries | | | |", flush=True)
             self.broken.append(f"{deck_name}, {variant}: other rows or entries")
             return
-        print(
-            f"| {variant} | {deck_name} | {found.size:.0e} | {found.limit:.0e} | {found.place} "
-            f"| {found.iterations} of {found.rows} |",
-            flush=True,
-        )
+        print(f"| {variant} | {deck_name} | {found.size:.0e} | {found.limit:.0e} | {found.place} "
+              f"| {found.iterations} of {found.rows} |", flush=True)
         kind = variant, "of its own" if deck_name.startswith("inputs") else f"{limit:.0e}"
         self.worst[kind] = max(self.worst.get(kind, (0.0, "")), (found.size, deck_name))
         if not found.size <= found.limit:

@@ -2,27 +2,9 @@
 # tools/verify/verify.sh [STAGE ...]: checks that take too long for ./test. docs/testing.md has the
 # results.
 #
-#   long       every test, also those that take minutes
-#   traps      the tests that go through the program, on a build that stops at the first invalid
-#              operation, overflow, index out of bounds or use of an unset real number
-#   memory     valgrind over tools/verify/decks: no leak, no use of memory that was not set
-#   coverage   lines of src/ that the quick tests reach, with a list of the other lines
-#   levels     builds at -O0, -O2, -O3 and -march=native, 1, 2 and 4 threads, OpenBLAS's kernels for
-#              other processors: differences of results; then the quick tests on each of these
-#              kernels and on the reference LAPACK (kinds.sh)
-#   extremes   random decks with extreme values, on the build of `traps`
-#   judge      the program against an independent solution of the Lennard-Jones problem: studies of
-#              every reported number, of cycles, folds and the energy lost (tools/verify/judge.py)
-#   faults     every system call on results fails, kills the run, or is the last before a power cut
-#   guards     guards are removed one at a time, and a test must fail
-#   mpi        builds with OpenMPI and with MPICH, which are installed if Debian offers them, and the
-#              tests of sweeps on many processes on each
-#   fuzz       a coverage-guided search for decks that the reader misreads (needs AFL++)
-#   pages      no page has figures of older numerics than src/ (tools/pages.py lists the commands that renew pages)
-#
-# Without a stage: all stages, about two hours on two cores. Ends with status 1 if one
-# fails. EXTREMES (200) is the number of decks, FIRST (5000) the first of them, FUZZ (240) the seconds of
-# the search, SEED (1) the seed of the judge's random decks.
+# A stage is the function below with its name. Without a stage: all stages, about two hours on two
+# cores. Ends with status 1 if one fails. EXTREMES (200) is the number of random decks, FIRST (5000)
+# the first of them, FUZZ (240) the seconds of the search, SEED (1) that of the judge's decks.
 set -u
 here=$(dirname -- "$(readlink -f -- "$0")")
 top=$(dirname -- "$(dirname -- "$here")")
@@ -34,10 +16,13 @@ python="$venv/bin/python"
 PATH=$venv/bin:$PATH
 export PATH
 
-long() { "$python" -m pytest -q --long -n auto --dist worksteal; }
+# Every test, also those that take minutes.
+long() { tests --long; }
 
 build_traps() { builds build-traps --buildtype=debug -Dtraps=true -Dpython=disabled; }
 
+# The tests that go through the program, on a build that stops at the first invalid operation,
+# overflow, index out of bounds or use of an unset real number.
 traps() {
   build_traps || return
   # shellcheck disable=SC2046 # a list of files is meant
@@ -45,6 +30,7 @@ traps() {
     $(grep -l 'snapin' tests/*/test_*.py | grep -v 'wrapper')
 }
 
+# valgrind over tools/verify/decks: no leak, no use of memory that was not set.
 # Some kernels of OpenBLAS read a few lanes beyond their arguments; those for Haswell do not.
 memory() {
   has valgrind || { say 'valgrind is missing: apt-get install valgrind'; return 1; }
@@ -52,21 +38,18 @@ memory() {
   scratch=$(mktemp -d)
   errors=0
   for deck in "$here"/decks/*.nml; do
-    name=$(basename "$deck" .nml)
+    name=$(basename "$deck" .nml) outcome=clean
     OMP_NUM_THREADS=1 OPENBLAS_CORETYPE=Haswell valgrind -q --error-exitcode=99 --leak-check=full \
       --show-leak-kinds=definite,indirect --errors-for-leak-kinds=definite,indirect \
       "$top/build-memory/snapin" --quiet --out "$scratch" "$deck" > "$scratch/$name.log" 2>&1
-    status=$?
-    if [ $status = 99 ]; then
-      errors=1
-      cat "$scratch/$name.log"
-    fi
-    printf 'memory: %s: %s\n' "$name" "$([ $status = 99 ] && echo errors || echo clean)"
+    [ $? != 99 ] || { errors=1 outcome=errors; cat "$scratch/$name.log"; }
+    printf 'memory: %s: %s\n' "$name" "$outcome"
   done
   rm -rf "$scratch"
   return $errors
 }
 
+# Lines of src/ that the quick tests reach, with a list of the other lines.
 # gcovr merges the counts of gcov and writes the report. gcov takes counts of more than 2^32 for
 # errors, and `end module` for a line, since the compiler puts copies of types there.
 coverage() {
@@ -74,8 +57,7 @@ coverage() {
     "$python" -m pip install --quiet --disable-pip-version-check gcovr==8.3 || return
   builds build-coverage --buildtype=debug -Db_coverage=true -Dpython=enabled || return
   find build-coverage -name '*.gcda' -delete
-  SNAPIN=$top/build-coverage/snapin "$python" -m pytest -q -n auto --dist worksteal \
-    -m 'not slow and not long' -o pythonpath='pywrap build-coverage/pywrap tests pywrap/plots tools tools/verify tools/reproduce'
+  tests_of build-coverage -m 'not slow and not long'
   tested=$?
   "$python" -m gcovr -r "$top" --filter src/ --sort uncovered-percent --print-summary \
     --gcov-ignore-parse-errors=all --exclude-lines-by-pattern '\s*end module.*' \
@@ -85,6 +67,9 @@ coverage() {
   return $tested
 }
 
+# Differences of results between builds at -O0, -O2, -O3 and -march=native, on 1, 2 and 4 threads,
+# and on OpenBLAS's kernels for other processors; then the tests on other linear algebra and
+# compilers.
 levels() {
   builds build-O0 -Dpython=disabled -Doptimization=0 -Ddebug=false &&
     builds build-O2 -Dpython=disabled -Doptimization=2 -Ddebug=false &&
@@ -95,34 +80,38 @@ levels() {
   "$here/kinds.sh" && return $different
 }
 
+# Random decks with extreme values, on the build of `traps`.
 extremes() {
   build_traps || return
   scratch=$(mktemp -d)
   SNAPIN=$top/build-traps/snapin PYTHONPATH=tests "$python" -m support.extremes \
     --first "${FIRST:-5000}" --count "${EXTREMES:-200}" --seconds 300 --out "$scratch"
   status=$?
-  [ $status != 0 ] || rm -rf "$scratch"
-  [ $status = 0 ] || say "the decks are in $scratch"
+  if [ $status = 0 ]; then rm -rf "$scratch"; else say "the decks are in $scratch"; fi
   return $status
 }
 
+# Every reported number, cycles, folds and the energy lost against an independent solution of the
+# Lennard-Jones problem.
 judge() { "$python" "$here/judge.py" --seed "${SEED:-1}"; }
 
+# Every system call on results fails, kills the run, or is the last before a power cut.
 faults() { OMP_NUM_THREADS=1 PYTHONPATH=tests "$python" -m support.faults; }
 
+# Guards are removed one at a time, and a test must fail.
 guards() { "$python" "$here/guards.py"; }
 
+# Builds with OpenMPI and with MPICH, which are installed if Debian offers them, and the tests of
+# sweeps on many processes on each.
 mpi() {
-  dpkg -s libopenmpi-dev openmpi-bin mpich libmpich-dev > /dev/null 2>&1 ||
-    { logged 'updating the package lists' apt-get update
-      logged 'installing OpenMPI and MPICH' env DEBIAN_FRONTEND=noninteractive apt-get install -y \
-        --no-install-recommends libopenmpi-dev openmpi-bin mpich libmpich-dev; } || return
+  provides libopenmpi-dev openmpi-bin mpich libmpich-dev || { say "$reason"; return 1; }
   for kind in openmpi mpich; do
     FC=mpifort.$kind CC=cc builds build-$kind -Dmpi=enabled -Dpython=disabled || return
   done
   "$python" -m pytest -q --long tests/app/test_ranks.py
 }
 
+# A coverage-guided search for decks that the reader misreads.
 fuzz() {
   has afl-fuzz || { say 'AFL++ is missing: apt-get install afl++'; return 1; }
   "$top/tools/fuzz/campaign.sh" "${FUZZ:-240}" "$top/build-fuzz" || return
@@ -130,6 +119,7 @@ fuzz() {
   [ -z "$found" ] || { printf '%s\n' "$found"; return 1; }
 }
 
+# No page has figures of older numerics than src/.
 pages() { "$python" "$top/tools/pages.py"; }
 
 failed=

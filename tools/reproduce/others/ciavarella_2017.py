@@ -8,7 +8,8 @@ import style
 from others import greenwood_1997, wu_2010
 from report import Comparison
 
-# A cycle of JKR theory at fixed displacement: in at displacement 0, out where d(displacement)/da = 0.
+# A cycle of JKR theory at fixed displacement: in at displacement 0, out where
+# d(displacement)/da = 0.
 # In A = a/(pi w R^2/K)^(1/3), P = A^3 - A sqrt(6 A), D = A^2 - (2/3) sqrt(6 A); the loss in
 # pi w R (pi^2 w^2 R/K^2)^(1/3) is the area between the jumps.
 TABORS = (0.8, 1.0, 2.0, 5.0, 10.0, 100.0)
@@ -73,17 +74,12 @@ def draw(_):
 
 
 def rows(_):
-    unit = "(R^4 w^5/E*^2)^(1/3)"
-    found = []
-    for tabor in TABORS:
-        loss = _loss(tabor)
-        found += [
-            Comparison(f"mu = {tabor:g}, energy lost", "theory", jkr(), loss, unit,
-                       "JKR theory at fixed displacement, mu to infinity"),
-            Comparison(f"mu = {tabor:g}, energy lost", "formula", _solved(tabor), loss, unit,
-                       "7.0922 - (4 pi/3) h0/(mu z0), h0 of the jump solved"),
-            Comparison(f"mu = {tabor:g}, energy lost", "formula", _printed(tabor), loss, unit,
-                       "the same with h0 by Attard and Parker's (37)")]
-    found.append(Comparison("energy lost against mu", "not read", None, "see above", "",
-                            "Ciavarella, Greenwood and Barber (2017)"))
-    return found
+    found = [Comparison(f"mu = {tabor:g}, energy lost", kind, theirs(tabor), _loss(tabor),
+                        "(R^4 w^5/E*^2)^(1/3)", source)
+             for tabor in TABORS
+             for kind, theirs, source in (
+                 ("theory", lambda _: jkr(), "JKR theory at fixed displacement, mu to infinity"),
+                 ("formula", _solved, "7.0922 - (4 pi/3) h0/(mu z0), h0 of the jump solved"),
+                 ("formula", _printed, "the same with h0 by Attard and Parker's (37)"))]
+    return [*found, Comparison("energy lost against mu", "not read", None, "see above", "",
+                               "Ciavarella, Greenwood and Barber (2017)")]

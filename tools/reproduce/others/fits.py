@@ -8,7 +8,7 @@ import style
 from report import Comparison
 
 LAMBDAS = (0.01, 0.03, 0.1, 0.3, 1.0, 3.0, 10.0)
-_MANY = spheres.spaced(0.01, 100, 81)
+_MANY = spheres.LAMBDAS
 # Here the range of the force is so short that bodies have a contact radius.
 SOFT = 1.0
 
@@ -21,8 +21,7 @@ def _over(theory):
 def _errors(theory):
     """Return errors [%] of pull-off and of radius without load: a dict by reference, of arrays
     over _MANY."""
-    solved = [spheres.contact(spheres.tabor_of(lam), 0.0).errors[theory.split("_")[0]][:2]
-              for lam in _MANY]
+    solved = [spheres.errors(theory.split("_")[0], lam)[:2] for lam in _MANY]
     return {"maugis": 100 * (_over(theory) / _over("maugis") - 1),
             "solved": 100 * np.transpose(solved)}
 
@@ -43,21 +42,18 @@ def numbers(theory, _):
 def draw(theory, name, _):
     """Return the picture: the formula over lambda, and its errors."""
     page, ((one, two), (three, four)) = style.figure(2, 2, height=5.6, sharex=True)
-    tabors = [spheres.tabor_of(lam) for lam in _MANY]
-    solved = ([spheres.sphere(tabor).tension for tabor in tabors],
-              [spheres.contact(tabor, 0.0).radius for tabor in tabors])
     found = _errors(theory)
-    for panel, below, unit, *values in zip(
+    for panel, below, unit, formula, maugis, solved, *errors in zip(
             (one, two), (three, four), ("pull-off $/\\pi wR$", "radius without load $\\hat a_0$"),
-            _over(theory), _over("maugis"), solved, found["maugis"], found["solved"]):
-        theirs = {"color": style.VERMILION, "dashes": (5, 1.5)}
-        panel.semilogx(_MANY, values[0], color=style.BLUE, label=name)
-        panel.semilogx(_MANY, values[1], **theirs, label="Maugis-Dugdale theory")
-        panel.semilogx(_MANY, values[2], color=style.BLACK, label="Lennard-Jones, solved")
+            _over(theory), _over("maugis"), np.transpose([*map(spheres.solved_at, _MANY)]),
+            found["maugis"], found["solved"]):
+        panel.semilogx(_MANY, formula, color=style.BLUE, label=name)
+        panel.semilogx(_MANY, maugis, **spheres.MAUGIS)
+        panel.semilogx(_MANY, solved, **spheres.SOLVED)
         panel.set_ylabel(unit)
         below.axhspan(-1, 1, color=style.GREY, alpha=0.2, linewidth=0)
-        below.semilogx(_MANY, values[3], **theirs)
-        below.semilogx(_MANY, values[4], color=style.BLACK)
+        below.semilogx(_MANY, errors[0], **spheres.MAUGIS)
+        below.semilogx(_MANY, errors[1], **spheres.SOLVED)
         style.label(below, "Maugis' parameter $\\lambda$", "error of the formula [%]", "y")
     style.word(three, 0.02, 0.03, "grey: within 1 %", style.BLACK, transform=three.transAxes,
                va="baseline")
@@ -68,17 +64,12 @@ def draw(theory, name, _):
 
 
 def rows(theory, source, _):
-    found = []
-    for lam in LAMBDAS:
-        tabor = spheres.tabor_of(lam)
-        solved = spheres.sphere(tabor).tension, spheres.contact(tabor, 0.0).radius
-        found += [Comparison(f"lambda = {lam:g}, {what}, {against}", "formula", mine, other, unit,
-                             source)
-                  for what, unit, mine, *others in zip(
-                      ("pull-off", "radius without load"), ("pi w R", "(pi w R^2/K)^(1/3)"),
-                      spheres.theory(theory, lam), solved, spheres.theory("maugis", lam))
-                  for against, other in zip(("Lennard-Jones", "Maugis-Dugdale"), others)]
-    return found
+    return [Comparison(f"lambda = {lam:g}, {what}, {against}", "formula", mine, other, unit, source)
+            for lam in LAMBDAS
+            for what, unit, mine, *others in zip(
+                ("pull-off", "radius without load"), ("pi w R", "(pi w R^2/K)^(1/3)"),
+                spheres.theory(theory, lam), spheres.solved_at(lam), spheres.theory("maugis", lam))
+            for against, other in zip(("Lennard-Jones", "Maugis-Dugdale"), others)]
 
 
 def chapter(theory, name, source):

@@ -34,27 +34,24 @@ def numbers(_):
 def draw(_):
     page, (left, right) = style.figure(1, 2, height=3.9)
     for tabor, color in zip(_SHOWN, _COLORS):
-        h0, load = spheres.curve(tabor)
         found = spheres.sphere(tabor)
-        left.plot(-h0, load, color=color, linestyle=":" if found.jump_in else "-", linewidth=1)
-        for part in _stable(h0, load, found):
+        left.plot(-found.h0, found.load, color=color, linewidth=1,
+                  linestyle=":" if found.jump_in else "-")
+        for part in _stable(found):
             left.plot(*part, color=color, linewidth=1.8)
         left.plot([], [], color=color, label=f"$\\mu$ = {tabor:g}")
-    left.set_xlim(-10, 4)
-    left.set_ylim(-2.1, 1.5)
-    style.label(left, "approach $-h_0/z_0$", "load $F/\\pi wR$", "xy")
+    style.label(left, "approach $-h_0/z_0$", "load $F/\\pi wR$", "xy", xlim=(-10, 4),
+                ylim=(-2.1, 1.5))
     left.legend(loc="upper left")
-    tabors = np.geomspace(0.01, 100, 81)
-    right.semilogx(tabors, [spheres.sphere(float(each)).tension for each in tabors],
-                   color=style.BLACK)
+    tabors = spheres.spaced(0.01, 100, 81)
+    right.semilogx(tabors, [spheres.sphere(each).tension for each in tabors], color=style.BLACK)
     right.axhline(1.5, color=style.GREY, linewidth=0.8, dashes=(5, 2))
-    right.text(0.012, 1.51, "JKR", va="bottom", fontsize=8.5, color="#555555")
-    style.label(right, "Tabor's parameter $\\mu$", "pull-off $/\\pi wR$")
-    right.set_ylim(1.45, 2.05)
+    style.word(right, 0.012, 1.51, "JKR", va="bottom")
+    style.label(right, "Tabor's parameter $\\mu$", "pull-off $/\\pi wR$", ylim=(1.45, 2.05))
     other = right.twinx()
     folded = [each for each in tabors if each > cusp()]
     for way, color in (("jump_in", style.BLUE), ("jump_out", style.VERMILION)):
-        other.loglog(folded, [getattr(spheres.sphere(float(each)), way)[0] for each in folded],
+        other.loglog(folded, [getattr(spheres.sphere(each), way)[0] for each in folded],
                      color=color, dashes=(5, 1.5))
     other.set_ylabel("$h_0/z_0$ at jumps: in (blue), out (red)")
     other.spines["right"].set_visible(True)
@@ -62,39 +59,33 @@ def draw(_):
     return page
 
 
-def _stable(h0, load, found):
+def _stable(found):
     """Return the pieces of a path on an approach and a retreat."""
     if found.jump_in is None:
-        return [(-h0, load)]
-    first = int(np.argmin(abs(h0 - found.jump_in[0]) + abs(load + found.jump_in[1])))
-    last = int(np.argmin(abs(h0 - found.jump_out[0]) + abs(load + found.jump_out[1])))
-    return [(-h0[: first + 1], load[: first + 1]), (-h0[last:], load[last:])]
+        return [(-found.h0, found.load)]
+    first, last = (int(np.argmin(abs(found.h0 - h0) + abs(found.load + tension)))
+                   for h0, tension in (found.jump_in, found.jump_out))
+    return [(-found.h0[: first + 1], found.load[: first + 1]),
+            (-found.h0[last:], found.load[last:])]
 
 
 def rows(_):
     bradley = "Bradley (1932), DMT (1975): rigid spheres"
     jkr = "Johnson, Kendall and Roberts (1971): mu to infinity"
-    found = [
-        Comparison("mu of Muller et al. over Tabor's", "formula", _MULLER, _MULLER, "",
-                   "(32/3 pi)(2/pi)^(1/3); an identity"),
-        Comparison("mu from which on load-approach curves are S-shaped", "not read", None, cusp(),
-                   "", "often quoted as 1"),
-    ]
+    found = []
     for tabor in TABORS:
         one, name = spheres.sphere(tabor), f"mu = {tabor:g}"
         limit, why = (2.0, bradley) if tabor < 0.5 else (1.5, jkr)
-        found.append(Comparison(f"{name}, pull-off", "theory", limit, one.tension, "pi w R", why))
-        found.append(Comparison(f"{name}, h0 at the pull-off", "not read", None, one.tension_h0,
-                                "z0", "tables of Greenwood, Feng"))
-        if one.jump_in is None:
-            continue
-        for way, (h0, tension) in (("in", one.jump_in), ("out", one.jump_out)):
-            found.append(Comparison(f"{name}, h0 at the jump {way}", "not read", None, h0, "z0",
-                                    "tables of Greenwood, Feng"))
-            if way == "in":
-                found.append(Comparison(f"{name}, tension before it", "not read", None, tension,
-                                        "pi w R", "tables of Greenwood, Feng"))
-            else:
-                found.append(Comparison(f"{name}, tension before it", "theory", 5 / 6, tension,
-                                        "pi w R", f"{jkr}, at fixed displacement"))
+        found += [Comparison(f"{name}, pull-off", "theory", limit, one.tension, "pi w R", why),
+                  _not_read(f"{name}, h0 at the pull-off", one.tension_h0, "z0")]
+        if one.jump_in:
+            found += [_not_read(f"{name}, h0 at the jump in", one.jump_in[0], "z0"),
+                      _not_read(f"{name}, tension before it", one.jump_in[1], "pi w R"),
+                      _not_read(f"{name}, h0 at the jump out", one.jump_out[0], "z0"),
+                      Comparison(f"{name}, tension before it", "theory", 5 / 6, one.jump_out[1],
+                                 "pi w R", f"{jkr}, at fixed displacement")]
     return found
+
+
+def _not_read(item, value, unit):
+    return Comparison(item, "not read", None, value, unit, "tables of Greenwood, Feng")

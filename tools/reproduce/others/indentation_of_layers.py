@@ -33,9 +33,9 @@ def good_to(name, percent):
 def numbers(_):
     found = {}
     for name in _SOURCES:
-        letter = name[0]
-        found |= {f"one_{letter}": good_to(name, 1), f"{letter}06": error(name, 0.62011),
-                  f"{letter}1": error(name, 1.0), f"{letter}2": error(name, 2.0)}
+        found[f"one_{name[0]}"] = good_to(name, 1)
+        for key, chi in (("06", 0.62011), ("1", 1.0), ("2", 2.0)):
+            found[name[0] + key] = error(name, chi)
     return found
 
 
@@ -51,8 +51,7 @@ def draw(_):
         right.plot(chis, [error(name, chi) for chi in chis], color=color)
     left.set_yticks([1, 2, 5, 10, 20], ["1", "2", "5", "10", "20"])
     style.label(left, "$\\chi = \\sqrt{R\\delta}/t$", "load / load on a half-space")
-    style.label(right, "$\\chi = \\sqrt{R\\delta}/t$", "error [%]", "y")
-    right.set_ylim(-45, 45)
+    style.label(right, "$\\chi = \\sqrt{R\\delta}/t$", "error [%]", "y", ylim=(-45, 45))
     style.legend(page, 3)
     return page
 

@@ -5,7 +5,6 @@ import spheres
 import style
 from matplotlib.colors import BoundaryNorm, ListedColormap
 from matplotlib.patches import Patch
-from report import Comparison
 
 LAMBDAS = spheres.spaced(1e-3, 100, 31)
 # Largest error with which a theory counts as valid.
@@ -15,13 +14,14 @@ _NAMES = ("none", "Bradley", "Hertz", "DMT", "JKR", "Maugis-Dugdale")
 _COLORS = ("#FFFFFF", style.GREY, style.SKY, style.ORANGE, style.GREEN, style.PURPLE)
 
 
-def worst(theory, lam, load):
+def worst(theory, lam, load=0.0):
     """Return the larger error of contact radius and indentation; 1 for Hertz theory without a
     value; for Bradley's theory the error of h0 over z0."""
     if theory == "bradley":
-        h0 = 1 - spheres.contact(spheres.tabor_of(lam), load).displacement * spheres.unit(spheres.tabor_of(lam)) ** 2
+        tabor = spheres.tabor_of(lam)
+        h0 = 1 - spheres.contact(tabor, load).displacement * spheres.unit(tabor) ** 2
         return abs(_rigid(load) - h0)
-    errors = abs(spheres.contact(spheres.tabor_of(lam), load).errors[theory][1:])
+    errors = abs(spheres.errors(theory, lam, load)[1:])
     return float(np.max(errors)) if np.isfinite(errors).all() else 1.0
 
 
@@ -37,7 +37,7 @@ def simplest(lam, load):
 
 
 def _pull(theory, lam):
-    return abs(spheres.contact(spheres.tabor_of(lam), 0.0).errors[theory][0])
+    return abs(spheres.errors(theory, lam)[0])
 
 
 def numbers(_):
@@ -45,14 +45,14 @@ def numbers(_):
     hertz = next(load for load in spheres.LOADS if worst("hertz", at, load) <= _GOOD)
     peak = max(LAMBDAS, key=lambda lam: _pull("maugis", lam))
 
-    def turn(theory, low, high, found=worst):
-        def holds(lam):
-            return (found(theory, lam, 0.0) if found is worst else found(theory, lam)) <= _GOOD
-        rising = not holds(low)
-        return spheres.where(lambda lam: holds(lam) == rising, low, high, 1e-3)
+    def turn(theory, low, high, error=worst):
+        """Return the lambda at which a theory begins or ceases to be good without load."""
+        begins = error(theory, low) > _GOOD
+        return spheres.where(lambda lam: (error(theory, lam) <= _GOOD) == begins, low, high, 1e-3)
 
     return {"count": len(LAMBDAS) * len(spheres.LOADS), "hertz": hertz, "hertz_at": at,
-            "bradley": turn("bradley", 1e-3, 1.0), "jkr": turn("jkr", 0.1, 20), "maugis": turn("maugis", 0.1, 20),
+            "bradley": turn("bradley", 1e-3, 1.0), "jkr": turn("jkr", 0.1, 20),
+            "maugis": turn("maugis", 0.1, 20),
             "dmt_pull": turn("dmt", 0.01, 3, _pull), "jkr_pull": turn("jkr", 0.3, 30, _pull),
             "maugis_pull_low": turn("maugis", 0.01, peak, _pull),
             "maugis_pull_high": turn("maugis", peak, 30, _pull)}
@@ -66,22 +66,9 @@ def draw(_):
                      norm=BoundaryNorm(np.arange(-0.5, 6), 6), alpha=0.75)
     error = np.array([[worst("jkr", lam, load) for lam in LAMBDAS] for load in loads])
     panel.contour(LAMBDAS, loads, error, levels=[0.01], colors=["black"], linewidths=1)
-    style.label(panel, "Maugis' parameter $\\lambda$", "load $F/\\pi wR$", log="xy", ylim=(0.07, 1500))
+    style.label(panel, "Maugis' parameter $\\lambda$", "load $F/\\pi wR$", log="xy",
+                ylim=(0.07, 1500))
     page.legend(handles=[Patch(facecolor=color, edgecolor="#888888", alpha=0.75, label=name)
                          for name, color in zip(_NAMES, _COLORS)],
                 loc="outside lower center", ncols=6, columnspacing=1, handlelength=1.4)
     return page
-
-
-def rows(_):
-    found = numbers(_)
-    lines = [("Hertz, radius and indentation within 5 %, least load at lambda = 1", found["hertz"],
-              "pi w R"),
-             ("Bradley, h0 without load within 5 % of z0, largest lambda", found["bradley"], ""),
-             ("JKR, radius and indentation without load within 5 %, least lambda", found["jkr"], ""),
-             ("Maugis-Dugdale, the same", found["maugis"], ""),
-             ("DMT, pull-off within 5 %, largest lambda", found["dmt_pull"], ""),
-             ("JKR, pull-off within 5 %, least lambda", found["jkr_pull"], "")]
-    return [Comparison(item, "not read", None, value, unit, "the map; DMT below 0.1 and JKR above 5 "
-                       "are often quoted" if "lambda" in item else "the map")
-            for item, value, unit in lines]

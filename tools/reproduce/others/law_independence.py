@@ -47,7 +47,7 @@ def draw(_):
 
 
 def rows(_):
-    return [Comparison(f"{name.replace(', ', '-')} at Tabor's parameter {tabor:g} by range, pull-off",
-                       "theory", pull_offs(tabor)[1], tension, "pi w R",
+    return [Comparison(f"{name.replace(', ', '-')} at Tabor's parameter {tabor:g} by range, "
+                       "pull-off", "theory", pull_offs(tabor)[1], tension, "pi w R",
                        "Maugis-Dugdale theory with the same w and largest tension")
             for tabor in TABORS for name, tension in pull_offs(tabor)[0].items()]

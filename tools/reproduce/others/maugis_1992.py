@@ -9,8 +9,8 @@ from report import Comparison
 
 _SOURCE = "Maugis-Dugdale theory as src/theory/maugis.f90 solves it; the print was not read"
 LAMBDAS = (0.1, 0.3, 0.5, 1.0, 2.0, 5.0)
-_MANY = spheres.spaced(0.01, 100, 81)
-# Smoothing of the step over the range of the tension; the decay length of the repulsion is half of it.
+_MANY = spheres.LAMBDAS
+# Smoothing of the step over the range of the tension; the decay length of the repulsion is half.
 SMOOTHINGS = (0.1, 0.04, 0.02, 0.01)
 _SOLVED = (0.3, 1.0, 3.0)
 
@@ -27,12 +27,13 @@ def dugdale(lam, smoothing):
         force={"law": "exponential", "p0": 3 * stress, "decay_length": smoothing / 2},
         equilibrium_path={"h0_end": -(1.5 * np.pi * stress) ** (2 / 3)}, classical={}).summary
     work = np.pi * summary["work_of_adhesion"]
-    return summary["max_tension"] / work, summary["maugis_pull_off"] / work, summary["maugis_lambda"]
+    return (summary["max_tension"] / work, summary["maugis_pull_off"] / work,
+            summary["maugis_lambda"])
 
 
 def _error(lam, number=0):
     """Return the error [%] of pull-off or radius without load (1) against Lennard-Jones."""
-    return 100 * abs(spheres.contact(spheres.tabor_of(lam), 0.0).errors["maugis"][number])
+    return 100 * abs(spheres.errors("maugis", lam)[number])
 
 
 def numbers(_):
@@ -49,40 +50,32 @@ def numbers(_):
 
 
 def draw(_):
-    page, (left, right) = style.figure(1, 2, height=3.6)
-    pull, radius = np.transpose([spheres.theory("maugis", lam) for lam in _MANY])
-    tabors = [spheres.tabor_of(lam) for lam in _MANY]
-    for panel, theory, exact, name in (
-            (left, pull, [spheres.sphere(each).tension for each in tabors], "pull-off $/\\pi wR$"),
-            (right, radius, [spheres.contact(each, 0.0).radius for each in tabors],
-             "radius without load $\\hat a_0$")):
-        panel.semilogx(_MANY, theory, color=style.VERMILION, dashes=(5, 1.5),
-                       label="Maugis-Dugdale theory")
-        panel.semilogx(_MANY, exact, color=style.BLACK, label="Lennard-Jones, solved")
+    page, panels = style.figure(1, 2, height=3.6)
+    for panel, theory, exact, name in zip(
+            panels, np.transpose([spheres.theory("maugis", lam) for lam in _MANY]),
+            np.transpose([*map(spheres.solved_at, _MANY)]),
+            ("pull-off $/\\pi wR$", "radius without load $\\hat a_0$")):
+        panel.semilogx(_MANY, theory, **spheres.MAUGIS)
+        panel.semilogx(_MANY, exact, **spheres.SOLVED)
         style.label(panel, "Maugis' parameter $\\lambda$", name)
-    right.set_ylim(1.2, 3)
-    for lam in _SOLVED:
-        tension, _, exact = dugdale(lam, SMOOTHINGS[-1])
-        left.plot(exact, tension, "o", color=style.VERMILION,
-                  label="Dugdale's law, solved" if lam == _SOLVED[0] else None)
+    panels[1].set_ylim(1.2, 3)
+    tensions, _, lambdas = zip(*(dugdale(lam, SMOOTHINGS[-1]) for lam in _SOLVED))
+    panels[0].plot(lambdas, tensions, "o", color=style.VERMILION, label="Dugdale's law, solved")
     style.legend(page, 3)
     return page
 
 
 def rows(_):
-    found = []
-    for lam in LAMBDAS:
-        tabor = spheres.tabor_of(lam)
-        for what, unit, theory, solved in zip(
-                ("pull-off of Lennard-Jones", "radius without load"),
-                ("pi w R", "(pi w R^2/K)^(1/3)"), spheres.theory("maugis", lam),
-                (spheres.sphere(tabor).tension, spheres.contact(tabor, 0.0).radius)):
-            found.append(Comparison(f"lambda = {lam:g}, {what}", "theory", theory, solved, unit,
-                                    _SOURCE))
+    found = [Comparison(f"lambda = {lam:g}, {what}", "theory", theory, solved, unit, _SOURCE)
+             for lam in LAMBDAS
+             for what, unit, theory, solved in zip(
+                 ("pull-off of Lennard-Jones", "radius without load"),
+                 ("pi w R", "(pi w R^2/K)^(1/3)"), spheres.theory("maugis", lam),
+                 spheres.solved_at(lam))]
     for lam in _SOLVED:
         for smoothing in SMOOTHINGS:
             solved, theory, exact = dugdale(lam, smoothing)
             found.append(Comparison(
-                f"lambda = {exact:.4g}, pull-off of Dugdale's law, smoothed over {smoothing:g} of its "
-                "range", "theory", theory, solved, "pi w R", _SOURCE))
+                f"lambda = {exact:.4g}, pull-off of Dugdale's law, smoothed over {smoothing:g} of "
+                "its range", "theory", theory, solved, "pi w R", _SOURCE))
     return found

@@ -25,7 +25,7 @@ def _fitted(lam):
 
 def numbers(runs):
     pull, radius = np.max([np.abs(_fitted(lam)) for lam in spheres.spaced(0.01, 100, 33)], axis=0)
-    indentation = max(abs(spheres.contact(spheres.tabor_of(lam), 0.0).errors["pietrement"][2])
+    indentation = max(abs(spheres.errors("pietrement", lam)[2])
                       for lam in spheres.spaced(_LOW, 100, 31))
     # S passes through zero here.
     zero = spheres.where(lambda a: -2.160 * a**0.019 + 2.7531 * a**0.064 + 0.073 * a**1.919 > 0,

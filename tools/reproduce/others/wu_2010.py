@@ -26,14 +26,15 @@ def jump(tabor):
              -summary["jump_equation_37_load"] / loads))
 
 
-def _errors():
-    """Return errors [%] of h0 and gap by (37) over _MANY."""
+@functools.lru_cache(maxsize=None)
+def _curves():
+    """Return h0, gap and tension over _MANY, solved and by (37), and the errors [%] of (37)."""
     solved, printed = (np.array(each) for each in zip(*map(jump, _MANY)))
-    return 100 * (printed / solved - 1)
+    return solved, printed, 100 * (printed / solved - 1)
 
 
 def numbers(_):
-    errors = _errors()
+    *_, errors = _curves()
     worst = int(np.argmax(abs(errors[:, 0])))
     top = _MANY[-1]
     above = np.array([each >= _FROM for each in _MANY])
@@ -51,8 +52,7 @@ def numbers(_):
 
 def draw(_):
     page, (left, right) = style.figure(1, 2, height=3.6)
-    solved, printed = (np.array(each) for each in zip(*map(jump, _MANY)))
-    errors = _errors()
+    solved, printed, errors = _curves()
     for i, (name, color) in enumerate((("$h_0$", style.BLACK), ("gap $h(0)$", style.BLUE))):
         left.loglog(_MANY, solved[:, i], color=color, label=f"{name}, solved")
         left.loglog(_MANY, printed[:, i], color=color, dashes=(4, 2), linewidth=1,
@@ -65,13 +65,10 @@ def draw(_):
 
 
 def rows(_):
-    found = []
-    for tabor in TABORS:
-        solved, printed = jump(tabor)
-        for what, unit, one, other in zip(("h0", "gap on the axis", "tension"),
-                                          ("z0", "z0", "pi w R"), printed, solved):
-            found.append(Comparison(f"mu = {tabor:g}, {what} at the jump into contact", "formula",
-                                    one, other, unit, _SOURCE))
-    found.append(Comparison("fitted distance of the jump", "not read", None, "see above", "",
-                            "Wu (2010)"))
-    return found
+    found = [Comparison(f"mu = {tabor:g}, {what} at the jump into contact", "formula", printed,
+                        solved, unit, _SOURCE)
+             for tabor in TABORS
+             for what, unit, solved, printed in zip(("h0", "gap on the axis", "tension"),
+                                                    ("z0", "z0", "pi w R"), *jump(tabor))]
+    return [*found, Comparison("fitted distance of the jump", "not read", None, "see above", "",
+                               "Wu (2010)")]

@@ -1,4 +1,4 @@
-"""Zheng and Yu (2007), Grierson et al. (2013): bodies f = B r^n, JKR theory beside Lennard-Jones."""
+"""Zheng and Yu (2007), Grierson et al. (2013): bodies f = B r^n, JKR theory and Lennard-Jones."""
 
 import functools
 import math
@@ -43,8 +43,7 @@ def solved(exponent, tabor):
     """Return the pull-off of Lennard-Jones bodies."""
     work = _work(exponent, tabor)
     a, _ = formula(exponent, work)
-    depth = _kappa(exponent) * exponent * _B / exponent * a**exponent
-    depth -= math.sqrt(2 * math.pi * work * a / _MODULUS)
+    depth = _kappa(exponent) * _B * a**exponent - math.sqrt(2 * math.pi * work * a / _MODULUS)
     return _deck(exponent, work, bodies={"stiffness": 1.0},
                  equilibrium_path={"h0_end": min(-0.5, -depth - 0.5 * abs(depth))})["max_tension"]
 
@@ -79,24 +78,21 @@ def draw(_):
     for exponent, color in zip(EXPONENTS, _COLORS):
         panel.semilogx(_MANY, [ratio(exponent, tabor) for tabor in _MANY], color=color,
                        label=f"n = {exponent:g}")
-    panel.set_ylim(0.8, 1.6)
-    style.label(panel, "$\\mu_n$", "pull-off, solved / JKR theory")
+    style.label(panel, "$\\mu_n$", "pull-off, solved / JKR theory", ylim=(0.8, 1.6))
     panel.legend(loc="upper right")
     return page
 
 
 def rows(_):
-    found = []
-    for exponent in EXPONENTS:
-        for tabor in _TABORS:
-            work = _work(exponent, tabor)
-            found.append(Comparison(
-                f"f = B r^{exponent:g}, mu_n = {tabor:g}, pull-off", "formula",
-                formula(exponent, work)[1] / work, solved(exponent, tabor) / work,
-                "w, B = 1/(2 z0^(n-1)), lateral unit z0", _SOURCE))
+    works = {(exponent, tabor): _work(exponent, tabor)
+             for exponent in EXPONENTS for tabor in _TABORS}
+    found = [Comparison(f"f = B r^{exponent:g}, mu_n = {tabor:g}, pull-off", "formula",
+                        formula(exponent, work)[1] / work, solved(exponent, tabor) / work,
+                        "w, B = 1/(2 z0^(n-1)), lateral unit z0", _SOURCE)
+             for (exponent, tabor), work in works.items()]
     tension, h0 = rigid_cone()
-    found += [Comparison("rigid cones, pull-off", "formula", 16 * math.pi / 7 * 4 ** (1 / 6),
-                         tension, "w z0/tan^2 beta", "Derjaguin's integral in closed form"),
-              Comparison("rigid cones, h0 at the pull-off", "formula", 4 ** (-1 / 6), h0, "z0",
-                         "Derjaguin's integral in closed form")]
-    return found
+    return [*found,
+            Comparison("rigid cones, pull-off", "formula", 16 * math.pi / 7 * 4 ** (1 / 6),
+                       tension, "w z0/tan^2 beta", "Derjaguin's integral in closed form"),
+            Comparison("rigid cones, h0 at the pull-off", "formula", 4 ** (-1 / 6), h0, "z0",
+                       "Derjaguin's integral in closed form")]
