@@ -37,7 +37,6 @@ contains
     integer :: i
 
     call listener%hear('differentiating')
-    varied(1) = along_path(steps%problem)
     varied(2:) = sensitivity%varied
     if (allocated(outcome%readings)) then
       if (outcome%readings%solved) then
@@ -64,23 +63,26 @@ contains
     end associate
   end subroutine rate_places
 
-  !> Differentiates a place; wanted: the derivatives of D, if nothing turns there.
+  !> Differentiates a place; wanted: the derivatives of D, if nothing turns there. The first element
+  !> of `varied` becomes the coordinate.
   subroutine rate_place(steps, varied, wanted, place, found)
     class(path_stepper_t), intent(inout) :: steps
-    type(variation_t), intent(in) :: varied(:)
+    type(variation_t), intent(inout) :: varied(:)
     real(wp), intent(in) :: wanted(:)
     type(place_t), intent(inout) :: place
     logical, intent(out) :: found
     type(frozen_jacobian_t) :: frozen
     type(place_on_path_t) :: at
     type(local_t) :: local
+    real(wp) :: apart
 
     at = place_on_path_t(place%mesh, place%s, place%state)
+    apart = apart_at(steps%known%path, place%mesh, place%s)
+    varied(1) = along_path(steps%problem, apart)
     if (place%turns()) then
       found = place%mesh /= no_mesh
       if (found) call at_extremum(steps%equations_t, steps%options, at, &
-        drive_weights(steps%problem, place%turn_of), &
-        apart_at(steps%known%path, place%mesh, place%s), varied, place%rate, found)
+        drive_weights(steps%problem, place%turn_of), apart, varied, place%rate, found)
       return
     end if
     found = .true.

@@ -4,7 +4,7 @@
 module variation
   use kinds, only: wp
   use failure, only: failure_t
-  use dimensionless_problem, only: problem_t
+  use dimensionless_problem, only: problem_t, calm_gap
   use interpolation, only: polynomial_slope
   use problem_family, only: problem_family_t, parameter_t
   implicit none
@@ -17,6 +17,9 @@ module variation
   !> error of n^3/6 step^2, which leaves six digits.
   integer, parameter :: to_report = 3, to_search = 1
   real(wp), parameter :: step(to_report) = [1.0e-4_wp, 1.0e-3_wp, 1.0e-3_wp]
+  !> For reported derivatives: relative difference of the two rules, for pressures and heights, above
+  !> which the step is a quarter of this one, and the least step.
+  real(wp), parameter :: coarse = 1.0e-6_wp, least_step = 1.0e-7_wp
 
   type :: variation_t
     type(parameter_t) :: parameter
@@ -33,23 +36,49 @@ module variation
 
 contains
 
-  !> Varies parameter i by `aside` problems on either side, `to_report` or `to_search`. If the range
-  !> of the parameter ends nearby, all problems are on one side. Fails if neither side is allowed.
+  !> Varies parameter i by `aside` problems on either side, `to_report` or `to_search`. For reported
+  !> derivatives the step is so short that pressures and heights, which may depend steeply on the
+  !> parameter, change smoothly. If the range of the parameter ends nearby, all problems are on one
+  !> side. Fails if neither side is allowed.
   subroutine vary(family, i, aside, varied, error)
     class(problem_family_t), intent(in) :: family
     integer, intent(in) :: i, aside
     type(variation_t), intent(out) :: varied
     type(failure_t), allocatable, intent(out) :: error
-    real(wp) :: value(size(family%parameter))
-    integer :: shift, k
+    type(problem_t) :: problem
+    real(wp) :: apart
 
     varied%parameter = family%parameter(i)
     allocate (varied%problem(0))
+    apart = step(aside)
+    do
+      call pose_beside(family, i, aside, apart, varied, error)
+      if (allocated(error)) return
+      varied%shift = 0*varied%offset
+      call find_rule(varied)
+      if (aside < to_report .or. apart < least_step) return
+      call family%pose(family%parameter%value, problem, error)
+      if (allocated(error)) return
+      if (is_smooth(problem, varied)) return
+      apart = 0.25_wp*apart
+    end do
+  end subroutine vary
+
+  !> Poses the problems at distances `apart`, as a part of the parameter's scale.
+  subroutine pose_beside(family, i, aside, apart, varied, error)
+    class(problem_family_t), intent(in) :: family
+    integer, intent(in) :: i, aside
+    real(wp), intent(in) :: apart
+    type(variation_t), intent(inout) :: varied
+    type(failure_t), allocatable, intent(out) :: error
+    real(wp) :: value(size(family%parameter))
+    integer :: shift, k
+
     do shift = 0, 2
       varied%offset = [(real(k + aside*merge(-1, shift, shift == 2), wp), k=-aside, aside)]
       ! With two sides the present problem has no weight.
       if (shift == 0) varied%offset = pack(varied%offset, abs(varied%offset) > 0)
-      varied%offset = step(aside)*varied%parameter%scale*varied%offset
+      varied%offset = apart*varied%parameter%scale*varied%offset
       deallocate (varied%problem)
       allocate (varied%problem(size(varied%offset)))
       do k = 1, size(varied%offset)
@@ -58,20 +87,63 @@ contains
         call family%pose(value, varied%problem(k), error)
         if (allocated(error)) exit
       end do
-      if (.not. allocated(error)) exit
+      if (.not. allocated(error)) return
     end do
-    if (allocated(error)) return
-    varied%shift = 0*varied%offset
-    call find_rule(varied)
-  end subroutine vary
+  end subroutine pose_beside
 
-  !> Varies the path's coordinate, with the same problem.
-  type(variation_t) function along_path(problem) result(varied)
+  !> Whether the two rules agree for the pressures at many separations, also within the step of a
+  !> law, and for the heights of the shape.
+  logical function is_smooth(problem, varied)
     type(problem_t), intent(in) :: problem
+    type(variation_t), intent(in) :: varied
+    integer, parameter :: tried = 40
+    real(wp), allocatable :: gap(:), separation(:), r(:), pressure(:, :), height(:, :)
+    real(wp) :: from
+    integer :: k
+
+    associate (law => problem%law)
+      from = max(law%rest_gap, 0.1_wp)
+      gap = from*(calm_gap(problem)/from)**[(k/(tried - 1.0_wp), k=0, tried - 1)]
+      r = [(problem%lateral*problem%shape%position_of(gap(k)), k=1, tried)]
+      if (law%step_width > 0) gap = [gap, law%step_at + law%step_width*[(k/4.0_wp, k=-12, 12)]]
+      separation = law%separation_of(gap)
+    end associate
+    allocate (pressure(size(separation), size(varied%offset)), height(tried, size(varied%offset)))
+    do k = 1, size(varied%offset)
+      associate (other => varied%problem(k))
+        pressure(:, k) = other%pressure*other%law%pressure(other%law%gap_of(separation))
+        height(:, k) = other%length*other%shape%height(r/other%lateral)
+      end associate
+    end do
+    is_smooth = agree(pressure) .and. agree(height)
+
+  contains
+
+    !> Whether the rules agree for values in the varied problems, except for rounding, and the
+    !> largest value changes little.
+    logical function agree(value)
+      real(wp), intent(in) :: value(:, :)
+      real(wp), parameter :: rounding = 1.0e-14_wp, little = 0.05_wp
+      real(wp) :: most(size(value, 2))
+
+      most = maxval(abs(value), 1)
+      agree = maxval(most) - minval(most) <= little*maxval(most) .and. &
+        maxval(abs(matmul(value, varied%weight - varied%coarser))) <= &
+        coarse*maxval(abs(matmul(value, varied%weight))) + &
+        rounding*maxval(most)*sum(abs(varied%weight))
+    end function agree
+
+  end function is_smooth
+
+  !> Varies the path's coordinate, with the same problem. apart: a distance over which the path is
+  !> smooth, however steep the law.
+  type(variation_t) function along_path(problem, apart) result(varied)
+    type(problem_t), intent(in) :: problem
+    real(wp), intent(in) :: apart
     integer :: k
 
     varied%parameter%name = 'coordinate'
-    varied%offset = step(to_report)*[(k, k=-to_report, to_report)]
+    varied%offset = min(step(to_report), 0.25_wp*apart)*[(k, k=-to_report, to_report)]
     varied%shift = varied%offset
     varied%problem = [(problem, k=1, size(varied%offset))]
     call find_rule(varied)
@@ -83,7 +155,8 @@ contains
     real(wp) :: one(size(varied%offset))
     integer :: k
 
-    allocate (varied%weight(size(one)), varied%coarser(size(one)), source=0.0_wp)
+    varied%weight = 0*varied%offset
+    varied%coarser = 0*varied%offset
     do k = 1, size(one)
       one = 0
       one(k) = 1

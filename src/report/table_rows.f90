@@ -42,7 +42,8 @@ contains
       type(maugis_units_t) :: unit
       real(wp) :: si(4)
 
-      si = [-state%h0*problem%length, state%load*problem%load, state%radius*problem%lateral, nan]
+      si = [-problem%law%separation_of(state%h0), state%load*problem%load, &
+        state%radius*problem%lateral, nan]
       if (.not. at_jump) &
         si(4) = -state%slopes(2)/state%slopes(1)*problem%load/problem%length
       unit = maugis_units(problem%radius, problem%stiffness, surface_energy(problem))

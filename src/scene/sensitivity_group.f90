@@ -44,17 +44,17 @@ contains
       'not together with &sweep, whose cases show no curve', error)
     if (allocated(error)) return
     call scene%deck%get('sensitivity', 'parameters', keys)
-    call new_deck_family(scene%deck, keys, family, trouble)
     allocate (scene%sensitivity)
-    if (.not. allocated(trouble)) then
-      allocate (scene%sensitivity%varied(size(family%parameter)))
-      do i = 1, size(family%parameter)
-        call vary(family, i, to_report, scene%sensitivity%varied(i), trouble)
-        if (allocated(trouble)) exit
-      end do
-    end if
-    if (allocated(trouble)) &
+    allocate (scene%sensitivity%varied(word_count(keys)))
+    do i = 1, word_count(keys)
+      ! Each alone: where a default follows the number, it follows whatever else is named.
+      call new_deck_family(scene%deck, word_of(keys, i), family, trouble)
+      if (.not. allocated(trouble)) &
+        call vary(family, 1, to_report, scene%sensitivity%varied(i), trouble)
+      if (.not. allocated(trouble)) cycle
       call scene%deck%mistake('sensitivity', 'parameters', trouble%message, error)
+      return
+    end do
   end subroutine take_sensitivity
 
   !> The same for a drive in time, which is differentiated by whole runs: any numbers of its deck

@@ -161,6 +161,58 @@ def test_derivatives_are_those_of_whole_runs(run, case):
     assert tried >= 8
 
 
+STEEP = {
+    "a front near saturation": (
+        {"bodies": {"radius": 1e-6, "stiffness": 1e10}, "capillary": {"humidity": 0.95},
+         "born": {"z0": 0.3e-9, "hamaker": 1e-20}, "equilibrium_path": {"h0_end": -1e-9},
+         "device": {"stiffness": [1e-2, 1.0]}}, "capillary.humidity", 2e-6),
+    "a step of a thousandth of the range": (
+        {"bodies": {"radius": 1e-6, "stiffness": 1e10},
+         "dugdale": {"stress": 2e7, "range": 1e-9, "smoothing": 1e-12},
+         "force": {"law": "exponential", "p0": 1e9, "decay_length": 1e-10},
+         "equilibrium_path": {"h0_end": -1e-9}}, "dugdale.range", 2e-5),
+    "a flat cone": (
+        {"bodies": {"stiffness": 1e9}, "shape": {"kind": "cone", "half_angle": 1.565},
+         "force": {"law": "lennard_jones", "surface_energy": 0.05, "z0": 0.5e-9},
+         "equilibrium_path": {"h0_end": -4e-9}, "classical": {}}, "shape.half_angle", 2e-5),
+}
+
+
+@pytest.mark.parametrize("case", STEEP)
+def test_derivatives_hold_where_the_problem_depends_steeply_on_the_parameter(run, case):
+    """They were wrong by up to ten orders: the problems that are compared differed too much, or the
+    states along the path did."""
+    groups, name, step = STEEP[case]
+    groups = {**groups, "numerics": {"accuracy": 1e-9}}
+    found = run(deck(**groups, sensitivity={"parameters": [name]}))
+    runs = [run(deck(**changed(groups, {name: value_in(groups, name) * (1 + steps * step)})))
+            for steps in (-2, -1, 1, 2)]
+    tried = 0
+    for quantity, rate in derivatives(found, "derivative").items():
+        values = np.array([value_of(one, quantity) for one in runs])
+        if not (np.isfinite(values).all() and math.isfinite(rate[name])):
+            continue
+        difference = np.dot([1, -8, 8, -1], values) / (12 * step * value_in(groups, name))
+        # What rounding of the runs leaves, and the error of the difference.
+        left = 1e-9 * abs(values).max() / (step * value_in(groups, name))
+        assert rate[name] == pytest.approx(difference, rel=2e-3, abs=left), quantity
+        tried += 1
+    assert tried >= 8
+
+
+def test_a_default_follows_the_number_whatever_else_is_named(run):
+    """The Hamaker constant of &born is that of &van_der_waals unless the deck has it."""
+    rates = [derivatives(run(deck(
+        bodies={"radius": 1e-6, "stiffness": 1e10}, van_der_waals={"hamaker": 1e-20},
+        born={"z0": 0.3e-9}, equilibrium_path={"h0_end": -3e-9},
+        sensitivity={"parameters": ["van_der_waals.hamaker", *more]})))
+        for more in ([], ["born.hamaker"])]
+    for quantity in ("max_tension", "rest_gap"):
+        alone, beside = (rate[quantity]["van_der_waals.hamaker"] for rate in rates)
+        assert beside == pytest.approx(alone, abs=1e-9)
+    assert rates[1]["rest_gap"]["born.hamaker"] == pytest.approx(1 / 6, abs=1e-6)
+
+
 def test_curve_has_the_derivative_of_the_state_at_each_h0(run):
     groups = {"bodies": PARABOLA, "force": LAW, "device": {"stiffness": [1e5, 0.0]}}
     names = {"parameters": ["force.z0", "bodies.stiffness"]}

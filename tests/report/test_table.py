@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from support.scenes import lennard_jones, loading
+from support.scenes import deck, lennard_jones, loading
 
 
 def table_of(run, sigma, h0_end):
@@ -37,3 +37,15 @@ def test_at_large_sigma_the_dimensionless_columns_are_the_one_curve_of_jkr_theor
         retreat[f"{name}_jkr"][inside] for name in ("contact_radius", "load", "indentation"))
     np.testing.assert_allclose(load, a**3 - a * np.sqrt(6 * a), rtol=0.02, atol=0.02)
     np.testing.assert_allclose(delta, a**2 - 2 / 3 * np.sqrt(6 * a), rtol=0.02, atol=0.02)
+
+
+def test_indentation_is_minus_h0_wherever_the_law_has_its_well(run):
+    """It was counted from one length before the well."""
+    found = run(deck(
+        bodies={"radius": 1e-6, "stiffness": 1e9},
+        morse={"surface_energy": 0.02, "z0": 5e-9, "decay_length": 4e-10},
+        equilibrium_path={"h0_end": 1.5e-9}, table={}))
+    approach = found.table("table.csv").rows("approach")
+    assert approach["indentation"][-1] == pytest.approx(-1.5e-9, rel=1e-12)
+    jump = np.isnan(approach["stiffness"])
+    assert approach["indentation"][jump][0] == pytest.approx(-found.summary["jump_in_h0"], rel=1e-9)
