@@ -7,7 +7,8 @@ module beyond_mesh
   use quadrature, only: gauss_legendre
   implicit none
   private
-  public :: load_beyond, load_slope_beyond, energy_beyond, energy_density, farthest
+  public :: load_beyond, load_slope_beyond, energy_beyond, energy_density, &
+    falls_slowly, farthest
 
   !> Number of points of the quadrature; and for the energy of the parabola, where the gap is a
   !> power of the variable.
@@ -52,38 +53,44 @@ contains
     slope(2) = slope(2) - problem%shape%slope(from)*slope(1)
   end function load_slope_beyond
 
-  !> Int e(H) r dr, where e is the `energy_density`.
-  pure real(wp) function energy_beyond(problem, gap, from) result(energy)
+  !> Int e(H) r dr, where e is the `energy_density` above that of undeformed bodies at `reference`.
+  pure real(wp) function energy_beyond(problem, gap, from, reference) result(energy)
     type(problem_t), intent(in) :: problem
-    real(wp), intent(in) :: gap, from
+    real(wp), intent(in) :: gap, from, reference
     real(wp) :: node(few), weight(few)
     type(rule_t) :: rule
 
-    if (problem%shape%parabolic) then
+    if (problem%shape%parabolic .and. .not. falls_slowly(problem)) then
       ! With H = gap/x the interval is finite.
       call gauss_legendre(node, weight)
       energy = gap*sum(weight*problem%law%energy(gap/node)/node**2)
     else
       rule = rule_beyond(problem, gap, from)
-      energy = sum(rule%weight*energy_density(problem, rule%gap, rule%at))
+      energy = sum(rule%weight*energy_density(problem, rule%gap, rule%at, reference))
     end if
   end function energy_beyond
 
-  !> The energy of the surface force per area, at gaps and positions. Between shapes that open
-  !> slowly it falls so slowly (as r^-2 for gap^-3 between cones) that its integral hardly
-  !> converges, or diverges. Since only differences of energies matter, the energy of undeformed
-  !> bodies at H0 = 1 is subtracted.
-  pure function energy_density(problem, gap, r) result(energy)
+  !> The energy of the surface force per area, at gaps and positions. If it falls slowly, the energy
+  !> of undeformed bodies at the H0 `reference` is subtracted, since only differences of energies
+  !> matter.
+  pure function energy_density(problem, gap, r, reference) result(energy)
     type(problem_t), intent(in) :: problem
-    real(wp), intent(in) :: gap(:), r(:)
-    real(wp), parameter :: falls_well = 4
+    real(wp), intent(in) :: gap(:), r(:), reference
     real(wp) :: energy(size(gap))
 
     energy = problem%law%energy(gap)
-    if (problem%shape%parabolic .or. &
-      problem%shape%growth*(problem%law%tail_power - 1) >= falls_well) return
-    energy = energy - problem%law%energy(min(1 + problem%shape%height(r), farthest))
+    if (falls_slowly(problem)) &
+      energy = energy - problem%law%energy(min(reference + problem%shape%height(r), farthest))
   end function energy_density
+
+  !> Whether the energy per area falls so slowly that its integral hardly converges, or diverges: as
+  !> r^-2 for gap^-3 between cones, or gap^-2 between parabolas.
+  pure logical function falls_slowly(problem)
+    type(problem_t), intent(in) :: problem
+    real(wp), parameter :: falls_well = 4
+
+    falls_slowly = problem%shape%growth*(problem%law%tail_power - 1) < falls_well
+  end function falls_slowly
 
   !> The rule for r = from/x.
   pure type(rule_t) function rule_beyond(problem, gap, from) result(rule)

@@ -19,6 +19,8 @@ module undeformed
 
   !> The integrands.
   integer, parameter :: of_pressure = 1, of_slope = 2, of_energy = 3
+  !> The H0 whose energy is subtracted from energies that fall slowly.
+  real(wp), parameter :: at_reference = 1
   !> Relative error of numbers without a quadrature.
   real(wp), parameter :: rounding = 8*epsilon(1.0_wp)
   !> Height of the shape at the end of the first piece. Each further piece doubles the position, up
@@ -79,7 +81,8 @@ contains
     slope = found%value
   end function load_slope_undeformed
 
-  !> The energy at h0; its derivative by h0 is minus the load.
+  !> The energy at h0, above that at `at_reference` if it falls slowly; its derivative by h0 is minus
+  !> the load.
   pure real(wp) function energy_undeformed(problem, h0) result(energy)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: h0
@@ -143,7 +146,7 @@ contains
       case (of_slope)
         g = problem%law%slope(gap)
       case default
-        g = energy_density(problem, gap, r)
+        g = energy_density(problem, gap, r, at_reference)
       end select
     end function integrand
 

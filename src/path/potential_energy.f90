@@ -4,7 +4,8 @@
 !> difference between its ends, so no integral along the path is needed.
 module potential_energy
   use kinds, only: wp, pi
-  use beyond_mesh, only: energy_beyond, energy_density
+  use beyond_mesh, only: energy_beyond, energy_density, falls_slowly
+  use undeformed, only: energy_undeformed
   use contact_state, only: state_t, load_reach, gap_at_end
   use equilibrium, only: equations_t
   implicit none
@@ -21,19 +22,17 @@ contains
     integer, intent(in) :: mesh
     type(state_t), intent(in) :: state
     real(wp), intent(out) :: energy, uncertainty
-    real(wp), dimension(size(state%gap)) :: of_surface, of_bodies
+    real(wp), dimension(size(state%gap)) :: of_bodies
+    real(wp) :: of_surface, size_of_surface
 
+    call find_energy_of_surface(equations, mesh, state, of_surface, size_of_surface)
     associate (n => size(state%gap), c => state%scale, grid => equations%meshes%grid(mesh), &
       shape => equations%problem%shape)
-      of_surface = c**2*grid%weight(:n)*energy_density(equations%problem, state%gap, &
-        c*grid%x(:n))
-      of_bodies = c**2*grid%weight(:n)*0.5_wp*state%pressure* &
+      of_bodies = 2*pi*c**2*grid%weight(:n)*0.5_wp*state%pressure* &
         (state%gap - state%h0 - shape%height(c*grid%x(:n)))
-      uncertainty = 2*pi*(epsilon(1.0_wp)*sum(abs(of_surface) + abs(of_bodies)) + &
-        0.5_wp*state%residual*c**2*sum(abs(grid%weight(:n)*state%pressure)))
-      energy = 2*pi*(sum(of_surface) + sum(of_bodies))
-      if (grid%is_bounded()) energy = energy + 2*pi*energy_beyond(equations%problem, &
-        gap_at_end(shape, grid, state), load_reach(grid, state))
+      uncertainty = epsilon(1.0_wp)*(size_of_surface + sum(abs(of_bodies))) + &
+        pi*state%residual*c**2*sum(abs(grid%weight(:n)*state%pressure))
+      energy = of_surface + sum(of_bodies)
     end associate
   end subroutine energy_of
 
@@ -42,14 +41,31 @@ contains
     type(equations_t), intent(in) :: equations
     integer, intent(in) :: mesh
     type(state_t), intent(in) :: state
+    real(wp) :: whole
+
+    call find_energy_of_surface(equations, mesh, state, energy, whole)
+  end function energy_of_surface
+
+  !> The same, and the sum of the magnitudes of its terms. An energy that falls slowly is counted
+  !> from that of undeformed bodies whose height at the contact edge is H0: on the mesh their energy
+  !> per area is as smooth as that of the state.
+  subroutine find_energy_of_surface(equations, mesh, state, energy, whole)
+    type(equations_t), intent(in) :: equations
+    integer, intent(in) :: mesh
+    type(state_t), intent(in) :: state
+    real(wp), intent(out) :: energy, whole
+    real(wp) :: terms(size(state%gap)), reference
 
     associate (n => size(state%gap), c => state%scale, grid => equations%meshes%grid(mesh), &
       problem => equations%problem)
-      energy = 2*pi*c**2*dot_product(grid%weight(:n), &
-        energy_density(problem, state%gap, c*grid%x(:n)))
+      reference = max(1.0_wp, problem%shape%height(c))
+      terms = 2*pi*c**2*grid%weight(:n)*energy_density(problem, state%gap, c*grid%x(:n), reference)
+      energy = sum(terms)
+      whole = sum(abs(terms))
       if (grid%is_bounded()) energy = energy + 2*pi*energy_beyond(problem, &
-        gap_at_end(problem%shape, grid, state), load_reach(grid, state))
+        gap_at_end(problem%shape, grid, state), load_reach(grid, state), reference)
+      if (falls_slowly(problem)) energy = energy + energy_undeformed(problem, reference)
     end associate
-  end function energy_of_surface
+  end subroutine find_energy_of_surface
 
 end module potential_energy

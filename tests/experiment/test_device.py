@@ -205,3 +205,15 @@ def test_a_spring_lets_go_outside_a_capillary_bridge(run, shape):
         device={"stiffness": [2e6]}))
     assert not found.warnings
     assert numbers(found, "jump_out_z")[0] == pytest.approx(4.7550698e-9, rel=1e-6)
+
+
+@pytest.mark.parametrize("exponent", [2.05, 2.4, 2.765, 2.95])
+def test_the_energy_of_a_force_that_falls_slowly_is_the_area_of_the_loop(run, exponent):
+    """Most of the energy of the surface force lies far outside, where it falls as r^-2 or slower."""
+    found = run(deck(
+        bodies={"radius": 1.9e-3, "stiffness": 3.75e9},
+        force={"law": "lennard_jones", "surface_energy": 0.005, "z0": 5e-10,
+               "exponents": [9.0, exponent]},
+        equilibrium_path={"h0_end": -6.8e-9}, device={"stiffness": [1e9]})).summary
+    assert found["device_energy_lost"] == pytest.approx(found["device_cycle_energy"], rel=1e-6)
+    assert found["device_energy_lost_error"] < 2e-5 * found["device_energy_lost"]
