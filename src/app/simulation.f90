@@ -12,7 +12,7 @@ module simulation
   use scene_problem, only: problem_of
   use h0_schedule, only: states_planned
   use drive_rates, only: rate_drive
-  use sweeps, only: run_sweep
+  use sweeps, only: sweep_tally_t, run_sweep
   use ranks, only: crew_t
   use preflight, only: check_room, large_results
   use blas_threads, only: thread_count
@@ -168,7 +168,7 @@ contains
     type(cost_t), intent(out) :: cost
     type(experiment_result_t) :: outcome
     character(len=:), allocatable :: name
-    integer :: failed
+    type(sweep_tally_t) :: tally
 
     name = destination%folder(index(destination%folder, '/', .true.) + 1:)
     if (.not. problem%rigid) call claim_buffers()
@@ -177,11 +177,15 @@ contains
       call results%progress%start(scene%sweep%cases(), name, destination%quiet)
       if (crew%workers > 0) &
         call destination%say('processes that compute: '//brief(crew%workers))
-      call run_sweep(scene, crew, job, results, failed, cost)
+      call run_sweep(scene, crew, job, results, tally)
+      cost = tally%cost
       summary = summary_of(scene, problem, outcome)
-      if (failed > 0) call summary%fail_with(brief(failed)//' of '// &
+      if (tally%failed > 0) call summary%fail_with(brief(tally%failed)//' of '// &
         brief(scene%sweep%cases())// &
         ' cases failed: their rows in sweep.csv say converged = 0, and why')
+      if (tally%warned > 0) call summary%warn(brief(tally%warned)//' of '// &
+        brief(scene%sweep%cases())//' cases gave a warning; the first, case '// &
+        brief(tally%first_warned)//': '//trim(tally%warning))
     else
       call results%progress%start(states_planned(scene), name, destination%quiet)
       call run_observed(scene, problem, results, summary, cost)

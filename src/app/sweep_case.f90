@@ -20,9 +20,9 @@ module sweep_case
   use state_records, only: pass_cost
   implicit none
   private
-  public :: case_t, pass_case, run_case
+  public :: case_t, pass_case, run_case, failure_width
 
-  !> Largest number of characters of the reason of a failure.
+  !> Largest number of characters of a warning, or of the reason of a failure.
   integer, parameter :: failure_width = 160
 
   !> One case, kept until its row is written.
@@ -34,8 +34,9 @@ module sweep_case
     logical :: converged = .false.
     !> Its numbers, as `numbers_of`.
     real(wp), allocatable :: numbers(:)
-    !> Why it failed. The length is not deferred: compiler note 4.
-    character(len=failure_width) :: failure = ''
+    !> Why it failed; the first warning of a case that did not. The length is not deferred: compiler
+    !> note 4.
+    character(len=failure_width) :: failure = '', warning = ''
     type(cost_t) :: cost
   end type case_t
 
@@ -66,6 +67,7 @@ contains
     observer%case = case%number
     observer%progress => progress
     case%failure = ''
+    case%warning = ''
     ! Only one thread at a time makes strings: compiler note 4.
     !$omp critical (one_at_a_time)
     call swept_scene(scene, scene%sweep%names, case%values, variant, error)
@@ -84,6 +86,8 @@ contains
     else if (.not. case%converged) then
       case%failure = 'not converged'
       if (allocated(summary%warnings)) case%failure = summary%warnings(1)%text
+    else if (allocated(summary%warnings)) then
+      case%warning = summary%warnings(1)%text
     end if
     !$omp end critical (one_at_a_time)
     case%cost = outcome%cost
@@ -103,16 +107,26 @@ contains
   subroutine pass_case(record, case)
     type(byte_record_t), intent(inout) :: record
     type(case_t), intent(inout) :: case
-    character(len=:), allocatable :: failure
 
     call record%pass(case%number)
     call record%pass(case%converged)
     call record%pass(case%numbers)
-    failure = trim(case%failure)
-    call record%pass(failure)
-    case%failure = failure
+    call pass_text(case%failure)
+    call pass_text(case%warning)
     call pass_cost(record, case%cost)
     call record%pass(case%values)
+
+  contains
+
+    subroutine pass_text(text)
+      character(len=*), intent(inout) :: text
+      character(len=:), allocatable :: passed
+
+      passed = trim(text)
+      call record%pass(passed)
+      text = passed
+    end subroutine pass_text
+
   end subroutine pass_case
 
 end module sweep_case

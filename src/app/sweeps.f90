@@ -6,7 +6,7 @@ module sweeps
   use clock, only: clock_now => seconds
   use linear_algebra, only: claim_buffers
   use scene_groups, only: scene_t
-  use sweep_case, only: case_t, pass_case, run_case
+  use sweep_case, only: case_t, pass_case, run_case, failure_width
   use case_rows, only: case_rows_t
   use equilibrium, only: cost_t
   use progress, only: progress_t
@@ -19,11 +19,19 @@ module sweeps
   use dispatch, only: foreman_t, worker_t, hand_out, work_through
   implicit none
   private
-  public :: run_sweep, work_on_sweeps
+  public :: sweep_tally_t, run_sweep, work_on_sweeps
+
+  !> The number of cases that failed, and of those that gave a warning; number and warning of the
+  !> first of these; the total cost.
+  type :: sweep_tally_t
+    integer :: failed = 0, warned = 0, first_warned = 0
+    character(len=failure_width) :: warning = ''
+    type(cost_t) :: cost
+  end type sweep_tally_t
 
   !> The cases of a sweep: number of cases handed out, cases that wait for the rows before theirs,
-  !> number of rows written and of cases failed, and total cost. `waiting` has a case at its number
-  !> modulo the array's size.
+  !> number of rows written, and the tally of these. `waiting` has a case at its number modulo the
+  !> array's size.
   type, extends(foreman_t) :: queue_t
     type(scene_t), pointer :: scene => null()
     type(results_t), pointer :: results => null()
@@ -31,8 +39,8 @@ module sweeps
     !> The file of the cases, if the sweep has one.
     type(case_rows_t) :: rows
     type(case_t), allocatable :: waiting(:)
-    integer :: handed_out = 0, written = 0, failed = 0
-    type(cost_t) :: cost
+    integer :: handed_out = 0, written = 0
+    type(sweep_tally_t) :: tally
   contains
     procedure :: next
     procedure :: put_next
@@ -58,14 +66,12 @@ contains
   !> The workers of the crew compute them if there are any; `job` is the number of the scene for
   !> them. Cases in results%journal are complete, in any order; further cases are appended when they
   !> end. The row of a failed case says why it failed. After an error of writing no case begins.
-  !> failed: number of failed cases; cost: total cost.
-  subroutine run_sweep(scene, crew, job, results, failed, cost)
+  subroutine run_sweep(scene, crew, job, results, tally)
     type(scene_t), intent(in), target :: scene
     type(crew_t), intent(in) :: crew
     integer, intent(in) :: job
     type(results_t), intent(inout), target :: results
-    integer, intent(out) :: failed
-    type(cost_t), intent(out) :: cost
+    type(sweep_tally_t), intent(out) :: tally
     type(queue_t) :: queue
     type(mesh_store_t) :: store
     type(failure_t), allocatable :: error
@@ -85,8 +91,7 @@ contains
       call complete_cases(queue, store)
       !$omp end parallel
     end if
-    failed = queue%failed
-    cost = queue%cost
+    tally = queue%tally
   end subroutine run_sweep
 
   !> Computes cases until there are no more; several threads do this at once.
@@ -244,8 +249,6 @@ contains
     class(queue_t), intent(inout) :: self
     type(case_t), intent(in) :: case
 
-    if (.not. case%converged) self%failed = self%failed + 1
-    self%cost = sum_of(self%cost, case%cost)
     if (.not. allocated(self%waiting)) allocate (self%waiting(0:15))
     call make_room(self%waiting, case%number - self%written)
     self%waiting(mod(case%number, size(self%waiting))) = case
@@ -254,12 +257,26 @@ contains
         if (first%number /= self%written + 1) exit
         call self%results%take_case(self%columns, self%scene%sweep%words, first%values, &
           first%numbers, first%failure)
+        call count_case(self%tally, first)
         first%number = 0
         deallocate (first%numbers, first%values)
       end associate
       self%written = self%written + 1
     end do
   end subroutine add
+
+  pure subroutine count_case(tally, case)
+    type(sweep_tally_t), intent(inout) :: tally
+    type(case_t), intent(in) :: case
+
+    tally%cost = sum_of(tally%cost, case%cost)
+    if (.not. case%converged) tally%failed = tally%failed + 1
+    if (case%warning == '') return
+    tally%warned = tally%warned + 1
+    if (tally%warned > 1) return
+    tally%first_warned = case%number
+    tally%warning = case%warning
+  end subroutine count_case
 
   !> Makes room for a case that is `ahead` cases after the last one written.
   subroutine make_room(waiting, ahead)

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from support.scenes import exponential, lennard_jones, loading, several
+from support.scenes import deck, exponential, lennard_jones, loading, several
 
 JUMPS = ["jump_criterion_29", "jump_equation_37", "fold_closed_form", "fold_attractive_only"]
 OF_APPROXIMATIONS = [f"{name}_{what}" for name in JUMPS for what in ("h0", "load")]
@@ -164,3 +164,17 @@ def test_a_sweep_of_a_list_gives_each_case_the_one_value(run):
         swept["unload_max_tension_1"], several(single["unload_max_tension"])[::-1], rtol=1e-6)
     assert np.isnan(swept["unload_max_tension_2"]).all()
     assert np.isnan(swept["unload_jump_out_h0_2"]).all()
+
+
+def test_warnings_of_cases_are_counted_and_the_first_is_shown(run):
+    """A sweep said nothing of cases that missed the accuracy asked for."""
+    groups = {"bodies": {"radius": 1e-6, "stiffness": 1e9},
+              "force": {"law": "lennard_jones", "surface_energy": 0.02, "z0": 0.5e-9},
+              "equilibrium_path": {"h0_end": -3e-9}}
+    punch = {**groups, "shape": {"kind": "rounded_punch", "flat_radius": 3e-8}}
+    alone = run(deck(**punch)).summary["warnings"]
+    found = run(deck(**punch, sweep={"key": "shape.flat_radius", "values": [3e-8, 5e-8]})).summary
+    assert several(found["warnings"]) == [
+        f"2 of 2 cases gave a warning; the first, case 1: {several(alone)[0]}"]
+    assert "warnings" not in run(deck(
+        **groups, sweep={"key": "bodies.stiffness", "values": [1e9, 2e9]})).summary
