@@ -20,9 +20,9 @@ module path
     !> Folds in h0, and the number of unstable modes after each; extrema of the load.
     type(place_t), allocatable :: fold(:), extremum(:)
     integer, allocatable :: unstable_after(:)
-    !> Largest tension, which is the pull-off at controlled load; the last state, if it is stable;
-    !> the states of requested profiles, in the order of the path.
-    type(place_t), allocatable :: lowest, finish, profile(:)
+    !> Largest tension, which is the pull-off at controlled load; the first state; the last state,
+    !> if it is stable; the states of requested profiles, in the order of the path.
+    type(place_t), allocatable :: lowest, start, finish, profile(:)
     !> The stable pieces on which the path begins and ends; 0 if it is unstable there.
     integer :: first_piece = 0, last_piece = 0
     type(quality_t) :: quality
@@ -196,7 +196,10 @@ contains
     if (row%for_curve) return
     reported = place_of_row(steps, row)
     if (row%profile) call add_place(path%profile, reported)
-    if (path%states == 1) path%lowest = reported
+    if (path%states == 1) then
+      path%lowest = reported
+      path%start = reported
+    end if
     if (row%point == 0) return
     associate (point => steps%known%path%point(row%point))
       if (point%load_extremum) then

@@ -167,6 +167,9 @@ contains
     if (ends_before_contact(problem, path)) call summary%note('path: it ends at h0 = ' // &
       rounded(problem%law%separation_of(path%finish%at(of_h0))) // ' m, before contact, ' // &
       'with the largest tension in its last row; lower h0_end')
+    if (begins_under_largest_tension(problem, path)) call summary%note('path: it begins at h0 = ' &
+      //rounded(problem%law%separation_of(path%start%at(of_h0)))// &
+      ' m with the largest tension; raise h0_start')
     call summary%set('folds_stable', merge(1, 0, path%unstable_after == 0))
   end subroutine tell_path
 
@@ -181,6 +184,17 @@ contains
     if (ends_before_contact) ends_before_contact = path%lowest%at(of_load) < 0 .and. &
       abs(path%lowest%at(of_h0) - path%finish%at(of_h0)) <= 0
   end function ends_before_contact
+
+  !> Whether the tension falls from the first row on.
+  pure logical function begins_under_largest_tension(problem, path) result(begins)
+    type(problem_t), intent(in) :: problem
+    type(path_t), intent(in) :: path
+
+    begins = problem%law%rest_gap > 0 .and. path%states > 1 .and. allocated(path%start) .and. &
+      allocated(path%lowest)
+    if (begins) begins = path%lowest%at(of_load) < 0 .and. &
+      abs(path%lowest%at(of_h0) - path%start%at(of_h0)) <= 0
+  end function begins_under_largest_tension
 
   !> Adds numbers that are read from the path.
   subroutine take_readings(scene, problem, readings, places, summary)
