@@ -208,6 +208,8 @@ contains
       end associate
       do k = 1, size(x) - 1
         if ((beyond(k) < 0) .eqv. (beyond(k + 1) < 0)) cycle
+        ! Far out a load underflows to zero, which is no equilibrium without load.
+        if (path%point(i)%mesh == no_mesh .and. .not. abs(beyond(k)) > 0) cycle
         call state_where(solver, path, i, weights, wanted, x(k), x(k + 1), found)
         solved = solved .and. found%converged
         if (found%converged) states = [states, found]

@@ -63,3 +63,14 @@ def test_a_load_that_fades_by_orders_of_magnitude_has_its_own_zeros_alone(run):
     jump_in = found.table("device_jumps.csv")["h0"][0]
     assert jump_in == pytest.approx(several(found.summary["load_folds_h0"])[0], rel=1e-8)
     assert jump_in < 1.2
+
+
+@pytest.mark.parametrize("groups", [{}, {"device": {"stiffness": [0.01, 1.0, 100.0]}}])
+def test_a_load_that_underflows_far_out_is_no_state_without_load(run, groups):
+    """A soft spring has the path begin where the load of undeformed bodies is zero by rounding."""
+    found = run(deck(
+        bodies={"radius": 1e-6, "stiffness": 1e9},
+        hydration={"pressure": 1.2182e9, "decay_length": 2e-10},
+        hydrophobic={"energy": 0.139614, "decay_length": 4e-10},
+        equilibrium_path={"h0_end": -3e-9}, fixed_load={"load": [0.0]}, **groups))
+    assert found.table("fixed_load.csv")["h0"] == pytest.approx([-1.86793e-9], rel=1e-5)
