@@ -3,7 +3,7 @@
 module experiment
   use kinds, only: wp
   use dimensionless_problem, only: problem_t
-  use experiment_request, only: request_t
+  use experiment_request, only: request_t, numerics_t
   use numerics_choice, only: choice_t, choose, fixed_mesh
   use edge_locked, only: new_mesh_family
   use mesh_store, only: mesh_store_t
@@ -50,6 +50,7 @@ contains
     type(experiment_result_t), intent(out) :: outcome
     class(keeping_stepper_t), intent(inout), optional :: keeper
     type(mesh_store_t), intent(inout), optional :: store
+    type(numerics_t) :: numerics
     real(wp) :: low, high
     logical :: fixed
 
@@ -59,7 +60,13 @@ contains
       return
     end if
     call range_of(request, problem, low, high)
-    outcome%chosen = choose(request%numerics, problem, low, allocated(request%profiles))
+    numerics = request%numerics
+    ! Only a cycle is computed by mixing, or on a grid that is fixed in space.
+    if (.not. allocated(request%loading)) then
+      numerics%grid = 'auto'
+      if (numerics%method == 'mixing') numerics%method = 'auto'
+    end if
+    outcome%chosen = choose(numerics, problem, low, allocated(request%profiles))
     if (problem%rigid) then
       call run_rigid(request, problem, observer, outcome)
       call enter_all(outcome, outcome%places)

@@ -268,3 +268,10 @@ def test_a_path_stops_where_its_mesh_misses_a_large_part_of_the_load(run):
         equilibrium_path={"h0_end": -2.2345e-9},
         device={"stiffness": [3.866e4, 1.021e7]}, numerics={"accuracy": 1e-5}))
     assert found.cost["factorisations"] < 1000
+
+
+def test_the_summary_names_the_numerics_of_the_path_and_not_those_of_a_cycle(run):
+    """A path is solved by neither mixing nor a grid fixed in space, whatever the deck asks for."""
+    found = run(lennard_jones(0.87, equilibrium_path={"h0_end": -2.0},
+                              numerics={"method": "mixing"})).summary
+    assert (found["grid"], found["method"]) == ("edge_locked", "anderson")
