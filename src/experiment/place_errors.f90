@@ -4,6 +4,8 @@
 !> is added: a residual acts like an equal error of h0.
 module place_errors
   use kinds, only: wp
+  use dimensionless_problem, only: problem_t
+  use undeformed, only: load_slope_undeformed
   use regridding, only: regrid
   use contact_state, only: state_t, gap_at, contact_radius_of
   use equilibrium, only: control_t, equations_t, residual_floor
@@ -63,6 +65,8 @@ contains
         place%fine = place%at
         if (place%mesh == no_mesh) then
           place%left = rounding*abs(place%at)
+          if (place%after > 0) call move_undeformed(steps%problem, wanted, place)
+          if (place%after > 0) place%known = places%place(place%after)%known
           cycle
         end if
         select type (steps)
@@ -78,6 +82,22 @@ contains
     end do
     steps%cost = fine%cost
   end subroutine judge_places
+
+  !> Bodies that land undeformed land at another place if their jump starts at another; wanted: D
+  !> where the jump starts on the finer mesh.
+  pure subroutine move_undeformed(problem, wanted, place)
+    type(problem_t), intent(in) :: problem
+    real(wp), intent(in) :: wanted
+    type(place_t), intent(inout) :: place
+    real(wp) :: slope, change
+
+    slope = load_slope_undeformed(problem, place%at(of_h0))
+    change = (wanted - dot_product(place%drive, place%at(:2)))/ &
+      dot_product(place%drive, [1.0_wp, slope])
+    place%fine(of_h0) = place%at(of_h0) + change
+    place%fine(of_load) = place%at(of_load) + slope*change
+    place%fine(of_energy) = place%at(of_energy) - place%at(of_load)*change
+  end subroutine move_undeformed
 
   !> The largest relative error of all reported numbers, if any place was judged.
   pure subroutine conclude(places, estimate)
