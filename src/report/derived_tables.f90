@@ -2,7 +2,7 @@
 module derived_tables
   ! The module with most dependencies is first: compiler note 12.
   use scene_groups, only: scene_t
-  use dimensionless_problem, only: problem_t
+  use dimensionless_problem, only: problem_t, calm_gap
   use experiment_request, only: sensitivity_t
   use h0_range, only: path_start
   use experiment_result, only: experiment_result_t
@@ -32,7 +32,9 @@ contains
     end if
     if (.not. allocated(scene%approximations)) return
     call results%begin_table('approximations.csv')
-    call write_approximations(problem, scene%approximations, path_start(scene, problem), results)
+    ! Bodies are nearly undeformed only before the path comes to contact.
+    call write_approximations(problem, scene%approximations, max(path_start(scene, problem), &
+      problem%law%separation_of(calm_gap(problem))), results)
   end subroutine write_derived_tables
 
   !> Writes the tables that are read from the path.

@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 import snapin
+from support.scenes import deck
 from test_approximations import UNITS, lennard_jones
 
 
@@ -127,3 +128,13 @@ def test_any_range_has_its_rows(big_lambda, h0_start, h0_end):
         h0, _, _ = columns(rows)
         assert (h0[0], h0[-1]) == pytest.approx((h0_start, h0_end), rel=1e-11)
         assert (np.diff(h0) < 0).all()
+
+
+def test_rows_without_a_range_of_their_own_begin_where_the_path_does(run):
+    """Between stiff bodies there were none, since they began beyond contact."""
+    found = run(deck(bodies={"radius": 1e-6, "stiffness": 1e11},
+                     force={"law": "lennard_jones", "hamaker": 1e-20, "z0": 0.3e-9},
+                     equilibrium_path={"h0_end": 0.6e-9}, approximations={}))
+    rows = found.table("approximations.csv").rows("slow_deformation")
+    assert rows["h0"][0] == pytest.approx(found.curve["h0"][0], rel=1e-6)
+    assert rows["h0"][-1] == pytest.approx(0.6e-9, rel=1e-3)
