@@ -81,8 +81,8 @@ contains
     slope = found%value
   end function load_slope_undeformed
 
-  !> The energy at h0, above that at `at_reference` if it falls slowly; its derivative by h0 is minus
-  !> the load.
+  !> The energy at h0, above that at `at_reference` if it falls slowly; its derivative by h0 is
+  !> minus the load.
   pure real(wp) function energy_undeformed(problem, h0) result(energy)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: h0

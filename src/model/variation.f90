@@ -17,8 +17,8 @@ module variation
   !> error of n^3/6 step^2, which leaves six digits.
   integer, parameter :: to_report = 3, to_search = 1
   real(wp), parameter :: step(to_report) = [1.0e-4_wp, 1.0e-3_wp, 1.0e-3_wp]
-  !> For reported derivatives: relative difference of the two rules, for pressures and heights, above
-  !> which the step is a quarter of this one, and the least step.
+  !> For reported derivatives: relative difference of the two rules, for pressures and heights,
+  !> above which a quarter of the step is tried, and the least step.
   real(wp), parameter :: coarse = 1.0e-6_wp, least_step = 1.0e-7_wp
 
   type :: variation_t

@@ -209,7 +209,7 @@ def test_a_spring_lets_go_outside_a_capillary_bridge(run, shape):
 
 @pytest.mark.parametrize("exponent", [2.05, 2.4, 2.765, 2.95])
 def test_the_energy_of_a_force_that_falls_slowly_is_the_area_of_the_loop(run, exponent):
-    """Most of the energy of the surface force lies far outside, where it falls as r^-2 or slower."""
+    """Most of the energy of the force lies far outside, where it falls as r^-2 or slower."""
     found = run(deck(
         bodies={"radius": 1.9e-3, "stiffness": 3.75e9},
         force={"law": "lennard_jones", "surface_energy": 0.005, "z0": 5e-10,
