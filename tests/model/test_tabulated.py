@@ -201,3 +201,20 @@ def test_a_force_that_ends_before_its_first_gap_cannot_be_continued(tmp_path):
     gap = np.linspace(0.5e-9, 5e-9, 12)
     with pytest.raises(snapin.DeckError, match="does not grow towards the first gap"):
         snapin.law_numbers(table(tmp_path, gap, 1e6 * (gap / 1e-9) * np.exp(-gap / 1e-9)))
+
+
+@pytest.mark.filterwarnings("ignore::snapin.SnapinWarning")
+@pytest.mark.parametrize("tail", [{"tail_exponent": 6}, {"tail_exponent": 2},
+                                  {"tail_exponent": None, "tail_decay_length": 0.3e-9}])
+def test_a_tail_that_the_last_points_do_not_lead_into_counts_as_an_error_of_the_table(
+        tmp_path, tail):
+    """Surface energies were off by some per cent, and nothing said so."""
+    gap = np.geomspace(0.3e-9, 3e-9, 60)
+    groups = table(tmp_path, gap, snapin.force_law(LAW, gap).pressure, **tail)
+    path = {"bodies": {"radius": 1e-2, "stiffness": 1e10}, "equilibrium_path": {"h0_end": 0.0}}
+    found = snapin.run({**path, **groups}).summary
+    exact = snapin.run({**path, **LAW}).summary["surface_energy"]
+    # The decay length of a power, seen at the end, grows farther out.
+    assert found["table_error"] == pytest.approx(
+        abs(found["surface_energy"] / exact - 1), rel=0.6 if "tail_decay_length" in tail else 0.2)
+    assert any("do not lead into its tail" in line for line in found["warnings"])

@@ -17,6 +17,8 @@ module tabulated
     !> these two.
     type(force_table_t) :: fine, coarse
     real(wp) :: share = 1
+    !> Change of the energy of the tail if it fell as the last points do.
+    real(wp) :: tail_error = 0
   contains
     procedure :: pressure
     procedure :: slope
@@ -25,6 +27,9 @@ module tabulated
   end type tabulated_t
 
   integer, parameter :: fewest = 8
+  !> The tail is compared with the points from this fraction of the last gap on; least power of a
+  !> pressure that falls, less one.
+  real(wp), parameter :: end_of_lever = 0.8_wp, nearly_none = 0.01_wp
   !> Relative error of a table's pressure, over the accuracy, that a path does not feel; and the
   !> smallest error for which integrals in pieces between the points are worth their time.
   real(wp), parameter :: unnoticed = 1.0_wp/30, least = 1.0e-6_wp
@@ -149,6 +154,8 @@ contains
     this%coarse = new_force_table([g(1), g(i:n:2)], [value(1), value(i:n:2)], &
       quantity == 'energy', exponent, decay_length, interpolation == 'spline')
     this%share = merge(share_of_spline, share_of_monotone, interpolation == 'spline')
+    i = max(1, count(g <= end_of_lever*g(n)))
+    this%tail_error = tail_error_of(g([i, n]), this%pressure(g([i, n])))
     call take_scales(deck, this, error)
     if (.not. decay_length > 0) this%tail_power = exponent
     this%breaks = g
@@ -166,6 +173,22 @@ contains
         fall = exponent*log(to/from)
       end if
     end function fall
+
+    !> From two gaps and their pressures, the last points of the table.
+    pure real(wp) function tail_error_of(gap, pressure) result(error)
+      real(wp), intent(in) :: gap(2), pressure(2)
+      real(wp) :: seen
+
+      error = 0
+      if (.not. pressure(1)/pressure(2) > 1) return
+      seen = log(pressure(1)/pressure(2))
+      if (decay_length > 0) then
+        error = abs(pressure(2)*(decay_length - (gap(2) - gap(1))/seen))
+      else
+        seen = seen/log(gap(2)/gap(1))
+        error = abs(pressure(2)*gap(2)*(1/(exponent - 1) - 1/max(seen - 1, nearly_none)))
+      end if
+    end function tail_error_of
 
   end subroutine take_table
 
@@ -236,7 +259,7 @@ contains
   end function energy
 
   !> From the table of every second point: for smooth laws its additional error is a known multiple
-  !> of the error of the whole table.
+  !> of the error of the whole table. The energy also has the error of the tail.
   pure function table_error(self, gap) result(value)
     class(tabulated_t), intent(in) :: self
     real(wp), intent(in) :: gap(:)
@@ -245,6 +268,7 @@ contains
     value(1, :) = column_of(self%coarse, gap, self%smallest_gap, 1) - self%pressure(gap)
     value(2, :) = column_of(self%coarse, gap, self%smallest_gap, 3) - self%energy(gap)
     value = self%share*abs(value)
+    value(2, :) = value(2, :) + self%tail_error
   end function table_error
 
   !> Pressure (1), slope (2) or energy (3) of a table at gaps.
