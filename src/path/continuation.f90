@@ -250,7 +250,12 @@ contains
       call transfer(self, solver, next, lost)
     end if
     if (lost .or. next%held < 2) return
-    if (.not. self%tangent(self%held - 1)%goes_with(next%tangent(1))) return
+    associate (old => self%tangent(self%held - 1), new => next%tangent(1))
+      if (.not. old%goes_with(new)) return
+      ! The next mesh may be too coarse where the path enters it.
+      if (.not. old%is_alike(new) .and. &
+        left_in_state(solver%equations_t, self%mesh, self%state(self%held - 1)) <= self%most) return
+    end associate
     self%arc_t = next
     self%step = 0.5_wp*self%step
   end subroutine change_mesh

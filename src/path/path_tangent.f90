@@ -27,6 +27,7 @@ module path_tangent
   contains
     procedure :: of
     procedure :: goes_with
+    procedure :: is_alike
     procedure :: become
   end type tangent_t
 
@@ -66,6 +67,18 @@ contains
 
     goes_with = self%h0*other%h0 > 0 .and. self%load*other%load > 0
   end function goes_with
+
+  !> Whether the derivative of the load by h0 is nearly the same along two tangents, which may be by
+  !> different coordinates.
+  pure logical function is_alike(self, other)
+    class(tangent_t), intent(in) :: self
+    type(tangent_t), intent(in) :: other
+    real(wp), parameter :: nearly = 1.5_wp
+
+    associate (one => self%load*other%h0, another => other%load*self%h0)
+      is_alike = max(abs(one), abs(another)) <= nearly*min(abs(one), abs(another))
+    end associate
+  end function is_alike
 
   !> The derivatives by the coordinate s at an equilibrium. error: permitted relative error, if
   !> larger than that of the options. found = .false.: the Jacobian is singular.
