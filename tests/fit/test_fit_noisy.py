@@ -81,6 +81,18 @@ def test_a_wrong_range_of_force_is_said(branches, tmp_path):
     assert any("does not describe" in text for text in result.summary["warnings"])
 
 
+@pytest.mark.parametrize("off, bound", [(1e-3, "largest"), (1e3, "smallest")])
+def test_a_value_at_the_end_of_the_search_is_said(branches, tmp_path, off, bound):
+    """The model is right, and would be found from a start that is nearer."""
+    result = fitted(tmp_path, branches.measure(400, NOISE, seed=3), started(stiffness=off))
+    found = result.fitted["fit"]["estimate"][1]
+    assert found / (1e10 * off) == pytest.approx(np.exp(5 if off < 1 else -5), rel=1e-3)
+    told = result.summary["warnings"]
+    assert any(text.startswith("fit: bodies.stiffness ends at") and "start nearer" in text and
+               f"the {bound} value that is tried, a factor of 148" in text for text in told), told
+    assert not any("does not describe" in text for text in told), told
+
+
 # Keys without a value follow a fitted one: born.hamaker, capillary.smoothing.
 FOLLOWING = {
     "born": (
