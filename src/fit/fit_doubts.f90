@@ -103,9 +103,14 @@ contains
     integer, intent(in) :: i
     type(line_t), allocatable, intent(inout) :: lines(:)
 
-    if (unknown%in_log .and. fitted%fitted_deviation(i) > vague) call add(lines, 'the data ' // &
-      'hardly determine ' // unknown%name // ': it may be larger or smaller by a factor of ' // &
-      rounded(exp(min(fitted%fitted_deviation(i), 100.0_wp))))
+    associate (deviation => fitted%fitted_deviation(i))
+      if (unknown%in_log .and. deviation > farthest_off) then
+        call add(lines, 'the data do not determine ' // unknown%name // '; fix it, or give a prior')
+      else if (unknown%in_log .and. deviation > vague) then
+        call add(lines, 'the data hardly determine ' // unknown%name // ': it may be larger ' // &
+          'or smaller by a factor of ' // rounded(exp(deviation)))
+      end if
+    end associate
     associate (low => fitted%end_of(i, unknown, -1.0_wp), high => fitted%end_of(i, unknown, 1.0_wp))
       if (allocated(unknown%lower)) then
         if (low <= unknown%lower) call add(lines, unknown%name // ': its 68 % interval ' // &
