@@ -27,9 +27,10 @@ contains
     real(wp), intent(in) :: stiffness
     character(len=:), allocatable, intent(out) :: trouble
     type(measured_t) :: turned
-    type(measured_jump_t) :: jump(2)
+    type(measured_jump_t) :: jump(2), back(2)
     real(wp), allocatable :: left(:)
     real(wp) :: near, before, travel
+    integer :: way
 
     left = off_baseline(measured)
     if (.not. maxval(abs(left), measured%usable) > stands_out*noise%deviation) then
@@ -40,12 +41,19 @@ contains
     call check_ways(measured, noise, stiffness, trouble)
     if (allocated(trouble)) return
     call nearest(measured, left, near, before, travel)
-    if (near >= 0 .or. near >= before) return
     turned = measured
     turned%signal = -measured%signal
-    jump(1) = find_jump(turned, noise%deviation, stiffness, .true.)
-    jump(2) = find_jump(turned, noise%deviation, stiffness, .false.)
-    if (before - near > steep*stiffness*travel .or. any(jump%before > 0)) trouble = &
+    do way = 1, 2
+      jump(way) = find_jump(measured, noise%deviation, stiffness, way == 1)
+      back(way) = find_jump(turned, noise%deviation, stiffness, way == 1)
+    end do
+    if (near >= 0 .or. near >= before) then
+      ! Backwards in time a contact lies at the far end, and seems pressed relative to its line.
+      if (maxval(abs(back%change)) > maxval(abs(jump%change))) trouble = 'the force jumps up ' // &
+        'on the approach or down on the retreat: the rows of the file are in reverse order'
+      return
+    end if
+    if (before - near > steep*stiffness*travel .or. any(back%before > 0)) trouble = &
       'the force falls where the bodies are pressed together, but repulsion must be positive; ' // &
       'a minus before the name of a column changes its sign'
   end subroutine check_measured

@@ -32,6 +32,12 @@ BAD_DATA = {
     "exchanged segments": (lambda z, f, s, rng: (z, f, 1 - s),
                            "approach and retreat are exchanged"),
     "reversed rows": (lambda z, f, s, rng: (z[::-1], f[::-1], s), "in reverse order"),
+    "reversed rows, right segments": (lambda z, f, s, rng: (z[::-1], f[::-1], s[::-1]),
+                                      "in reverse order"),
+    "reversed rows, tilted": (
+        lambda z, f, s, rng: (z[::-1], (f + 0.5 * z)[::-1], s[::-1]), "in reverse order"),
+    "reversed retreat": (lambda z, f, s, rng: (z[:299:-1], f[:299:-1], s[300:]),
+                         "in reverse order"),
     "noisy columns": (lambda z, f, s, rng: (f, z + 1e-9 * rng.standard_normal(len(z)), s),
                       "columns exchanged"),
     "nanometres": (lambda z, f, s, rng: (1e9 * z, 1e9 * f, s), "give units"),
