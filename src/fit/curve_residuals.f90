@@ -4,7 +4,8 @@
 !> one more datum, and so is a prior of an unknown. Samples within a jump do not count.
 module curve_residuals
   use kinds, only: wp
-  use fit_request, only: unknown_t, value_of, value_by_free, value_by_fitted, fitted_of
+  use fit_request, only: unknown_t, value_of, value_by_free, value_by_fitted, fitted_of, &
+    farthest_off
   use least_squares, only: residuals_t
   use modelled_curve, only: modelled_curve_t
   implicit none
@@ -13,9 +14,6 @@ module curve_residuals
 
   !> Residual of a jump that the model does not have, in standard deviations.
   real(wp), parameter :: missed = 10
-  !> Largest logarithm of a trial over the deck's value: the path of a very different problem may
-  !> take too long.
-  real(wp), parameter :: farthest_off = 5
 
   type, extends(residuals_t) :: curve_residuals_t
     type(modelled_curve_t) :: curve

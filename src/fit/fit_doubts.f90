@@ -4,7 +4,7 @@ module fit_doubts
   use kinds, only: wp
   use text, only: rounded
   use namelist_writer, only: line_t
-  use fit_request, only: unknown_t
+  use fit_request, only: unknown_t, fitted_of, farthest_off
   use lack_of_fit, only: lack_t
   use curve_fit, only: fitted_t
   use held_numbers, only: held_t
@@ -26,17 +26,23 @@ contains
   function doubts_of(outcome) result(lines)
     type(fit_outcome_t), intent(in) :: outcome
     type(line_t), allocatable :: lines(:)
+    logical :: stopped
     integer :: i
 
     allocate (lines(0))
     associate (fitted => outcome%fitted, unknown => outcome%curve%unknown)
+      do i = 1, size(fitted%value)
+        call doubt_reach(unknown(i), fitted%value(i), lines)
+      end do
+      ! Then the model may describe the data with other values.
+      stopped = size(lines) > 0
       if (.not. fitted%found) call add(lines, 'the search ended before it found the best values')
       if (.not. outcome%resolved) call add(lines, 'the meshes do not resolve the force law, ' // &
         'and the model is not exact; smoother forces are resolved')
       if (.not. fitted%lack%is_noise()) call add(lines, what_is_left(fitted%lack) // &
         ' times what noise leaves (' // rounded(fitted%lack%excess) // ' standard ' // &
-        'deviations more)' // not_described)
-      call doubt_held(outcome%held, lines)
+        'deviations more)' // not_described(:merge(0, len(not_described), stopped)))
+      if (.not. stopped) call doubt_held(outcome%held, lines)
       do i = 1, size(fitted%value)
         call doubt_unknown(fitted, unknown(i), i, lines)
         call doubt_pairs(fitted, unknown, i, lines)
@@ -44,9 +50,26 @@ contains
       if (fitted%identifiable < lost) call add(lines, 'these data do not determine some ' // &
         'combination of the parameters: identifiable = ' // rounded(fitted%identifiable))
     end associate
-    call doubt_jumps(outcome, lines)
+    if (.not. stopped) call doubt_jumps(outcome, lines)
     call doubt_end(outcome, lines)
   end function doubts_of
+
+  !> Doubt about an unknown that ends where the search may not go farther from the deck's value.
+  subroutine doubt_reach(unknown, value, lines)
+    type(unknown_t), intent(in) :: unknown
+    real(wp), intent(in) :: value
+    type(line_t), allocatable, intent(inout) :: lines(:)
+    real(wp), parameter :: within = 1.0e-3_wp
+    real(wp) :: off
+
+    if (.not. unknown%in_log) return
+    off = fitted_of(unknown, value)
+    if (abs(off) < farthest_off - within) return
+    call add(lines, unknown%name // ' ends at ' // rounded(value) // ', the ' // &
+      trim(merge('largest ', 'smallest', off > 0)) // ' value that is tried, a factor of ' // &
+      rounded(exp(farthest_off)) // ' from the value in the deck: other values may fit ' // &
+      'better, and standard errors mean nothing; start nearer')
+  end subroutine doubt_reach
 
   !> Doubts about numbers that the deck holds fixed: the one that the data contradict most.
   subroutine doubt_held(held, lines)
@@ -80,9 +103,14 @@ contains
     integer, intent(in) :: i
     type(line_t), allocatable, intent(inout) :: lines(:)
 
-    if (unknown%in_log .and. fitted%fitted_deviation(i) > vague) call add(lines, 'the data ' // &
-      'hardly determine ' // unknown%name // ': it may be larger or smaller by a factor of ' // &
-      rounded(exp(min(fitted%fitted_deviation(i), 100.0_wp))))
+    associate (deviation => fitted%fitted_deviation(i))
+      if (unknown%in_log .and. deviation > farthest_off) then
+        call add(lines, 'the data do not determine ' // unknown%name // '; fix it, or give a prior')
+      else if (unknown%in_log .and. deviation > vague) then
+        call add(lines, 'the data hardly determine ' // unknown%name // ': it may be larger ' // &
+          'or smaller by a factor of ' // rounded(exp(deviation)))
+      end if
+    end associate
     associate (low => fitted%end_of(i, unknown, -1.0_wp), high => fitted%end_of(i, unknown, 1.0_wp))
       if (allocated(unknown%lower)) then
         if (low <= unknown%lower) call add(lines, unknown%name // ': its 68 % interval ' // &

@@ -7,7 +7,7 @@ module fit_request
   implicit none
   private
   public :: measurement_t, fit_t, unknown_t, of_model, of_contact_point, of_sensitivity, &
-    of_spring, free_of, value_of, fitted_of, value_by_free, value_by_fitted
+    of_spring, free_of, value_of, fitted_of, value_by_free, value_by_fitted, farthest_off
 
   !> &measurement [SI]. sensitivity: of a signal in volts; not allocated: the signal is the force.
   type :: measurement_t
@@ -34,6 +34,10 @@ module fit_request
     real(wp) :: value = 0, origin = 0, scale = 1, prior = 0
     real(wp), allocatable :: lower, upper
   end type unknown_t
+
+  !> Largest logarithm of a trial over the deck's value: the path of a very different problem may
+  !> take too long.
+  real(wp), parameter :: farthest_off = 5
 
   !> &fit. noise: standard deviation of the signal; not allocated: that of the baseline.
   type :: fit_t

@@ -8,10 +8,12 @@ module problem_family
   public :: problem_family_t, parameter_t
 
   !> A parameter: its value in the present problem, SI units, and its scale, which is the value
-  !> unless the value is zero.
+  !> unless the value is zero. follows: the value is a factor of the parameter's default, which may
+  !> follow from other parameters.
   type :: parameter_t
     character(len=:), allocatable :: name
     real(wp) :: value = 0, scale = 1
+    logical :: follows = .false.
   end type parameter_t
 
   type, abstract :: problem_family_t

@@ -7,6 +7,7 @@ module deck_family
   use deck, only: deck_t
   use deck_numbers, only: find_number, set_number, guess_number
   use deck_keys, only: key_spec, real_value, real_list
+  use deck_values, only: given
   use dimensionless_problem, only: problem_t
   use problem_family, only: problem_family_t, parameter_t
   use scene_groups, only: scene_t
@@ -43,13 +44,14 @@ contains
     end do
   end subroutine new_deck_family
 
-  !> The family with the other positive numbers of its deck as further parameters.
+  !> The family with the other positive numbers of its deck as further parameters. A number that the
+  !> deck leaves out is a factor of its default.
   type(deck_family_t) function widened(family) result(wider)
     type(deck_family_t), intent(in) :: family
     type(parameter_t) :: new
     type(failure_t), allocatable :: error
     character(len=:), allocatable :: names
-    integer :: i, k
+    integer :: i, k, row, term
 
     wider = family
     names = parameters_of(family%deck)
@@ -57,7 +59,12 @@ contains
       new = parameter_t(name=word_of(names, i))
       if (any([(family%parameter(k)%name == new%name, k=1, size(family%parameter))])) cycle
       call take_value(family%deck, new, error)
-      if (.not. allocated(error) .and. new%value > 0) wider%parameter = [wider%parameter, new]
+      if (allocated(error) .or. .not. new%value > 0) cycle
+      call find_number(family%deck, new%name, row, term, error)
+      new%follows = family%deck%values(row)%status /= given
+      if (new%follows) new%value = 1
+      new%scale = new%value
+      wider%parameter = [wider%parameter, new]
     end do
   end function widened
 
@@ -67,12 +74,23 @@ contains
     real(wp), intent(in) :: value(:)
     type(problem_t), intent(out) :: problem
     type(failure_t), allocatable, intent(out) :: error
-    type(scene_t) :: scene
-    integer :: i
+    type(scene_t) :: scene, usual
+    integer :: i, row, term
 
     scene%deck = self%deck
     do i = 1, size(value)
+      if (self%parameter(i)%follows) cycle
       call set_number(scene%deck, self%parameter(i)%name, value(i), error)
+      if (allocated(error)) return
+    end do
+    do i = 1, size(value)
+      if (.not. self%parameter(i)%follows .or. abs(value(i) - 1) <= 0) cycle
+      usual = scene
+      call take_model(usual, error)
+      if (allocated(error)) return
+      call find_number(usual%deck, self%parameter(i)%name, row, term, error)
+      call set_number(scene%deck, self%parameter(i)%name, &
+        value(i)*usual%deck%values(row)%reals(max(1, term)), error)
       if (allocated(error)) return
     end do
     call take_model(scene, error)

@@ -291,6 +291,18 @@ def test_what_cannot_be_told_apart_is_said(branches, tmp_path):
     assert result.fitted["fit"]["identifiable"][0] < 0.05
 
 
+def test_a_number_that_the_data_do_not_determine_is_named_without_a_factor(tmp_path):
+    """Bodies too stiff to deform: the curve shows the product of strength and radius alone."""
+    stiff = changed(LENNARD_JONES, {STIFFNESS: 1e13})
+    curve = Branches(stiff, h0_end=2e-10).measure(300, noise=1e-10)
+    keys = [STRENGTH, STIFFNESS, "bodies.radius"]
+    result = run(fit_deck(stiff, write(tmp_path / "a.csv", *curve), [*keys, POINT]))
+    told = result.summary["warnings"]
+    for key in keys:
+        assert f"fit: the data do not determine {key}; fix it, or give a prior" in told
+    assert not any("by a factor of" in text for text in told), told
+
+
 def test_a_bound_that_decides_is_said(branches, tmp_path):
     z, force, segment = branches.measure(300, noise=2e-11)
     file = write(tmp_path / "a.csv", z, force, segment)

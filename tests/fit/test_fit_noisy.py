@@ -7,13 +7,16 @@ import snapin
 from support.measured import (
     LENNARD_JONES,
     POINT,
+    SPRING,
     STIFFNESS,
     STRENGTH,
+    Branches,
     branches,  # noqa: F401
     fit_deck,
     run,
     write,
 )
+from support.scenes import changed
 
 TRUTH = {STRENGTH: 1e-19, STIFFNESS: 1e10, POINT: 0.0}
 # Three hundredths of the pull-off; the spring changes by a fifth of it from sample to sample.
@@ -25,9 +28,9 @@ def started(strength=1.0, stiffness=1.0, **force):
             "force": {**LENNARD_JONES["force"], "hamaker": 1e-19 * strength, **force}}
 
 
-def fitted(tmp_path, curve, groups, **others):
+def fitted(tmp_path, curve, groups, keys=tuple(TRUTH), **others):
     file = write(tmp_path / "curve.csv", *curve)
-    return run(fit_deck(groups, file, list(TRUTH), **others))
+    return run(fit_deck(groups, file, list(keys), **others))
 
 
 def errors_off(result):
@@ -76,6 +79,48 @@ def test_a_wrong_range_of_force_is_said(branches, tmp_path):
     assert np.abs(errors_off(result)).max() > 5
     assert fit["chi_squared"][0] < 1.5 * fit["degrees_of_freedom"][0]
     assert any("does not describe" in text for text in result.summary["warnings"])
+
+
+@pytest.mark.parametrize("off, bound", [(1e-3, "largest"), (1e3, "smallest")])
+def test_a_value_at_the_end_of_the_search_is_said(branches, tmp_path, off, bound):
+    """The model is right, and would be found from a start that is nearer."""
+    result = fitted(tmp_path, branches.measure(400, NOISE, seed=3), started(stiffness=off))
+    found = result.fitted["fit"]["estimate"][1]
+    assert found / (1e10 * off) == pytest.approx(np.exp(5 if off < 1 else -5), rel=1e-3)
+    told = result.summary["warnings"]
+    assert any(text.startswith("fit: bodies.stiffness ends at") and "start nearer" in text and
+               f"the {bound} value that is tried, a factor of 148" in text for text in told), told
+    assert not any("does not describe" in text for text in told), told
+
+
+# Keys without a value follow a fitted one: born.hamaker, capillary.smoothing.
+FOLLOWING = {
+    "born": (
+        {"bodies": {"radius": 1e-6, "stiffness": 1e10}, "van_der_waals": {"hamaker": 1e-20},
+         "born": {"z0": 3e-10}, "double_layer": {"potential": 0.05, "salt": 10.0}},
+        {"van_der_waals.hamaker": 2e-20, "double_layer.potential": 0.03},
+        ["double_layer.salt"], 1.0, 4e-11),
+    "smoothing": (
+        {"bodies": {"radius": 50e-9, "stiffness": 1e10}, "born": {"hamaker": 1e-19, "z0": 2e-10},
+         "capillary": {"surface_tension": 0.05, "kelvin_radius": 1e-9}},
+        {"capillary.kelvin_radius": 1.4e-9}, [], SPRING, 1.3e-10),
+}
+
+
+@pytest.mark.parametrize("name", FOLLOWING)
+def test_what_the_data_ask_for_does_not_depend_on_the_start(tmp_path, name):
+    """Of a number that is held, when the default of another key follows a fitted number."""
+    truth, start, more, spring, noise = FOLLOWING[name]
+    curve = Branches(truth, spring, far=40e-9, h0_end=-3e-10).measure(500, noise, seed=1)
+    asked = []
+    for groups in truth, changed(truth, start):
+        result = fitted(tmp_path, curve, groups, [*start, *more, POINT],
+                        measurement={"spring_constant": spring})
+        fit = result.fitted["fit"]
+        asked.append(dict(zip(fit["held"], fit["held_asked"])))
+        told = result.summary.get("warnings", [])
+        assert not any("does not describe" in text for text in told), told
+    assert asked[0] == pytest.approx(asked[1], abs=0.01)
 
 
 def test_little_baseline_is_enough(branches, tmp_path):

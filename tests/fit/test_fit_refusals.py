@@ -6,6 +6,8 @@ import snapin
 from support.measured import (
     LENNARD_JONES,
     POINT,
+    SPRING,
+    STIFFNESS,
     STRENGTH,
     branches,  # noqa: F401
     fit_deck,
@@ -30,6 +32,12 @@ BAD_DATA = {
     "exchanged segments": (lambda z, f, s, rng: (z, f, 1 - s),
                            "approach and retreat are exchanged"),
     "reversed rows": (lambda z, f, s, rng: (z[::-1], f[::-1], s), "in reverse order"),
+    "reversed rows, right segments": (lambda z, f, s, rng: (z[::-1], f[::-1], s[::-1]),
+                                      "in reverse order"),
+    "reversed rows, tilted": (
+        lambda z, f, s, rng: (z[::-1], (f + 0.5 * z)[::-1], s[::-1]), "in reverse order"),
+    "reversed retreat": (lambda z, f, s, rng: (z[:299:-1], f[:299:-1], s[300:]),
+                         "in reverse order"),
     "noisy columns": (lambda z, f, s, rng: (f, z + 1e-9 * rng.standard_normal(len(z)), s),
                       "columns exchanged"),
     "nanometres": (lambda z, f, s, rng: (1e9 * z, 1e9 * f, s), "give units"),
@@ -45,6 +53,27 @@ def test_data_that_cannot_be_fitted_are_refused_with_the_reason(branches, tmp_pa
     file = write(tmp_path / "a.csv", *change(z, force, segment, np.random.default_rng(1)))
     with pytest.raises(snapin.SnapinError, match=message):
         run(fit_deck(LENNARD_JONES, file, [STRENGTH, POINT]))
+
+
+VOLT = 1 / (SPRING * 5e-8)
+# Unit of the signal over newtons, keys of &measurement, and what is said.
+BAD_SIGNALS = {
+    "volts": (VOLT, {}, "where the spring permits .* sensitivity if it is in volts"),
+    "millivolts": (1e3 * VOLT, {"sensitivity": 5e-8}, "where the spring permits"),
+    "nanonewtons": (1e9, {}, "where the spring permits .* check the unit of the signal"),
+    "soft spring": (1.0, {"spring_constant": SPRING / 10}, "permits .* and spring_constant"),
+    "piconewtons": (1e9, {"units": ["m", "pN"]},
+                    "largest tension of the data is 6.[0-9]*e-12 N, .* deck 6.[0-9]*e-9 N"),
+}
+
+
+@pytest.mark.parametrize("case", BAD_SIGNALS)
+def test_a_signal_in_a_wrong_unit_is_refused_with_both_loads(branches, tmp_path, case):
+    unit, keys, message = BAD_SIGNALS[case]
+    z, force, segment = branches.measure(300, noise=1e-11)
+    file = write(tmp_path / "a.csv", z, unit * force, segment)
+    with pytest.raises(snapin.SnapinError, match=message):
+        run(fit_deck(LENNARD_JONES, file, [STRENGTH, STIFFNESS, POINT], measurement=keys))
 
 
 BAD_FILES = {
