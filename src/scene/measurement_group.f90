@@ -37,7 +37,7 @@ contains
                // 'for a deflection in metres.', above=zero, otherwise='the signal is the force'), &
       real_key('measurement', 'contact_point', 'm', 'Position of the base at which undeformed ' // &
                'bodies would touch.', &
-               otherwise='an unknown of &fit, whose parameters must name it'), &
+               otherwise='an unknown of &fit, in its parameters'), &
       names_key('measurement', 'units', 2, 'Units of position (m, mm, um, nm, pm) and signal ' // &
                 '(N, mN, uN, nN, pN, V, mV) in the file.', otherwise='m and N or V'), &
       list_key('measurement', 'skip', 'm', 'Pairs of positions of the base, SI; samples ' // &
