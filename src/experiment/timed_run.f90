@@ -27,7 +27,7 @@ module timed_run
   use drainage, only: farthest_pole
   use timed_pass, only: go_through
   use timed_record, only: timed_result_t, pass_t, most_steps, of_tension, of_end_load, &
-    of_dissipation
+    of_dissipation, of_suction
   implicit none
   private
   public :: run_timed
@@ -247,6 +247,8 @@ contains
 
     now%error = margin*abs(now%number - before%number)
     where (before%error < huge(1.0_wp)) now%error = max(now%error, before%error/4)
+    ! A suction at an unresolved jump of an early pass says nothing about later passes.
+    now%error(of_suction) = margin*abs(now%number(of_suction) - before%number(of_suction))
     now%error(of_tension) = now%error(of_tension) + now%lifted + &
       of_meshes*accuracy*now%number(of_tension)
     now%error(of_end_load) = now%error(of_end_load) + &
@@ -255,13 +257,18 @@ contains
   end subroutine compare
 
   !> The largest relative error: of loads over the largest load, and of the dissipated energy over
-  !> itself or, if larger, over the largest load times the law's length.
+  !> itself or, if larger, over the largest load times the law's length; of a suction over itself.
+  !> A suction with an error larger than itself is not determined, and does not count: more passes
+  !> rarely help, and the summary has a warning.
   pure real(wp) function relative_error(now) result(largest)
     type(timed_result_t), intent(in) :: now
 
     largest = max(max(now%error(of_tension), now%error(of_end_load))/ &
       max(now%largest_load, tiny(1.0_wp)), now%error(of_dissipation)/ &
       max(abs(now%number(of_dissipation)), now%largest_load, tiny(1.0_wp)))
+    associate (suction => now%number(of_suction), error => now%error(of_suction))
+      if (error <= suction) largest = max(largest, error/max(suction, tiny(1.0_wp)))
+    end associate
   end function relative_error
 
 end module timed_run

@@ -53,7 +53,12 @@ contains
     call take('end_load', of_end_load)
     if (allocated(scene%fluid)) then
       call take('max_suction', of_suction)
-      if (timed%number(of_suction)*problem%pressure > atmosphere) call warn_of_cavities()
+      if (timed%error(of_suction) > timed%number(of_suction)) then
+        call summary%warn('drive: max_suction is not determined: the error, ' // &
+          rounded(timed%error(of_suction)*problem%pressure) // ' Pa, is larger than the suction')
+      else if (timed%number(of_suction)*problem%pressure > atmosphere) then
+        call warn_of_cavities()
+      end if
     end if
     if (timed%memory_tail > unresolved) call summary%warn('the mesh does not resolve the ' // &
       'memory of the bodies: ' // rounded(timed%memory_tail) // ' of it is lost between ' // &
