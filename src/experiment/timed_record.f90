@@ -43,12 +43,13 @@ module timed_record
     real(wp) :: lost_at = 0
   end type timed_result_t
 
-  !> The progress of a pass: number of rows, the last three loads, the present way, the length of
-  !> the next step [s], and the row of the previous pass whose step is halved.
+  !> The progress of a pass: number of rows, the last three loads, the present way and the time [s]
+  !> at which it began, the length of the next step [s], and the row of the previous pass whose step
+  !> is halved.
   type :: tally_t
     type(timed_result_t) :: result
     integer :: held = 0, way = 0, halved = 1
-    real(wp) :: step = 0
+    real(wp) :: began = 0, step = 0
     !> Deviation of the last attempted step, if it was too large; otherwise 0.
     real(wp) :: missed = 0
     logical :: ended = .false.
@@ -64,7 +65,8 @@ module timed_record
     real(wp) :: work = 0, inside = 0, begun_with = 0
   end type tally_t
 
-  !> A pass and its rows, of which the first `kept` are in the journal.
+  !> A pass and its rows, of which the first `kept` are in the journal. Their times are those since
+  !> the beginning of a way.
   type, extends(tally_t) :: pass_t
     type(record_t), allocatable :: row(:)
     integer :: kept = 0
@@ -81,7 +83,7 @@ contains
     type(pass_t), intent(inout) :: now
 
     now%result%lost = .true.
-    now%result%lost_at = at%time
+    now%result%lost_at = now%began + at%time
   end subroutine lose
 
   !> Records whether the bodies approach each other, if they move by more than rounding.
@@ -171,7 +173,7 @@ contains
       result%largest_load = max(result%largest_load, abs(at%state%load))
       if (at%suction > result%number(of_suction)) then
         result%number(of_suction) = at%suction
-        result%suction_at = [at%time, at%state%h0, at%suction_at]
+        result%suction_at = [now%began + at%time, at%state%h0, at%suction_at]
       end if
       do k = 1, size(at%memory, 2)
         result%memory_tail = max(result%memory_tail, &

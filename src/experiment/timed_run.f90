@@ -20,7 +20,7 @@ module timed_run
   use experiment_request, only: request_t, numerics_t
   use path_demand, only: h0_in_contact
   use creep, only: elastic_bodies
-  use motion, only: motion_t, new_motion
+  use motion, only: motion_t, new_motion, names_of_ways
   use time_stepper, only: time_stepper_t
   use material, only: new_material
   use solver_options, only: tightened
@@ -106,6 +106,8 @@ contains
     result%estimate = relative_error(result)
     nodes = sum(steps%meshes%grid%nodes)
     do i = 1, now%held
+      now%row(i)%time = now%row(i)%time + &
+        drive%began(findloc(names_of_ways == now%row(i)%branch, .true., 1))
       call observer%take(now%row(i), steps%problem, steps%meshes%grid(1), steps%before%state, &
         .false.)
     end do

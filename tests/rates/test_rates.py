@@ -116,6 +116,17 @@ def test_pull_offs_rise_and_fall_with_velocity(run):
         middle["max_tension"] / (1.5 * math.pi))
 
 
+def test_a_dwell_of_any_length_leaves_relaxed_bodies(run):
+    # Ten times of retardation; much longer than the rest of the motion takes, in units of rounding.
+    found = [run(scene(0.2, 2.0, velocity=20.0, start=20.0, turn=-4.0, accuracy=1e-3,
+                       dwell=dwell)).summary for dwell in (30.0, 1e9, 1e40)]
+    for summary in found:
+        assert summary["error_estimate"] < 3e-3
+        for key in ("max_tension", "energy_dissipated"):
+            off = abs(summary[key] - found[0][key])
+            assert off <= summary[key + "_error"] + found[0][key + "_error"]
+
+
 @pytest.mark.parametrize("seed", range(5))
 def test_no_cycle_gives_energy(run, seed):
     rng = np.random.default_rng(seed)
