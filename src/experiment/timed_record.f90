@@ -38,8 +38,9 @@ module timed_record
     real(wp) :: suction_at(3) = 0
     type(quality_t) :: quality
     real(wp) :: memory_tail = 0, largest_load = 0
-    !> Whether a start was found, whether the bodies were lost, and the time [s] of the loss.
-    logical :: begun = .false., lost = .false.
+    !> Whether a start was found, whether the bodies were lost, whether the reason was the number of
+    !> steps or jumps, and the time [s] of the loss.
+    logical :: begun = .false., lost = .false., too_many = .false.
     real(wp) :: lost_at = 0
   end type timed_result_t
 
@@ -77,12 +78,13 @@ module timed_record
 
 contains
 
-  !> Marks the pass as lost.
+  !> Marks the pass as lost: there were too many steps or jumps, or no further state was found.
   subroutine lose(at, now)
     type(instant_t), intent(in) :: at
     type(pass_t), intent(inout) :: now
 
     now%result%lost = .true.
+    now%result%too_many = now%held > now%most .or. now%result%jumps > now%most_jumps
     now%result%lost_at = now%began + at%time
   end subroutine lose
 

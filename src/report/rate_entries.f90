@@ -25,6 +25,7 @@ contains
     type(problem_t), intent(in) :: problem
     type(timed_result_t), intent(in) :: timed
     type(summary_t), intent(inout) :: summary
+    character(len=:), allocatable :: why
 
     if (allocated(scene%creep) .and. problem%law%adhesion > 0) call summary%set('sigma_relaxed', &
       adhesion_strength(problem)*scene%creep%relaxed())
@@ -35,8 +36,16 @@ contains
     end if
     call summary%set('time_steps', int(timed%steps, long))
     if (timed%lost) then
-      call summary%fail_with('drive: after ' // rounded(timed%lost_at) // ' s no further ' // &
-        'state was found, or there were too many steps; the curve ends there')
+      if (timed%too_many) then
+        why = 'there were too many steps or jumps; the curve ends there. Ask for less ' // &
+          'accuracy or longer steps'
+      else if (allocated(scene%creep) .or. allocated(scene%fluid)) then
+        why = 'no further state was found; the curve ends there. Ask for another accuracy'
+      else
+        why = 'no further state was found; the curve ends there. Elastic bodies have the same ' // &
+          'states at any velocity: use &device or &equilibrium_path'
+      end if
+      call summary%fail_with('drive: after ' // rounded(timed%lost_at) // ' s ' // why)
       return
     end if
     if (allocated(timed%not_rated)) call summary%fail_with('sensitivity: a run with another ' // &

@@ -202,10 +202,24 @@ def test_bodies_that_are_lost_have_no_numbers(run):
         0.1, drive={"velocity": 5.0, "z_start": 60.0, "z_turn": -2.0},
         viscoelastic={"stiffness_relaxed": 0.02, "retardation_time": 1.0},
         fluid={"viscosity": 1e-6}, numerics={"accuracy": 1e-2}), status=None)
-    lost = any("no further state was found" in text for text in found.warnings)
+    lost = any("the curve ends there" in text for text in found.warnings)
     assert lost == (found.status == 1) == ("energy_dissipated" not in found.summary)
     if lost:
+        assert any("after" in text and ("no further state was found;" in text) != (
+            "too many steps" in text) for text in found.warnings)
         assert any("the error could not be estimated" in text for text in found.warnings)
+
+
+def test_a_drive_of_too_many_steps_says_so(run):
+    # With halved steps they are a few more than the largest number.
+    found = run(deck(
+        bodies={"radius": 1e-5, "rigid": True},
+        force={"law": "lennard_jones", "hamaker": 1e-21, "z0": 0.2e-9},
+        fluid={"viscosity": 1e-3},
+        drive={"velocity": 1e-6, "z_start": 20e-9, "z_turn": 10e-9, "time_step": 20e-3 / 39999},
+        numerics={"accuracy": 1e-2}), status=1)
+    said = " ".join(found.warnings)
+    assert "there were too many steps or jumps" in said and "no further state" not in said
 
 
 def test_rigid_bodies_have_the_drag_of_a_film_beside_their_force(run):
