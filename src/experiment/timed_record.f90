@@ -42,6 +42,8 @@ module timed_record
     !> steps or jumps, and the time [s] of the loss.
     logical :: begun = .false., lost = .false., too_many = .false.
     real(wp) :: lost_at = 0
+    !> Whether the tension is largest at the end of the drive.
+    logical :: still_held = .false.
   end type timed_result_t
 
   !> The progress of a pass: number of rows, the last three loads, the present way and the time [s]

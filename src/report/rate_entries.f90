@@ -55,6 +55,8 @@ contains
       call take('max_tension_h0', of_tension_h0)
       if (problem%shape%parabolic) call take('effective_work_of_adhesion', of_tension, &
         1/(1.5_wp*pi*problem%radius))
+      if (timed%still_held) call summary%warn('drive: the tension is largest at the end, so ' // &
+        'it is not the tension at which the bodies separate; raise z_end')
     end if
     call take('energy_dissipated', of_dissipation)
     call summary%set('end_h0', problem%law%separation_of(timed%number(of_end_h0)))

@@ -195,7 +195,9 @@ def test_no_cycle_gives_energy(run, seed):
     summary = run(scene(sigma, sigma * 10 ** rng.uniform(-4, 1), **case)).summary
     assert summary["converged"]
     assert summary["energy_dissipated"] > -summary["energy_dissipated_error"]
-    assert "drive" not in " ".join(several(summary.get("warnings", [])))
+    # A soft spring may still hold the bodies at the end.
+    assert not [text for text in several(summary.get("warnings", []))
+                if "drive" in text and "largest at the end" not in text]
 
 
 def test_cavities_are_warned_of(run):

@@ -222,6 +222,22 @@ def test_a_drive_of_too_many_steps_says_so(run):
     assert "there were too many steps or jumps" in said and "no further state" not in said
 
 
+def test_a_largest_tension_at_the_end_has_a_warning(run):
+    def drive(end):
+        return run(deck(
+            bodies={"radius": 1e-6, "stiffness": 2.2e9},
+            force={"law": "lennard_jones", "surface_energy": 0.05, "z0": 0.5e-9},
+            drive={"velocity": 1e-6, "z_start": 60e-9, "z_turn": -20e-9, "z_end": end,
+                   "stiffness": 1.0}, numerics={"accuracy": 1e-3}))
+    # The spring parts the bodies after 250 nm.
+    held, apart = drive(60e-9), drive(300e-9)
+    for found, warned in ((held, True), (apart, False)):
+        assert any("largest at the end" in text for text in found.warnings) is warned
+        last = -found.curve["load"][-1]
+        assert (abs(found.summary["max_tension"] / last - 1) < 1e-12) == warned
+    assert held.summary["max_tension"] < 0.9 * apart.summary["max_tension"]
+
+
 def test_rigid_bodies_have_the_drag_of_a_film_beside_their_force(run):
     curve = run(deck(
         bodies={"radius": 1e-5, "rigid": True},
