@@ -11,11 +11,11 @@ module timed_record
   private
   public :: timed_result_t, tally_t, pass_t, accept, take_row, note, make_room, lose, most_steps, &
     numbers, of_tension, of_tension_h0, of_end_h0, of_end_load, of_end_displacement, &
-    of_dissipation, of_suction
+    of_dissipation, of_suction, of_work
 
-  !> The reported numbers.
+  !> The reported numbers. of_work: the effective work of adhesion, the largest tension over 1.5 pi.
   integer, parameter :: of_tension = 1, of_tension_h0 = 2, of_end_h0 = 3, of_end_load = 4, &
-    of_end_displacement = 5, of_dissipation = 6, of_suction = 7, numbers = 7
+    of_end_displacement = 5, of_dissipation = 6, of_suction = 7, of_work = 8, numbers = 8
 
   !> Largest number of steps of a pass.
   integer, parameter :: most_steps = 40000

@@ -3,7 +3,7 @@
 !> passes, times a margin. The steps of the first pass follow the change of the load and the motion
 !> of the contact edge, or the deck's step.
 module timed_run
-  use kinds, only: wp
+  use kinds, only: wp, pi
   use clock, only: seconds
   use dimensionless_problem, only: problem_t
   use discretisation, only: discretisation_t
@@ -27,7 +27,7 @@ module timed_run
   use drainage, only: farthest_pole
   use timed_pass, only: go_through
   use timed_record, only: timed_result_t, pass_t, most_steps, of_tension, of_end_load, &
-    of_dissipation, of_suction
+    of_dissipation, of_suction, of_work
   implicit none
   private
   public :: run_timed
@@ -253,6 +253,7 @@ contains
     now%error(of_suction) = margin*abs(now%number(of_suction) - before%number(of_suction))
     now%error(of_tension) = now%error(of_tension) + now%lifted + &
       of_meshes*accuracy*now%number(of_tension)
+    now%error(of_work) = now%error(of_tension)/(1.5_wp*pi)
     now%error(of_end_load) = now%error(of_end_load) + &
       of_meshes*accuracy*abs(now%number(of_end_load))
     now%error(of_dissipation) = max(now%error(of_dissipation), abs(now%balance))

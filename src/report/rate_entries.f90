@@ -1,10 +1,10 @@
 !> The numbers of a drive in time in the summary.
 module rate_entries
-  use kinds, only: wp, pi, long
+  use kinds, only: wp, long
   use dimensionless_problem, only: problem_t, adhesion_strength
   use scene_groups, only: scene_t
   use timed_record, only: timed_result_t, numbers, of_tension, of_tension_h0, of_end_h0, &
-    of_end_load, of_end_displacement, of_dissipation, of_suction
+    of_end_load, of_end_displacement, of_dissipation, of_suction, of_work
   use summary, only: summary_t
   use text, only: rounded
   implicit none
@@ -53,8 +53,7 @@ contains
     if (timed%number(of_tension) > 0) then
       call take('max_tension', of_tension)
       call take('max_tension_h0', of_tension_h0)
-      if (problem%shape%parabolic) call take('effective_work_of_adhesion', of_tension, &
-        1/(1.5_wp*pi*problem%radius))
+      if (problem%shape%parabolic) call take('effective_work_of_adhesion', of_work)
       if (timed%still_held) call summary%warn('drive: the tension is largest at the end, so ' // &
         'it is not the tension at which the bodies separate; raise z_end')
     end if
@@ -87,22 +86,19 @@ contains
       end associate
     end subroutine warn_of_cavities
 
-    !> Adds a number, times a factor, with its error and derivatives.
-    subroutine take(key, which, factor)
+    !> Adds a number with its error and derivatives.
+    subroutine take(key, which)
       character(len=*), intent(in) :: key
       integer, intent(in) :: which
-      real(wp), intent(in), optional :: factor
-      real(wp) :: number(1), error(1), times
+      real(wp) :: number(1), error(1)
       real(wp), allocatable :: rate(:, :)
 
-      times = 1
-      if (present(factor)) times = factor
       associate (si => si_numbers(problem, timed), units => units_of(problem))
-        number = times*si(which)
-        error = times*timed%error(which)*units(which)
+        number = si(which)
+        error = timed%error(which)*units(which)
       end associate
       allocate (rate(0, 1))
-      if (allocated(timed%rate)) rate = times*timed%rate(:, which:which)
+      if (allocated(timed%rate)) rate = timed%rate(:, which:which)
       call summary%set(key, number, error, rate)
     end subroutine take
 
@@ -127,6 +123,7 @@ contains
     units([of_tension_h0, of_end_h0, of_end_displacement]) = problem%length
     units(of_dissipation) = problem%load*problem%length
     units(of_suction) = problem%pressure
+    units(of_work) = problem%load/problem%radius
   end function units_of
 
 end module rate_entries

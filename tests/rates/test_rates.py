@@ -272,6 +272,15 @@ def test_derivatives_of_a_drive_keep_its_invariances(run):
                                                        abs=1e-6)
 
 
+def test_the_radius_in_the_definition_of_an_effective_work_is_differentiated(run):
+    found = run(lennard_jones(
+        0.2, drive={"velocity": 8.0, "z_start": 20.0, "z_turn": -4.0}, numerics={"accuracy": 1e-3},
+        sensitivity={"parameters": "bodies.radius"}))
+    table = found.table("sensitivity.csv")
+    rate = dict(zip(table["quantity"], table["logarithmic"]))
+    assert rate["effective_work_of_adhesion"] == pytest.approx(rate["max_tension"] - 1, abs=0.01)
+
+
 @pytest.mark.parametrize("name, message", [
     ("numerics.accuracy", "is not a number on which results depend"),
     ("drive.dwell", "is 0"),
