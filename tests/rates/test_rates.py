@@ -149,6 +149,21 @@ def test_a_spring_driven_slowly_is_the_device(run):
         found["max_tension"] > -device["device_jump_out_load"]
 
 
+@pytest.mark.parametrize("stiffness", [1e-4, 0.01])
+def test_a_soft_spring_takes_the_bodies_through_both_jumps(run, stiffness):
+    # In the jumps the spring would yield by thousands of lengths of the law, or millions.
+    bodies = {"radius": 1e-6, "stiffness": 2.2e9}
+    force = {"law": "lennard_jones", "surface_energy": 0.05, "z0": 0.5e-9}
+    path = run(deck(bodies=bodies, force=force, equilibrium_path={"h0_end": -20e-9}))
+    found = run(deck(bodies=bodies, force=force, drive={
+        "velocity": 1e-6, "z_start": 1e-6, "z_turn": -1e-6, "z_end": 3e-7 / stiffness,
+        "stiffness": stiffness}, numerics={"accuracy": 1e-3})).summary
+    pull_off = path.summary["max_tension"]
+    assert found["max_tension"] == pytest.approx(pull_off, rel=1e-4)
+    # The energy of the spring, and little more.
+    assert found["energy_dissipated"] == pytest.approx(pull_off**2 / (2 * stiffness), rel=1e-2)
+
+
 def test_rows_have_times_and_ways(run):
     found = run(scene(0.1, 0.3, dwell=2.0, stiffness=10.0, accuracy=1e-2))
     table = found.table("curve.csv")
