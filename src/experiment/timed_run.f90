@@ -266,6 +266,9 @@ contains
   pure real(wp) function relative_error(now) result(largest)
     type(timed_result_t), intent(in) :: now
 
+    ! Of a pass that was compared with no other the errors are unknown.
+    largest = huge(1.0_wp)
+    if (.not. now%error(of_tension) < huge(1.0_wp)) return
     largest = max(max(now%error(of_tension), now%error(of_end_load))/ &
       max(now%largest_load, tiny(1.0_wp)), now%error(of_dissipation)/ &
       max(abs(now%number(of_dissipation)), now%largest_load, tiny(1.0_wp)))

@@ -235,6 +235,8 @@ def test_a_drive_of_too_many_steps_says_so(run):
         numerics={"accuracy": 1e-2}), status=1)
     said = " ".join(found.warnings)
     assert "there were too many steps or jumps" in said and "no further state" not in said
+    # It is unknown, but a number.
+    assert 1 <= found.summary["error_estimate"] < math.inf
 
 
 def test_a_largest_tension_at_the_end_has_a_warning(run):
