@@ -46,7 +46,7 @@ contains
 
     least = roundings*spacing(max(at%time, now%step))
     when = at%time + now%step
-    if (when + 0.01_wp*now%step > drive%time(way)) when = drive%time(way)
+    if (when + 0.01_wp*now%step > drive%lasts(way)) when = drive%lasts(way)
     taken = when - at%time
     farthest = steps%farthest
     ! Motion within the rounding of the time is not resolved.

@@ -7,7 +7,7 @@ module timed_pass
   use mesh_plan, only: contact
   use listener, only: listener_t
   use experiment_request, only: request_t
-  use motion, only: motion_t
+  use motion, only: motion_t, names_of_ways
   use time_instant, only: instant_t
   use time_stepper, only: time_stepper_t
   use time_jump, only: step_along
@@ -16,7 +16,7 @@ module timed_pass
   use journal, only: journal_t
   use timed_journal, only: keep, recall
   use timed_record, only: pass_t, accept, take_row, note, lose, most_steps, &
-    of_end_h0, of_end_load, of_end_displacement, of_dissipation
+    of_tension, of_work, of_end_h0, of_end_load, of_end_displacement, of_dissipation
   implicit none
   private
   public :: go_through
@@ -66,10 +66,12 @@ contains
       call note(steps, at, now)
     end if
     do way = now%way, 3
-      if (now%result%lost .or. .not. drive%time(way) > drive%time(way - 1)) cycle
+      if (now%result%lost .or. .not. drive%lasts(way) > 0) cycle
       if (now%held == 1 .or. way > now%way) then
         now%way = way
+        now%began = drive%began(way)
         now%step = 0
+        at%time = 0
         now%recently = 0
         ! The motion before a turn does not predict the motion after it; rates and loads of a fluid
         ! jump.
@@ -77,7 +79,7 @@ contains
         at%since_turn = 0
         if (.not. allocated(steps%drainage)) call take_row(at, now)
       end if
-      do while (at%time < drive%time(way) .and. .not. now%result%lost)
+      do while (at%time < drive%lasts(way) .and. .not. now%result%lost)
         if (allocated(steps%drainage)) then
           call drain(request, drive, way, pass, steps, at, now)
         else if (before%held == 0) then
@@ -85,11 +87,13 @@ contains
         else
           call halve_step(drive, way, before, steps, at, now)
         end if
-        call tell(drive, pass, at, listener)
+        call tell(drive, pass, now%began + at%time, listener)
         call keep(journal, steps, at, now)
       end do
     end do
     associate (result => now%result, problem => steps%problem)
+      result%number(of_work) = result%number(of_tension)/(1.5_wp*pi)
+      result%still_held = -at%state%load >= result%number(of_tension)
       result%number(of_end_h0) = at%state%h0
       result%number(of_end_load) = at%state%load
       result%number(of_end_displacement) = at%state%axis_gap - at%state%h0
@@ -111,12 +115,12 @@ contains
     type(instant_t) :: from
     real(wp) :: whole, end, moved, shortest
 
-    whole = drive%time(way) - drive%time(way - 1)
+    whole = drive%lasts(way)
     shortest = max(1.0e-8_wp*whole, min(1.0e-5_wp*whole, 1.0e-4_wp*steps%creep%shortest()))
     if (.not. now%step > 0) now%step = first_part*whole
     if (allocated(request%drive%time_step)) now%step = 2*request%drive%time_step
     end = at%time + now%step
-    if (end + 0.01_wp*now%step > drive%time(way)) end = drive%time(way)
+    if (end + 0.01_wp*now%step > whole) end = whole
     from = at
     call go_to(drive, way, end, steps, at, now)
     moved = missed(steps, from, at, now)
@@ -138,7 +142,7 @@ contains
     real(wp) :: whole, shorter, longest
 
     shorter = 0.5_wp**(pass - 2)
-    whole = drive%time(way) - drive%time(way - 1)
+    whole = drive%lasts(way)
     if (.not. now%step > 0) now%step = shorter*first_drained*whole
     longest = longest_part*whole
     if (allocated(request%drive%time_step)) longest = request%drive%time_step
@@ -186,7 +190,8 @@ contains
     type(instant_t), intent(inout) :: at
     type(pass_t), intent(inout) :: now
 
-    do while (.not. before%row(now%halved)%time > at%time)
+    do while (before%row(now%halved)%branch /= names_of_ways(way) .or. &
+      .not. before%row(now%halved)%time > at%time)
       now%halved = now%halved + 1
     end do
     associate (end => before%row(now%halved)%time)
@@ -195,8 +200,8 @@ contains
     end associate
   end subroutine halve_step
 
-  !> Moves to a time of a way, in shorter steps where bodies move too far in one step, and over
-  !> instantaneous jumps.
+  !> Moves to a time since the beginning of a way, in shorter steps where bodies move too far in one
+  !> step, and over instantaneous jumps.
   subroutine go_to(drive, way, time, steps, at, now)
     type(motion_t), intent(in) :: drive
     integer, intent(in) :: way
@@ -208,9 +213,7 @@ contains
     real(wp) :: try, least, way_speed, when
     logical :: done, smooth
 
-    associate (from => drive%position(way - 1), to => drive%position(way))
-      way_speed = abs(to - from)/(drive%time(way) - drive%time(way - 1))
-    end associate
+    way_speed = abs(drive%position(way) - drive%position(way - 1))/drive%lasts(way)
     least = shortest_part*steps%creep%shortest()
     if (way_speed > 0) least = min(least, shortest_way/way_speed)
     ! Bodies that do not attract each other never jump.
@@ -251,15 +254,15 @@ contains
   end subroutine go_to
 
   !> Sends messages about the progress of a pass.
-  subroutine tell(drive, pass, at, listener)
+  subroutine tell(drive, pass, time, listener)
     type(motion_t), intent(in) :: drive
     integer, intent(in) :: pass
-    type(instant_t), intent(in) :: at
+    real(wp), intent(in) :: time
     class(listener_t), intent(inout) :: listener
     character(len=60) :: so_far
 
     write (so_far, '(a, i0, a, i0, a)') 'drive, pass ', pass, ': ', &
-      nint(100*at%time/drive%time(3)), ' %'
+      nint(100*time/(drive%began(3) + drive%lasts(3))), ' %'
     call listener%hear(trim(so_far))
   end subroutine tell
 

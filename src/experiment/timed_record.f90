@@ -11,11 +11,11 @@ module timed_record
   private
   public :: timed_result_t, tally_t, pass_t, accept, take_row, note, make_room, lose, most_steps, &
     numbers, of_tension, of_tension_h0, of_end_h0, of_end_load, of_end_displacement, &
-    of_dissipation, of_suction
+    of_dissipation, of_suction, of_work
 
-  !> The reported numbers.
+  !> The reported numbers. of_work: the effective work of adhesion, the largest tension over 1.5 pi.
   integer, parameter :: of_tension = 1, of_tension_h0 = 2, of_end_h0 = 3, of_end_load = 4, &
-    of_end_displacement = 5, of_dissipation = 6, of_suction = 7, numbers = 7
+    of_end_displacement = 5, of_dissipation = 6, of_suction = 7, of_work = 8, numbers = 8
 
   !> Largest number of steps of a pass.
   integer, parameter :: most_steps = 40000
@@ -38,17 +38,21 @@ module timed_record
     real(wp) :: suction_at(3) = 0
     type(quality_t) :: quality
     real(wp) :: memory_tail = 0, largest_load = 0
-    !> Whether a start was found, whether the bodies were lost, and the time [s] of the loss.
-    logical :: begun = .false., lost = .false.
+    !> Whether a start was found, whether the bodies were lost, whether the reason was the number of
+    !> steps or jumps, and the time [s] of the loss.
+    logical :: begun = .false., lost = .false., too_many = .false.
     real(wp) :: lost_at = 0
+    !> Whether the tension is largest at the end of the drive.
+    logical :: still_held = .false.
   end type timed_result_t
 
-  !> The progress of a pass: number of rows, the last three loads, the present way, the length of
-  !> the next step [s], and the row of the previous pass whose step is halved.
+  !> The progress of a pass: number of rows, the last three loads, the present way and the time [s]
+  !> at which it began, the length of the next step [s], and the row of the previous pass whose step
+  !> is halved.
   type :: tally_t
     type(timed_result_t) :: result
     integer :: held = 0, way = 0, halved = 1
-    real(wp) :: step = 0
+    real(wp) :: began = 0, step = 0
     !> Deviation of the last attempted step, if it was too large; otherwise 0.
     real(wp) :: missed = 0
     logical :: ended = .false.
@@ -64,7 +68,8 @@ module timed_record
     real(wp) :: work = 0, inside = 0, begun_with = 0
   end type tally_t
 
-  !> A pass and its rows, of which the first `kept` are in the journal.
+  !> A pass and its rows, of which the first `kept` are in the journal. Their times are those since
+  !> the beginning of a way.
   type, extends(tally_t) :: pass_t
     type(record_t), allocatable :: row(:)
     integer :: kept = 0
@@ -75,13 +80,14 @@ module timed_record
 
 contains
 
-  !> Marks the pass as lost.
+  !> Marks the pass as lost: there were too many steps or jumps, or no further state was found.
   subroutine lose(at, now)
     type(instant_t), intent(in) :: at
     type(pass_t), intent(inout) :: now
 
     now%result%lost = .true.
-    now%result%lost_at = at%time
+    now%result%too_many = now%held > now%most .or. now%result%jumps > now%most_jumps
+    now%result%lost_at = now%began + at%time
   end subroutine lose
 
   !> Records whether the bodies approach each other, if they move by more than rounding.
@@ -171,7 +177,7 @@ contains
       result%largest_load = max(result%largest_load, abs(at%state%load))
       if (at%suction > result%number(of_suction)) then
         result%number(of_suction) = at%suction
-        result%suction_at = [at%time, at%state%h0, at%suction_at]
+        result%suction_at = [now%began + at%time, at%state%h0, at%suction_at]
       end if
       do k = 1, size(at%memory, 2)
         result%memory_tail = max(result%memory_tail, &

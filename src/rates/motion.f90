@@ -9,10 +9,11 @@ module motion
   character(len=*), parameter :: names_of_ways(3) = [character(len=8) :: 'approach', 'dwell', &
     'retreat']
 
-  !> Times [s] at which the ways begin and the last way ends, and positions at these times (law's
-  !> lengths).
+  !> Times [s] at which the ways begin, their durations [s], and the positions between which they
+  !> lead (law's lengths). Time is counted from the beginning of a way, so that a long dwell does
+  !> not round the steps after it.
   type :: motion_t
-    real(wp) :: time(0:3) = 0, position(0:3) = 0
+    real(wp) :: began(3) = 0, lasts(3) = 0, position(0:3) = 0
   contains
     procedure :: at
   end type motion_t
@@ -25,22 +26,20 @@ contains
     real(wp), intent(in) :: velocity, start, turn, dwell, finish
 
     motion%position = [start, turn, turn, finish]
-    motion%time(1) = abs(turn - start)/velocity
-    motion%time(2) = motion%time(1) + dwell
-    motion%time(3) = motion%time(2) + abs(finish - turn)/velocity
+    motion%lasts = [abs(turn - start)/velocity, dwell, abs(finish - turn)/velocity]
+    motion%began(2) = motion%lasts(1)
+    motion%began(3) = motion%lasts(1) + dwell
   end function new_motion
 
-  !> The position of the drive on a way at a time.
+  !> The position of the drive on a way at a time since its beginning.
   pure real(wp) function at(self, way, time) result(position)
     class(motion_t), intent(in) :: self
     integer, intent(in) :: way
     real(wp), intent(in) :: time
 
-    associate (from => self%time(way - 1), to => self%time(way))
-      position = self%position(way)
-      if (to > from) position = self%position(way) + &
-        (self%position(way - 1) - self%position(way))*(to - time)/(to - from)
-    end associate
+    position = self%position(way)
+    if (self%lasts(way) > 0) position = position + &
+      (self%position(way - 1) - position)*(self%lasts(way) - time)/self%lasts(way)
   end function at
 
 end module motion

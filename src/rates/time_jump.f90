@@ -19,12 +19,13 @@ module time_jump
   !> First, longest and shortest step of the coordinate; largest number of steps along a path.
   real(wp), parameter :: first = 0.01_wp, longest = 0.15_wp, shortest = 1.0e-6_wp
   integer, parameter :: most_steps = 1000
-  !> Distance from the position of the drive (law's lengths) beyond which the path is assumed to go
-  !> to infinity.
+  !> Distance from the position of the drive (law's lengths), in addition to the largest elongation
+  !> of the spring on the way, beyond which the path is assumed to go to infinity.
   real(wp), parameter :: too_far = 1.0e4_wp
-  !> Tolerated error of the position of the drive (law's lengths); largest number of states solved
-  !> in the search for this position.
-  real(wp), parameter :: left_over = 1.0e-9_wp
+  !> Tolerated error of the position of the drive (law's lengths), and in addition of the load,
+  !> which rounding leaves to a soft spring; largest number of states solved in the search for this
+  !> position.
+  real(wp), parameter :: left_over = 1.0e-9_wp, left_over_load = 1.0e-13_wp
   integer, parameter :: most_rounds = 30
 
 contains
@@ -62,7 +63,7 @@ contains
     type(instant_t), intent(out) :: to
     logical, intent(out) :: done
     type(instant_t) :: last
-    real(wp) :: s, s_last, missing, missing_last, ds, way
+    real(wp) :: s, s_last, missing, missing_last, ds, way, elongation
     integer :: i, mesh
     logical :: found
 
@@ -76,8 +77,10 @@ contains
     missing = off(steps, to, position)
     ds = first
     way = 0
+    elongation = 0
     do i = 1, most_steps
-      if (way > farthest .or. ds < shortest .or. abs(missing) > too_far) return
+      elongation = max(elongation, steps%compliance*abs(to%state%load))
+      if (way > farthest .or. ds < shortest .or. abs(missing) > too_far + elongation) return
       missing_last = missing
       call advance(steps, merge(ds, -ds, inwards), last, s_last, to, s, found)
       if (.not. found) then
@@ -180,7 +183,7 @@ contains
     left = missing
     done = .false.
     do round = 1, most_rounds
-      done = abs(left) < left_over
+      done = abs(left) < left_over + left_over_load*steps%compliance
       if (done .or. .not. search%is_open()) exit
       here = search%place()
       at%state = last%state

@@ -1,13 +1,13 @@
 !> The tables beside the curve, each written by one statement.
 module derived_tables
   ! The module with most dependencies is first: compiler note 12.
+  use results, only: results_t
   use scene_groups, only: scene_t
   use dimensionless_problem, only: problem_t, calm_gap
   use experiment_request, only: sensitivity_t
   use h0_range, only: path_start
   use experiment_result, only: experiment_result_t
   use summary, only: summary_t
-  use results, only: results_t
   use classical_rows, only: write_classical
   use approximation_tables, only: write_approximations
   use device_rows, only: write_device, write_jumps

@@ -1,10 +1,10 @@
 !> The numbers of a drive in time in the summary.
 module rate_entries
-  use kinds, only: wp, pi, long
+  use kinds, only: wp, long
   use dimensionless_problem, only: problem_t, adhesion_strength
   use scene_groups, only: scene_t
   use timed_record, only: timed_result_t, numbers, of_tension, of_tension_h0, of_end_h0, &
-    of_end_load, of_end_displacement, of_dissipation, of_suction
+    of_end_load, of_end_displacement, of_dissipation, of_suction, of_work
   use summary, only: summary_t
   use text, only: rounded
   implicit none
@@ -25,6 +25,7 @@ contains
     type(problem_t), intent(in) :: problem
     type(timed_result_t), intent(in) :: timed
     type(summary_t), intent(inout) :: summary
+    character(len=:), allocatable :: why
 
     if (allocated(scene%creep) .and. problem%law%adhesion > 0) call summary%set('sigma_relaxed', &
       adhesion_strength(problem)*scene%creep%relaxed())
@@ -35,8 +36,16 @@ contains
     end if
     call summary%set('time_steps', int(timed%steps, long))
     if (timed%lost) then
-      call summary%fail_with('drive: after ' // rounded(timed%lost_at) // ' s no further ' // &
-        'state was found, or there were too many steps; the curve ends there')
+      if (timed%too_many) then
+        why = 'there were too many steps or jumps; the curve ends there. Ask for less ' // &
+          'accuracy or longer steps'
+      else if (allocated(scene%creep) .or. allocated(scene%fluid)) then
+        why = 'no further state was found; the curve ends there. Ask for another accuracy'
+      else
+        why = 'no further state was found; the curve ends there. Elastic bodies have the same ' // &
+          'states at any velocity: use &device or &equilibrium_path'
+      end if
+      call summary%fail_with('drive: after ' // rounded(timed%lost_at) // ' s ' // why)
       return
     end if
     if (allocated(timed%not_rated)) call summary%fail_with('sensitivity: a run with another ' // &
@@ -44,8 +53,9 @@ contains
     if (timed%number(of_tension) > 0) then
       call take('max_tension', of_tension)
       call take('max_tension_h0', of_tension_h0)
-      if (problem%shape%parabolic) call take('effective_work_of_adhesion', of_tension, &
-        1/(1.5_wp*pi*problem%radius))
+      if (problem%shape%parabolic) call take('effective_work_of_adhesion', of_work)
+      if (timed%still_held) call summary%warn('drive: the tension is largest at the end, so ' // &
+        'it is not the tension at which the bodies separate; raise z_end')
     end if
     call take('energy_dissipated', of_dissipation)
     call summary%set('end_h0', problem%law%separation_of(timed%number(of_end_h0)))
@@ -53,7 +63,12 @@ contains
     call take('end_load', of_end_load)
     if (allocated(scene%fluid)) then
       call take('max_suction', of_suction)
-      if (timed%number(of_suction)*problem%pressure > atmosphere) call warn_of_cavities()
+      if (timed%error(of_suction) > timed%number(of_suction)) then
+        call summary%warn('drive: max_suction is not determined: the error, ' // &
+          rounded(timed%error(of_suction)*problem%pressure) // ' Pa, is larger than the suction')
+      else if (timed%number(of_suction)*problem%pressure > atmosphere) then
+        call warn_of_cavities()
+      end if
     end if
     if (timed%memory_tail > unresolved) call summary%warn('the mesh does not resolve the ' // &
       'memory of the bodies: ' // rounded(timed%memory_tail) // ' of it is lost between ' // &
@@ -71,22 +86,19 @@ contains
       end associate
     end subroutine warn_of_cavities
 
-    !> Adds a number, times a factor, with its error and derivatives.
-    subroutine take(key, which, factor)
+    !> Adds a number with its error and derivatives.
+    subroutine take(key, which)
       character(len=*), intent(in) :: key
       integer, intent(in) :: which
-      real(wp), intent(in), optional :: factor
-      real(wp) :: number(1), error(1), times
+      real(wp) :: number(1), error(1)
       real(wp), allocatable :: rate(:, :)
 
-      times = 1
-      if (present(factor)) times = factor
       associate (si => si_numbers(problem, timed), units => units_of(problem))
-        number = times*si(which)
-        error = times*timed%error(which)*units(which)
+        number = si(which)
+        error = timed%error(which)*units(which)
       end associate
       allocate (rate(0, 1))
-      if (allocated(timed%rate)) rate = times*timed%rate(:, which:which)
+      if (allocated(timed%rate)) rate = timed%rate(:, which:which)
       call summary%set(key, number, error, rate)
     end subroutine take
 
@@ -111,6 +123,7 @@ contains
     units([of_tension_h0, of_end_h0, of_end_displacement]) = problem%length
     units(of_dissipation) = problem%load*problem%length
     units(of_suction) = problem%pressure
+    units(of_work) = problem%load/problem%radius
   end function units_of
 
 end module rate_entries

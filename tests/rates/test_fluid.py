@@ -195,7 +195,9 @@ def test_no_cycle_gives_energy(run, seed):
     summary = run(scene(sigma, sigma * 10 ** rng.uniform(-4, 1), **case)).summary
     assert summary["converged"]
     assert summary["energy_dissipated"] > -summary["energy_dissipated_error"]
-    assert "drive" not in " ".join(several(summary.get("warnings", [])))
+    # A soft spring may still hold the bodies at the end.
+    assert not [text for text in several(summary.get("warnings", []))
+                if "drive" in text and "largest at the end" not in text]
 
 
 def test_cavities_are_warned_of(run):
@@ -241,3 +243,28 @@ def test_mistakes_are_named(run, fluid, other, said):
         bodies={"radius": 1.0, "stiffness": 1.0}, **groups)
     message = run(text, status=2).stderr
     assert said in message and ":" in message and "&fluid" in message
+
+
+@pytest.mark.parametrize("accuracy", [1e-3, pytest.param(1e-4, marks=pytest.mark.slow)])
+def test_a_suction_that_is_not_determined_has_a_warning(run, accuracy):
+    """Between creeping bodies in a thin fluid, details that the mesh of the memory does not resolve
+    make the film jump at the last moment of contact. Rounding decides how large the suction is."""
+    found = run(deck(
+        bodies={"radius": 1e-6, "stiffness": 2.2e10},
+        viscoelastic={"stiffness_relaxed": 2.2e9, "retardation_time": 1e-3},
+        fluid={"viscosity": 1e-3},
+        force={"law": "lennard_jones", "surface_energy": 0.05, "z0": 0.5e-9},
+        drive={"velocity": 1e-6, "z_start": 5e-8, "z_turn": -2e-9},
+        numerics={"accuracy": accuracy})).summary
+    said = " ".join(several(found.get("warnings", [])))
+    unknown = found["max_suction_error"] > found["max_suction"]
+    assert ("max_suction is not determined" in said) is unknown
+    assert not (unknown and "cavitate" in said)
+    # The right suction.
+    assert abs(found["max_suction"] - 6.697e4) < found["max_suction_error"] + 1e-3 * 6.697e4
+
+
+def test_the_error_estimate_includes_the_suction(run):
+    found = run(scene(0.01, 0.1)).summary
+    assert found["max_suction_error"] <= found["error_estimate"] * found["max_suction"] * (1 + 1e-9)
+    assert found["error_estimate"] < 1e-3

@@ -116,6 +116,17 @@ def test_pull_offs_rise_and_fall_with_velocity(run):
         middle["max_tension"] / (1.5 * math.pi))
 
 
+def test_a_dwell_of_any_length_leaves_relaxed_bodies(run):
+    # Ten times of retardation; much longer than the rest of the motion takes, in units of rounding.
+    found = [run(scene(0.2, 2.0, velocity=20.0, start=20.0, turn=-4.0, accuracy=1e-3,
+                       dwell=dwell)).summary for dwell in (30.0, 1e9, 1e40)]
+    for summary in found:
+        assert summary["error_estimate"] < 3e-3
+        for key in ("max_tension", "energy_dissipated"):
+            off = abs(summary[key] - found[0][key])
+            assert off <= summary[key + "_error"] + found[0][key + "_error"]
+
+
 @pytest.mark.parametrize("seed", range(5))
 def test_no_cycle_gives_energy(run, seed):
     rng = np.random.default_rng(seed)
@@ -136,6 +147,21 @@ def test_a_spring_driven_slowly_is_the_device(run):
     assert near(found, "energy_dissipated", device["device_energy_lost"], 2.0)
     assert near(found, "max_tension", -device["device_jump_out_load"], 30.0) or \
         found["max_tension"] > -device["device_jump_out_load"]
+
+
+@pytest.mark.parametrize("stiffness", [1e-4, 0.01])
+def test_a_soft_spring_takes_the_bodies_through_both_jumps(run, stiffness):
+    # In the jumps the spring would yield by thousands of lengths of the law, or millions.
+    bodies = {"radius": 1e-6, "stiffness": 2.2e9}
+    force = {"law": "lennard_jones", "surface_energy": 0.05, "z0": 0.5e-9}
+    path = run(deck(bodies=bodies, force=force, equilibrium_path={"h0_end": -20e-9}))
+    found = run(deck(bodies=bodies, force=force, drive={
+        "velocity": 1e-6, "z_start": 1e-6, "z_turn": -1e-6, "z_end": 3e-7 / stiffness,
+        "stiffness": stiffness}, numerics={"accuracy": 1e-3})).summary
+    pull_off = path.summary["max_tension"]
+    assert found["max_tension"] == pytest.approx(pull_off, rel=1e-4)
+    # The energy of the spring, and little more.
+    assert found["energy_dissipated"] == pytest.approx(pull_off**2 / (2 * stiffness), rel=1e-2)
 
 
 def test_rows_have_times_and_ways(run):
@@ -191,10 +217,42 @@ def test_bodies_that_are_lost_have_no_numbers(run):
         0.1, drive={"velocity": 5.0, "z_start": 60.0, "z_turn": -2.0},
         viscoelastic={"stiffness_relaxed": 0.02, "retardation_time": 1.0},
         fluid={"viscosity": 1e-6}, numerics={"accuracy": 1e-2}), status=None)
-    lost = any("no further state was found" in text for text in found.warnings)
+    lost = any("the curve ends there" in text for text in found.warnings)
     assert lost == (found.status == 1) == ("energy_dissipated" not in found.summary)
     if lost:
+        assert any("after" in text and ("no further state was found;" in text) != (
+            "too many steps" in text) for text in found.warnings)
         assert any("the error could not be estimated" in text for text in found.warnings)
+
+
+def test_a_drive_of_too_many_steps_says_so(run):
+    # With halved steps they are a few more than the largest number.
+    found = run(deck(
+        bodies={"radius": 1e-5, "rigid": True},
+        force={"law": "lennard_jones", "hamaker": 1e-21, "z0": 0.2e-9},
+        fluid={"viscosity": 1e-3},
+        drive={"velocity": 1e-6, "z_start": 20e-9, "z_turn": 10e-9, "time_step": 20e-3 / 39999},
+        numerics={"accuracy": 1e-2}), status=1)
+    said = " ".join(found.warnings)
+    assert "there were too many steps or jumps" in said and "no further state" not in said
+    # It is unknown, but a number.
+    assert 1 <= found.summary["error_estimate"] < math.inf
+
+
+def test_a_largest_tension_at_the_end_has_a_warning(run):
+    def drive(end):
+        return run(deck(
+            bodies={"radius": 1e-6, "stiffness": 2.2e9},
+            force={"law": "lennard_jones", "surface_energy": 0.05, "z0": 0.5e-9},
+            drive={"velocity": 1e-6, "z_start": 60e-9, "z_turn": -20e-9, "z_end": end,
+                   "stiffness": 1.0}, numerics={"accuracy": 1e-3}))
+    # The spring parts the bodies after 250 nm.
+    held, apart = drive(60e-9), drive(300e-9)
+    for found, warned in ((held, True), (apart, False)):
+        assert any("largest at the end" in text for text in found.warnings) is warned
+        last = -found.curve["load"][-1]
+        assert (abs(found.summary["max_tension"] / last - 1) < 1e-12) == warned
+    assert held.summary["max_tension"] < 0.9 * apart.summary["max_tension"]
 
 
 def test_rigid_bodies_have_the_drag_of_a_film_beside_their_force(run):
@@ -229,6 +287,15 @@ def test_derivatives_of_a_drive_keep_its_invariances(run):
         assert sum(rate[name] for name in names[:3]) == pytest.approx(1, abs=5e-3)
         assert rate["drive.velocity"] == pytest.approx(rate["viscoelastic.retardation_time"],
                                                        abs=1e-6)
+
+
+def test_the_radius_in_the_definition_of_an_effective_work_is_differentiated(run):
+    found = run(lennard_jones(
+        0.2, drive={"velocity": 8.0, "z_start": 20.0, "z_turn": -4.0}, numerics={"accuracy": 1e-3},
+        sensitivity={"parameters": "bodies.radius"}))
+    table = found.table("sensitivity.csv")
+    rate = dict(zip(table["quantity"], table["logarithmic"]))
+    assert rate["effective_work_of_adhesion"] == pytest.approx(rate["max_tension"] - 1, abs=0.01)
 
 
 @pytest.mark.parametrize("name, message", [
