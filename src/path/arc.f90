@@ -17,8 +17,6 @@ module arc
   public :: arc_t, between, most_states
 
   integer, parameter :: most_states = 8
-  !> Number of states from which a state beyond an end is extrapolated.
-  integer, parameter :: extrapolated_from = 3
 
   !> Some states of the path on one mesh with their coordinates s and their tangents (derivatives by
   !> s), in the order of s.
@@ -26,6 +24,8 @@ module arc
     integer :: mesh = approach, held = 0
     !> Whether guesses are at constant distance from the edge to which the mesh is locked.
     logical :: moved = .false.
+    !> Number of states from which a state beyond an end is extrapolated.
+    integer :: extrapolated_from = 3
     real(wp) :: coordinate(most_states) = 0
     !> Allocated with most_states elements: compiler note 11.
     type(state_t), allocatable :: state(:)
@@ -157,8 +157,8 @@ contains
       end do
       if (i >= last) then
         i = 1
-        if (abs(x(1) - s) > abs(x(last) - s)) i = max(1, last + 1 - extrapolated_from)
-        n = min(last, i - 1 + extrapolated_from) + 1 - i
+        if (abs(x(1) - s) > abs(x(last) - s)) i = max(1, last + 1 - self%extrapolated_from)
+        n = min(last, i - 1 + self%extrapolated_from) + 1 - i
         nodes(:n) = [(j, j=i, i - 1 + n)]
         return
       end if

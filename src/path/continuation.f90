@@ -23,20 +23,19 @@ module continuation
   integer, parameter :: memory = 4
   real(wp), parameter :: first_step = 0.04_wp, shortest_step = 1.0e-6_wp, longest_step = 0.5_wp
   !> Largest distance between the guess and the state, relative or in the law's lengths, that two or
-  !> three iterations correct, and the same of h0 and load; order of the error of an extrapolation
-  !> from four states with tangents; limits of the ratio of successive steps, and the factor of
-  !> which this ratio is a power.
+  !> three iterations correct, and the same of h0 and load; limits of the ratio of successive steps,
+  !> and the factor of which this ratio is a power.
   real(wp), parameter :: wanted_miss = 1.5e-3_wp, growth = 2.5_wp, shrinkage = 0.3_wp, &
     rung = 1.2_wp
-  integer, parameter :: order = 6
   !> Distance between the guess and the state beyond which a step may have passed folds unseen, and
   !> is repeated as a shorter one; length of a step that is not repeated.
   real(wp), parameter :: too_far = 0.01_wp, short = 1.0e-3_wp
   !> Relative error of slopes that serve only for predictions.
   real(wp), parameter :: slope_error = 1.0e-7_wp
   !> Distance between guess and state in h0 and load, and longest step, on a path whose points
-  !> define a smooth curve.
+  !> define a smooth curve; small errors are foretold best from more states.
   real(wp), parameter :: miss_of_curve = 1.0e-7_wp, step_of_curve = 0.12_wp
+  integer, parameter :: states_of_curve = 4
   !> Least contact radius, over that of a passage, at which a state is transferred to the next mesh;
   !> and the least step for which steps are shortened so that they end on the mesh.
   real(wp), parameter :: nearly_passed = 0.8_wp, shortest_passage = 0.05_wp
@@ -68,6 +67,7 @@ contains
     self%longest_step = step_of_curve
     self%miss_of_curve = miss_of_curve
     self%slope_error = 0
+    self%extrapolated_from = states_of_curve
   end subroutine follow_closely
 
   !> Takes an equilibrium on a mesh as the newest state. lost: the state has no tangent.
@@ -88,6 +88,7 @@ contains
     class(continuation_t), intent(inout) :: self
     type(arc_t) :: nothing
 
+    nothing%extrapolated_from = self%extrapolated_from
     self%arc_t = nothing
     self%step = first_step
   end subroutine forget
@@ -138,7 +139,8 @@ contains
         self%moved = self%moved .neqv. miss(2) < miss(1)
         off = [minval(miss(:2)), miss(3)]
         self%step = min(self%longest_step, &
-          step*factor_for(minval([wanted_miss, self%miss_of_curve]/max(off, tiny(1.0_wp)))))
+          step*factor_for(minval([wanted_miss, self%miss_of_curve]/max(off, tiny(1.0_wp))), &
+          2*self%extrapolated_from))
         if (maxval(off) < too_far .or. step < short) exit
       else
         self%step = shrinkage*self%step
@@ -152,10 +154,11 @@ contains
   end subroutine advance
 
   !> The ratio of the next step to this one; ratio: the miss that is allowed over the miss of this
-  !> step. The result is a power of `rung`, so that rounding does not change the positions of
-  !> points.
-  pure real(wp) function factor_for(ratio) result(factor)
+  !> step; order: of the error of an extrapolation, two for each state with its tangent. The result
+  !> is a power of `rung`, so that rounding does not change the positions of points.
+  pure real(wp) function factor_for(ratio, order) result(factor)
     real(wp), intent(in) :: ratio
+    integer, intent(in) :: order
 
     factor = rung**floor(log(ratio)/(order*log(rung)))
     factor = min(growth, max(shrinkage, factor))
@@ -272,6 +275,7 @@ contains
 
     next%mesh = arc%mesh + 1
     next%moved = arc%moved
+    next%extrapolated_from = arc%extrapolated_from
     do j = arc%held - 1, arc%held
       state = arc%state(j)
       ! The two states are a step of the path apart.
