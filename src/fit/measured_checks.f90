@@ -26,11 +26,9 @@ contains
     type(noise_t), intent(in) :: noise
     real(wp), intent(in) :: stiffness
     character(len=:), allocatable, intent(out) :: trouble
-    type(measured_t) :: turned
     type(measured_jump_t) :: jump(2), back(2)
     real(wp), allocatable :: left(:)
     real(wp) :: near, before, travel
-    integer :: way
 
     left = off_baseline(measured)
     if (.not. maxval(abs(left), measured%usable) > stands_out*noise%deviation) then
@@ -41,21 +39,33 @@ contains
     call check_ways(measured, noise, stiffness, trouble)
     if (allocated(trouble)) return
     call nearest(measured, left, near, before, travel)
-    turned = measured
-    turned%signal = -measured%signal
-    do way = 1, 2
-      jump(way) = find_jump(measured, noise%deviation, stiffness, way == 1)
-      back(way) = find_jump(turned, noise%deviation, stiffness, way == 1)
-    end do
     if (near >= 0 .or. near >= before) then
       ! Backwards in time a contact lies at the far end, and seems pressed relative to its line.
+      jump = jumps_in(left)
+      back = jumps_in(-left)
       if (maxval(abs(back%change)) > maxval(abs(jump%change))) trouble = 'the force jumps up ' // &
         'on the approach or down on the retreat: the rows of the file are in reverse order'
       return
     end if
+    back = jumps_in(-measured%signal)
     if (before - near > steep*stiffness*travel .or. any(back%before > 0)) trouble = &
       'the force falls where the bodies are pressed together, but repulsion must be positive; ' // &
       'a minus before the name of a column changes its sign'
+
+  contains
+
+    !> The jumps in and out in another signal.
+    function jumps_in(signal) result(found)
+      real(wp), intent(in) :: signal(:)
+      type(measured_jump_t) :: found(2)
+      type(measured_t) :: other
+
+      other = measured
+      other%signal = signal
+      found = [find_jump(other, noise%deviation, stiffness, .true.), &
+        find_jump(other, noise%deviation, stiffness, .false.)]
+    end function jumps_in
+
   end subroutine check_measured
 
   !> Sets `trouble` if the load falls more than the spring permits. As h0 grows with the position of

@@ -255,8 +255,8 @@ contains
     if (lost .or. next%held < 2) return
     associate (old => self%tangent(self%held - 1), new => next%tangent(1))
       if (.not. old%goes_with(new)) return
-      ! The next mesh may be too coarse where the path enters it.
-      if (.not. old%is_alike(new) .and. &
+      ! The next mesh may not have the step of a law where the path enters it.
+      if (solver%problem%law%step_width > 0 .and. .not. old%is_alike(new) .and. &
         left_in_state(solver%equations_t, self%mesh, self%state(self%held - 1)) <= self%most) return
     end associate
     self%arc_t = next

@@ -58,13 +58,16 @@ contains
 
     associate (n => size(state%gap), c => state%scale, grid => equations%meshes%grid(mesh), &
       problem => equations%problem)
-      reference = max(1.0_wp, problem%shape%height(c))
+      reference = 1
+      ! Other shapes may open so slowly that no reference is better than another.
+      if (problem%shape%parabolic) reference = max(reference, problem%shape%height(c))
       terms = 2*pi*c**2*grid%weight(:n)*energy_density(problem, state%gap, c*grid%x(:n), reference)
       energy = sum(terms)
       whole = sum(abs(terms))
       if (grid%is_bounded()) energy = energy + 2*pi*energy_beyond(problem, &
         gap_at_end(problem%shape, grid, state), load_reach(grid, state), reference)
-      if (falls_slowly(problem)) energy = energy + energy_undeformed(problem, reference)
+      if (reference > 1 .and. falls_slowly(problem)) &
+        energy = energy + energy_undeformed(problem, reference)
     end associate
   end subroutine find_energy_of_surface
 
