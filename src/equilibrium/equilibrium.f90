@@ -106,7 +106,7 @@ contains
     if (present(rate)) rate = change
   end function fluid_pressure
 
-  !> Replaces the problem; the meshes stay.
+  !> Replaces the problem; the meshes stay. (It leaks with flang: compiler note 13.)
   subroutine become_those_of(self, problem)
     class(equations_t), intent(inout) :: self
     type(problem_t), intent(in) :: problem
