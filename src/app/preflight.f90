@@ -28,8 +28,8 @@ module preflight
   !> Number of cells in a row of the curve, of a profile, of a table of theories and of a sweep;
   !> bytes of a step in the journal.
   integer, parameter :: of_curve = 10, of_profile = 7, of_theory = 5, of_case = 60, kept = 900
-  !> Digits of meshes that are laid out only to count their nodes. The number of nodes grows at most
-  !> in proportion to the digits.
+  !> Digits of meshes that are laid out only to count their nodes, whose number is taken as
+  !> proportional to the digits.
   real(wp), parameter :: few_digits = 3
   !> Approximate number of nodes of a mesh.
   real(wp), parameter :: of_mesh = 200

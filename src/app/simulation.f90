@@ -12,7 +12,8 @@ module simulation
   use scene_problem, only: problem_of
   use h0_schedule, only: states_planned
   use drive_rates, only: rate_drive
-  use sweeps, only: sweep_tally_t, run_sweep
+  use sweeps, only: run_sweep
+  use sweep_tally, only: sweep_tally_t
   use ranks, only: crew_t
   use preflight, only: check_room, large_results
   use blas_threads, only: thread_count

@@ -6,9 +6,9 @@ module sweeps
   use clock, only: clock_now => seconds
   use linear_algebra, only: claim_buffers
   use scene_groups, only: scene_t
-  use sweep_case, only: case_t, pass_case, run_case, failure_width
+  use sweep_case, only: case_t, pass_case, run_case
+  use sweep_tally, only: sweep_tally_t
   use case_rows, only: case_rows_t
-  use equilibrium, only: cost_t
   use progress, only: progress_t
   use case_columns, only: columns_of, column_width
   use mesh_store, only: mesh_store_t
@@ -19,15 +19,7 @@ module sweeps
   use dispatch, only: foreman_t, worker_t, hand_out, work_through
   implicit none
   private
-  public :: sweep_tally_t, run_sweep, work_on_sweeps
-
-  !> The number of cases that failed, and of those that gave a warning; number and warning of the
-  !> first of these; the total cost.
-  type :: sweep_tally_t
-    integer :: failed = 0, warned = 0, first_warned = 0
-    character(len=failure_width) :: warning = ''
-    type(cost_t) :: cost
-  end type sweep_tally_t
+  public :: run_sweep, work_on_sweeps
 
   !> The cases of a sweep: number of cases handed out, cases that wait for the rows before theirs,
   !> number of rows written, and the tally of these. `waiting` has a case at its number modulo the
@@ -257,26 +249,13 @@ contains
         if (first%number /= self%written + 1) exit
         call self%results%take_case(self%columns, self%scene%sweep%words, first%values, &
           first%numbers, first%failure)
-        call count_case(self%tally, first)
+        call self%tally%add(first)
         first%number = 0
         deallocate (first%numbers, first%values)
       end associate
       self%written = self%written + 1
     end do
   end subroutine add
-
-  pure subroutine count_case(tally, case)
-    type(sweep_tally_t), intent(inout) :: tally
-    type(case_t), intent(in) :: case
-
-    tally%cost = sum_of(tally%cost, case%cost)
-    if (.not. case%converged) tally%failed = tally%failed + 1
-    if (case%warning == '') return
-    tally%warned = tally%warned + 1
-    if (tally%warned > 1) return
-    tally%first_warned = case%number
-    tally%warning = case%warning
-  end subroutine count_case
 
   !> Makes room for a case that is `ahead` cases after the last one written.
   subroutine make_room(waiting, ahead)
@@ -296,22 +275,5 @@ contains
     end do
     call move_alloc(larger, waiting)
   end subroutine make_room
-
-  !> The total cost of two cases.
-  pure type(cost_t) function sum_of(a, b) result(total)
-    type(cost_t), intent(in) :: a, b
-
-    total%operator_products = a%operator_products + b%operator_products
-    total%operator_columns = a%operator_columns + b%operator_columns
-    total%pressure_evaluations = a%pressure_evaluations + b%pressure_evaluations
-    total%factorisations = a%factorisations + b%factorisations
-    total%iterations = a%iterations + b%iterations
-    total%kernel_entries = a%kernel_entries + b%kernel_entries
-    total%states = a%states + b%states
-    total%rejected_steps = a%rejected_steps + b%rejected_steps
-    total%kernel_seconds = a%kernel_seconds + b%kernel_seconds
-    total%solve_seconds = a%solve_seconds + b%solve_seconds
-    total%estimate_seconds = a%estimate_seconds + b%estimate_seconds
-  end function sum_of
 
 end module sweeps

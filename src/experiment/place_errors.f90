@@ -65,8 +65,10 @@ contains
         place%fine = place%at
         if (place%mesh == no_mesh) then
           place%left = rounding*abs(place%at)
-          if (place%after > 0) call move_undeformed(steps%problem, wanted, place)
-          if (place%after > 0) place%known = places%place(place%after)%known
+          if (place%after > 0) then
+            call move_undeformed(steps%problem, wanted, place)
+            place%known = places%place(place%after)%known
+          end if
           cycle
         end if
         select type (steps)

@@ -2,17 +2,16 @@
 !> the classical theories to the same samples.
 module fit_run
   use kinds, only: wp, pi
-  use text, only: rounded
   use failure, only: failure_t
   use listener, only: listener_t
   use dimensionless_problem, only: problem_t
   use problem_family, only: problem_family_t
   use experiment_request, only: numerics_t
-  use fit_request, only: measurement_t, fit_t, unknown_t, of_model, of_contact_point, &
-    of_sensitivity, farthest_off
+  use fit_request, only: measurement_t, fit_t, unknown_t, of_model, of_contact_point
   use measured_curve, only: measured_t
   use measured_jumps, only: find_jump
-  use measured_checks, only: check_measured, check_loads
+  use measured_checks, only: check_measured
+  use measured_loads, only: check_loads, other_order
   use noise, only: white_noise
   use far_samples, only: find_far, off_baseline
   use fit_starts, only: character_t, character_of, starts_like
@@ -59,9 +58,6 @@ module fit_run
   real(wp), parameter :: factors(*) = [1.0_wp, 0.1_wp, 10.0_wp, 0.01_wp, 100.0_wp], &
     ranges(*) = [0.25_wp, 4.0_wp]
   integer, parameter :: few_samples = 1000
-  !> Factor by which a sensitivity that is not fitted may be wrong; loads of another order differ by
-  !> more than this factor.
-  real(wp), parameter :: wrong = 3, order = 10
 
 contains
 
@@ -140,8 +136,7 @@ contains
       if (curve%data%noise%deviation < least_noise*maxval(abs(data%signal))) &
         curve%data%noise = white_noise(least_noise*maxval(abs(data%signal)))
       call check_measured(data, curve%data%noise, slope, trouble)
-      if (.not. allocated(trouble)) call check_loads(data, curve%data%noise, slope, curve%spring, &
-        merge(exp(farthest_off), wrong, any(curve%unknown%role == of_sensitivity)), trouble)
+      if (.not. allocated(trouble)) call check_loads(curve, trouble)
       if (allocated(trouble)) return
       curve%data%jump = [find_jump(data, curve%data%noise%deviation, slope, .true.), &
         find_jump(data, curve%data%noise%deviation, slope, .false.)]
@@ -152,32 +147,6 @@ contains
     if (size(curve%data%sample) < 2*size(curve%unknown) + 4) &
       trouble = 'too few samples for so many parameters'
   end subroutine take_curve
-
-  !> Says that the tension of the data is of another order than that of the model with the deck's
-  !> values; otherwise ''.
-  function other_order(curve, model) result(words)
-    type(modelled_curve_t), intent(in) :: curve
-    type(path_model_t), intent(inout), target :: model
-    character(len=:), allocatable :: words
-    type(modelled_curve_t) :: start
-    real(wp) :: tension, own
-    logical :: found
-    integer :: i
-
-    words = ''
-    start = curve
-    call start%use_model(model)
-    call start%ask(start%unknown%value, .false., found)
-    if (.not. found) return
-    associate (branch => start%response%branch, data => curve%data%measured)
-      own = -minval([(minval(branch(i)%load(:2, :)), i=1, size(branch))])
-      tension = -minval(off_baseline(data), data%usable)*curve%spring*curve%sensitivity
-    end associate
-    if (own < order*tension .and. tension < order*own) return
-    words = 'the largest tension of the data is ' // rounded(tension) // ' N, and that of the ' // &
-      'model with the values of the deck ' // rounded(own) // ' N: check the unit of the ' // &
-      'signal (units), sensitivity and spring_constant, or start nearer'
-  end function other_order
 
   !> The mean of the far samples.
   pure real(wp) function level_of(data) result(level)

@@ -8,13 +8,12 @@ module measured_checks
   use far_samples, only: off_baseline
   implicit none
   private
-  public :: check_measured, check_loads, open_end
+  public :: check_measured, open_end, stands_out
 
   !> Limits: a signal in standard deviations of the noise; the part of the travel that counts as an
   !> end; the slope of an end in contact, over that of the spring; standard errors of a certain
-  !> statement; the larger part of the change of a signal.
-  real(wp), parameter :: stands_out = 8, nearest_part = 0.05_wp, steep = 0.2_wp, surely = 5, &
-    most_part = 0.5_wp
+  !> statement.
+  real(wp), parameter :: stands_out = 8, nearest_part = 0.05_wp, steep = 0.2_wp, surely = 5
   integer, parameter :: parts = nint(1/nearest_part)
 
 contains
@@ -67,38 +66,6 @@ contains
     end function jumps_in
 
   end subroutine check_measured
-
-  !> Sets `trouble` if the load falls more than the spring permits. As h0 grows with the position of
-  !> the base, the load falls by the stiffness of the spring times the travel at most, for any
-  !> bodies. stiffness, spring: of the spring, units of signal over z, and [N/m]. off: factor by
-  !> which the stiffness may be wrong.
-  subroutine check_loads(measured, noise, stiffness, spring, off, trouble)
-    type(measured_t), intent(in) :: measured
-    type(noise_t), intent(in) :: noise
-    real(wp), intent(in) :: stiffness, spring, off
-    character(len=:), allocatable, intent(inout) :: trouble
-    real(wp), dimension(size(measured%z)) :: left, travel, fall
-    logical :: mine(size(measured%z))
-    integer :: way, near, far
-
-    left = off_baseline(measured)
-    do way = 1, 2
-      mine = measured%usable .and. (measured%inward .eqv. way == 1)
-      if (.not. any(mine)) cycle
-      travel = measured%facing*measured%z
-      near = minloc(travel, 1, mine)
-      travel = travel - travel(near)
-      fall = left(near) - left
-      far = maxloc(fall - off*stiffness*travel, 1, mine)
-      if (fall(far) - off*stiffness*travel(far) < max(stands_out*noise%deviation, &
-        most_part*(maxval(left, mine) - minval(left, mine)))) cycle
-      trouble = 'the largest load of the data is ' // rounded(maxval(abs(left), mine)* &
-        spring/stiffness) // ' N, and from contact the load falls by ' // &
-        rounded(fall(far)*spring/stiffness) // ' N, where the spring permits ' // &
-        rounded(spring*travel(far)) // ' N at most: check the unit of the signal (units), ' // &
-        'sensitivity if it is in volts, and spring_constant'
-    end do
-  end subroutine check_loads
 
   !> Sets `trouble` if approach and retreat are exchanged. A cycle dissipates energy: between its
   !> ends, where the ways meet, the approach lies above the retreat, for any baseline. If the

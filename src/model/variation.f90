@@ -51,14 +51,14 @@ contains
     varied%parameter = family%parameter(i)
     allocate (varied%problem(0))
     apart = step(aside)
+    if (aside == to_report) call family%pose(family%parameter%value, problem, error)
+    if (allocated(error)) return
     do
       call pose_beside(family, i, aside, apart, varied, error)
       if (allocated(error)) return
       varied%shift = 0*varied%offset
       call find_rule(varied)
       if (aside < to_report .or. apart < least_step) return
-      call family%pose(family%parameter%value, problem, error)
-      if (allocated(error)) return
       if (is_smooth(problem, varied)) return
       apart = 0.25_wp*apart
     end do

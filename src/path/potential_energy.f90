@@ -46,9 +46,10 @@ contains
     call find_energy_of_surface(equations, mesh, state, energy, whole)
   end function energy_of_surface
 
-  !> The same, and the sum of the magnitudes of its terms. An energy that falls slowly is counted
-  !> from that of undeformed bodies whose height at the contact edge is H0: on the mesh their energy
-  !> per area is as smooth as that of the state.
+  !> The energy of the surface force, and the sum of the magnitudes of its terms. From an energy
+  !> that falls slowly that of undeformed bodies is subtracted at each node, and added as an exact
+  !> integral. Their H0 is the height at the contact edge, so that their energy per area is as
+  !> smooth on the mesh as that of the state.
   subroutine find_energy_of_surface(equations, mesh, state, energy, whole)
     type(equations_t), intent(in) :: equations
     integer, intent(in) :: mesh
@@ -59,15 +60,16 @@ contains
     associate (n => size(state%gap), c => state%scale, grid => equations%meshes%grid(mesh), &
       problem => equations%problem)
       reference = 1
-      ! Other shapes may open so slowly that no reference is better than another.
-      if (problem%shape%parabolic) reference = max(reference, problem%shape%height(c))
+      ! Between other shapes the energy of the reference itself may hardly converge.
+      if (problem%shape%parabolic .and. falls_slowly(problem)) &
+        reference = max(reference, problem%shape%height(c))
       terms = 2*pi*c**2*grid%weight(:n)*energy_density(problem, state%gap, c*grid%x(:n), reference)
       energy = sum(terms)
       whole = sum(abs(terms))
       if (grid%is_bounded()) energy = energy + 2*pi*energy_beyond(problem, &
         gap_at_end(problem%shape, grid, state), load_reach(grid, state), reference)
-      if (reference > 1 .and. falls_slowly(problem)) &
-        energy = energy + energy_undeformed(problem, reference)
+      ! At 1 it is zero.
+      if (reference > 1) energy = energy + energy_undeformed(problem, reference)
     end associate
   end subroutine find_energy_of_surface
 
