@@ -2,8 +2,7 @@
 !> of them the data cannot tell apart.
 module curve_fit
   use kinds, only: wp
-  use linear_algebra, only: singular_values
-  use fit_request, only: unknown_t, of_contact_point, free_of, value_by_fitted
+  use fit_request, only: of_contact_point, free_of
   use least_squares, only: minimise
   use force_model, only: force_model_t
   use modelled_curve, only: modelled_curve_t
@@ -11,10 +10,10 @@ module curve_fit
   use root_finding, only: bracket_t
   use noise, only: white_noise
   use second_look, only: look_again
-  use lack_of_fit, only: lack_t, lack_in
+  use fit_errors, only: fitted_t, judge, widen
   implicit none
   private
-  public :: fitted_t, fit_curve
+  public :: fit_curve
 
   !> Contact points that are tried, samples used for each, and sections that refine the best ones.
   integer, parameter :: tried = 160, samples = 250, sections = 25
@@ -25,29 +24,6 @@ module curve_fit
   !> of squares: below `same` they are equal, above `apart` they belong to different minima.
   integer, parameter :: enough = 3
   real(wp), parameter :: same = 1.0e-4_wp, apart = 0.02_wp
-
-  !> The result of a fit. value, deviation: each unknown and its standard deviation, in the unit of
-  !> its key. fitted_deviation, correlation: the same for the fitted numbers (`fit_request`), whose
-  !> errors are symmetric. identifiable: the smallest singular value of their Jacobian with columns
-  !> of length 1; 1 if the data tell all unknowns apart, 0 if they do not. effect: the change of the
-  !> curve, in standard deviations of all data together, if the fitted number changes by 1.
-  type :: fitted_t
-    logical :: found = .false., has_curve = .false.
-    real(wp), allocatable :: value(:), deviation(:), fitted_deviation(:), correlation(:, :), &
-      effect(:)
-    real(wp) :: identifiable = 0
-    !> Sum of the squared residuals in standard deviations, and its expected value.
-    real(wp) :: chi_squared = 0
-    integer :: freedom = 0
-    type(lack_t) :: lack = lack_t()
-    !> At all samples: the model with its baseline, the residual, the baseline.
-    real(wp), allocatable :: model(:), residual(:), baseline(:)
-    !> Position of the base at which the model jumps in and out; NaN without a jump.
-    real(wp) :: jump_z(2) = 0
-  contains
-    procedure :: end_of
-    procedure :: is_better_than
-  end type fitted_t
 
 contains
 
@@ -88,7 +64,39 @@ contains
       ! Other searches with the same minimum are left out.
       where (left < (1 + apart)*left(k)) left = huge(left)
     end do
+    ! Of a model that does not describe the data, residuals tell neither errors nor better values.
+    if (renew .and. allocated(fitted%effect) .and. fitted%lack%is_noise()) &
+      call examine(residuals, keep_noise, curve, fitted)
   end subroutine fit_curve
+
+  !> Examines the residuals some standard errors away from the best values. If smaller residuals are
+  !> found there, the search goes on from them.
+  subroutine examine(residuals, keep_noise, curve, fitted)
+    type(curve_residuals_t), intent(inout) :: residuals
+    logical, intent(in) :: keep_noise
+    type(modelled_curve_t), intent(inout) :: curve
+    type(fitted_t), intent(inout) :: fitted
+    type(fitted_t) :: other
+    real(wp), allocatable :: better(:)
+    real(wp) :: left
+    integer :: look
+
+    do look = 1, most_looks
+      residuals%curve = curve
+      call widen(residuals, fitted, better)
+      if (.not. allocated(better)) return
+      other = fitted_t(has_curve=.true., value=better)
+      residuals%curve = curve
+      call search(residuals, other%value, left, other%found)
+      call settle(residuals, keep_noise, other)
+      call judge(residuals, other)
+      if (.not. other%is_better_than(fitted)) exit
+      fitted = other
+      curve = residuals%curve
+    end do
+    residuals%curve = curve
+    call widen(residuals, fitted)
+  end subroutine examine
 
   !> Searches from the candidates with the smallest sums of squares, `cost`, and replaces them by
   !> the minima found. left: the sums of squares there; huge without a search.
@@ -239,78 +247,5 @@ contains
     left = sum(residual**2)
     value = residuals%values(x)
   end subroutine search
-
-  !> Whether a fit has errors and smaller residuals than another.
-  pure logical function is_better_than(self, other)
-    class(fitted_t), intent(in) :: self
-    type(fitted_t), intent(in) :: other
-
-    is_better_than = allocated(self%effect)
-    if (is_better_than .and. allocated(other%effect)) is_better_than = &
-      self%chi_squared/self%freedom < other%chi_squared/other%freedom
-  end function is_better_than
-
-  !> Finds errors and correlations of the values, and the residuals of the curve.
-  subroutine judge(residuals, fitted)
-    type(curve_residuals_t), intent(inout) :: residuals
-    type(fitted_t), intent(inout) :: fitted
-    real(wp) :: jacobian(residuals%rows(), size(fitted%value)), residual(residuals%rows())
-    real(wp), dimension(size(fitted%value), size(fitted%value)) :: right, covariance
-    real(wp), dimension(size(fitted%value)) :: length, singular
-    logical :: found
-    integer :: i, j, n
-
-    n = size(fitted%value)
-    call residuals%residuals_of(fitted%value, residual, found)
-    if (found) call residuals%jacobian_of(fitted%value, jacobian, found)
-    fitted%found = fitted%found .and. found
-    if (.not. found) return
-    fitted%chi_squared = sum(residual**2)
-    fitted%freedom = size(residual) - n - residuals%curve%data%baseline_numbers()
-    associate (data => residuals%curve%data)
-      fitted%lack = lack_in(residual(:size(data%sample)), 3*data%way(data%sample) + &
-        data%side(data%sample), size(data%sample) - n - data%baseline_numbers(), data%noise)
-    end associate
-    do j = 1, n
-      jacobian(:, j) = jacobian(:, j)*value_by_fitted(residuals%curve%unknown(j), fitted%value(j))
-    end do
-    length = norm2(jacobian, 1)
-    fitted%effect = length
-    do j = 1, n
-      jacobian(:, j) = jacobian(:, j)/max(length(j), tiny(1.0_wp))
-    end do
-    call singular_values(jacobian, singular, right)
-    fitted%identifiable = minval(singular)
-    do i = 1, n
-      do j = 1, n
-        covariance(i, j) = sum(right(:, i)*right(:, j)/max(singular, epsilon(1.0_wp))**2)
-      end do
-    end do
-    length = max(length, tiny(1.0_wp)**0.25_wp)
-    fitted%fitted_deviation = [(sqrt(covariance(j, j))/length(j), j=1, n)]
-    fitted%deviation = fitted%fitted_deviation* &
-      abs([(value_by_fitted(residuals%curve%unknown(j), fitted%value(j)), j=1, n)])
-    allocate (fitted%correlation(n, n))
-    do j = 1, n
-      fitted%correlation(:, j) = &
-        [(covariance(i, j)/sqrt(covariance(i, i)*covariance(j, j)), i=1, n)]
-    end do
-    call residuals%curve%split(fitted%value, fitted%model, fitted%baseline)
-    fitted%residual = residuals%curve%data%measured%signal - fitted%model
-    fitted%jump_z = [(residuals%curve%jump_of(fitted%value, i), i=1, 2)]
-  end subroutine judge
-
-  !> The end of the interval of `sign` standard deviations about unknown i. For a positive unknown
-  !> the interval is symmetric in the logarithm.
-  pure real(wp) function end_of(self, i, unknown, sign) result(value)
-    class(fitted_t), intent(in) :: self
-    integer, intent(in) :: i
-    type(unknown_t), intent(in) :: unknown
-    real(wp), intent(in) :: sign
-    real(wp), parameter :: largest = 100
-
-    value = self%value(i) + sign*self%deviation(i)
-    if (unknown%in_log) value = self%value(i)*exp(sign*min(self%fitted_deviation(i), largest))
-  end function end_of
 
 end module curve_fit

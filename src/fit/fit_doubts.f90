@@ -6,7 +6,7 @@ module fit_doubts
   use namelist_writer, only: line_t
   use fit_request, only: unknown_t, fitted_of, farthest_off
   use lack_of_fit, only: lack_t
-  use curve_fit, only: fitted_t
+  use fit_errors, only: fitted_t
   use held_numbers, only: held_t
   use fit_run, only: fit_outcome_t
   use measured_checks, only: open_end
@@ -102,13 +102,17 @@ contains
     type(unknown_t), intent(in) :: unknown
     integer, intent(in) :: i
     type(line_t), allocatable, intent(inout) :: lines(:)
+    character(len=:), allocatable :: way
 
     associate (deviation => fitted%fitted_deviation(i))
       if (unknown%in_log .and. deviation > farthest_off) then
         call add(lines, 'the data do not determine ' // unknown%name // '; fix it, or give a prior')
       else if (unknown%in_log .and. deviation > vague) then
-        call add(lines, 'the data hardly determine ' // unknown%name // ': it may be larger ' // &
-          'or smaller by a factor of ' // rounded(exp(deviation)))
+        way = 'larger or smaller'
+        if (fitted%side(1, i) <= vague) way = 'larger'
+        if (fitted%side(2, i) <= vague) way = 'smaller'
+        call add(lines, 'the data hardly determine ' // unknown%name // ': it may be ' // way // &
+          ' by a factor of ' // rounded(exp(deviation)))
       end if
     end associate
     associate (low => fitted%end_of(i, unknown, -1.0_wp), high => fitted%end_of(i, unknown, 1.0_wp))

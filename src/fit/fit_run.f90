@@ -19,7 +19,8 @@ module fit_run
   use path_model, only: path_model_t
   use classical_model, only: classical_model_t, theories
   use modelled_curve, only: modelled_curve_t
-  use curve_fit, only: fitted_t, fit_curve
+  use curve_fit, only: fit_curve
+  use fit_errors, only: fitted_t, least_effect
   use held_numbers, only: held_t, test_held
   implicit none
   private
@@ -50,9 +51,6 @@ module fit_run
   real(wp), parameter :: least_noise = 1.0e-9_wp
   !> The model is solved up to this many times the largest signal, since a trial may be too soft.
   real(wp), parameter :: beyond = 1.2_wp
-  !> An unknown has no effect if a change of its fitted number (`fit_request`) by 1 makes fewer
-  !> standard deviations of all data than this.
-  real(wp), parameter :: least_effect = 0.1_wp
   !> Starting stiffnesses of the theories over the deck's; starting ranges of the force over the
   !> deck's; samples to which the theories are fitted to find starting values.
   real(wp), parameter :: factors(*) = [1.0_wp, 0.1_wp, 10.0_wp, 0.01_wp, 100.0_wp], &

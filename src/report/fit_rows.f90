@@ -8,7 +8,7 @@ module fit_rows
   use tables, only: direction_of
   use fit_request, only: unknown_t
   use measured_jumps, only: measured_jump_t
-  use curve_fit, only: fitted_t
+  use fit_errors, only: fitted_t
   use held_numbers, only: held_t
   use fit_run, only: fit_outcome_t
   use fit_doubts, only: doubts_of

@@ -1,0 +1,221 @@
+!> The result of a fit, and the errors of its values: from the derivatives of the residuals, and,
+!> where these do not describe the residuals over a few standard errors, from the residuals there.
+module fit_errors
+  use kinds, only: wp
+  use linear_algebra, only: singular_values
+  use fit_request, only: unknown_t, fitted_of, value_by_fitted
+  use curve_residuals, only: curve_residuals_t
+  use lack_of_fit, only: lack_t, lack_in
+  implicit none
+  private
+  public :: fitted_t, judge, widen, least_effect
+
+  !> An unknown has no effect if a change of its fitted number (`fit_request`) by 1 makes fewer
+  !> standard deviations of all data than this.
+  real(wp), parameter :: least_effect = 0.1_wp
+  !> Standard errors to which the residuals are examined; the part of its expected rise that the sum
+  !> of squares may lack; steps of one examination, and corrections of the other unknowns in a step.
+  real(wp), parameter :: out_to = 3, lacking = 0.2_wp
+  integer, parameter :: most_steps = 6, corrections = 3
+
+  !> The result of a fit. value, deviation: each unknown and its standard deviation, in the unit of
+  !> its key. fitted_deviation, correlation: the same for the fitted numbers (`fit_request`), whose
+  !> errors are symmetric. identifiable: the smallest singular value of their Jacobian with columns
+  !> of length 1; 1 if the data tell all unknowns apart, 0 if they do not. effect: the change of the
+  !> curve, in standard deviations of all data together, if the fitted number changes by 1.
+  !> side(:, i): standard deviations of fitted number i downward and upward; fitted_deviation(i) is
+  !> the larger of both.
+  type :: fitted_t
+    logical :: found = .false., has_curve = .false.
+    real(wp), allocatable :: value(:), deviation(:), fitted_deviation(:), correlation(:, :), &
+      effect(:), side(:, :)
+    real(wp) :: identifiable = 0
+    !> Sum of the squared residuals in standard deviations, and its expected value.
+    real(wp) :: chi_squared = 0
+    integer :: freedom = 0
+    type(lack_t) :: lack = lack_t()
+    !> At all samples: the model with its baseline, the residual, the baseline.
+    real(wp), allocatable :: model(:), residual(:), baseline(:)
+    !> Position of the base at which the model jumps in and out; NaN without a jump.
+    real(wp) :: jump_z(2) = 0
+    !> Derivatives of the residuals by the fitted numbers, and the covariance of these.
+    real(wp), allocatable, private :: by_fitted(:, :), covariance(:, :)
+  contains
+    procedure :: end_of
+    procedure :: is_better_than
+  end type fitted_t
+
+contains
+
+  !> Whether a fit has errors and smaller residuals than another, and every unknown an effect.
+  pure logical function is_better_than(self, other)
+    class(fitted_t), intent(in) :: self
+    type(fitted_t), intent(in) :: other
+
+    is_better_than = allocated(self%effect)
+    if (is_better_than) is_better_than = all(self%effect > least_effect)
+    if (is_better_than .and. allocated(other%effect)) is_better_than = &
+      self%chi_squared/self%freedom < other%chi_squared/other%freedom
+  end function is_better_than
+
+  !> Finds errors and correlations of the values, and the residuals of the curve.
+  subroutine judge(residuals, fitted)
+    type(curve_residuals_t), intent(inout) :: residuals
+    type(fitted_t), intent(inout) :: fitted
+    real(wp) :: jacobian(residuals%rows(), size(fitted%value)), residual(residuals%rows())
+    real(wp), dimension(size(fitted%value), size(fitted%value)) :: right, covariance
+    real(wp), dimension(size(fitted%value)) :: length, singular
+    logical :: found
+    integer :: i, j, n
+
+    n = size(fitted%value)
+    call residuals%residuals_of(fitted%value, residual, found)
+    if (found) call residuals%jacobian_of(fitted%value, jacobian, found)
+    fitted%found = fitted%found .and. found
+    if (.not. found) return
+    fitted%chi_squared = sum(residual**2)
+    fitted%freedom = size(residual) - n - residuals%curve%data%baseline_numbers()
+    associate (data => residuals%curve%data)
+      fitted%lack = lack_in(residual(:size(data%sample)), 3*data%way(data%sample) + &
+        data%side(data%sample), size(data%sample) - n - data%baseline_numbers(), data%noise)
+    end associate
+    do j = 1, n
+      jacobian(:, j) = jacobian(:, j)*value_by_fitted(residuals%curve%unknown(j), fitted%value(j))
+    end do
+    length = norm2(jacobian, 1)
+    fitted%effect = length
+    fitted%by_fitted = jacobian
+    do j = 1, n
+      jacobian(:, j) = jacobian(:, j)/max(length(j), tiny(1.0_wp))
+    end do
+    call singular_values(jacobian, singular, right)
+    fitted%identifiable = minval(singular)
+    do i = 1, n
+      do j = 1, n
+        covariance(i, j) = sum(right(:, i)*right(:, j)/max(singular, epsilon(1.0_wp))**2)
+      end do
+    end do
+    length = max(length, tiny(1.0_wp)**0.25_wp)
+    fitted%side = spread([(sqrt(covariance(j, j))/length(j), j=1, n)], 1, 2)
+    call set_deviations(fitted, residuals%curve%unknown)
+    allocate (fitted%correlation(n, n))
+    do j = 1, n
+      fitted%correlation(:, j) = &
+        [(covariance(i, j)/sqrt(covariance(i, i)*covariance(j, j)), i=1, n)]
+    end do
+    fitted%covariance = covariance/spread(length, 1, n)/spread(length, 2, n)
+    call residuals%curve%split(fitted%value, fitted%model, fitted%baseline)
+    fitted%residual = residuals%curve%data%measured%signal - fitted%model
+    fitted%jump_z = [(residuals%curve%jump_of(fitted%value, i), i=1, 2)]
+  end subroutine judge
+
+  !> Sets the deviations to the larger ones of both sides.
+  subroutine set_deviations(fitted, unknown)
+    type(fitted_t), intent(inout) :: fitted
+    type(unknown_t), intent(in) :: unknown(:)
+    integer :: j
+
+    fitted%fitted_deviation = maxval(fitted%side, 1)
+    fitted%deviation = fitted%fitted_deviation* &
+      abs([(value_by_fitted(unknown(j), fitted%value(j)), j=1, size(unknown))])
+  end subroutine set_deviations
+
+  !> Widens the errors where the sum of squares rises less than its derivatives promise: a modulus
+  !> to which a curve is hardly sensitive has no upper end, whatever the derivatives at the best
+  !> value. The deviation of a side then is that with which three of it have the rise of nine.
+  !> better: allocated if a smaller sum of squares was found on the way, with its values; if it is
+  !> absent, a smaller sum counts as one that does not rise.
+  subroutine widen(residuals, fitted, better)
+    type(curve_residuals_t), intent(inout) :: residuals
+    type(fitted_t), intent(inout) :: fitted
+    real(wp), allocatable, intent(out), optional :: better(:)
+    real(wp) :: value(size(fitted%value)), far, rise
+    logical :: found
+    integer :: j, way, step
+
+    do j = 1, size(value)
+      do way = 1, 2
+        value = fitted%value
+        do step = 1, most_steps
+          far = out_to*fitted%side(way, j)
+          call go_to(residuals, fitted, j, merge(far, -far, way == 2), value, rise, found)
+          if (.not. found) exit
+          if (rise < -1 .and. present(better)) then
+            better = value
+            return
+          end if
+          if (rise > (1 - lacking)*out_to**2) exit
+          ! A rise that has ended would make this step endless.
+          fitted%side(way, j) = min(2*fitted%side(way, j), far/sqrt(max(rise, tiny(rise))))
+        end do
+      end do
+    end do
+    call set_deviations(fitted, residuals%curve%unknown)
+  end subroutine widen
+
+  !> Moves fitted number j by `far` from its best value, and the others to the smallest sum of
+  !> squares there, which is `rise` above the best. value: on entry where the last step ended.
+  subroutine go_to(residuals, fitted, j, far, value, rise, found)
+    type(curve_residuals_t), intent(inout) :: residuals
+    type(fitted_t), intent(in) :: fitted
+    integer, intent(in) :: j
+    real(wp), intent(in) :: far
+    real(wp), intent(inout) :: value(:)
+    real(wp), intent(out) :: rise
+    logical, intent(out) :: found
+    real(wp) :: residual(size(fitted%by_fitted, 1)), trial(size(value)), next
+    real(wp), dimension(size(value)) :: now, best, move, gradient
+    integer :: k
+
+    associate (unknown => residuals%curve%unknown, c => fitted%covariance)
+      best = fitted_of(unknown, fitted%value)
+      now = fitted_of(unknown, value)
+      now = now + c(:, j)/c(j, j)*(best(j) + far - now(j))
+      rise = huge(rise)
+      do k = 0, corrections
+        trial = within_bounds(unknown, now)
+        found = abs(fitted_of(unknown(j), trial(j)) - now(j)) <= 1.0e-9_wp*abs(far)
+        if (found) call residuals%residuals_of(trial, residual, found)
+        if (.not. found) exit
+        next = sum(residual**2) - fitted%chi_squared
+        if (.not. next < rise) exit
+        rise = next
+        value = trial
+        ! The step of Gauss and Newton with number j fixed, by the derivatives at the best values.
+        gradient = matmul(residual, fitted%by_fitted)
+        move = matmul(c, gradient)
+        move = move - c(:, j)*move(j)/c(j, j)
+        if (dot_product(move, gradient) < lacking) exit
+        now = fitted_of(unknown, trial) - move
+      end do
+      found = rise < huge(rise)
+    end associate
+  end subroutine go_to
+
+  !> The values of fitted numbers, moved to the nearest bound if they are beyond it.
+  elemental real(wp) function within_bounds(unknown, u) result(value)
+    type(unknown_t), intent(in) :: unknown
+    real(wp), intent(in) :: u
+
+    value = unknown%origin + unknown%scale*u
+    if (unknown%in_log) value = unknown%scale*exp(u)
+    if (allocated(unknown%lower)) value = max(value, unknown%lower)
+    if (allocated(unknown%upper)) value = min(value, unknown%upper)
+  end function within_bounds
+
+  !> The end of the interval of `sign` standard deviations about unknown i. For a positive unknown
+  !> the standard deviations are of the logarithm.
+  pure real(wp) function end_of(self, i, unknown, sign) result(value)
+    class(fitted_t), intent(in) :: self
+    integer, intent(in) :: i
+    type(unknown_t), intent(in) :: unknown
+    real(wp), intent(in) :: sign
+    real(wp), parameter :: largest = 100
+    real(wp) :: deviation
+
+    deviation = self%side(merge(2, 1, sign > 0), i)
+    value = self%value(i) + sign*deviation*unknown%scale
+    if (unknown%in_log) value = self%value(i)*exp(sign*min(deviation, largest))
+  end function end_of
+
+end module fit_errors

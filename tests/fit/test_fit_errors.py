@@ -1,0 +1,64 @@
+"""Claims about standard errors and intervals where the model is far from linear over a few of them:
+shallow curves of stiff bodies."""
+
+import numpy as np
+import pytest
+from support.measured import (
+    LENNARD_JONES,
+    POINT,
+    STIFFNESS,
+    STRENGTH,
+    Branches,
+    fit_deck,
+    run,
+    write,
+)
+from support.scenes import changed
+
+# Pressed with a quarter of the pull-off only, and stiff: beyond some modulus the curve no longer
+# depends on it.
+STIFF = changed(LENNARD_JONES, {STIFFNESS: 5e10, STRENGTH: 5e-20})
+TRUTH = {STRENGTH: 5e-20, STIFFNESS: 5e10, POINT: 0.0}
+SOFT_SPRING = 0.5
+# A tenth of the pull-off.
+NOISE = 3.4e-10
+
+
+@pytest.fixture(scope="module")
+def shallow():
+    return Branches(STIFF, SOFT_SPRING, far=20e-9, h0_end=2e-10)
+
+
+def fit_of(tmp_path, curve, groups, keys=tuple(TRUTH), spring=SOFT_SPRING):
+    file = write(tmp_path / "curve.csv", *curve)
+    result = run(fit_deck(groups, file, list(keys), {"noise": NOISE}, {"spring_constant": spring}))
+    return result.fitted["fit"]
+
+
+@pytest.mark.parametrize("seed, modulus", [(5, 1.0), (8, 2.0), (40, 0.5)])
+def test_a_modulus_that_hardly_shows_is_within_its_errors(shallow, tmp_path, seed, modulus):
+    """By chance the noise of these curves is best explained by bodies ten times softer."""
+    start = changed(STIFF, {STIFFNESS: 5e10 * modulus})
+    fit = fit_of(tmp_path, shallow.measure(300, NOISE, seed), start)
+    ratio = fit["estimate"][1] / TRUTH[STIFFNESS]
+    assert ratio < 0.1
+    # Positive numbers have errors of their logarithms.
+    assert abs(np.log(ratio)) < 4 * fit["standard_error"][1] / fit["estimate"][1]
+    strength = fit["estimate"][0] / TRUTH[STRENGTH]
+    assert abs(np.log(strength)) < 4 * fit["standard_error"][0] / fit["estimate"][0]
+    assert abs(fit["estimate"][2]) < 4 * fit["standard_error"][2]
+
+
+def test_the_ends_of_intervals_are_less_likely_than_the_estimate(shallow, tmp_path):
+    """With the modulus held at either end of its 95 % interval and the others found again, chi
+    squared is larger by nearly four at least, also where its rise ends soon."""
+    curve = shallow.measure(300, NOISE, 40)
+    free = fit_of(tmp_path, curve, STIFF)
+    # The soft side is steep and its interval short; on the stiff side all moduli look alike.
+    low, high = (free[f"{end}_95"][1] / free["estimate"][1] for end in ("lower", "upper"))
+    assert high * low > 2
+    for end in "lower_95", "upper_95":
+        held = fit_of(tmp_path, curve, changed(STIFF, {STIFFNESS: free[end][1]}),
+                      [STRENGTH, POINT])
+        rise = held["chi_squared"][0] - free["chi_squared"][0]
+        assert rise > 0.75 * 1.96**2, end
