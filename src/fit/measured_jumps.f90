@@ -34,7 +34,8 @@ module measured_jumps
   real(wp), parameter :: off_part = 0.2_wp, off = 4, together = 4
   !> The side of a sample is known if the other side has less than this chance; the jump is known if
   !> less than this part of the way's samples is doubtful.
-  real(wp), parameter :: doubtful = 1.0e-3_wp, known_part = 0.2_wp
+  !> A normal number exceeds `normal_end` standard deviations with that chance.
+  real(wp), parameter :: doubtful = 1.0e-3_wp, known_part = 0.2_wp, normal_end = 3.09_wp
 
 contains
 
@@ -155,6 +156,11 @@ contains
     jump%z = sum(leaves*middle)
     jump%uncertainty = sqrt(sum(leaves*((middle - jump%z)**2 + typical**2/12)))
     jump%before = first_beyond(leaves)
+    ! One sample with much noise may leave a small chance to the next place, farther away than a
+    ! normal distribution of this width reaches.
+    i = n + 1 - first_beyond(leaves(n:1:-1))
+    jump%uncertainty = max(jump%uncertainty, &
+      maxval(abs(z([jump%before, min(n, i + 1)]) - jump%z))/normal_end)
     jump%after = n + 1 - first_beyond(arrives(n:1:-1))
     if (jump%after - jump%before > max(most_within + 2.0_wp, known_part*n)) then
       jump = measured_jump_t()

@@ -1,5 +1,5 @@
 """Claims about standard errors and intervals where the model is far from linear over a few of them:
-shallow curves of stiff bodies."""
+shallow curves of stiff bodies, and jumps that a noisy sample hides."""
 
 import numpy as np
 import pytest
@@ -9,6 +9,7 @@ from support.measured import (
     STIFFNESS,
     STRENGTH,
     Branches,
+    branches,  # noqa: F401
     fit_deck,
     run,
     write,
@@ -22,6 +23,7 @@ TRUTH = {STRENGTH: 5e-20, STIFFNESS: 5e10, POINT: 0.0}
 SOFT_SPRING = 0.5
 # A tenth of the pull-off.
 NOISE = 3.4e-10
+HIDES_JUMP = 2.9
 
 
 @pytest.fixture(scope="module")
@@ -62,3 +64,17 @@ def test_the_ends_of_intervals_are_less_likely_than_the_estimate(shallow, tmp_pa
                       [STRENGTH, POINT])
         rise = held["chi_squared"][0] - free["chi_squared"][0]
         assert rise > 0.75 * 1.96**2, end
+
+
+@pytest.mark.parametrize("seed", [2, 3])
+def test_a_sample_that_hides_a_jump_widens_its_uncertainty(branches, tmp_path, seed):
+    """The first sample after the jump seems to be before it. The jump then is off by no more of its
+    uncertainties than the sample is off by standard deviations of the noise."""
+    z, force, segment = branches.measure(1500, NOISE, seed)
+    jump = branches.outer[0][0]
+    first = np.argmax((segment == 0) & (z < jump))
+    force[first] = branches.force(z[first : first + 1], True)[0] + HIDES_JUMP * NOISE
+    fit = fit_of(tmp_path, (z, force, segment), LENNARD_JONES, [STRENGTH, STIFFNESS, POINT], 1.2)
+    assert fit["jump_in_z"][0] < jump
+    assert abs(fit["jump_in_z"][0] - jump) < HIDES_JUMP * fit["jump_in_z_uncertainty"][0]
+    assert abs(fit["estimate"][2]) < HIDES_JUMP * fit["standard_error"][2]

@@ -39,7 +39,7 @@ def test_the_example_gives_what_its_page_says(example):
     result = read_results(folder)
     fit = result.fitted["fit"]
     found = dict(zip(fit["parameters"], fit["estimate"]))
-    assert found["measurement.sensitivity"] == pytest.approx(1.64, abs=0.01)
+    assert found["measurement.sensitivity"] == pytest.approx(1.66, abs=0.01)
     assert found["force.surface_energy"] == pytest.approx(0.26, abs=0.01)
     assert fit["noise"][0] == pytest.approx(12e-12, rel=0.05)
     # Pull-off and jump into contact, less what the signal was before.
