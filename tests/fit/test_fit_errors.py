@@ -1,11 +1,12 @@
 """Claims about standard errors and intervals where the model is far from linear over a few of them:
-shallow curves of stiff bodies, and jumps that a noisy sample hides."""
+shallow curves of stiff bodies, and jumps that a noisy sample hides; about what no error shows."""
 
 import numpy as np
 import pytest
 from support.measured import (
     LENNARD_JONES,
     POINT,
+    SPRING,
     STIFFNESS,
     STRENGTH,
     Branches,
@@ -74,7 +75,22 @@ def test_a_sample_that_hides_a_jump_widens_its_uncertainty(branches, tmp_path, s
     jump = branches.outer[0][0]
     first = np.argmax((segment == 0) & (z < jump))
     force[first] = branches.force(z[first : first + 1], True)[0] + HIDES_JUMP * NOISE
-    fit = fit_of(tmp_path, (z, force, segment), LENNARD_JONES, [STRENGTH, STIFFNESS, POINT], 1.2)
+    fit = fit_of(tmp_path, (z, force, segment), LENNARD_JONES, spring=SPRING)
     assert fit["jump_in_z"][0] < jump
     assert abs(fit["jump_in_z"][0] - jump) < HIDES_JUMP * fit["jump_in_z_uncertainty"][0]
     assert abs(fit["estimate"][2]) < HIDES_JUMP * fit["standard_error"][2]
+
+
+def test_a_wrong_spring_constant_cannot_be_seen_in_a_deflection(branches, tmp_path):
+    """Forces, strength and modulus are proportional to it, with the same residuals."""
+    z, force, segment = branches.measure(300, 2e-11, seed=1)
+    found = []
+    for factor in 1.0, 3.0:
+        file = write(tmp_path / "curve.csv", z, force / SPRING, segment)
+        start = changed(LENNARD_JONES, {STRENGTH: 1e-19 * factor, STIFFNESS: 1e10 * factor})
+        deck = fit_deck(start, file, list(TRUTH), {"noise": 2e-11 / SPRING},
+                        {"spring_constant": SPRING * factor, "sensitivity": 1.0})
+        found.append(run(deck).fitted["fit"])
+    right, wrong = found
+    assert wrong["estimate"][:2] == pytest.approx(3 * np.array(right["estimate"][:2]), rel=1e-3)
+    assert wrong["chi_squared"][0] == pytest.approx(right["chi_squared"][0], abs=0.01)
