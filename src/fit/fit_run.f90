@@ -2,6 +2,7 @@
 !> the classical theories to the same samples.
 module fit_run
   use kinds, only: wp, pi
+  use text, only: rounded
   use failure, only: failure_t
   use listener, only: listener_t
   use dimensionless_problem, only: problem_t
@@ -100,7 +101,8 @@ contains
       if (outcome%fitted%effect(i) > least_effect) cycle
       outcome%trouble = other_order(outcome%curve, model)
       if (len(outcome%trouble) == 0) outcome%trouble = outcome%curve%unknown(i)%name // &
-        ' has no effect on this curve; remove it from parameters'
+        ' has no effect on this curve near the best value found, ' // &
+        rounded(outcome%fitted%value(i)) // '; remove it from parameters, or give a prior'
       return
     end do
     call test_held(outcome%curve, outcome%fitted%value, measurement, numerics, wider, outcome%held)

@@ -1,8 +1,11 @@
 """Claims about standard errors and intervals where the model is far from linear over a few of them:
 shallow curves of stiff bodies, and jumps that a noisy sample hides; about what no error shows."""
 
+import re
+
 import numpy as np
 import pytest
+import snapin
 from support.measured import (
     LENNARD_JONES,
     POINT,
@@ -65,6 +68,14 @@ def test_the_ends_of_intervals_are_less_likely_than_the_estimate(shallow, tmp_pa
                       [STRENGTH, POINT])
         rise = held["chi_squared"][0] - free["chi_squared"][0]
         assert rise > 0.75 * 1.96**2, end
+
+
+def test_a_number_without_effect_is_named_with_the_value_where_it_has_none(shallow, tmp_path):
+    """Softer bodies would show: their modulus is not without effect everywhere."""
+    with pytest.raises(snapin.SnapinError, match="bodies.stiffness has no effect .* near the best "
+                       "value found, .*give a prior") as refused:
+        fit_of(tmp_path, shallow.measure(300, NOISE, 2), STIFF)
+    assert float(re.search(r"found, (\S+);", str(refused.value))[1]) > TRUTH[STIFFNESS]
 
 
 @pytest.mark.parametrize("seed", [2, 3])
