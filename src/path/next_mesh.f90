@@ -14,7 +14,10 @@ module next_mesh
   !> The largest radius that the path may reach on a mesh, over the largest of its band.
   real(wp), parameter :: beyond_passage = 1.1_wp
   !> States ahead for which a mesh about the axis is laid out, in steps of the arc.
-  integer, parameter :: ahead(*) = [0, 1, 2, 3, 4, 6, 8]
+  integer, parameter :: ahead(*) = [0, 2, 4, 8, 12]
+  !> The gap to which gaps ahead tend, below the nearest gap of the arc or the gap at rest, in
+  !> repulsion lengths: a little more compression than seen.
+  real(wp), parameter :: margin = 0.1_wp
   !> Largest number of digits of a layout for seen gaps: the polynomials of neighbouring panels meet
   !> in kinks, which no panel of another mesh resolves.
   real(wp), parameter :: most_digits_seen = 10
@@ -70,14 +73,15 @@ contains
     end associate
   end subroutine lay_out_next
 
-  !> The shape of the mesh after that of an arc, for its state number i.
+  !> The shape of the mesh after that of an arc, for its state number i and, about the axis, for
+  !> gaps extrapolated from it.
   type(mapped_shape_t) function shape_for_next(equations, arc, i) result(shape)
     type(equations_t), intent(in), target :: equations
     type(arc_t), intent(in) :: arc
     integer, intent(in) :: i
     type(seen_gaps_t) :: seen
-    real(wp), allocatable :: gap(:)
-    real(wp) :: load, radius
+    real(wp), allocatable :: gap(:), older(:)
+    real(wp) :: load, radius, nearest
     integer :: to, k
 
     to = arc%mesh + 1
@@ -86,10 +90,15 @@ contains
       call seen%begin_on(grid, size(ahead), 10.0_wp**(-min(meshes%digits, most_digits_seen)))
       load = felt_load(problem, grid, state)
       if (meshes%is_about_axis(to)) then
+        ! In geometric progression, so that an edge moves on and what it passes comes to rest.
+        older = state%gap - (equations%raised(arc%mesh, state) - equations%raised(arc%mesh, before))
+        nearest = min(problem%law%rest_gap, minval(state%gap), minval(older)) - &
+          margin*problem%law%repulsion_length
         do k = 1, size(ahead)
-          gap = state%gap + ahead(k)*(equations%raised(arc%mesh, state) - &
-            equations%raised(arc%mesh, before))
-          if (minval(gap) < problem%law%rest_gap .and. k > 1) exit
+          gap = nearest + (state%gap - nearest)*((state%gap - nearest)/(older - nearest))**ahead(k)
+          ! No contact is foreseen before there is one.
+          if (minval(gap) < problem%law%rest_gap .and. &
+            .not. minval(state%gap) < problem%law%rest_gap) exit
           call seen%add(problem%shape, gap, state%scale, state%h0, load)
           call seen%try(0.0_wp, 1.0_wp, 1.0_wp, 0.0_wp)
         end do
