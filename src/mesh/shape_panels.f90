@@ -9,8 +9,9 @@ module shape_panels
   private
   public :: panels_for, rim_passed_at
 
-  !> Length in z of short panels.
-  real(wp), parameter :: short = 0.7_wp
+  !> Largest length in z of panels over which kinks lie, and of panels between kinks, which
+  !> `law_panels` halves where the pressure needs it.
+  real(wp), parameter :: short = 0.7_wp, between_kinks = 2
   !> Largest number of kinks of a shape at which panels end; a table has more kinks, which are
   !> everywhere.
   integer, parameter :: few = 4
@@ -39,8 +40,8 @@ contains
     end associate
   end function rim_passed_at
 
-  !> Lengths in z of panels over z_length, at positions d sinh(z). On a mesh about the axis they end
-  !> at the kinks of the shape, if these are few; otherwise they are short.
+  !> Lengths in z of panels over z_length, at positions d sinh(z), for a shape with kinks. On a mesh
+  !> about the axis they end at the kinks, if these are few; otherwise they are short.
   pure function panels_for(shape, about_axis, d, z_length) result(lengths)
     class(shape_t), intent(in) :: shape
     logical, intent(in) :: about_axis
@@ -54,8 +55,7 @@ contains
     ends = asinh(kinks/d)
     ends = [0.0_wp, pack(ends, ends < z_length), z_length]
     do i = 1, size(ends) - 1
-      n = 1
-      if (size(kinks) == 0) n = ceiling((ends(i + 1) - ends(i))/short)
+      n = ceiling((ends(i + 1) - ends(i))/merge(between_kinks, short, size(kinks) > 0))
       lengths = [lengths, spread((ends(i + 1) - ends(i))/n, 1, n)]
     end do
   end function panels_for

@@ -14,9 +14,9 @@ module next_mesh
   !> The largest radius that the path may reach on a mesh, over the largest of its band.
   real(wp), parameter :: beyond_passage = 1.1_wp
   !> States ahead for which a mesh about the axis is laid out, in steps of the arc.
-  integer, parameter :: ahead(*) = [0, 2, 4, 8, 12]
-  !> The gap to which gaps ahead tend, below the nearest gap of the arc or the gap at rest, in
-  !> repulsion lengths: a little more compression than seen.
+  integer, parameter :: ahead(*) = [0, 1, 2, 3, 4, 6, 8]
+  !> The gap to which gaps ahead tend in contact, below the nearest gap of the arc, in repulsion
+  !> lengths: a little more compression than seen.
   real(wp), parameter :: margin = 0.1_wp
   !> Largest number of digits of a layout for seen gaps: the polynomials of neighbouring panels meet
   !> in kinks, which no panel of another mesh resolves.
@@ -80,7 +80,7 @@ contains
     type(arc_t), intent(in) :: arc
     integer, intent(in) :: i
     type(seen_gaps_t) :: seen
-    real(wp), allocatable :: gap(:), older(:)
+    real(wp), allocatable :: gap(:), change(:)
     real(wp) :: load, radius, nearest
     integer :: to, k
 
@@ -90,15 +90,18 @@ contains
       call seen%begin_on(grid, size(ahead), 10.0_wp**(-min(meshes%digits, most_digits_seen)))
       load = felt_load(problem, grid, state)
       if (meshes%is_about_axis(to)) then
-        ! In geometric progression, so that an edge moves on and what it passes comes to rest.
-        older = state%gap - (equations%raised(arc%mesh, state) - equations%raised(arc%mesh, before))
-        nearest = min(problem%law%rest_gap, minval(state%gap), minval(older)) - &
+        change = equations%raised(arc%mesh, state) - equations%raised(arc%mesh, before)
+        nearest = min(minval(state%gap), minval(state%gap - change)) - &
           margin*problem%law%repulsion_length
         do k = 1, size(ahead)
-          gap = nearest + (state%gap - nearest)*((state%gap - nearest)/(older - nearest))**ahead(k)
-          ! No contact is foreseen before there is one.
-          if (minval(gap) < problem%law%rest_gap .and. &
-            .not. minval(state%gap) < problem%law%rest_gap) exit
+          if (minval(state%gap) < problem%law%rest_gap) then
+            ! The edge moves on, and what it passes comes to rest.
+            gap = nearest + (state%gap - nearest)* &
+              ((state%gap - nearest)/(state%gap - change - nearest))**ahead(k)
+          else
+            gap = state%gap + ahead(k)*change
+            if (minval(gap) < problem%law%rest_gap .and. k > 1) exit
+          end if
           call seen%add(problem%shape, gap, state%scale, state%h0, load)
           call seen%try(0.0_wp, 1.0_wp, 1.0_wp, 0.0_wp)
         end do
