@@ -86,7 +86,7 @@ contains
     if (.not. plan%traceable) then
       call add_bands(1.0_wp, widest, 1, low, high)
     else if (problem%law%edge_gap > 0) then
-      associate (first => min(passage_to_contact(problem, plan%fronts), widest))
+      associate (first => min(passage_to_contact(problem, plan%fronts, widest), widest))
         ! Where rounding hides the contact, the path ends at its first fold.
         if (lost_in_rounding(problem, widest)) widest = widest_band*first
         if (plan%fronts) call add_bands(first_front(problem), last_front(problem), &
@@ -198,10 +198,11 @@ contains
   !> Contact radius at which the edge becomes too sharp for the mesh of the approach: a fraction of
   !> the neck, and of the radius over which the gap between rigid bodies increases from the gap at
   !> rest to that of largest tension. If meshes are locked to a front, nothing inside it is sharp
-  !> before its last radius; the rim of a flat face is passed before.
-  pure real(wp) function passage_to_contact(problem, fronts) result(c)
+  !> before its last radius; the rim of a flat face is passed before. widest: the largest radius.
+  pure real(wp) function passage_to_contact(problem, fronts, widest) result(c)
     type(problem_t), intent(in) :: problem
     logical, intent(in) :: fronts
+    real(wp), intent(in) :: widest
 
     if (fronts) then
       c = 0.5_wp*last_front(problem)
@@ -211,7 +212,7 @@ contains
     if (problem%law%edge_gap > 0) &
       c = min(c, 0.25_wp*problem%shape%position_of( &
       0.5_wp*(problem%law%edge_gap - problem%law%rest_gap)))
-    c = max(c, rim_passed_at(problem))
+    c = max(c, rim_passed_at(problem, widest))
   end function passage_to_contact
 
 end module mesh_plan

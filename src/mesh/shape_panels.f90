@@ -9,85 +9,55 @@ module shape_panels
   private
   public :: panels_for, rim_passed_at
 
-  !> Length in z of short panels.
-  real(wp), parameter :: short = 0.7_wp
+  !> Largest length in z of panels over which kinks lie, and of panels between kinks, which
+  !> `law_panels` halves where the pressure needs it.
+  real(wp), parameter :: short = 0.7_wp, between_kinks = 2
   !> Largest number of kinks of a shape at which panels end; a table has more kinks, which are
   !> everywhere.
   integer, parameter :: few = 4
-  !> Largest radius of a flat face, in widths of the cohesive zone, for which the edge passes the
-  !> rim on meshes about the axis; the radius up to which the edge then stays on them, over that of
-  !> the rim, but at most one unit more; and this radius on a wider face, in widths of the cohesive
-  !> zone.
-  real(wp), parameter :: widths_to_pass = 40, beyond_rim = 1.3_wp, widths_before = 5
+  !> Widths of the cohesive zone: the largest radius over which the edge passes on meshes about the
+  !> axis; on a wider face, the radius up to which it stays on them. The radius up to which it stays
+  !> on them after a rim within that radius, over that of the rim, but at most one unit more.
+  real(wp), parameter :: widths_to_pass = 40, widths_before = 5, beyond_rim = 1.3_wp
 
 contains
 
   !> The radius up to which the edge of a contact on a flat face stays on meshes about the axis, on
-  !> which the rim is a panel's end: somewhat beyond the rim or, on a face so wide that the edge
-  !> would pass over very many panels, while the rim is far outside. 0: the shape has no flat face.
-  pure real(wp) function rim_passed_at(problem) result(radius)
+  !> which the rim is a panel's end, so that the pressure is smooth on all panels: up to the widest
+  !> contact, if the edge passes over few panels; otherwise up to somewhat beyond the rim or, on a
+  !> face so wide that there would be very many panels, while the rim is far outside. 0: the shape
+  !> has no flat face.
+  pure real(wp) function rim_passed_at(problem, widest) result(radius)
     type(problem_t), intent(in) :: problem
+    real(wp), intent(in) :: widest
 
     radius = 0
     associate (rim => problem%shape%smooth_from(), width => cohesive_width(problem))
-      if (problem%shape%height(rim) > 0) return
+      if (.not. rim > 0 .or. problem%shape%height(rim) > 0) return
       radius = min(beyond_rim*rim, rim + 1)
       if (rim > widths_to_pass*width) radius = widths_before*width
+      if (widest < widths_to_pass*width) radius = widest
     end associate
   end function rim_passed_at
 
-  !> Lengths in z of short panels over z_length, at positions d sinh(z). On a mesh about the axis
-  !> they end at the kinks of the shape, if these are few.
+  !> Lengths in z of panels over z_length, at positions d sinh(z), for a shape with kinks. On a mesh
+  !> about the axis they end at the kinks, if these are few; otherwise they are short.
   pure function panels_for(shape, about_axis, d, z_length) result(lengths)
     class(shape_t), intent(in) :: shape
     logical, intent(in) :: about_axis
     real(wp), intent(in) :: d, z_length
-    real(wp), allocatable :: lengths(:), kinks(:), ends(:), rims(:)
-    integer :: i
+    real(wp), allocatable :: lengths(:), kinks(:), ends(:)
+    integer :: i, n
 
     allocate (kinks(0), lengths(0))
     if (about_axis .and. allocated(shape%breaks)) kinks = shape%breaks
     if (size(kinks) > few) kinks = kinks(:0)
     ends = asinh(kinks/d)
     ends = [0.0_wp, pack(ends, ends < z_length), z_length]
-    rims = pack(kinks, .not. shape%height(kinks) > 0)
     do i = 1, size(ends) - 1
-      lengths = [lengths, graded_panels(rims, d, ends(i), ends(i + 1))]
+      n = ceiling((ends(i + 1) - ends(i))/merge(between_kinks, short, size(kinks) > 0))
+      lengths = [lengths, spread((ends(i + 1) - ends(i))/n, 1, n)]
     end do
   end function panels_for
-
-  !> Lengths in z of short panels between two places. They are also short in comparison with the
-  !> distance from the rim of a flat face or, beside it, with the length over which the undeformed
-  !> bodies separate there.
-  pure function graded_panels(rims, d, from, to) result(lengths)
-    real(wp), intent(in) :: rims(:), d, from, to
-    real(wp), allocatable :: lengths(:)
-    !> Number of places at which the length is evaluated.
-    integer, parameter :: places = 200
-    real(wp) :: step, z, away, panels(0:places)
-    integer :: i, n
-
-    step = (to - from)/places
-    panels(0) = 0
-    do i = 1, places
-      z = from + (i - 0.5_wp)*step
-      away = max(1.0_wp, minval(abs(rims - d*sinh(z))))
-      panels(i) = panels(i - 1) + step/(short*min(1.0_wp, away/(d*cosh(z))))
-    end do
-    n = ceiling(panels(places))
-    lengths = [(place_of(i*panels(places)/n) - place_of((i - 1)*panels(places)/n), i=1, n)]
-
-  contains
-
-    !> The length before which there is a number of panels.
-    pure real(wp) function place_of(number)
-      real(wp), intent(in) :: number
-      integer :: k
-
-      k = count(panels(1:places - 1) < number)
-      place_of = step*(k + (number - panels(k))/(panels(k + 1) - panels(k)))
-    end function place_of
-
-  end function graded_panels
 
 end module shape_panels

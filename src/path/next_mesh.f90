@@ -15,6 +15,9 @@ module next_mesh
   real(wp), parameter :: beyond_passage = 1.1_wp
   !> States ahead for which a mesh about the axis is laid out, in steps of the arc.
   integer, parameter :: ahead(*) = [0, 1, 2, 3, 4, 6, 8]
+  !> The gap to which gaps ahead tend in contact, below the nearest gap of the arc, in repulsion
+  !> lengths: a little more compression than seen.
+  real(wp), parameter :: margin = 0.1_wp
   !> Largest number of digits of a layout for seen gaps: the polynomials of neighbouring panels meet
   !> in kinks, which no panel of another mesh resolves.
   real(wp), parameter :: most_digits_seen = 10
@@ -70,14 +73,15 @@ contains
     end associate
   end subroutine lay_out_next
 
-  !> The shape of the mesh after that of an arc, for its state number i.
+  !> The shape of the mesh after that of an arc, for its state number i and, about the axis, for
+  !> gaps extrapolated from it.
   type(mapped_shape_t) function shape_for_next(equations, arc, i) result(shape)
     type(equations_t), intent(in), target :: equations
     type(arc_t), intent(in) :: arc
     integer, intent(in) :: i
     type(seen_gaps_t) :: seen
-    real(wp), allocatable :: gap(:)
-    real(wp) :: load, radius
+    real(wp), allocatable :: gap(:), change(:)
+    real(wp) :: load, radius, nearest
     integer :: to, k
 
     to = arc%mesh + 1
@@ -86,10 +90,18 @@ contains
       call seen%begin_on(grid, size(ahead), 10.0_wp**(-min(meshes%digits, most_digits_seen)))
       load = felt_load(problem, grid, state)
       if (meshes%is_about_axis(to)) then
+        change = equations%raised(arc%mesh, state) - equations%raised(arc%mesh, before)
+        nearest = min(minval(state%gap), minval(state%gap - change)) - &
+          margin*problem%law%repulsion_length
         do k = 1, size(ahead)
-          gap = state%gap + ahead(k)*(equations%raised(arc%mesh, state) - &
-            equations%raised(arc%mesh, before))
-          if (minval(gap) < problem%law%rest_gap .and. k > 1) exit
+          if (minval(state%gap) < problem%law%rest_gap) then
+            ! The edge moves on, and what it passes comes to rest.
+            gap = nearest + (state%gap - nearest)* &
+              ((state%gap - nearest)/(state%gap - change - nearest))**ahead(k)
+          else
+            gap = state%gap + ahead(k)*change
+            if (minval(gap) < problem%law%rest_gap .and. k > 1) exit
+          end if
           call seen%add(problem%shape, gap, state%scale, state%h0, load)
           call seen%try(0.0_wp, 1.0_wp, 1.0_wp, 0.0_wp)
         end do

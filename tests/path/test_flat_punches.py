@@ -82,3 +82,23 @@ def test_the_largest_tension_is_that_of_an_extremum_although_meshes_differ_by_mo
     assert found["max_tension"] == -found["load_folds_load"][-1]
     assert found["max_tension_h0"] == pytest.approx(2.9035747e-9, rel=1e-5)
     assert found["max_tension_h0_error"] > 0
+
+
+@pytest.mark.parametrize("radius, flat_radius, stiffness", [
+    (1e-6, 1e-8, 1e11), (1e-6, 1e-8, 1e10), (1e-6, 6e-8, 1e11), (3e-6, 2e-8, 3e9)])
+def test_paths_of_rounded_punches_reach_the_accuracy_asked_for(run, radius, flat_radius, stiffness):
+    """The rim passed over the panels of meshes locked to the edge, and numbers converged to five
+    digits or six at any accuracy."""
+    def path(accuracy):
+        return run(deck(
+            bodies={"radius": radius, "stiffness": stiffness},
+            shape={"kind": "rounded_punch", "flat_radius": flat_radius},
+            force={"law": "lennard_jones", "hamaker": 1e-19, "z0": 5e-10},
+            equilibrium_path={"h0_end": -1e-9}, numerics={"accuracy": accuracy}))
+
+    exact = path(1e-10).summary
+    for accuracy in (1e-5, 1e-7):
+        found = path(accuracy)
+        assert not any(said.startswith("the error is estimated") for said in found.warnings)
+        for name in ("max_tension", "end_load", "end_displacement"):
+            assert found.summary[name] == pytest.approx(exact[name], rel=accuracy), name

@@ -171,7 +171,8 @@ def test_warnings_of_cases_are_counted_and_the_first_is_shown(run):
     groups = {"bodies": {"radius": 1e-6, "stiffness": 1e9},
               "force": {"law": "lennard_jones", "surface_energy": 0.02, "z0": 0.5e-9},
               "equilibrium_path": {"h0_end": -3e-9}}
-    punch = {**groups, "shape": {"kind": "rounded_punch", "flat_radius": 3e-8}}
+    punch = {**groups, "bodies": {"radius": 1e-6, "stiffness": 1e8},
+             "shape": {"kind": "rounded_punch", "flat_radius": 3e-8}}
     alone = run(deck(**punch)).summary["warnings"]
     found = run(deck(**punch, sweep={"key": "shape.flat_radius", "values": [3e-8, 5e-8]})).summary
     assert several(found["warnings"]) == [
