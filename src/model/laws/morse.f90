@@ -65,11 +65,12 @@ contains
     allocate (law, source=this)
   end subroutine read_law
 
-  !> exp(-2 (gap - 1)), finite at any gap.
+  !> exp(-2 (gap - 1)); 0 without underflow at large gaps, and finite at any gap.
   elemental real(wp) function decay(gap)
     real(wp), intent(in) :: gap
 
-    decay = exp(max(min(-2*(gap - 1), largest_exponent), -largest_exponent))
+    decay = 0
+    if (-2*(gap - 1) > -largest_exponent) decay = exp(min(-2*(gap - 1), largest_exponent))
   end function decay
 
   pure function pressure(self, gap) result(value)
