@@ -6,6 +6,7 @@ import re
 import sys
 
 import f90nml
+import numpy as np
 import pytest
 from conftest import ROOT
 from support.processes import limited
@@ -232,3 +233,16 @@ def test_a_table_that_cannot_be_written_leaves_no_results(snapin, tmp_path, coun
     assert done.returncode == 1
     assert "classical.csv.partial: File too large" in done.stderr
     assert not [p for p in (tmp_path / "results/d").iterdir() if not p.name.endswith(".partial")]
+
+
+def test_contact_ends_a_tenth_of_the_length_of_the_law_above_the_gap_at_rest(run):
+    """For Morse's law this is far from 1.1 times the gap at rest."""
+    found = run(deck(
+        bodies={"radius": 1e-6, "stiffness": 1e9},
+        morse={"surface_energy": 0.02, "z0": 0.2e-9, "decay_length": 1e-9},
+        equilibrium_path={"h0_end": -2e-9}, profiles={"h0": [-2e-9]}, numerics={"accuracy": 1e-8}))
+    profile = found.table("profiles.csv")
+    radius = np.interp(0.2e-9 + 0.2e-9, profile["separation"], profile["r"])
+    assert found.curve["contact_radius"][-1] == pytest.approx(radius, rel=1e-3)
+    assert any("contact_radius [m]" in line and "plus a tenth of the law's length" in line
+               for line in found.curve.comments)
