@@ -246,3 +246,22 @@ def test_contact_ends_a_tenth_of_the_length_of_the_law_above_the_gap_at_rest(run
     assert found.curve["contact_radius"][-1] == pytest.approx(radius, rel=1e-3)
     assert any("contact_radius [m]" in line and "plus a tenth of the law's length" in line
                for line in found.curve.comments)
+
+
+FOLLOWERS = {
+    "hamaker": {"bodies": {"radius": 1e-6, "stiffness": 1e10}, "van_der_waals": {"hamaker": 1e-20},
+                "born": {"z0": 0.3e-9}, "dugdale": {"stress": 1e6, "range": 1e-9},
+                "equilibrium_path": {"h0_end": -1e-9},
+                "sweep": {"key": "van_der_waals.hamaker", "values": [1e-20, 2e-20]}},
+    "partner": {"bodies": {"radius": 1e-6, "young": [1e9, 2e9], "poisson": 0.3},
+                "layer": {"thickness": 1e-7, "young": 1e8, "poisson": 0.4, "body": "both"},
+                "force": {"law": "lennard_jones", "hamaker": 1e-20, "z0": 0.3e-9},
+                "equilibrium_path": {"h0_end": -1e-9}}}
+
+
+@pytest.mark.parametrize("case", FOLLOWERS)
+def test_a_default_that_follows_other_keys_follows_when_the_summary_runs_again(run, case):
+    first = run(deck(**FOLLOWERS[case]))
+    again = run((first.folder / "summary.nml").read_text())
+    table = "sweep.csv" if "sweep" in FOLLOWERS[case] else "curve.csv"
+    assert (again.folder / table).read_bytes() == (first.folder / table).read_bytes()
