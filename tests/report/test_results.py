@@ -265,3 +265,12 @@ def test_a_default_that_follows_other_keys_follows_when_the_summary_runs_again(r
     again = run((first.folder / "summary.nml").read_text())
     table = "sweep.csv" if "sweep" in FOLLOWERS[case] else "curve.csv"
     assert (again.folder / table).read_bytes() == (first.folder / table).read_bytes()
+
+
+@pytest.mark.parametrize("numerics, noted", [
+    ({"nodes": 50}, True), ({"grid": "panels", "r_max": 3.0}, True), ({"accuracy": 1e-5}, False),
+    ({"grid": "uniform", "nodes": 300}, False)])
+def test_nodes_that_have_no_effect_are_noted(run, numerics, noted):
+    """Without a note a study over the number of nodes looks converged at once."""
+    found = run(lennard_jones(0.1, loading=loading(4, 2, 1), numerics=numerics))
+    assert ("no effect" in str(found.summary.get("notes", ""))) == noted
