@@ -58,7 +58,7 @@ contains
       call take_readings(scene, problem, outcome%readings, outcome%places, summary)
     if (scene%regime) call summarise_regime(problem, outcome%places, summary)
     call judge_extent(problem, quality, summary)
-    call judge_layers(problem, quality, outcome%places, summary)
+    call judge_layers(problem, quality, summary)
     if (.not. outcome%differentiated) &
       call summary%fail_with('sensitivity: not all derivatives were found')
     call judge_resolution(outcome%chosen%grid == edge_locked, quality, summary)

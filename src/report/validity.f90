@@ -7,8 +7,6 @@ module validity
   use layered_body, only: layered_body_t
   use layered_surface, only: layered_surface_t
   use records, only: quality_t
-  use reported_place, only: place_t, of_h0, of_load
-  use places, only: places_t
   use summary, only: summary_t
   implicit none
   private
@@ -110,34 +108,28 @@ contains
 
   !> Warns of layers thinner than the range of the force, of soft layers compressed by a part of
   !> their thickness that is not small, and of strains below the top layer that are not small.
-  subroutine judge_layers(problem, quality, places, summary)
+  subroutine judge_layers(problem, quality, summary)
     type(problem_t), intent(in) :: problem
     type(quality_t), intent(in) :: quality
-    type(places_t), intent(in) :: places
     type(summary_t), intent(inout) :: summary
-    type(place_t) :: finish, lowest
-    real(wp) :: reach, deepest, force, strain
+    real(wp) :: reach, strain
     integer :: i
 
     select type (body => problem%body)
     type is (layered_body_t)
       reach = range_of(problem)
-      finish = places%place_of('end')
-      lowest = places%place_of('max_tension')
-      deepest = -problem%law%separation_of(finish%at(of_h0))
-      if (.not. places%has('end')) deepest = 0
-      force = problem%load*max(-lowest%at(of_load), abs(finish%at(of_load)))
       do i = 1, 2
         if (size(body%surface(i)%thickness) == 0) cycle
         associate (thickness => body%surface(i)%thickness*problem%lateral)
           if (minval(thickness) < reach) call summary%warn('beyond the model: a layer of ' // &
             rounded(minval(thickness)) // ' m is thinner than the range of the force, ' // &
             rounded(reach) // ' m; bulk elasticity does not hold for it')
-          if (body%bottom < 1 .and. deepest > strained*sum(thickness)) call summary%warn( &
+          if (body%bottom < 1 .and. quality%depth > strained*sum(thickness)) call summary%warn( &
             'beyond the model: the bodies are pressed together by ' // &
-            rounded(deepest/sum(thickness)) // ' of the thickness of the layers; ' // &
+            rounded(quality%depth/sum(thickness)) // ' of the thickness of the layers; ' // &
             'strains are no longer small')
-          strain = strain_below(body%surface(i), thickness, force, quality%contact_radius)
+          strain = strain_below(body%surface(i), thickness, quality%load, &
+            quality%contact_radius)
           if (strain > strained) call summary%warn('beyond the model: the strain below the ' // &
             'top layer is about ' // rounded(strain) // ', which is not small')
           exit
