@@ -113,8 +113,9 @@ contains
       quality%contact_radius = max(quality%contact_radius, states(i)%radius*problem%lateral)
       quality%depth = max(quality%depth, -problem%law%separation_of(states(i)%h0))
       quality%load = max(quality%load, abs(states(i)%load)*problem%load)
-      if (allocated(states(i)%state%pressure)) &
-        quality%pressure = max(quality%pressure, maxval(abs(states(i)%state%pressure)))
+      if (.not. allocated(states(i)%state%pressure)) cycle
+      quality%pressure = max(quality%pressure, maxval(abs(states(i)%state%pressure)))
+      quality%gap = min(quality%gap, minval(states(i)%state%gap))
     end do
   end subroutine cover
 

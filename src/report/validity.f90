@@ -72,6 +72,7 @@ contains
     type(summary_t), intent(inout) :: summary
     real(wp) :: strain
 
+    call judge_files(problem, quality, summary)
     if (quality%contact_radius > 0) call judge(summary, 'contact_over_radius', &
       problem%shape%slope(quality%contact_radius/problem%lateral)*problem%length/problem%lateral, &
       'the slope at the contact''s edge', 'the model is for half-spaces with small slopes')
@@ -81,6 +82,24 @@ contains
     if (strain > strained) call summary%warn('beyond the model: the largest pressure is ' // &
       rounded(strain) // ' of the stiffness; strains are no longer small')
   end subroutine judge_extent
+
+  !> Warns of states beyond the points of a profile or before those of a table.
+  subroutine judge_files(problem, quality, summary)
+    type(problem_t), intent(in) :: problem
+    type(quality_t), intent(in) :: quality
+    type(summary_t), intent(inout) :: summary
+
+    associate (law => problem%law, last => problem%shape%known_to)
+      if (quality%contact_radius/problem%lateral > last) call summary%warn('beyond the file ' // &
+        'of &shape: the contact reaches ' // rounded(quality%contact_radius) // ' m from the ' // &
+        'axis, the points ' // rounded(last*problem%lateral) // ' m; there the body goes on ' // &
+        'as a parabola')
+      if (.not. law%known_from > 0) return
+      if (quality%gap < law%gap_of(law%known_from)) call summary%warn('beyond the file of ' // &
+        '&tabulated: gaps are down to ' // rounded(law%separation_of(quality%gap)) // &
+        ' m, the points to ' // rounded(law%known_from) // ' m; below, the pressure is a power')
+    end associate
+  end subroutine judge_files
 
   !> Sets a length over the radius, or a slope, and warns if it is not small.
   subroutine judge(summary, key, part, what, why)
