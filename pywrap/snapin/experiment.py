@@ -176,9 +176,10 @@ class ForceCurve(NamedTuple):
     """A force curve, SI; arrays have one value for each state that was found.
 
     `h_centre` is the gap on the axis, `displacement` h_centre - h0, `load` negative under tension,
-    `contact_radius` where the gap is 1.1 times that of zero force, `residual` the largest error of
-    the equations in lengths of the force law. `jumps` are in the order of the experiment.
-    `max_tension` is positive, also between the given h0, and NaN if there was no tension.
+    `contact_radius` where the gap is that of zero force plus a tenth of the law's length,
+    `residual` the largest error of the equations in lengths of the law. `jumps` are in the order
+    of the experiment. `max_tension` is positive, also between the given h0, and NaN if there was no
+    tension.
     `error_estimate` is the relative error of loads and displacements, `converged` whether all
     states were found. `result` has all that the run reports.
     """

@@ -96,7 +96,7 @@ contains
       call fail(error, bad_input, 'the results of several decks cannot go to one place; give ' // &
         'one deck, or --out DIR')
     else if (.not. options%check) then
-      call check_stems(options%decks, error)
+      call check_stems(options, error)
     end if
 
   contains
@@ -115,22 +115,36 @@ contains
 
   end subroutine read_command_line
 
-  !> Refuses two decks with the same stem.
-  subroutine check_stems(decks, error)
-    type(file_t), intent(in) :: decks(:)
+  !> Refuses two decks whose results would have one folder.
+  subroutine check_stems(options, error)
+    type(options_t), intent(in) :: options
     type(failure_t), allocatable, intent(inout) :: error
     integer :: i, j
 
-    do i = 2, size(decks)
-      do j = 1, i - 1
-        if (stem_of(decks(i)%name) /= stem_of(decks(j)%name)) cycle
-        call fail(error, bad_input, printable(decks(j)%name) // ' and ' // &
-                  printable(decks(i)%name) // ' would both write to the folder ' // &
-                  printable(stem_of(decks(i)%name)) // &
-                  '; rename one, or run them one by one with --out')
-        return
+    associate (decks => options%decks)
+      do i = 2, size(decks)
+        do j = 1, i - 1
+          if (folder_of(decks(i)%name) /= folder_of(decks(j)%name)) cycle
+          call fail(error, bad_input, printable(decks(j)%name) // ' and ' // &
+                    printable(decks(i)%name) // ' would both write to the folder ' // &
+                    printable(folder_of(decks(i)%name)) // &
+                    '; rename one, or run them one by one with --out')
+          return
+        end do
       end do
-    end do
+    end associate
+
+  contains
+
+    !> The folder of a deck's results.
+    pure function folder_of(name) result(folder)
+      character(len=*), intent(in) :: name
+      character(len=:), allocatable :: folder
+
+      folder = stem_of(name)
+      if (name == '-') folder = stem_of(options%name)
+    end function folder_of
+
   end subroutine check_stems
 
   !> The file name of `path` without folders and without its last extension. A name like `...nml`

@@ -46,6 +46,7 @@ contains
     if (allocated(self%stepped_path)) &
       call quality%join(self%stepped_path%quality, self%stepped_path%ending)
     if (allocated(self%loading)) call quality%join(self%loading%quality, self%loading%ending)
+    if (allocated(self%readings)) call quality%join(self%readings%quality, planned)
     if (allocated(self%timed)) call quality%join(self%timed%quality, planned)
     if (.not. allocated(self%unloading)) return
     do k = 1, size(self%unloading)

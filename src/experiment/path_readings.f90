@@ -9,6 +9,8 @@ module path_readings
   use driven_pieces, only: drive_t, through_spring
   use path_tangent, only: of_load
   use curve_states, only: path_state_t, states_of_points, states_where
+  use dimensionless_problem, only: problem_t
+  use records, only: quality_t
   use device, only: driven_t, drive_bodies
   use path_stepper, only: path_stepper_t
   implicit none
@@ -37,6 +39,8 @@ module path_readings
     real(wp) :: traced_from = 0, undeformed_from = 0
     !> For the table, the largest error of cubic interpolation of the load between rows.
     real(wp) :: table_interpolation_error = 0
+    !> Of the states that are read, which may be beyond the path's rows: what tells of strains.
+    type(quality_t) :: quality
     !> Whether the path has more than one point and all its states were solved.
     logical :: solved = .true.
   end type path_readings_t
@@ -59,7 +63,10 @@ contains
       readings%node = states_of_points(steps%solver_t, path)
       readings%traced_from = path%point(path%undeformed + 1)%state%h0
       readings%undeformed_from = path%point(1)%state%h0
-      if (allocated(request%device)) call run_device(request, steps, readings)
+      if (allocated(request%device)) then
+        call run_device(request, steps, readings)
+        call cover(readings%node, steps%problem, readings%quality)
+      end if
       if (allocated(request%fixed_load)) call find_loaded(request%fixed_load%load/ &
         steps%problem%load, steps, readings)
       if (request%table) then
@@ -85,6 +92,7 @@ contains
     allocate (readings%loaded(0))
     do i = 1, size(load)
       call states_where(steps%solver_t, steps%known%path, of_load, load(i), states, solved)
+      call cover(states, steps%problem, readings%quality)
       readings%solved = readings%solved .and. solved
       do k = 1, size(states)
         ! On the path followed inward, h0 decreases where states are stable at fixed h0.
@@ -93,6 +101,23 @@ contains
       end do
     end do
   end subroutine find_loaded
+
+  !> Includes how far these states are from small strains.
+  pure subroutine cover(states, problem, quality)
+    type(path_state_t), intent(in) :: states(:)
+    type(problem_t), intent(in) :: problem
+    type(quality_t), intent(inout) :: quality
+    integer :: i
+
+    do i = 1, size(states)
+      quality%contact_radius = max(quality%contact_radius, states(i)%radius*problem%lateral)
+      quality%depth = max(quality%depth, -problem%law%separation_of(states(i)%h0))
+      quality%load = max(quality%load, abs(states(i)%load)*problem%load)
+      if (.not. allocated(states(i)%state%pressure)) cycle
+      quality%pressure = max(quality%pressure, maxval(abs(states(i)%state%pressure)))
+      quality%gap = min(quality%gap, minval(states(i)%state%gap))
+    end do
+  end subroutine cover
 
   !> &device: moves one drive for each stiffness, or one at prescribed h0.
   subroutine run_device(request, steps, readings)

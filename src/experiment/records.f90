@@ -32,9 +32,11 @@ module records
 
   !> The quality of some rows: the largest residual, the widest spacing of nodes at the contact edge
   !> over the neck width, the widest contact [m], the largest magnitude of pressure, in the law's
-  !> unit, and whether an experiment ended early.
+  !> unit, the deepest approach below h0 = 0 [m], the largest magnitude of load [N], the smallest
+  !> gap, in the law's unit, and whether an experiment ended early.
   type :: quality_t
-    real(wp) :: residual = 0, spacing = 0, contact_radius = 0, pressure = 0
+    real(wp) :: residual = 0, spacing = 0, contact_radius = 0, pressure = 0, depth = 0, load = 0
+    real(wp) :: gap = huge(1.0_wp)
     logical :: early = .false.
   contains
     procedure :: cover
@@ -64,6 +66,9 @@ contains
       spacing_over_neck(problem, state%scale*grid%spacing))
     self%contact_radius = max(self%contact_radius, record%contact_radius)
     self%pressure = max(self%pressure, maxval(abs(state%pressure)))
+    self%gap = min(self%gap, minval(state%gap))
+    self%depth = max(self%depth, -record%h0)
+    self%load = max(self%load, abs(record%load))
   end subroutine cover
 
   !> Includes all rows of an experiment.
@@ -76,6 +81,9 @@ contains
     self%spacing = max(self%spacing, other%spacing)
     self%contact_radius = max(self%contact_radius, other%contact_radius)
     self%pressure = max(self%pressure, other%pressure)
+    self%gap = min(self%gap, other%gap)
+    self%depth = max(self%depth, other%depth)
+    self%load = max(self%load, other%load)
     self%early = self%early .or. ending%early()
   end subroutine join
 

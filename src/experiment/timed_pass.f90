@@ -160,11 +160,11 @@ contains
 
     missed = 0.05_wp
     associate (r => now%recent)
-      if (now%recently >= 3 .and. r(1, 2) > r(1, 1) .and. now%result%largest_load > 0) then
+      if (now%recently < 3 .or. .not. r(1, 2) > r(1, 1)) then
+        missed = 1
+      else if (now%result%largest_load > 0) then
         line = r(2, 2) + (r(2, 2) - r(2, 1))*(r(1, 3) - r(1, 2))/(r(1, 2) - r(1, 1))
         missed = max(missed, abs(r(2, 3) - line)/(bend*load_unit(steps%problem, now)))
-      else
-        missed = 1
       end if
     end associate
     if (from%mesh >= contact .and. at%mesh >= contact .and. steps%meshes%traceable) missed = &

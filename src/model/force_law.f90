@@ -28,6 +28,8 @@ module force_law
     !> Smallest gap at which the formulas are evaluated. No equilibrium has a smaller gap; below it
     !> pressures, or their products with the coupling, would overflow.
     real(wp) :: smallest_gap = -300
+    !> Separation [m] of the first point of a table, below which the law goes on as a guess; else 0.
+    real(wp) :: known_from = 0
     !> For large gaps the pressure falls as gap^-tail_power; `huge` if it falls faster than any
     !> power.
     real(wp) :: tail_power = huge(1.0_wp)

@@ -153,6 +153,7 @@ contains
         if (part%has_length) &
           law%repulsion_length = min(law%repulsion_length, part%repulsion_length/term%stretch)
         law%tail_power = min(law%tail_power, part%tail_power)
+        law%known_from = max(law%known_from, part%known_from)
         if (law%caveat == '') law%caveat = part%caveat
         if (part%period > 0) law%period = part%period/term%stretch
         if (allocated(part%breaks)) breaks = [breaks, (part%breaks - term%shift)/term%stretch]

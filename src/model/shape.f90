@@ -27,6 +27,8 @@ module shape
     real(wp), allocatable :: breaks(:)
     !> Position at which the body ends. Beyond it the shape only defines a gap.
     real(wp) :: ends = huge(1.0_wp)
+    !> Position of the last point of a file.
+    real(wp) :: known_to = huge(1.0_wp)
   contains
     !> f(r) and f'(r) at positions r >= 0.
     procedure(profile_function), deferred :: height

@@ -98,6 +98,10 @@ contains
     if (allocated(self%words)) deallocate (self%words)
     allocate (self%words(size(names)))
     do k = 1, size(names)
+      if (names(k)%last < names(k)%first) then
+        call named%complain(1, '', '', 'a column without a name', error)
+        return
+      end if
       if (k > 1) self%names = self%names // ' '
       self%names = self%names // lower(named%part(names(k)%first, names(k)%last))
       self%words(k) = words_of(deck, word_of(self%names, k))

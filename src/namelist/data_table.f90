@@ -29,7 +29,7 @@ module data_table
   integer, parameter :: largest_table = 64*2**20
   character(len=*), parameter :: newline = new_line('a')
   !> Separators of cells: blank, tab, comma, semicolon.
-  character(len=*), parameter :: between = ' '//achar(9)//',;'
+  character(len=*), parameter :: blanks = ' ' // achar(9), marks = ',;', between = blanks // marks
 
 contains
 
@@ -181,23 +181,34 @@ contains
     end do
   end subroutine point_decimals
 
-  !> The cells of a line.
+  !> The cells of a line up to the last that is not empty. A comma or semicolon after another, or
+  !> before the first cell, is that of an empty cell.
   subroutine split(line, cells)
     character(len=*), intent(in) :: line
     type(span_t), allocatable, intent(out) :: cells(:)
-    integer :: first, length
+    integer :: first, next
 
     allocate (cells(0))
-    first = 1
+    first = after_blanks(1)
     do while (first <= len(line))
-      length = verify(line(first:), between)
-      if (length == 0) return
-      first = first + length - 1
-      length = scan(line(first:), between) - 1
-      if (length < 0) length = len(line) - first + 1
-      cells = [cells, span_t(first, first + length - 1)]
-      first = first + length
+      next = first + scan(line(first:) // ' ', between) - 1
+      cells = [cells, span_t(first, next - 1)]
+      next = after_blanks(next)
+      first = next
+      if (next > len(line)) exit
+      if (scan(line(next:next), marks) > 0) first = after_blanks(next + 1)
     end do
+    cells = cells(:findloc(cells%last >= cells%first, .true., 1, back=.true.))
+
+  contains
+
+    !> The first position from `at` on that is no blank.
+    pure integer function after_blanks(at)
+      integer, intent(in) :: at
+
+      after_blanks = at + verify(line(at:) // marks, blanks) - 1
+    end function after_blanks
+
   end subroutine split
 
   !> Whether a line has names, and not a number.
@@ -226,6 +237,7 @@ contains
     integer, intent(out) :: at(:)
     type(failure_t), allocatable, intent(inout) :: error
     character(len=:), allocatable :: names, name, what
+    logical, allocatable :: found(:)
     integer :: i, k
 
     names = ''
@@ -235,10 +247,12 @@ contains
     do i = 1, size(wanted)
       name = unsigned(wanted(i))
       call parse_integer(name, at(i), what)
-      if (allocated(what)) at(i) = 0
-      do k = 1, size(cells)
-        if (allocated(what) .and. lower(cell(k)) == lower(name)) at(i) = k
-      end do
+      if (allocated(what)) then
+        found = [(lower(cell(k)) == lower(name), k=1, size(cells))]
+        at(i) = findloc(found, .true., 1)
+        if (count(found) > 1) call source%complain(start, '', '', 'more than one column ' // &
+          quoted(clip(name)) // '; give its number', error)
+      end if
       if (at(i) >= 1 .and. at(i) <= size(cells)) cycle
       call source%complain(start, '', '', 'no column ' // quoted(clip(name)) // &
         guess(name, names(2:), '') // '; this line has ' // counted(size(cells)), error)

@@ -34,6 +34,7 @@ contains
       return
     end if
     what = clip(token) // ' is not a number'
+    if (len(token) == 0) what = 'nothing where a number is expected'
     if (len(token) > longest_number) return
     mark = scan(small, 'ed')
     if (mark == 0) mark = len(small) + 1

@@ -6,7 +6,7 @@ module deck_store
   use text_file, only: plain
   use deck_source, only: source_t
   use deck_keys, only: key_spec, group_row
-  use deck_values, only: value_t, unset, assumed, given, assignment_text
+  use deck_values, only: value_t, unset, following, given, assignment_text
   implicit none
   private
   public :: deck_t
@@ -16,6 +16,9 @@ module deck_store
     type(source_t) :: source
     type(key_spec), allocatable :: specs(:)
     type(value_t), allocatable :: values(:)
+    !> Whether runs of this deck vary its numbers. `resolved` then writes defaults that follow other
+    !> keys as comments, so that they follow them in runs of what it writes, too.
+    logical :: varied = .false.
   contains
     procedure :: has_group
     procedure :: is_set
@@ -178,7 +181,7 @@ contains
     row = self%silent(group, key)
     if (row == 0) return
     self%values(row)%reals = value
-    self%values(row)%status = assumed
+    self%values(row)%status = following
   end subroutine assume_reals
 
   pure subroutine assume_text(self, group, key, value)
@@ -189,7 +192,7 @@ contains
     row = self%silent(group, key)
     if (row == 0) return
     self%values(row)%text = value
-    self%values(row)%status = assumed
+    self%values(row)%status = following
   end subroutine assume_text
 
   !> Path of the file that a key names; a relative path begins at the folder of the deck.
@@ -253,8 +256,9 @@ contains
       text = text // '&' // trim(self%specs(i)%group) // new_line('a')
       do j = i + 1, size(self%specs)
         if (self%specs(j)%group /= self%specs(i)%group) exit
-        if (self%values(j)%status /= unset) &
-          text = text // assignment_text(self%specs(j), self%values(j))
+        if (self%values(j)%status == unset) cycle
+        if (self%varied .and. self%values(j)%status == following) text = text // '  !'
+        text = text // assignment_text(self%specs(j), self%values(j))
       end do
       text = text // '/' // new_line('a')
     end do

@@ -10,10 +10,10 @@ module deck_values
                        text_value, names_value
   implicit none
   private
-  public :: value_t, unset, assumed, given, interpret, convert, outside, assignment_text
+  public :: value_t, unset, assumed, following, given, interpret, convert, outside, assignment_text
 
-  !> Source of a value: none, the table or the program, the deck.
-  integer, parameter :: unset = 0, assumed = 1, given = 2
+  !> Source of a value: none, the table, other keys of the deck, the deck itself.
+  integer, parameter :: unset = 0, assumed = 1, following = 2, given = 3
   !> The value of one key. Only the component of the key's kind is used; names are in `text`, with
   !> blanks between them. For the row of a group, `at` is the position of the group in the deck.
   type :: value_t

@@ -4,6 +4,10 @@ module result_tables
   private
   public :: tables, columns_of
 
+  !> The radius of contact; the separation is 1.1 z0 for Lennard-Jones.
+  character(len=*), parameter :: in_contact = &
+    'where the separation is that of zero force plus a tenth of the law''s length; 0: no contact'
+
   !> A file, after '= ', with the groups that ask for it and its content; then its columns, each
   !> described as 'name [unit] meaning'. After '+ ' follow columns that exist only in some cases.
   character(len=*), parameter :: tables(*) = [character(len=200) :: &
@@ -13,7 +17,7 @@ module result_tables
     'h_centre [m] separation on the axis', &
     'displacement [m] h_centre - h0', &
     'load [N] negative: tension', &
-    'contact_radius [m] where the separation is 1.1 times that of zero force; 0 without contact', &
+    'contact_radius [m] ' // in_contact, &
     'stable [] 1: stable; 0: unstable, or a fold; -1: not examined', &
     'residual [] largest error of the equations, in units of the length of the force law', &
     'iterations [] products with the elastic operator', &
@@ -57,7 +61,7 @@ module result_tables
     'z [m] position of the drive, h0 - load/stiffness; NaN for a dead load', &
     'h0 [m] separation that undeformed bodies would have on the axis', &
     'load [N] negative: tension', &
-    'contact_radius [m] where the separation is 1.1 times that of zero force; 0 without contact', &
+    'contact_radius [m] ' // in_contact, &
     'stable [] 1: stable at this z; 0: unstable, or the start of a jump', &
     '= device_jumps.csv | with &device | One row for each jump, for each stiffness.', &
     'stiffness [N/m] of the spring; 0: dead load; Infinity: h0 is prescribed', &
@@ -77,7 +81,7 @@ module result_tables
     'load [N] negative: tension', &
     'h0 [m] separation that undeformed bodies would have on the axis', &
     'displacement [m] separation on the axis less h0', &
-    'contact_radius [m] where the separation is 1.1 times that of zero force; 0 without contact', &
+    'contact_radius [m] ' // in_contact, &
     'stable [] 1: stable at this load; 0: unstable', &
     'h0_error [m] estimated error of h0', &
     'displacement_error [m] estimated error of displacement', &
@@ -86,7 +90,7 @@ module result_tables
     'branch [] approach or retreat; two rows with one h0 and different loads are a jump', &
     'indentation [m] of undeformed bodies, minus h0', &
     'load [N] negative: tension', &
-    'contact_radius [m] where the separation is 1.1 times that of zero force; 0 without contact', &
+    'contact_radius [m] ' // in_contact, &
     'stiffness [N/m] derivative of load by indentation; NaN at the start of a jump', &
     'indentation_jkr [] over (pi^2 w^2 R/K^2)^(1/3), w surface energy, K = 4/3 E*', &
     'load_jkr [] over pi w R', &

@@ -49,7 +49,7 @@ contains
     if (allocated(scene%approximations)) call summarise_approximations(problem, summary)
     if (outcome%chosen%grid == unchosen) return
     quality = outcome%quality()
-    call describe_numerics(outcome, quality, summary)
+    call describe_numerics(scene, outcome, quality, summary)
     call take_places(problem, outcome%places, summary)
     call tell_branches(scene, problem, outcome, summary)
     if (allocated(outcome%timed)) call summarise_timed(scene, problem, outcome%timed, summary)
@@ -58,7 +58,7 @@ contains
       call take_readings(scene, problem, outcome%readings, outcome%places, summary)
     if (scene%regime) call summarise_regime(problem, outcome%places, summary)
     call judge_extent(problem, quality, summary)
-    call judge_layers(problem, quality, outcome%places, summary)
+    call judge_layers(problem, quality, summary)
     if (.not. outcome%differentiated) &
       call summary%fail_with('sensitivity: not all derivatives were found')
     call judge_resolution(outcome%chosen%grid == edge_locked, quality, summary)
@@ -67,7 +67,8 @@ contains
   end function summary_of
 
   !> Adds the chosen numerics, and the largest residual and error.
-  subroutine describe_numerics(outcome, quality, summary)
+  subroutine describe_numerics(scene, outcome, quality, summary)
+    type(scene_t), intent(in) :: scene
     type(experiment_result_t), intent(in) :: outcome
     type(quality_t), intent(in) :: quality
     type(summary_t), intent(inout) :: summary
@@ -80,6 +81,12 @@ contains
     if (quality%spacing > 0) call summary%set('spacing_over_neck', quality%spacing)
     if (allocated(outcome%error_estimate)) &
       call summary%set('error_estimate', outcome%error_estimate)
+    associate (numerics => scene%numerics)
+      if (outcome%chosen%grid == edge_locked .and. (allocated(numerics%nodes) .or. &
+        allocated(numerics%r_max) .or. allocated(numerics%panel_order))) call summary%note( &
+        'numerics: nodes, r_max and panel_order have no effect on meshes that follow from ' // &
+        'accuracy; grid = ''uniform'' and method = ''mixing'' have fixed ones')
+    end associate
   end subroutine describe_numerics
 
   !> Adds all numbers that are read at places, with their errors and derivatives.

@@ -7,8 +7,6 @@ module validity
   use layered_body, only: layered_body_t
   use layered_surface, only: layered_surface_t
   use records, only: quality_t
-  use reported_place, only: place_t, of_h0, of_load
-  use places, only: places_t
   use summary, only: summary_t
   implicit none
   private
@@ -74,6 +72,7 @@ contains
     type(summary_t), intent(inout) :: summary
     real(wp) :: strain
 
+    call judge_files(problem, quality, summary)
     if (quality%contact_radius > 0) call judge(summary, 'contact_over_radius', &
       problem%shape%slope(quality%contact_radius/problem%lateral)*problem%length/problem%lateral, &
       'the slope at the contact''s edge', 'the model is for half-spaces with small slopes')
@@ -83,6 +82,24 @@ contains
     if (strain > strained) call summary%warn('beyond the model: the largest pressure is ' // &
       rounded(strain) // ' of the stiffness; strains are no longer small')
   end subroutine judge_extent
+
+  !> Warns of states beyond the points of a profile or before those of a table.
+  subroutine judge_files(problem, quality, summary)
+    type(problem_t), intent(in) :: problem
+    type(quality_t), intent(in) :: quality
+    type(summary_t), intent(inout) :: summary
+
+    associate (law => problem%law, last => problem%shape%known_to)
+      if (quality%contact_radius/problem%lateral > last) call summary%warn('beyond the file ' // &
+        'of &shape: the contact reaches ' // rounded(quality%contact_radius) // ' m from the ' // &
+        'axis, the points ' // rounded(last*problem%lateral) // ' m; there the body goes on ' // &
+        'as a parabola')
+      if (.not. law%known_from > 0) return
+      if (quality%gap < law%gap_of(law%known_from)) call summary%warn('beyond the file of ' // &
+        '&tabulated: gaps are down to ' // rounded(law%separation_of(quality%gap)) // &
+        ' m, the points to ' // rounded(law%known_from) // ' m; below, the pressure is a power')
+    end associate
+  end subroutine judge_files
 
   !> Sets a length over the radius, or a slope, and warns if it is not small.
   subroutine judge(summary, key, part, what, why)
@@ -110,34 +127,28 @@ contains
 
   !> Warns of layers thinner than the range of the force, of soft layers compressed by a part of
   !> their thickness that is not small, and of strains below the top layer that are not small.
-  subroutine judge_layers(problem, quality, places, summary)
+  subroutine judge_layers(problem, quality, summary)
     type(problem_t), intent(in) :: problem
     type(quality_t), intent(in) :: quality
-    type(places_t), intent(in) :: places
     type(summary_t), intent(inout) :: summary
-    type(place_t) :: finish, lowest
-    real(wp) :: reach, deepest, force, strain
+    real(wp) :: reach, strain
     integer :: i
 
     select type (body => problem%body)
     type is (layered_body_t)
       reach = range_of(problem)
-      finish = places%place_of('end')
-      lowest = places%place_of('max_tension')
-      deepest = -problem%law%separation_of(finish%at(of_h0))
-      if (.not. places%has('end')) deepest = 0
-      force = problem%load*max(-lowest%at(of_load), abs(finish%at(of_load)))
       do i = 1, 2
         if (size(body%surface(i)%thickness) == 0) cycle
         associate (thickness => body%surface(i)%thickness*problem%lateral)
           if (minval(thickness) < reach) call summary%warn('beyond the model: a layer of ' // &
             rounded(minval(thickness)) // ' m is thinner than the range of the force, ' // &
             rounded(reach) // ' m; bulk elasticity does not hold for it')
-          if (body%bottom < 1 .and. deepest > strained*sum(thickness)) call summary%warn( &
+          if (body%bottom < 1 .and. quality%depth > strained*sum(thickness)) call summary%warn( &
             'beyond the model: the bodies are pressed together by ' // &
-            rounded(deepest/sum(thickness)) // ' of the thickness of the layers; ' // &
+            rounded(quality%depth/sum(thickness)) // ' of the thickness of the layers; ' // &
             'strains are no longer small')
-          strain = strain_below(body%surface(i), thickness, force, quality%contact_radius)
+          strain = strain_below(body%surface(i), thickness, quality%load, &
+            quality%contact_radius)
           if (strain > strained) call summary%warn('beyond the model: the strain below the ' // &
             'top layer is about ' // rounded(strain) // ', which is not small')
           exit

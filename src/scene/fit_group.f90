@@ -51,6 +51,7 @@ contains
       if (deck%has_group('measurement') .and. .not. deck%has_group('fit')) &
         call deck%mistake('measurement', '', 'needs &fit', error)
       if (.not. deck%has_group('fit')) return
+      deck%varied = .true.
       if (.not. deck%has_group('measurement')) then
         call deck%mistake('fit', '', 'needs &measurement', error)
         return

@@ -74,8 +74,9 @@ contains
     if (.not. scene%deck%has_group('layer') .or. allocated(error)) return
     associate (deck => scene%deck, bodies => scene%bodies)
       call deck%assume('layer', 'base', trim(merge('rigid  ', 'elastic', bodies%rigid)))
-      call deck%assume('layer', 'partner', trim(merge('rigid  ', 'elastic', bodies%rigid)))
       call deck%get('layer', 'body', body)
+      if (body /= 'both') &
+        call deck%assume('layer', 'partner', trim(merge('rigid  ', 'elastic', bodies%rigid)))
       call deck%get('layer', 'partner', partner)
       call check_layers(scene, error)
       if (allocated(error)) return

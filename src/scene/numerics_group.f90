@@ -21,9 +21,10 @@ contains
       real_key('numerics', 'accuracy', '', 'Relative accuracy of load and displacement.', &
                default='1e-6', low=1e-10_wp, high=1e-1_wp), &
       word_key('numerics', 'grid', 'auto uniform panels', 'Discretisation.', default='auto'), &
-      integer_key('numerics', 'nodes', 'Number of nodes.', 2, 20000, &
+      integer_key('numerics', 'nodes', 'Number of nodes of a fixed grid, which grid = ' // &
+                  '''uniform'' and method = ''mixing'' have.', 2, 20000, &
                   otherwise='from accuracy'), &
-      real_key('numerics', 'r_max', 'm', 'Radius at which the grid ends.', above=0.0_wp, &
+      real_key('numerics', 'r_max', 'm', 'Radius at which a fixed grid ends.', above=0.0_wp, &
                otherwise='from accuracy'), &
       word_key('numerics', 'convergence', 'residual displacement_change', 'Quantity that must ' // &
                'be small at convergence: the residual, or the change from one iteration to ' // &
@@ -41,7 +42,7 @@ contains
                above=0.0_wp, high=1.0_wp), &
       integer_key('numerics', 'anderson_depth', 'Number of earlier iterations that Anderson ' // &
                   'acceleration uses.', 1, 60, default='5'), &
-      integer_key('numerics', 'panel_order', 'Nodes of one panel of grid = ''panels''.', 4, 24, &
+      integer_key('numerics', 'panel_order', 'Nodes of one panel of a fixed grid.', 4, 24, &
                   otherwise='from accuracy')]
   end function numerics_keys
 

@@ -35,6 +35,7 @@ contains
     integer :: i
 
     if (.not. scene%deck%has_group('sensitivity')) return
+    scene%deck%varied = .true.
     if (scene%deck%has_group('drive')) then
       call take_for_drive(scene, error)
       return

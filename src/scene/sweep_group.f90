@@ -50,6 +50,7 @@ contains
     integer :: i
 
     if (.not. scene%deck%has_group('sweep')) return
+    scene%deck%varied = .true.
     allocate (scene%sweep)
     associate (deck => scene%deck, sweep => scene%sweep)
       if (deck%is_set('sweep', 'file')) then

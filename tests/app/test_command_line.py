@@ -88,6 +88,7 @@ def test_version_names_compiler_and_libraries(snapin):
         (["--out=", "good.nml"], "--out needs a folder"),
         (["good.nml", "good.nml"], "would both write to the folder good"),
         (["good.nml", "other.nml", "sub/good.nml"], "good.nml and sub/good.nml"),
+        (["--name", "good", "good.nml", "-"], "good.nml and - would both write"),
     ],
     ids=lambda value: " ".join(value) if isinstance(value, list) else "",
 )

@@ -134,6 +134,14 @@ def test_every_dead_load_lets_go_at_the_largest_tension(run):
             found.summary["max_tension"], rel=1e-8), sigma
 
 
+def test_a_load_that_underflows_far_out_is_no_jump_of_a_dead_load(run):
+    found = run(deck(bodies={"stiffness": 2e9}, shape={"kind": "sphere", "radius": 4.4e-4},
+                     morse={"surface_energy": 5e-3, "z0": 0.5e-9, "decay_length": 0.4e-9},
+                     equilibrium_path={"h0_end": -4e-9}, device={"stiffness": [6.5, 0.0]}))
+    assert np.isnan(numbers(found, "jump_in_load")[1])
+    assert len(found.warnings) == 1 and "no stable state is known" in found.warnings[0]
+
+
 def test_bodies_that_nothing_keeps_apart_jump_in_for_good(run):
     found = run(lennard_jones(0.87, part="attractive", equilibrium_path={"h0_end": -2.0},
                               device={"stiffness": [1.0]}))

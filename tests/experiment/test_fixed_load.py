@@ -74,3 +74,38 @@ def test_a_load_that_underflows_far_out_is_no_state_without_load(run, groups):
         hydrophobic={"energy": 0.139614, "decay_length": 4e-10},
         equilibrium_path={"h0_end": -3e-9}, fixed_load={"load": [0.0]}, **groups))
     assert found.table("fixed_load.csv")["h0"] == pytest.approx([-1.86793e-9], rel=1e-5)
+
+
+@pytest.mark.parametrize("groups, warned", [
+    ({"fixed_load": {"load": [1e-3]}}, "the slope at the contact's edge is 1.15"),
+    ({"device": {"stiffness": [10.0], "z_end": -2e-6}}, "the slope at the contact's edge is 0.35")])
+def test_states_far_beyond_the_end_of_the_path_are_judged_too(run, groups, warned):
+    """The path ends at a nanometre; a contact wider than the radius had no warning."""
+    found = run(deck(
+        bodies={"radius": 1e-6, "stiffness": 1e9},
+        force={"law": "lennard_jones", "hamaker": 1e-19, "z0": 0.4e-9},
+        equilibrium_path={"h0_end": -1e-9}, **groups))
+    assert warned in str(found.summary["warnings"])
+
+
+def test_states_beyond_the_points_of_files_have_a_warning(run, tmp_path):
+    r, h = np.linspace(0, 1e-7, 20), np.geomspace(3.9e-10, 1e-7, 200)
+    np.savetxt(tmp_path / "r.txt", np.column_stack([r, r**2 / 2e-6]))
+    pressure = 1e-19 / (6 * np.pi * h**3) * ((4e-10 / h)**6 - 1)
+    np.savetxt(tmp_path / "h.txt", np.column_stack([h, pressure]), "%.15e")
+    found = run(deck(
+        bodies={"stiffness": 1e9}, shape={"kind": "profile", "file": str(tmp_path / "r.txt")},
+        tabulated={"file": str(tmp_path / "h.txt"), "tail_exponent": 3},
+        equilibrium_path={"h0_end": -3e-8}, numerics={"accuracy": 1e-3}))
+    warnings = str(found.summary["warnings"])
+    assert "the contact reaches 1.87e-7 m" in warnings
+    assert "gaps are down to 3.79e-10 m" in warnings
+
+
+def test_a_film_pressed_through_by_a_load_beyond_the_path_has_a_warning(run):
+    found = run(deck(
+        bodies={"radius": 1e-5, "young": 70e9, "poisson": 0.2},
+        layer={"thickness": 1e-7, "young": 3e6, "poisson": 0.45},
+        force={"law": "lennard_jones", "surface_energy": 0.02, "z0": 2e-9},
+        equilibrium_path={"h0_end": -5e-9}, fixed_load={"load": [2e-6]}))
+    assert "0.301 of the thickness of the layers" in str(found.summary["warnings"])

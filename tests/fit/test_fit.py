@@ -207,11 +207,14 @@ def test_conventions_do_not_matter(branches, tmp_path):
                   {"units": ["nm", "nN"]}),
         "numpy": (table("g.csv", "# z force segment\n" + rows(" ", ".", z, force, segment)), {}),
         "semicolons": (table("h.csv", "z;force;segment\n" + rows(";", ",", z, force, segment)), {}),
+        "empty cells": (table("i.csv", ",z,spare,force,segment\n" + "".join(
+            f"0,{row.replace(',', ',,', 1)}\n"
+            for row in rows(",", ".", z, force, segment).splitlines())), {}),
     }
     for name, (file, measurement) in others.items():
         found = run(fit_deck(LENNARD_JONES, file, keys, measurement=measurement))
         # The same numbers in the same columns; of others rounding may go another way.
-        rel = 1e-6 if name in ("units", "numpy", "semicolons") else 1e-5
+        rel = 1e-6 if name in ("units", "numpy", "semicolons", "empty cells") else 1e-5
         for key in (STRENGTH, STIFFNESS):
             assert values_of(found)[key] == pytest.approx(values_of(first)[key], rel=rel), name
         sign = -1 if name == "grows" else 1

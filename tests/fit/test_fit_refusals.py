@@ -81,6 +81,8 @@ BAD_FILES = {
     "cells": ("z,force,segment\n1,2,0\n1,2\n", "2 columns where 3 columns are expected"),
     "words": ("z,force,segment\n1,two,0\n", "two is not a number"),
     "nan": ("z,force,segment\n1,nan,0\n", "not a finite number"),
+    "empty cell": ("z,force,segment\n1,,0\n", "nothing where a number is expected"),
+    "two columns of a name": ("z,force,segment,force\n1,2,0,3\n", "more than one column 'force'"),
 }
 
 

@@ -239,6 +239,16 @@ def test_a_drive_of_too_many_steps_says_so(run):
     assert 1 <= found.summary["error_estimate"] < math.inf
 
 
+def test_a_drive_may_begin_where_loads_underflow(run):
+    """Steps without any load became ever shorter."""
+    found = run(deck(bodies={"radius": 1e-5, "stiffness": 1e9},
+                     hydrophobic={"energy": 1e-3, "decay_length": 0.3e-9},
+                     hydration={"energy": 2e-3, "decay_length": 0.15e-9},
+                     drive={"velocity": 1e-6, "z_start": 4e-7, "z_turn": -5e-9}))
+    assert found.curve["load"][0] == 0
+    assert not found.warnings
+
+
 def test_a_largest_tension_at_the_end_has_a_warning(run):
     def drive(end):
         return run(deck(

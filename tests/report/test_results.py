@@ -6,6 +6,7 @@ import re
 import sys
 
 import f90nml
+import numpy as np
 import pytest
 from conftest import ROOT
 from support.processes import limited
@@ -232,3 +233,44 @@ def test_a_table_that_cannot_be_written_leaves_no_results(snapin, tmp_path, coun
     assert done.returncode == 1
     assert "classical.csv.partial: File too large" in done.stderr
     assert not [p for p in (tmp_path / "results/d").iterdir() if not p.name.endswith(".partial")]
+
+
+def test_contact_ends_a_tenth_of_the_length_of_the_law_above_the_gap_at_rest(run):
+    """For Morse's law this is far from 1.1 times the gap at rest."""
+    found = run(deck(
+        bodies={"radius": 1e-6, "stiffness": 1e9},
+        morse={"surface_energy": 0.02, "z0": 0.2e-9, "decay_length": 1e-9},
+        equilibrium_path={"h0_end": -2e-9}, profiles={"h0": [-2e-9]}, numerics={"accuracy": 1e-8}))
+    profile = found.table("profiles.csv")
+    radius = np.interp(0.2e-9 + 0.2e-9, profile["separation"], profile["r"])
+    assert found.curve["contact_radius"][-1] == pytest.approx(radius, rel=1e-3)
+    assert any("contact_radius [m]" in line and "plus a tenth of the law's length" in line
+               for line in found.curve.comments)
+
+
+FOLLOWERS = {
+    "hamaker": {"bodies": {"radius": 1e-6, "stiffness": 1e10}, "van_der_waals": {"hamaker": 1e-20},
+                "born": {"z0": 0.3e-9}, "dugdale": {"stress": 1e6, "range": 1e-9},
+                "equilibrium_path": {"h0_end": -1e-9},
+                "sweep": {"key": "van_der_waals.hamaker", "values": [1e-20, 2e-20]}},
+    "partner": {"bodies": {"radius": 1e-6, "young": [1e9, 2e9], "poisson": 0.3},
+                "layer": {"thickness": 1e-7, "young": 1e8, "poisson": 0.4, "body": "both"},
+                "force": {"law": "lennard_jones", "hamaker": 1e-20, "z0": 0.3e-9},
+                "equilibrium_path": {"h0_end": -1e-9}}}
+
+
+@pytest.mark.parametrize("case", FOLLOWERS)
+def test_a_default_that_follows_other_keys_follows_when_the_summary_runs_again(run, case):
+    first = run(deck(**FOLLOWERS[case]))
+    again = run((first.folder / "summary.nml").read_text())
+    table = "sweep.csv" if "sweep" in FOLLOWERS[case] else "curve.csv"
+    assert (again.folder / table).read_bytes() == (first.folder / table).read_bytes()
+
+
+@pytest.mark.parametrize("numerics, noted", [
+    ({"nodes": 50}, True), ({"grid": "panels", "r_max": 3.0}, True), ({"accuracy": 1e-5}, False),
+    ({"grid": "uniform", "nodes": 300}, False)])
+def test_nodes_that_have_no_effect_are_noted(run, numerics, noted):
+    """Without a note a study over the number of nodes looks converged at once."""
+    found = run(lennard_jones(0.1, loading=loading(4, 2, 1), numerics=numerics))
+    assert ("no effect" in str(found.summary.get("notes", ""))) == noted

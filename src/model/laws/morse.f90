@@ -65,19 +65,27 @@ contains
     allocate (law, source=this)
   end subroutine read_law
 
-  !> exp(-2 (gap - 1)), finite at any gap.
+  !> exp(-2 (gap - 1)), finite at any gap and constant where it would underflow.
   elemental real(wp) function decay(gap)
     real(wp), intent(in) :: gap
 
     decay = exp(max(min(-2*(gap - 1), largest_exponent), -largest_exponent))
   end function decay
 
+  !> The same, and 0 where it is constant: there the energy has no derivative.
+  elemental real(wp) function falling(gap)
+    real(wp), intent(in) :: gap
+
+    falling = 0
+    if (2*(gap - 1) < largest_exponent) falling = decay(gap)
+  end function falling
+
   pure function pressure(self, gap) result(value)
     class(morse_t), intent(in) :: self
     real(wp), intent(in) :: gap(:)
     real(wp) :: value(size(gap))
 
-    value = 4*decay(gap)*(decay(gap) - 1)
+    value = 4*falling(gap)*(falling(gap) - 1)
   end function pressure
 
   pure function slope(self, gap) result(value)
@@ -85,7 +93,7 @@ contains
     real(wp), intent(in) :: gap(:)
     real(wp) :: value(size(gap))
 
-    value = 8*decay(gap)*(1 - 2*decay(gap))
+    value = 8*falling(gap)*(1 - 2*falling(gap))
   end function slope
 
   pure function energy(self, gap) result(value)

@@ -133,6 +133,7 @@ contains
     call deck%get('tabulated', 'tail_exponent', exponent)
     call deck%get('tabulated', 'tail_decay_length', decay_length)
     this%length = table%value(1, 1)
+    this%known_from = this%length
     g = table%value(:, 1)/this%length
     this%pressure_unit = maxval(abs(table%value(:, 2)))
     value = table%value(:, 2)/max(this%pressure_unit, tiny(1.0_wp))

@@ -130,6 +130,7 @@ contains
     this%radius = (unit*last)*(unit*last/length)
     this%exponent = 0
     this%breaks = this%at(2:)
+    this%known_to = this%at(n)
   end subroutine take_points
 
   !> A cubic of the distance from its left end as a cubic of the distance from its right end, which
