@@ -46,18 +46,54 @@ contains
     class(shape_t), intent(in) :: shape
     logical, intent(in) :: about_axis
     real(wp), intent(in) :: d, z_length
-    real(wp), allocatable :: lengths(:), kinks(:), ends(:)
-    integer :: i, n
+    real(wp), allocatable :: lengths(:), kinks(:), ends(:), rims(:)
+    integer :: i
 
     allocate (kinks(0), lengths(0))
     if (about_axis .and. allocated(shape%breaks)) kinks = shape%breaks
     if (size(kinks) > few) kinks = kinks(:0)
     ends = asinh(kinks/d)
     ends = [0.0_wp, pack(ends, ends < z_length), z_length]
+    rims = pack(kinks, .not. shape%height(kinks) > 0)
     do i = 1, size(ends) - 1
-      n = ceiling((ends(i + 1) - ends(i))/merge(between_kinks, short, size(kinks) > 0))
-      lengths = [lengths, spread((ends(i + 1) - ends(i))/n, 1, n)]
+      lengths = [lengths, graded_panels(rims, d, ends(i), ends(i + 1), &
+        merge(between_kinks, short, size(kinks) > 0))]
     end do
   end function panels_for
+
+  !> Lengths in z of panels between two places, at most `longest`. They are also short in comparison
+  !> with the distance from the rim of a flat face or, beside it, with the length over which the
+  !> undeformed bodies separate there: on a wide face, gaps seen before the edge comes to the rim do
+  !> not show how the pressure changes there.
+  pure function graded_panels(rims, d, from, to, longest) result(lengths)
+    real(wp), intent(in) :: rims(:), d, from, to, longest
+    real(wp), allocatable :: lengths(:)
+    !> Number of places at which the length is evaluated.
+    integer, parameter :: places = 200
+    real(wp) :: step, z, away, panels(0:places)
+    integer :: i, n
+
+    step = (to - from)/places
+    panels(0) = 0
+    do i = 1, places
+      z = from + (i - 0.5_wp)*step
+      away = max(1.0_wp, minval(abs(rims - d*sinh(z))))
+      panels(i) = panels(i - 1) + step/(longest*min(1.0_wp, away/(d*cosh(z))))
+    end do
+    n = ceiling(panels(places))
+    lengths = [(place_of(i*panels(places)/n) - place_of((i - 1)*panels(places)/n), i=1, n)]
+
+  contains
+
+    !> The length before which there is a number of panels.
+    pure real(wp) function place_of(number)
+      real(wp), intent(in) :: number
+      integer :: k
+
+      k = count(panels(1:places - 1) < number)
+      place_of = step*(k + (number - panels(k))/(panels(k + 1) - panels(k)))
+    end function place_of
+
+  end function graded_panels
 
 end module shape_panels
