@@ -1,6 +1,6 @@
 !> One pass of a drive through its motion, step by step, with its readings. The steps follow the
-!> change of the load and the motion of the contact edge, or the deck's step; a pass after a
-!> complete one halves the steps of that pass.
+!> change of the load and, of bodies with memory, the motion of the contact edge, or the deck's step;
+!> a pass after a complete one halves the steps of that pass.
 module timed_pass
   use kinds, only: wp, pi
   use mesh_plan, only: contact
@@ -21,7 +21,7 @@ module timed_pass
   public :: go_through
 
   !> Largest deviation of the load from a line in a step, over the unit of load; largest motion of
-  !> the contact edge in a step, over the smallest feature there. Longest and first step, as
+  !> the contact edge in a step of bodies with memory, over the smallest feature there. Longest and first step, as
   !> fractions of a way.
   real(wp), parameter :: bend = 8.0e-3_wp, edge_moves = 2, longest_part = 0.05_wp, &
     first_part = 1.0e-3_wp
@@ -174,6 +174,8 @@ contains
         missed = max(missed, abs(r(2, 3) - line)/(bend*unit))
       end if
     end associate
+    ! Elastic bodies do not remember where their edge was.
+    if (size(steps%creep%time) == 0) return
     if (from%mesh >= contact .and. at%mesh >= contact .and. steps%meshes%traceable) missed = &
       max(missed, (abs(at%state%scale - from%state%scale)/ &
       (edge_moves*steps%finest(from%state%scale)))**2)
