@@ -1,6 +1,6 @@
 !> One pass of a drive through its motion, step by step, with its readings. The steps follow the
-!> change of the load and, of bodies with memory, the motion of the contact edge, or the deck's step;
-!> a pass after a complete one halves the steps of that pass.
+!> change of the load and, of bodies with memory, the motion of the contact edge, or are those of
+!> the deck; a pass after a complete one halves the steps of that pass.
 module timed_pass
   use kinds, only: wp, pi
   use mesh_plan, only: contact
@@ -21,8 +21,8 @@ module timed_pass
   public :: go_through
 
   !> Largest deviation of the load from a line in a step, over the unit of load; largest motion of
-  !> the contact edge in a step of bodies with memory, over the smallest feature there. Longest and first step, as
-  !> fractions of a way.
+  !> the contact edge in a step of bodies with memory, over the smallest feature there. Longest and
+  !> first step, as fractions of a way.
   real(wp), parameter :: bend = 8.0e-3_wp, edge_moves = 2, longest_part = 0.05_wp, &
     first_part = 1.0e-3_wp
   !> Number of steps after a rejected one before longer steps are tried again.
