@@ -1,9 +1,8 @@
 !> One pass of a drive through its motion, step by step, with its readings. The steps follow the
-!> change of the load and the motion of the contact edge, or the deck's step; a pass after a
-!> complete one halves the steps of that pass.
+!> change of the load and, of bodies with memory, the motion of the contact edge, or are those of
+!> the deck; a pass after a complete one halves the steps of that pass.
 module timed_pass
   use kinds, only: wp, pi
-  use dimensionless_problem, only: problem_t
   use mesh_plan, only: contact
   use listener, only: listener_t
   use experiment_request, only: request_t
@@ -11,7 +10,7 @@ module timed_pass
   use time_instant, only: instant_t
   use time_stepper, only: time_stepper_t
   use time_jump, only: step_along
-  use rest, only: begin_at_rest
+  use rest, only: begin_at_rest, load_at_rest, longest_step
   use drained_way, only: step_drained
   use journal, only: journal_t
   use timed_journal, only: keep, recall
@@ -22,8 +21,8 @@ module timed_pass
   public :: go_through
 
   !> Largest deviation of the load from a line in a step, over the unit of load; largest motion of
-  !> the contact edge in a step, over the smallest feature there. Longest and first step, as
-  !> fractions of a way.
+  !> the contact edge in a step of bodies with memory, over the smallest feature there. Longest and
+  !> first step, as fractions of a way.
   real(wp), parameter :: bend = 8.0e-3_wp, edge_moves = 2, longest_part = 0.05_wp, &
     first_part = 1.0e-3_wp
   !> Number of steps after a rejected one before longer steps are tried again.
@@ -58,6 +57,7 @@ contains
     call recall(journal, steps, at, now)
     if (now%ended) return
     if (now%held == 0) then
+      now%load_unit = unit_of_load(drive, before, steps)
       call begin_at_rest(steps, drive%position(0), at, now%result%begun)
       now%result%lost = .not. now%result%begun
       if (now%result%lost) return
@@ -113,11 +113,15 @@ contains
     type(instant_t), intent(inout) :: at
     type(pass_t), intent(inout) :: now
     type(instant_t) :: from
-    real(wp) :: whole, end, moved, shortest
+    real(wp) :: whole, end, moved, shortest, way_length
 
     whole = drive%lasts(way)
     shortest = max(1.0e-8_wp*whole, min(1.0e-5_wp*whole, 1.0e-4_wp*steps%creep%shortest()))
     if (.not. now%step > 0) now%step = first_part*whole
+    ! Without adhesion, a long step may lead from a load of zero far into contact.
+    way_length = abs(drive%position(way) - drive%position(way - 1))
+    if (.not. steps%meshes%traceable .and. way_length > 0) now%step = min(now%step, &
+      longest_step(steps, at)*whole/way_length)
     if (allocated(request%drive%time_step)) now%step = 2*request%drive%time_step
     end = at%time + now%step
     if (end + 0.01_wp*now%step > whole) end = whole
@@ -156,30 +160,42 @@ contains
     type(time_stepper_t), intent(in) :: steps
     type(instant_t), intent(in) :: from, at
     type(pass_t), intent(in) :: now
-    real(wp) :: line
+    real(wp) :: line, unit
 
     missed = 0.05_wp
+    ! Creeping bodies are stiffer than bodies at rest.
+    unit = now%load_unit
+    if (.not. steps%meshes%traceable) unit = max(unit, now%result%largest_load)
     associate (r => now%recent)
       if (now%recently < 3 .or. .not. r(1, 2) > r(1, 1)) then
         missed = 1
-      else if (now%result%largest_load > 0) then
+      else
         line = r(2, 2) + (r(2, 2) - r(2, 1))*(r(1, 3) - r(1, 2))/(r(1, 2) - r(1, 1))
-        missed = max(missed, abs(r(2, 3) - line)/(bend*load_unit(steps%problem, now)))
+        missed = max(missed, abs(r(2, 3) - line)/(bend*unit))
       end if
     end associate
+    ! Elastic bodies do not remember where their edge was.
+    if (size(steps%creep%time) == 0) return
     if (from%mesh >= contact .and. at%mesh >= contact .and. steps%meshes%traceable) missed = &
       max(missed, (abs(at%state%scale - from%state%scale)/ &
       (edge_moves*steps%finest(from%state%scale)))**2)
   end function missed
 
-  !> The unit of load: a pull-off or, without adhesion, the largest load so far.
-  real(wp) function load_unit(problem, now)
-    type(problem_t), intent(in) :: problem
-    type(pass_t), intent(in) :: now
+  !> The unit of load for the choice of steps: a pull-off or, without adhesion, the load at rest at
+  !> the lowest position, which the largest load of the drive exceeds. Compared with it, the loads
+  !> of bodies far apart are small from the beginning, and steps are long there.
+  real(wp) function unit_of_load(drive, before, steps) result(unit)
+    type(motion_t), intent(in) :: drive
+    type(pass_t), intent(in) :: before
+    type(time_stepper_t), intent(inout) :: steps
 
-    load_unit = max(now%result%largest_load, tiny(1.0_wp))
-    if (problem%law%adhesion > 0) load_unit = pi*problem%law%adhesion
-  end function load_unit
+    unit = tiny(1.0_wp)
+    if (steps%meshes%traceable) then
+      unit = pi*steps%problem%law%adhesion
+    else if (before%held == 0) then
+      unit = max(unit, load_at_rest(steps, minval(drive%position)))
+    end if
+  end function unit_of_load
 
   !> Takes the halves of a step of the previous pass.
   subroutine halve_step(drive, way, before, steps, at, now)

@@ -53,6 +53,8 @@ module timed_record
     type(timed_result_t) :: result
     integer :: held = 0, way = 0, halved = 1
     real(wp) :: began = 0, step = 0
+    !> The load to which deviations of loads are compared, units of the problem.
+    real(wp) :: load_unit = 0
     !> Deviation of the last attempted step, if it was too large; otherwise 0.
     real(wp) :: missed = 0
     logical :: ended = .false.

@@ -1,7 +1,6 @@
 !> A drive that moves in time, and its results. The motion is simulated in several passes, each with
 !> all steps halved and more nodes for the memory; the error is the difference between the last two
-!> passes, times a margin. The steps of the first pass follow the change of the load and the motion
-!> of the contact edge, or the deck's step.
+!> passes, times a margin.
 module timed_run
   use kinds, only: wp, pi
   use clock, only: seconds

@@ -7,7 +7,6 @@ module remembering
   use kinds, only: wp, pi
   use discretisation, only: first_node
   use potential_energy, only: energy_of_surface
-  use linear_algebra, only: multiply
   use creep, only: creep_t
   use material, only: material_t
   use solver, only: solver_t
@@ -117,10 +116,11 @@ contains
 
     associate (grid => self%meshes%grid(at%mesh), p => at%state%pressure, c => at%state%scale)
       allocate (rise(size(grid%kernel, 1)))
-      call multiply(grid%kernel, size(p), p, rise)
+      ! Without the memory, at the coupling of the present step.
+      call self%operator%deform(self%problem, grid, c, size(p), p, rise)
       energy = energy_of_surface(self%equations_t, at%mesh, at%state) + &
         0.5_wp*self%compliance*at%state%load**2 + &
-        2*pi*self%instant*c**3*sum(grid%weight(:size(p))*p*rise(first_node:))
+        pi*self%instant/self%problem%coupling*c**2*sum(grid%weight(:size(p))*p*rise(first_node:))
     end associate
     do k = 1, size(self%creep%share)
       energy = energy + 2*pi*self%instant*self%creep%share(k)*sum(self%material%weight* &

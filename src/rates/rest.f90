@@ -13,11 +13,11 @@ module rest
   use time_stepper, only: time_stepper_t
   implicit none
   private
-  public :: begin_at_rest
+  public :: begin_at_rest, load_at_rest, longest_step
 
-  !> Step of the position on the way to the initial state, over the gap, and the shortest step, over
-  !> the gap.
-  real(wp), parameter :: part_of_gap = 0.1_wp, least_part = 1.0e-5_wp
+  !> Step of the position on the way to the initial state, over the gap; the shortest step over the
+  !> longest; ratio of a step to the one before if there was a solution.
+  real(wp), parameter :: part_of_gap = 0.1_wp, least_part = 1.0e-4_wp, longer = 1.5_wp
 
 contains
 
@@ -42,12 +42,14 @@ contains
       scale_at(steps%problem%shape, steps%meshes, far))
     at%position = far
     call solve_relaxed(steps, far, state, at, found)
-    step = part_of_gap
+    step = 1
     do while (found .and. at%position > position)
-      next = max(position, at%position - step*max(at%state%axis_gap, 1.0_wp))
+      next = max(position, at%position - step*longest_step(steps, at))
       state = at%state
       call solve_relaxed(steps, next, state, at, found)
-      if (.not. found) then
+      if (found) then
+        step = min(1.0_wp, longer*step)
+      else
         step = 0.3_wp*step
         found = step > least_part
         if (.not. found) exit
@@ -61,6 +63,32 @@ contains
     if (allocated(fluid)) call move_alloc(fluid, steps%drainage)
     if (found) steps%before = at
   end subroutine begin_at_rest
+
+  !> The longest step of the position (law's lengths) over which states are similar: a part of the
+  !> gap. Without adhesion, deep contacts are similar too, and it is a part of the distance
+  !> from the position where bodies begin to deform each other.
+  pure real(wp) function longest_step(steps, at) result(longest)
+    type(time_stepper_t), intent(in) :: steps
+    type(instant_t), intent(in) :: at
+
+    longest = at%state%axis_gap
+    if (.not. steps%meshes%traceable) longest = abs(at%position - steps%meshes%level)
+    longest = part_of_gap*max(longest, 1.0_wp)
+  end function longest_step
+
+  !> The load of relaxed bodies at a position after a slow approach. If a state on the way is not
+  !> found, it is the load at the last position before it.
+  real(wp) function load_at_rest(steps, position) result(load)
+    type(time_stepper_t), intent(inout) :: steps
+    real(wp), intent(in) :: position
+    type(instant_t) :: at
+    logical :: found
+
+    call begin_at_rest(steps, position, at, found)
+    load = 0
+    if (allocated(at%state%gap)) load = at%state%load
+    call steps%frozen%forget()
+  end function load_at_rest
 
   !> Solves for the same state as a step of zero duration, with the delayed deformation from the
   !> material's mesh. The deformations computed on the two meshes differ slightly; this difference

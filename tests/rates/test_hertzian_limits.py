@@ -1,14 +1,17 @@
-"""Claims about bodies that remember and only repel: as the repulsion hardens they are Hertz's, of
-which load and depth are known in closed form (Lee and Radok; Ting on the way back)."""
+"""Claims about drives of bodies that only repel: as the repulsion hardens those that remember are
+Hertz's, of which load and depth are known in closed form (Lee and Radok; Ting on the way back)."""
+
+import math
 
 import numpy as np
 import pytest
 from support.calculus import zero
-from support.scenes import exponential
+from support.scenes import UNIT, deck, exponential
 
 # Depth in decay lengths of the repulsion, and stiffness at rest over that at once.
 DEPTH, RELAXED = 1000.0, 0.25
 MODULUS = 0.5  # E* at once
+EXPONENTIAL = {"law": "exponential", "p0": 1e-2, "decay_length": 1.0}
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(40)
 
 
@@ -63,3 +66,45 @@ def test_depth_under_a_constant_load_relaxes_exponentially(run):
     assert np.ptp(load) < 1e-3 * load[0]
     compliance = (1 + (1 / RELAXED - 1) * (1 - np.exp(-time))) / MODULUS
     np.testing.assert_allclose((-curve["h0"][dwell])**1.5, 0.75 * load * compliance, rtol=0.01)
+
+
+def far_drive(bodies, z_end=0.0, **groups):
+    """A drive through a thousand decay lengths without any load."""
+    return deck(bodies=bodies, force=EXPONENTIAL, numerics={"accuracy": 1e-4}, **groups,
+                drive={"velocity": 1.0, "z_start": 1000.0, "z_turn": -25.0, "z_end": z_end})
+
+
+@pytest.mark.parametrize("stiffness", [1.0, 1e6])
+def test_steps_from_far_away_are_long_until_there_is_a_load(run, stiffness):
+    bodies = {"radius": 1.0, "stiffness": stiffness}
+    found = run(far_drive(bodies))
+    summary = found.summary
+    assert summary["time_steps"] < 2000
+    assert summary["error_estimate"] < 1e-4
+    path = run(deck(bodies=bodies, force=EXPONENTIAL, equilibrium_path={"h0_end": 0.0})).curve
+    assert summary["end_load"] == pytest.approx(path["load"][-1], rel=1e-6)
+    if stiffness > 1:
+        # Rigid bodies.
+        assert summary["end_load"] == pytest.approx(2 * math.pi * EXPONENTIAL["p0"], rel=1e-6)
+    # Elastic bodies give back the whole energy.
+    assert abs(summary["energy_dissipated"]) <= summary["energy_dissipated_error"]
+    assert summary["energy_dissipated_error"] < 1e-4 * found.curve["load"].max()
+
+
+def test_creeping_bodies_dissipate_the_same_energy_from_near_and_from_far(run):
+    creep = {"stiffness_relaxed": 0.1, "retardation_time": 10.0}
+    far = run(far_drive(UNIT, 20.0, viscoelastic=creep)).summary
+    near = run(deck(bodies=UNIT, force=EXPONENTIAL, numerics={"accuracy": 1e-4},
+                    viscoelastic=creep, drive={"velocity": 1.0, "z_start": 20.0, "z_turn": -25.0,
+                                               "z_end": 20.0, "time_step": 0.01})).summary
+    key = "energy_dissipated"
+    assert far["time_steps"] < 5000
+    assert abs(far[key] - near[key]) <= far[key + "_error"] + near[key + "_error"]
+    assert far[key + "_error"] < 1e-4 * far[key]
+
+
+def test_a_drive_may_begin_deep_in_contact(run):
+    found = run(deck(bodies=UNIT, force=EXPONENTIAL, numerics={"accuracy": 1e-2}, drive={
+        "velocity": 1.0, "z_start": -1e4, "z_turn": -1.5e4}))
+    assert found.curve["load"][0] == pytest.approx(2 / 3 * 1e6, rel=0.01)
+    assert found.cost["iterations"] < 1e5

@@ -58,6 +58,40 @@ def test_an_elastic_body_under_a_step_or_waves_has_its_path(run, groups, low):
         assert near(found, key, path[key])
 
 
+LAYERED = {"bodies": {"radius": 10e-6, "young": 70e9, "poisson": 0.2},
+           "layer": {"thickness": 100e-9, "young": 3e6, "poisson": 0.45, "body": "1"}}
+
+
+def test_a_cycle_of_layered_bodies_dissipates_the_energy_of_their_jumps(run):
+    bodies = LAYERED | {"force": {"law": "lennard_jones", "surface_energy": 0.02, "z0": 2e-9}}
+    path = run(deck(**bodies, equilibrium_path={"h0_end": -30e-9})).summary
+    found = run(deck(**bodies, numerics={"accuracy": 1e-3}, drive={
+        "velocity": 1e-6, "z_start": 30e-9, "z_turn": -30e-9})).summary
+    assert found["error_estimate"] < 1e-3 and found["time_steps"] < 3000
+    for key, exact in (("max_tension", path["max_tension"]),
+                       ("energy_dissipated", path["energy_lost"])):
+        assert near(found, key, exact)
+        assert found[key + "_error"] < 5e-3 * exact
+
+
+def test_layered_bodies_in_contact_store_the_work_of_a_drive_without_jumps(run):
+    found = run(deck(**LAYERED, hydration={"pressure": 1e5, "decay_length": 1e-9}, drive={
+        "velocity": 1e-6, "z_start": 30e-9, "z_turn": -10e-9, "z_end": -5e-9}))
+    assert found.curve["load"][-1] > 0.2 * found.curve["load"].max()
+    assert near(found.summary, "energy_dissipated", 0.0)
+    assert found.summary["energy_dissipated_error"] < 1e-4 * 1e-9 * found.curve["load"].max()
+
+
+def test_strong_adhesion_takes_few_steps_without_memory(run):
+    path = at_rest(run, 20.0)
+    found = run(scene(20.0, start=30.0, turn=-20.0)).summary
+    assert found["time_steps"] < 1500
+    for key, exact in (("max_tension", path["max_tension"]),
+                       ("energy_dissipated", path["energy_lost"])):
+        assert near(found, key, exact)
+        assert found[key + "_error"] < 2e-4 * exact
+
+
 def test_fast_bodies_are_those_at_once_and_slow_ones_those_at_rest(run):
     fast = run(scene(0.1, 0.5, velocity=FAST)).summary["max_tension"]
     slow, slower = (run(scene(0.1, 0.5, velocity=velocity, accuracy=1e-3)).summary["max_tension"]
