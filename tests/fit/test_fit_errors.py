@@ -55,6 +55,13 @@ def test_a_modulus_that_hardly_shows_is_within_its_errors(shallow, tmp_path, see
     assert abs(fit["estimate"][2]) < 4 * fit["standard_error"][2]
 
 
+def test_errors_grow_where_the_farthest_trial_is_nearer_than_three_of_them(shallow, tmp_path):
+    """Where the search may go no farther than two errors, nothing was examined."""
+    start = changed(STIFF, {STIFFNESS: TRUTH[STIFFNESS] / 100})
+    fit = fit_of(tmp_path, shallow.measure(300, NOISE, 8), start)
+    assert fit["upper_95"][1] > TRUTH[STIFFNESS]
+
+
 def test_the_ends_of_intervals_are_less_likely_than_the_estimate(shallow, tmp_path):
     """With the modulus held at either end of its 95 % interval and the others found again, chi
     squared is larger by nearly four at least, also where its rise ends soon."""
