@@ -1,8 +1,8 @@
 !> The coordinate s of the equilibrium path, in which the path has no folds and which increases
 !> inward. On meshes about the axis s is minus the logarithm of the gap on the axis, less nine
-!> tenths of the gap at rest; within the gap at rest, to which flat faces may be pressed, it continues
-!> this logarithm with its curvature, and is proportional to the gap far within. On other meshes it is the logarithm of the radius of the
-!> edge or front to which they are locked (`mesh_plan`).
+!> tenths of the gap at rest; within the gap at rest, to which flat faces may be pressed, it goes on
+!> with the same slope and curvature, and far within it is proportional to the gap. On other meshes
+!> it is the logarithm of the radius of the edge or front to which they are locked (`mesh_plan`).
 module path_coordinate
   use kinds, only: wp
   use force_law, only: force_law_t
