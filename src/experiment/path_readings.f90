@@ -11,7 +11,7 @@ module path_readings
   use curve_states, only: path_state_t, states_of_points, states_where
   use dimensionless_problem, only: problem_t
   use records, only: quality_t
-  use device, only: driven_t, drive_bodies
+  use device, only: driven_t, states_on, drive_bodies
   use path_stepper, only: path_stepper_t
   implicit none
   private
@@ -63,10 +63,7 @@ contains
       readings%node = states_of_points(steps%solver_t, path)
       readings%traced_from = path%point(path%undeformed + 1)%state%h0
       readings%undeformed_from = path%point(1)%state%h0
-      if (allocated(request%device)) then
-        call run_device(request, steps, readings)
-        call cover(readings%node, steps%problem, readings%quality)
-      end if
+      if (allocated(request%device)) call run_device(request, steps, readings)
       if (allocated(request%fixed_load)) call find_loaded(request%fixed_load%load/ &
         steps%problem%load, steps, readings)
       if (request%table) then
@@ -124,7 +121,7 @@ contains
     class(request_t), intent(in) :: request
     class(path_stepper_t), intent(inout) :: steps
     type(path_readings_t), intent(inout) :: readings
-    integer :: i
+    integer :: i, k
 
     associate (device => request%device, problem => steps%problem)
       allocate (readings%device(max(1, size(device%stiffness))))
@@ -140,6 +137,10 @@ contains
           readings%device(i)%stiffness = device%stiffness(i)
         end if
         readings%solved = readings%solved .and. readings%device(i)%solved
+        ! The path goes on beyond the states of the drive, as far as its last step happened to go.
+        do k = 1, size(readings%device(i)%leg)
+          call cover(states_on(readings%node, readings%device(i)%leg(k)), problem, readings%quality)
+        end do
       end do
     end associate
   end subroutine run_device

@@ -2,14 +2,14 @@
 !> tell apart, bounds that decide a value.
 module fit_doubts
   use kinds, only: wp
-  use text, only: rounded
+  use text, only: brief, rounded, rounded_to
   use namelist_writer, only: line_t
   use fit_request, only: unknown_t, fitted_of, farthest_off
   use lack_of_fit, only: lack_t
   use fit_errors, only: fitted_t
   use held_numbers, only: held_t
   use fit_run, only: fit_outcome_t
-  use measured_checks, only: open_end
+  use measured_checks, only: open_end, find_saturated
   implicit none
   private
   public :: doubts_of
@@ -52,6 +52,7 @@ contains
     end associate
     if (.not. stopped) call doubt_jumps(outcome, lines)
     call doubt_end(outcome, lines)
+    call doubt_signal(outcome, lines)
   end function doubts_of
 
   !> Doubt about an unknown that ends where the search may not go farther from the deck's value.
@@ -158,6 +159,27 @@ contains
         'drifts, correct it')
     end associate
   end subroutine doubt_end
+
+  !> Doubt about a signal that stays at its end, as that of a detector at the end of its range.
+  subroutine doubt_signal(outcome, lines)
+    type(fit_outcome_t), intent(in) :: outcome
+    type(line_t), allocatable, intent(inout) :: lines(:)
+    integer :: first, last
+    real(wp) :: step
+
+    associate (data => outcome%curve%data)
+      call find_saturated(data%measured, data%noise, first, last)
+      if (last == 0) return
+      associate (z => data%measured%z(first:last))
+        step = (maxval(z) - minval(z))/(size(z) - 1)
+        call add(lines, 'the signal is ' // rounded(data%measured%signal(last)) // ' in ' // &
+          brief(size(z)) // ' samples in a row, and nowhere beyond: if the detector was at ' // &
+          'the end of its range, leave them out, skip = ' // &
+          rounded_to(minval(z) - step/2, step/10) // ', ' // &
+          rounded_to(maxval(z) + step/2, step/10))
+      end associate
+    end associate
+  end subroutine doubt_signal
 
   !> Doubts about jumps of the data that the model does not have there.
   subroutine doubt_jumps(outcome, lines)

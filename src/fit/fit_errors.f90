@@ -3,7 +3,7 @@
 module fit_errors
   use kinds, only: wp
   use linear_algebra, only: singular_values
-  use fit_request, only: unknown_t, fitted_of, value_by_fitted
+  use fit_request, only: unknown_t, fitted_of, value_by_fitted, farthest_off
   use curve_residuals, only: curve_residuals_t
   use lack_of_fit, only: lack_t, lack_in
   implicit none
@@ -122,29 +122,37 @@ contains
 
   !> Widens the errors where the sum of squares rises less than its derivatives promise: a modulus
   !> to which a curve is hardly sensitive has no upper end, whatever the derivatives at the best
-  !> value. The deviation of a side then is that with which three of it have the rise of nine.
+  !> value. The deviation of a side then is that with which three of it have the rise of nine; if
+  !> bounds are nearer, or values of which there is no model, that by the rise of the farthest ones.
   !> better: allocated if a smaller sum of squares was found on the way, with its values; if it is
   !> absent, a smaller sum counts as one that does not rise.
   subroutine widen(residuals, fitted, better)
     type(curve_residuals_t), intent(inout) :: residuals
     type(fitted_t), intent(inout) :: fitted
     real(wp), allocatable, intent(out), optional :: better(:)
-    real(wp) :: value(size(fitted%value)), far, rise
+    real(wp) :: value(size(fitted%value)), far, rise, room
     logical :: found
     integer :: j, way, step
 
     do j = 1, size(value)
       do way = 1, 2
         value = fitted%value
+        room = room_for(residuals%curve%unknown(j), fitted%value(j), way == 2)
         do step = 1, most_steps
-          far = out_to*fitted%side(way, j)
+          far = min(out_to*fitted%side(way, j), room)
+          ! The bound decides, and not the data.
+          if (far < fitted%side(way, j)) exit
           call go_to(residuals, fitted, j, merge(far, -far, way == 2), value, rise, found)
-          if (.not. found) exit
+          if (.not. found) then
+            value = fitted%value
+            room = 0.5_wp*far
+            cycle
+          end if
           if (rise < -1 .and. present(better)) then
             better = value
             return
           end if
-          if (rise > (1 - lacking)*out_to**2) exit
+          if (rise > (1 - lacking)*(far/fitted%side(way, j))**2) exit
           ! A rise that has ended would make this step endless.
           fitted%side(way, j) = min(2*fitted%side(way, j), far/sqrt(max(rise, tiny(rise))))
         end do
@@ -191,6 +199,25 @@ contains
       found = rise < huge(rise)
     end associate
   end subroutine go_to
+
+  !> How far a fitted number may move upward or downward from its best value.
+  pure real(wp) function room_for(unknown, value, upward) result(room)
+    type(unknown_t), intent(in) :: unknown
+    real(wp), intent(in) :: value
+    logical, intent(in) :: upward
+    real(wp), parameter :: within = 1 - 1.0e-6_wp
+    real(wp) :: sign, u
+
+    sign = merge(1, -1, upward)
+    u = fitted_of(unknown, value)
+    room = huge(room)
+    if (unknown%in_log) room = farthest_off - sign*u
+    if (upward .and. allocated(unknown%upper)) &
+      room = min(room, fitted_of(unknown, unknown%upper) - u)
+    if (.not. upward .and. allocated(unknown%lower)) &
+      room = min(room, u - fitted_of(unknown, unknown%lower))
+    room = within*room
+  end function room_for
 
   !> The values of fitted numbers, moved to the nearest bound if they are beyond it.
   elemental real(wp) function within_bounds(unknown, u) result(value)

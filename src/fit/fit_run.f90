@@ -13,7 +13,7 @@ module fit_run
   use measured_jumps, only: find_jump
   use measured_checks, only: check_measured
   use measured_loads, only: check_loads, other_order
-  use noise, only: white_noise
+  use noise, only: white_noise, rounding_of
   use far_samples, only: find_far, off_baseline
   use fit_starts, only: character_t, character_of, starts_like
   use mending, only: too_much
@@ -130,11 +130,14 @@ contains
     slope = 1/curve%sensitivity
     associate (data => curve%data%measured)
       call find_far(data, slope, curve%data%noise)
+      curve%data%least_noise = least_noise*maxval(abs(data%signal))
       if (allocated(fit%noise)) then
         curve%data%noise = white_noise(fit%noise)
+      else
+        curve%data%least_noise = max(curve%data%least_noise, rounding_of(data%signal))
       end if
-      if (curve%data%noise%deviation < least_noise*maxval(abs(data%signal))) &
-        curve%data%noise = white_noise(least_noise*maxval(abs(data%signal)))
+      if (curve%data%noise%deviation < curve%data%least_noise) &
+        curve%data%noise = white_noise(curve%data%least_noise)
       call check_measured(data, curve%data%noise, slope, trouble)
       if (.not. allocated(trouble)) call check_loads(curve, trouble)
       if (allocated(trouble)) return

@@ -8,7 +8,7 @@ module measured_checks
   use far_samples, only: off_baseline
   implicit none
   private
-  public :: check_measured, open_end, stands_out
+  public :: check_measured, open_end, find_saturated, stands_out
 
   !> Limits: a signal in standard deviations of the noise; the part of the travel that counts as an
   !> end; the slope of an end in contact, over that of the spring; standard errors of a certain
@@ -169,6 +169,35 @@ contains
     if (above(last) > surely*(error(1) + error(last)) .and. &
       above(last) > 0.5_wp*maxval(above)) below = above(last)
   end function open_end
+
+  !> The first and last of the most samples in a row that have the smallest or the largest signal,
+  !> far from the baseline; 0 if these are few, or if a signal of few digits has as many elsewhere.
+  pure subroutine find_saturated(measured, noise, first, last)
+    type(measured_t), intent(in) :: measured
+    type(noise_t), intent(in) :: noise
+    integer, intent(out) :: first, last
+    integer, parameter :: fewest = 4, more = 3
+    integer :: alike(size(measured%z)), i
+    real(wp) :: level
+    logical :: extreme(size(measured%z))
+
+    associate (s => measured%signal, inward => measured%inward, usable => measured%usable)
+      alike = 1
+      do i = 2, size(s)
+        if (.not. abs(s(i) - s(i - 1)) > 0 .and. (inward(i) .eqv. inward(i - 1))) &
+          alike(i) = alike(i - 1) + 1
+      end do
+      level = sum(s, measured%far .and. usable)/max(1, count(measured%far .and. usable))
+      extreme = .not. (s > minval(s, usable) .and. s < maxval(s, usable))
+      last = maxloc(alike, 1, extreme .and. usable .and. &
+        abs(s - level) > stands_out*noise%deviation)
+      first = 0
+      if (last == 0) return
+      if (alike(last) >= max(fewest, more*maxval(alike, .not. extreme))) &
+        first = last - alike(last) + 1
+      if (first == 0) last = 0
+    end associate
+  end subroutine find_saturated
 
   !> The mean residual of the samples nearest to the other body, that of as many before them, and
   !> the distance between the two groups.

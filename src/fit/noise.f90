@@ -5,7 +5,7 @@ module noise
   use kinds, only: wp
   implicit none
   private
-  public :: noise_t, white_noise, noise_of, noise_of_steps, rough_deviation, &
+  public :: noise_t, white_noise, noise_of, noise_of_steps, rough_deviation, rounding_of, &
     median_of, normal_median, whiten
 
   !> Largest number of samples that a prediction uses.
@@ -102,6 +102,20 @@ contains
     deviation = median_of(abs(signal(3:) - 2*signal(2:n - 1) + signal(:n - 2)))/ &
       (normal_median*sqrt(squares))
   end function rough_deviation
+
+  !> The deviation that rounding makes in a signal of few digits, from the smallest step between
+  !> neighbours.
+  pure real(wp) function rounding_of(signal) result(deviation)
+    real(wp), intent(in) :: signal(:)
+    !> A step, over the largest signal, that differs from none.
+    real(wp), parameter :: none = 1.0e-12_wp
+    real(wp) :: step(size(signal) - 1)
+
+    step = abs(signal(2:) - signal(:size(signal) - 1))
+    deviation = 0
+    if (any(step > none*maxval(abs(signal)))) &
+      deviation = minval(step, step > none*maxval(abs(signal)))/sqrt(12.0_wp)
+  end function rounding_of
 
   !> The median of numbers that are not negative, by bisection.
   pure real(wp) function median_of(numbers) result(middle)

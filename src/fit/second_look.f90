@@ -2,7 +2,7 @@
 !> better than the curve itself.
 module second_look
   use kinds, only: wp
-  use noise, only: noise_t, noise_of, noise_of_steps, median_of, normal_median
+  use noise, only: noise_t, noise_of, white_noise, noise_of_steps, median_of, normal_median
   use outliers, only: stand_apart
   use measured_jumps, only: measured_jump_t, likely_jump
   use modelled_curve, only: modelled_curve_t
@@ -79,6 +79,7 @@ contains
           differs*sqrt(0.5_wp/count(far) + 0.75_wp/steps)) all_noise = far_noise
       end if
       if (all_noise%deviation > 0) data%noise = all_noise
+      if (data%noise%deviation < data%least_noise) data%noise = white_noise(data%least_noise)
     end associate
   end subroutine renew_noise
 

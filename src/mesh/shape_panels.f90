@@ -4,7 +4,7 @@ module shape_panels
   use kinds, only: wp
   use shape, only: shape_t
   use dimensionless_problem, only: problem_t
-  use contact_scales, only: cohesive_width
+  use contact_scales, only: cohesive_width, smallest_feature
   implicit none
   private
   public :: panels_for, rim_passed_at
@@ -19,13 +19,17 @@ module shape_panels
   !> axis; on a wider face, the radius up to which it stays on them. The radius up to which it stays
   !> on them after a rim within that radius, over that of the rim, but at most one unit more.
   real(wp), parameter :: widths_to_pass = 40, widths_before = 5, beyond_rim = 1.3_wp
+  !> Width of the cohesive zone, lateral units, above which adhesion is weak.
+  real(wp), parameter :: wide = 10
 
 contains
 
   !> The radius up to which the edge of a contact on a flat face stays on meshes about the axis, on
   !> which the rim is a panel's end, so that the pressure is smooth on all panels: up to the widest
   !> contact, if the edge passes over few panels; otherwise up to somewhat beyond the rim or, on a
-  !> face so wide that there would be very many panels, while the rim is far outside. 0: the shape
+  !> face so wide that there would be very many panels, while the rim is far outside. Of weak
+  !> adhesion the cohesive zone is no measure of these panels, but the edge of the pressed contact.
+  !> Inside a contact on layers, meshes about the axis lack short waves (`mesh_waves`). 0: the shape
   !> has no flat face.
   pure real(wp) function rim_passed_at(problem, widest) result(radius)
     type(problem_t), intent(in) :: problem
@@ -36,7 +40,9 @@ contains
       if (.not. rim > 0 .or. problem%shape%height(rim) > 0) return
       radius = min(beyond_rim*rim, rim + 1)
       if (rim > widths_to_pass*width) radius = widths_before*width
-      if (widest < widths_to_pass*width) radius = widest
+      if (.not. problem%body%is_homogeneous()) return
+      if (widest < widths_to_pass*width .and. (width < wide .or. &
+        widest - rim < widths_to_pass*smallest_feature(problem, widest))) radius = widest
     end associate
   end function rim_passed_at
 

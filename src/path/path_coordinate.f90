@@ -1,8 +1,8 @@
 !> The coordinate s of the equilibrium path, in which the path has no folds and which increases
 !> inward. On meshes about the axis s is minus the logarithm of the gap on the axis, less nine
-!> tenths of the gap at rest; within the gap at rest, to which flat faces may be pressed, it is the
-!> parabola that continues this logarithm. On other meshes it is the logarithm of the radius of the
-!> edge or front to which they are locked (`mesh_plan`).
+!> tenths of the gap at rest; within the gap at rest, to which flat faces may be pressed, it goes on
+!> with the same slope and curvature, and far within it is proportional to the gap. On other meshes
+!> it is the logarithm of the radius of the edge or front to which they are locked (`mesh_plan`).
 module path_coordinate
   use kinds, only: wp
   use force_law, only: force_law_t
@@ -62,7 +62,7 @@ contains
         s = -log(max(beyond, tiny(1.0_wp)))
       else
         s = (at_rest - beyond)/at_rest
-        s = s + 0.5_wp*s**2 - log(at_rest)
+        s = s + 0.5_wp*s**2/(1 + s) - log(at_rest)
       end if
     end associate
   end function axis_coordinate
@@ -76,7 +76,7 @@ contains
       if (exp(-s) > at_rest) then
         gap = exp(-s) + singular*law%rest_gap
       else
-        gap = law%rest_gap - at_rest*(sqrt(1 + 2*(s + log(at_rest))) - 1)
+        gap = law%rest_gap - at_rest*within(s + log(at_rest))
       end if
     end associate
   end function axis_gap_at
@@ -86,10 +86,21 @@ contains
     class(force_law_t), intent(in) :: law
     real(wp), intent(in) :: s
 
+    real(wp) :: x
+
     associate (at_rest => (1 - singular)*law%rest_gap)
       rate = -exp(-s)
-      if (.not. exp(-s) > at_rest) rate = -at_rest/sqrt(1 + 2*(s + log(at_rest)))
+      if (exp(-s) > at_rest) return
+      x = within(s + log(at_rest))
+      rate = -at_rest*(1 + x)**2/((1 + x)**2 + x + 0.5_wp*x**2)
     end associate
   end function axis_gap_rate
+
+  !> The x of x + x^2/(2 + 2 x) = u.
+  pure real(wp) function within(u) result(x)
+    real(wp), intent(in) :: u
+
+    x = (u - 1 + sqrt((u - 1)**2 + 6*u))/3
+  end function within
 
 end module path_coordinate

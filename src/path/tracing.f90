@@ -65,7 +65,7 @@ contains
     type(mender_t) :: mender
     character(len=40) :: so_far
     type(further_mesh_t) :: further
-    logical :: lost, blind, finished, mended, adrift
+    logical :: lost, blind, finished, mended, adrift, leaving
     type(ending_t) :: going_on
     real(wp) :: tolerance
     integer :: steps
@@ -96,8 +96,12 @@ contains
         adrift = mod(steps, steps_a_check) == 0
         if (adrift) adrift = left_in_state(solver%equations_t, walker%mesh, &
           walker%state(walker%held)) > most_adrift
-        if (further%wanted .or. adrift .or. walker%has_come_to_next(solver%equations_t)) call &
-          mender%mend(solver%equations_t, known%path, walker%mesh, .not. adrift, .false., mended)
+        leaving = walker%has_come_to_next(solver%equations_t)
+        ! A mesh was judged when the next one was inserted. The path may stay on it for some steps,
+        ! past an extremum, and would come to the inserted one earlier each time it is mended.
+        if (leaving) leaving = .not. solver%meshes%inserted(walker%mesh + 1)
+        if (further%wanted .or. adrift .or. leaving) call mender%mend(solver%equations_t, &
+          known%path, walker%mesh, .not. adrift, .false., mended)
         if (further%wanted .and. .not. mended) then
           call solver%meshes%insert(walker%mesh, further%locked, further%reach(1), further%reach(2))
           call solver%operator%forget()

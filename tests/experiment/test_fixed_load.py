@@ -78,7 +78,7 @@ def test_a_load_that_underflows_far_out_is_no_state_without_load(run, groups):
 
 @pytest.mark.parametrize("groups, warned", [
     ({"fixed_load": {"load": [1e-3]}}, "the slope at the contact's edge is 1.15"),
-    ({"device": {"stiffness": [10.0], "z_end": -2e-6}}, "the slope at the contact's edge is 0.35")])
+    ({"device": {"stiffness": [10.0], "z_end": -3e-6}}, "the slope at the contact's edge is 0.36")])
 def test_states_far_beyond_the_end_of_the_path_are_judged_too(run, groups, warned):
     """The path ends at a nanometre; a contact wider than the radius had no warning."""
     found = run(deck(
@@ -86,6 +86,17 @@ def test_states_far_beyond_the_end_of_the_path_are_judged_too(run, groups, warne
         force={"law": "lennard_jones", "hamaker": 1e-19, "z0": 0.4e-9},
         equilibrium_path={"h0_end": -1e-9}, **groups))
     assert warned in str(found.summary["warnings"])
+
+
+def test_states_that_no_drive_reaches_are_not_judged(run):
+    """The last step of the path goes beyond its end, farther with less accuracy."""
+    widest = [run(deck(
+        bodies={"radius": 1e-6, "stiffness": 1e9},
+        force={"law": "lennard_jones", "hamaker": 1e-19, "z0": 0.4e-9},
+        equilibrium_path={"h0_end": -1e-9}, numerics={"accuracy": accuracy},
+        **groups)).summary["contact_over_radius"]
+        for accuracy in (1e-4, 1e-6) for groups in ({}, {"device": {"stiffness": 10.0}})]
+    assert widest == pytest.approx(4 * [widest[0]], rel=1e-4)
 
 
 def test_states_beyond_the_points_of_files_have_a_warning(run, tmp_path):

@@ -55,6 +55,13 @@ def test_a_modulus_that_hardly_shows_is_within_its_errors(shallow, tmp_path, see
     assert abs(fit["estimate"][2]) < 4 * fit["standard_error"][2]
 
 
+def test_errors_grow_where_the_farthest_trial_is_nearer_than_three_of_them(shallow, tmp_path):
+    """Where the search may go no farther than two errors, nothing was examined."""
+    start = changed(STIFF, {STIFFNESS: TRUTH[STIFFNESS] / 100})
+    fit = fit_of(tmp_path, shallow.measure(300, NOISE, 8), start)
+    assert fit["upper_95"][1] > TRUTH[STIFFNESS]
+
+
 def test_the_ends_of_intervals_are_less_likely_than_the_estimate(shallow, tmp_path):
     """With the modulus held at either end of its 95 % interval and the others found again, chi
     squared is larger by nearly four at least, also where its rise ends soon."""
@@ -105,3 +112,31 @@ def test_a_wrong_spring_constant_cannot_be_seen_in_a_deflection(branches, tmp_pa
     right, wrong = found
     assert wrong["estimate"][:2] == pytest.approx(3 * np.array(right["estimate"][:2]), rel=1e-3)
     assert wrong["chi_squared"][0] == pytest.approx(right["chi_squared"][0], abs=0.01)
+
+
+def test_a_saturated_detector_has_a_warning_and_its_samples_can_be_left_out(branches, tmp_path):
+    """The pull-off was too small by five errors, and no warning said so."""
+    z, force, segment = branches.measure(1500, NOISE / 5, seed=4)
+    force = np.maximum(force, -0.8 * -branches.inner[1].min())
+    fit = fit_of(tmp_path, (z, force, segment), LENNARD_JONES, spring=SPRING)
+    found = re.search(r"samples in a row.* skip = (\S+), ([^\s']+)", str(fit["warnings"]))
+    file = write(tmp_path / "curve.csv", z, force, segment)
+    skip = [float(found[1]), float(found[2])]
+    fit = run(fit_deck(LENNARD_JONES, file, list(TRUTH), {"noise": NOISE / 5},
+                       {"skip": skip})).fitted["fit"]
+    assert "in a row" not in str(fit.get("warnings"))
+    true = [1e-19, 1e10, 0.0]
+    assert np.all(np.abs(np.array(fit["estimate"]) - true) < 4 * np.array(fit["standard_error"]))
+
+
+@pytest.mark.parametrize("step", [0.02, 0.1])
+def test_the_noise_of_a_signal_of_few_digits_is_that_of_rounding_at_least(branches, tmp_path, step):
+    """Neighbours that are alike seemed to have no noise."""
+    z, force, segment = branches.measure(1500, 0.0, seed=3)
+    step = step * -branches.inner[1].min()
+    file = write(tmp_path / "curve.csv", z, step * np.round(force / step), segment)
+    fit = run(fit_deck(LENNARD_JONES, file, list(TRUTH))).fitted["fit"]
+    assert fit["noise"][0] == pytest.approx(step / np.sqrt(12), rel=1e-6)
+    true = [1e-19, 1e10, 0.0]
+    assert np.all(np.abs(np.array(fit["estimate"]) - true) < 4 * np.array(fit["standard_error"]))
+    assert "warnings" not in fit

@@ -102,3 +102,54 @@ def test_paths_of_rounded_punches_reach_the_accuracy_asked_for(run, radius, flat
         assert not any(said.startswith("the error is estimated") for said in found.warnings)
         for name in ("max_tension", "end_load", "end_displacement"):
             assert found.summary[name] == pytest.approx(exact[name], rel=accuracy), name
+
+
+LONG_WAYS = {
+    "bodies pressed together far within a weak minimum of the energy": (
+        1e-6, 3.6089341356e-9, {
+            "bodies": {"radius": 5.234e-7, "stiffness": 4.6265e7},
+            "shape": {"kind": "rounded_punch", "flat_radius": 1.8463e-8},
+            "double_layer": {"potential": 0.030855, "salt": 167.73},
+            "van_der_waals": {"hamaker": 5.4164e-21},
+            "born": {"hamaker": 5.4164e-21, "z0": 5.8272e-10},
+            "equilibrium_path": {"h0_end": -5.8272e-10}}),
+    "an extremum where a mesh is inserted": (
+        1e-4, 1.2255254561e-7, {
+            "bodies": {"radius": 2.290658704394647e-07, "young": 338440678.18463856,
+                       "poisson": 0.3},
+            "layer": {"thickness": 7.496782568947413e-08, "young": 1039944444.1816132,
+                      "poisson": 0.3},
+            "shape": {"kind": "rounded_punch", "flat_radius": 4.672516868886937e-09},
+            "force": {"law": "lennard_jones", "hamaker": 3.2390323049646014e-20,
+                      "z0": 2.6876373134038335e-10},
+            "equilibrium_path": {"h0_end": -8.0629119402115e-09},
+            "device": {"stiffness": 4.845502911904377}}),
+    "bodies of weak adhesion pressed together deeply": (
+        3e-4, 2.6626578e-8, {
+            "bodies": {"radius": 1.4410419089627138e-06, "stiffness": 287892719.9619085},
+            "shape": {"kind": "rounded_punch", "flat_radius": 1.4085730028586849e-08},
+            "double_layer": {"potential": 0.0746783481173756, "salt": 14.71792872735727},
+            "van_der_waals": {"hamaker": 6.777704690803201e-21},
+            "born": {"hamaker": 6.777704690803201e-21, "z0": 4.290035174216173e-10},
+            "equilibrium_path": {"h0_end": -4.290035174216173e-10}}),
+    "a layer thinner than the contact": (
+        1e-4, 3.2594481e-9, {
+            "bodies": {"radius": 4.1620758159082285e-08, "young": 13928792.324371822,
+                       "poisson": 0.3},
+            "layer": {"thickness": 1.7074100455462457e-08, "young": 108711908.37064792,
+                      "poisson": 0.45},
+            "shape": {"kind": "rounded_punch", "flat_radius": 6.119852611585868e-09},
+            "morse": {"surface_energy": 0.0009384043909123188, "z0": 3.135986615781641e-10,
+                      "decay_length": 2.198421936526816e-10},
+            "equilibrium_path": {"h0_end": -9.407959847344922e-09}}),
+}
+
+
+@pytest.mark.parametrize("way", LONG_WAYS)
+def test_paths_about_the_axis_reach_their_end(run, way):
+    """They took thousands of steps: ever shorter ones in the gap on the axis, or from mesh to mesh,
+    each mended when the next one was there. Or their meshes lacked waves that a layer needs."""
+    accuracy, load, groups = LONG_WAYS[way]
+    found = run(deck(**groups, numerics={"accuracy": accuracy}))
+    assert found.status == 0
+    assert found.summary["end_load"] == pytest.approx(load, rel=accuracy)
