@@ -83,7 +83,8 @@ def test_steps_are_of_second_order(run):
 
 
 @pytest.mark.parametrize("case", [
-    {"sigma": 0.1, "viscosity": 0.025}, {"sigma": 2.0, "viscosity": 0.05},
+    {"sigma": 0.1, "viscosity": 0.025},
+    pytest.param({"sigma": 2.0, "viscosity": 0.05}, marks=pytest.mark.long),
     {"sigma": 0.1, "viscosity": 0.01, "stiffness": 0.1, "start": 40.0},
     {"sigma": 0.1, "viscosity": 0.01, "start": 40.0,
      "creep": {"stiffness_relaxed": 0.3, "retardation_time": 1.0}}])
@@ -98,7 +99,8 @@ def test_errors_hold_and_work_is_stored_or_dissipated(run, case):
 
 
 @pytest.mark.parametrize("sigma, viscosity, relaxed, time, turn", [
-    (0.3035, 0.0028473, 0.09927, 0.03709, -1.466), (0.2574, 0.0034987, 0.0935, 0.0538, -3.0)])
+    pytest.param(0.3035, 0.0028473, 0.09927, 0.03709, -1.466, marks=pytest.mark.long),
+    (0.2574, 0.0034987, 0.0935, 0.0538, -3.0)])
 def test_a_thin_fluid_between_bodies_that_creep_is_followed(run, sigma, viscosity, relaxed, time,
                                                             turn):
     # What the mesh of the memory does not resolve makes loads jump by as much in any step, however
@@ -245,7 +247,7 @@ def test_mistakes_are_named(run, fluid, other, said):
     assert said in message and ":" in message and "&fluid" in message
 
 
-@pytest.mark.parametrize("accuracy", [1e-3, pytest.param(1e-4, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("accuracy", [1e-3, pytest.param(1e-4, marks=pytest.mark.long)])
 def test_a_suction_that_is_not_determined_has_a_warning(run, accuracy):
     """Between creeping bodies in a thin fluid, details that the mesh of the memory does not resolve
     make the film jump at the last moment of contact. Rounding decides how large the suction is."""
