@@ -99,7 +99,7 @@ contains
     end do
   end subroutine find_loaded
 
-  !> Includes how far these states are from small strains.
+  !> Includes what tells of strains in these states.
   pure subroutine cover(states, problem, quality)
     type(path_state_t), intent(in) :: states(:)
     type(problem_t), intent(in) :: problem
@@ -107,12 +107,8 @@ contains
     integer :: i
 
     do i = 1, size(states)
-      quality%contact_radius = max(quality%contact_radius, states(i)%radius*problem%lateral)
-      quality%depth = max(quality%depth, -problem%law%separation_of(states(i)%h0))
-      quality%load = max(quality%load, abs(states(i)%load)*problem%load)
-      if (.not. allocated(states(i)%state%pressure)) cycle
-      quality%pressure = max(quality%pressure, maxval(abs(states(i)%state%pressure)))
-      quality%gap = min(quality%gap, minval(states(i)%state%gap))
+      call quality%cover_extent(states(i)%radius*problem%lateral, &
+        problem%law%separation_of(states(i)%h0), states(i)%load*problem%load, states(i)%state)
     end do
   end subroutine cover
 

@@ -40,6 +40,7 @@ module records
     logical :: early = .false.
   contains
     procedure :: cover
+    procedure :: cover_extent
     procedure :: join
   end type quality_t
 
@@ -64,12 +65,23 @@ contains
     self%residual = max(self%residual, state%residual)
     if (has_edge) self%spacing = max(self%spacing, &
       spacing_over_neck(problem, state%scale*grid%spacing))
-    self%contact_radius = max(self%contact_radius, record%contact_radius)
+    call self%cover_extent(record%contact_radius, record%h0, record%load, state)
+  end subroutine cover
+
+  !> Includes what tells of strains in a state. contact_radius and h0 [m], load [N].
+  pure subroutine cover_extent(self, contact_radius, h0, load, state)
+    class(quality_t), intent(inout) :: self
+    real(wp), intent(in) :: contact_radius, h0, load
+    type(state_t), intent(in) :: state
+
+    self%contact_radius = max(self%contact_radius, contact_radius)
+    self%depth = max(self%depth, -h0)
+    self%load = max(self%load, abs(load))
+    ! Undeformed bodies have no nodes.
+    if (.not. allocated(state%pressure)) return
     self%pressure = max(self%pressure, maxval(abs(state%pressure)))
     self%gap = min(self%gap, minval(state%gap))
-    self%depth = max(self%depth, -record%h0)
-    self%load = max(self%load, abs(record%load))
-  end subroutine cover
+  end subroutine cover_extent
 
   !> Includes all rows of an experiment.
   pure subroutine join(self, other, ending)
