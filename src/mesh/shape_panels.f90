@@ -27,10 +27,10 @@ contains
   !> The radius up to which the edge of a contact on a flat face stays on meshes about the axis, on
   !> which the rim is a panel's end, so that the pressure is smooth on all panels: up to the widest
   !> contact, if the edge passes over few panels; otherwise up to somewhat beyond the rim or, on a
-  !> face so wide that there would be very many panels, while the rim is far outside. Of weak
-  !> adhesion the cohesive zone is no measure of these panels, but the edge of the pressed contact.
-  !> Inside a contact on layers, meshes about the axis lack short waves (`mesh_waves`). 0: the shape
-  !> has no flat face.
+  !> face so wide that there would be very many panels, while the rim is far outside. If adhesion is
+  !> weak, the cohesive zone is wide, and the narrower layer at the edge of a pressed contact
+  !> decides how many panels the edge passes. Inside a contact on layers, meshes about the axis lack
+  !> short waves (`mesh_waves`). 0: the shape has no flat face.
   pure real(wp) function rim_passed_at(problem, widest) result(radius)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: widest

@@ -175,6 +175,7 @@ contains
       step = min(self%step, self%step_past_step(equations%problem, meshes%is_about_axis(mesh)))
       if (.not. equations%problem%law%edge_gap > 0) return
       s = self%coordinate(self%held)
+      ! The last mesh, if it is about the axis, has no end at which another one begins.
       if (mesh == size(meshes%grid) .and. meshes%is_about_axis(mesh)) return
       ! Does the coordinate end where the mesh does?
       locked = mesh == size(meshes%grid) .or. meshes%is_in_outer_contact(mesh)

@@ -117,7 +117,7 @@ def test_a_wrong_spring_constant_cannot_be_seen_in_a_deflection(branches, tmp_pa
 def test_a_saturated_detector_has_a_warning_and_its_samples_can_be_left_out(branches, tmp_path):
     """The pull-off was too small by five errors, and no warning said so."""
     z, force, segment = branches.measure(1500, NOISE / 5, seed=4)
-    force = np.maximum(force, -0.8 * -branches.inner[1].min())
+    force = np.maximum(force, 0.8 * branches.inner[1].min())
     fit = fit_of(tmp_path, (z, force, segment), LENNARD_JONES, spring=SPRING)
     found = re.search(r"samples in a row.* skip = (\S+), ([^\s']+)", str(fit["warnings"]))
     file = write(tmp_path / "curve.csv", z, force, segment)
