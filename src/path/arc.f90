@@ -5,8 +5,10 @@ module arc
   use interpolation, only: polynomial_weights, hermite_weights, hermite_t, hermite_through, &
     most_hermite_nodes, find_nodes_about
   use shape, only: shape_t
+  use dimensionless_problem, only: problem_t
   use discretisation, only: discretisation_t
-  use contact_state, only: state_t
+  use contact_scales, only: cohesive_width
+  use contact_state, only: state_t, radius_of_gap
   use solver, only: solver_t
   use solver_options, only: tightened
   use mesh_plan, only: approach
@@ -22,7 +24,8 @@ module arc
   !> s), in the order of s.
   type :: arc_t
     integer :: mesh = approach, held = 0
-    !> Whether guesses are at constant distance from the edge to which the mesh is locked.
+    !> Whether guesses are at constant distance from the contact edge: outside the edge to which the
+    !> mesh is locked or, about the axis, on both sides of the edge.
     logical :: moved = .false.
     !> Number of states from which a state beyond an end is extrapolated.
     integer :: extrapolated_from = 3
@@ -36,6 +39,8 @@ module arc
     procedure :: guess
     procedure :: guess_from
     procedure, private :: outside
+    procedure, private :: move_with_edge
+    procedure, private :: has_moving_parts
     procedure :: curve
     procedure :: slope
     procedure :: curvature
@@ -67,18 +72,14 @@ contains
     type(hermite_t) :: load
     integer :: k, guesses
 
-    ! Rings of an oscillating pressure and the front of a step move with the edge or, around a small
-    ! contact, hardly at all.
     guesses = 1
-    if (max(solver%problem%law%period, solver%problem%law%step_width) > 0 .and. &
-      .not. solver%meshes%is_about_axis(self%mesh)) &
-      guesses = 2
+    if (self%has_moving_parts(solver)) guesses = 2
     converged = .false.
     associate (problem => solver%problem, grid => solver%meshes%grid(self%mesh), &
       control => path_control(solver%problem, solver%meshes, self%mesh, s))
       do k = 1, guesses
         if (converged .and. .not. present(miss)) exit
-        tried(k) = self%guess(problem%shape, grid, s, self%moved .neqv. k == 2)
+        tried(k) = self%guess(problem, grid, s, self%moved .neqv. k == 2)
         if (converged) cycle
         state = tried(k)
         if (present(slope_error)) then
@@ -98,6 +99,24 @@ contains
     end associate
     if (converged) call tangent_along(solver, self%mesh, s, state, tangent, converged, slope_error)
   end subroutine state_at
+
+  !> Whether the gaps change mainly by a movement of the edge: on meshes about the axis, if there is
+  !> a contact; on those that are locked to the edge the rings of an oscillating pressure and the
+  !> front of a step move with the edge or, around a small contact, hardly at all.
+  pure logical function has_moving_parts(self, solver)
+    class(arc_t), intent(in) :: self
+    class(solver_t), intent(in) :: solver
+
+    associate (law => solver%problem%law)
+      if (solver%meshes%is_about_axis(self%mesh)) then
+        has_moving_parts = law%edge_gap > 0
+        if (has_moving_parts) has_moving_parts = &
+          maxval(self%state(:self%held)%axis_gap) < law%edge_gap
+      else
+        has_moving_parts = max(law%period, law%step_width) > 0
+      end if
+    end associate
+  end function has_moving_parts
 
   !> The largest difference of a gap between a state and its guess, relative or in the law's
   !> lengths.
@@ -167,16 +186,16 @@ contains
   end subroutine support
 
   !> The state at s by the polynomial of the arc; grid: the arc's mesh; moved: see `guess_from`.
-  pure type(state_t) function guess(self, shape, grid, s, moved) result(expected)
+  pure type(state_t) function guess(self, problem, grid, s, moved) result(expected)
     class(arc_t), intent(in) :: self
-    class(shape_t), intent(in) :: shape
+    type(problem_t), intent(in) :: problem
     type(discretisation_t), intent(in) :: grid
     real(wp), intent(in) :: s
     logical, intent(in), optional :: moved
     integer :: nodes(most_hermite_nodes), n
 
     call self%support(s, nodes, n)
-    call self%guess_from(shape, grid, nodes(:n), s, expected, moved)
+    call self%guess_from(problem, grid, nodes(:n), s, expected, moved)
   end function guess
 
   !> The state at s by the polynomial through the states `nodes` of the arc, in the arrays that
@@ -186,10 +205,11 @@ contains
   !> error is most of the error of the guess. Inside the edge bodies in contact follow each other's
   !> shape, so that the gap is smooth where the shape is not. A parabola's heights are proportional
   !> to the square of the scale and need no such correction. moved: gaps outside the edge are those
-  !> of `outside`; .false. if absent.
-  pure subroutine guess_from(self, shape, grid, nodes, s, expected, moved)
+  !> of `outside` or, about the axis, gaps near the edge those of `move_with_edge`; .false. if
+  !> absent.
+  pure subroutine guess_from(self, problem, grid, nodes, s, expected, moved)
     class(arc_t), intent(in) :: self
-    class(shape_t), intent(in) :: shape
+    type(problem_t), intent(in) :: problem
     type(discretisation_t), intent(in) :: grid
     integer, intent(in) :: nodes(:)
     real(wp), intent(in) :: s
@@ -207,22 +227,29 @@ contains
     expected%pressure = 0
     h0 = 0
     scale = 0
-    do j = 1, n
-      associate (state => self%state(nodes(j)), tangent => self%tangent(nodes(j)))
-        expected%pressure = expected%pressure + of_value(j)*state%gap + of_slope(j)*tangent%gap
-        h0 = h0 + of_value(j)*state%h0 + of_slope(j)*tangent%h0
-        scale = scale + of_value(j)*state%scale + of_slope(j)*tangent%scale
-        if (shape%parabolic) cycle
-        expected%pressure(from:) = expected%pressure(from:) - &
-          of_value(j)*shape%height(state%scale*grid%x(from:)) - &
-          of_slope(j)*tangent%scale*grid%x(from:)*shape%slope(state%scale*grid%x(from:))
-      end associate
-    end do
-    if (.not. shape%parabolic) &
-      expected%pressure(from:) = expected%pressure(from:) + shape%height(scale*grid%x(from:))
+    associate (shape => problem%shape)
+      do j = 1, n
+        associate (state => self%state(nodes(j)), tangent => self%tangent(nodes(j)))
+          expected%pressure = expected%pressure + of_value(j)*state%gap + of_slope(j)*tangent%gap
+          h0 = h0 + of_value(j)*state%h0 + of_slope(j)*tangent%h0
+          scale = scale + of_value(j)*state%scale + of_slope(j)*tangent%scale
+          if (shape%parabolic .or. .not. grid%centre > 0) cycle
+          expected%pressure(from:) = expected%pressure(from:) - &
+            of_value(j)*shape%height(state%scale*grid%x(from:)) - &
+            of_slope(j)*tangent%scale*grid%x(from:)*shape%slope(state%scale*grid%x(from:))
+        end associate
+      end do
+      if (grid%centre > 0 .and. .not. shape%parabolic) &
+        expected%pressure(from:) = expected%pressure(from:) + shape%height(scale*grid%x(from:))
+    end associate
     if (present(moved)) then
-      if (moved) expected%pressure(from:) = &
-        self%outside(shape, grid, nodes, of_value(:n), of_slope(:n), scale)
+      if (moved .and. grid%centre > 0) then
+        expected%pressure(from:) = &
+          self%outside(problem%shape, grid, nodes, of_value(:n), of_slope(:n), scale)
+      else if (moved) then
+        call self%move_with_edge(problem, grid, nodes, of_value(:n), of_slope(:n), &
+          expected%pressure)
+      end if
     end if
     call take_if_sound(h0, scale, expected)
   end subroutine guess_from
@@ -260,6 +287,71 @@ contains
       end associate
     end do
   end function outside
+
+  !> Replaces gaps within the cohesive zone's width of the edge, on a mesh about the axis, by
+  !> polynomials of s at constant distance from the edge, with the weights of values and slopes of
+  !> the states `nodes`. Inside the edge bodies follow each other's shape: there the gaps move,
+  !> outside it the gaps less the heights of the shape.
+  pure subroutine move_with_edge(self, problem, grid, nodes, of_value, of_slope, gap)
+    class(arc_t), intent(in) :: self
+    type(problem_t), intent(in) :: problem
+    type(discretisation_t), intent(in) :: grid
+    integer, intent(in) :: nodes(:)
+    real(wp), intent(in) :: of_value(:), of_slope(:)
+    real(wp), intent(inout) :: gap(:)
+    !> Distance over which a derivative is taken, over the radius of the edge.
+    real(wp), parameter :: part = 1.0e-5_wp
+    real(wp) :: radius(size(nodes)), rate(size(nodes)), step, c, width
+    real(wp), allocatable :: height(:)
+    integer :: j, first, edge, last
+
+    c = 0
+    do j = 1, size(nodes)
+      associate (state => self%state(nodes(j)), tangent => self%tangent(nodes(j)))
+        radius(j) = radius_of_gap(problem%shape, problem%law%edge_gap, grid, state)
+        if (.not. radius(j) > 0) return
+        step = part*radius(j)
+        rate(j) = -2*step*grid%interpolate(tangent%gap, radius(j))/ &
+          (grid%interpolate(state%gap, radius(j) + step) - &
+          grid%interpolate(state%gap, radius(j) - step))
+        c = c + of_value(j)*radius(j) + of_slope(j)*rate(j)
+      end associate
+    end do
+    width = cohesive_width(problem)
+    first = count(grid%x < c - width) + 1
+    edge = count(grid%x < c)
+    last = count(grid%x < c + width)
+    height = problem%shape%height(grid%x)
+    gap(first:edge) = 0
+    gap(edge + 1:last) = height(edge + 1:last)
+    do j = 1, size(nodes)
+      associate (state => self%state(nodes(j)), tangent => self%tangent(nodes(j)))
+        call move(state%gap, tangent%gap, gap(first:edge), grid%x(first:edge))
+        call move(state%gap - height, tangent%gap, gap(edge + 1:last), grid%x(edge + 1:last))
+      end associate
+    end do
+
+  contains
+
+    !> Adds the part of state j, whose quantity has the given values and derivatives by s at the
+    !> nodes, to the quantity at some positions.
+    pure subroutine move(value, slope, sum, x)
+      real(wp), intent(in) :: value(:), slope(:), x(:)
+      real(wp), intent(inout) :: sum(:)
+      real(wp) :: at(size(x)), mean(size(value)), change(size(value)), step
+
+      step = part*radius(j)
+      at = x - c + radius(j)
+      if (grid%is_bounded()) at = min(at, grid%x(grid%nodes) - step)
+      mean = of_value(j)*value + of_slope(j)*slope
+      ! With the distance constant, a position on the mesh moves with the edge. The mean of two
+      ! neighbouring positions is the value between them.
+      change = of_slope(j)*rate(j)/step*value
+      sum = sum + 0.5_wp*(grid%interpolate_all(mean - change, abs(at - step)) + &
+        grid%interpolate_all(mean + change, abs(at + step)))
+    end subroutine move
+
+  end subroutine move_with_edge
 
   !> The polynomial through states at the given values of a coordinate, evaluated at s.
   pure type(state_t) function between(coordinate, states, s) result(expected)

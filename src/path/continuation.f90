@@ -185,7 +185,7 @@ contains
         return
       end if
       do while (step > shortest_passage)
-        if (radius_for(equations, mesh, mesh + 1, self%guess(equations%problem%shape, &
+        if (radius_for(equations, mesh, mesh + 1, self%guess(equations%problem, &
           meshes%grid(mesh), s + step)) <= beyond_passage*meshes%passage(mesh)) exit
         step = 0.6_wp*step
       end do

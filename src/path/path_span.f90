@@ -67,7 +67,7 @@ contains
     real(wp), intent(in) :: s
     type(state_t), intent(inout) :: state
 
-    call self%guess_from(solver%problem%shape, solver%meshes%grid(self%mesh), &
+    call self%guess_from(solver%problem, solver%meshes%grid(self%mesh), &
       self%nodes(:self%fitted), s, state)
   end subroutine expected
 
