@@ -4,6 +4,7 @@
 !> 1e-10 and sigma from 1e-4 to 1e4.
 module mesh_digits
   use kinds, only: wp
+  use shape_panels, only: rim_passed_at
   use dimensionless_problem, only: problem_t, adhesion_strength, coupling_over
   implicit none
   private
@@ -19,7 +20,7 @@ module mesh_digits
   !> Digits to be added, relative to a path under the Lennard-Jones law: for bodies without jumps;
   !> for laws with a step; for oscillating laws; for profiles, which are sensitive to the
   !> position of the edge; for profiles, for each decade of sigma, since the neck is narrower; for
-  !> bodies with a kink, which the edge passes.
+  !> bodies with a kink over which panels pass.
   real(wp), parameter :: without_jumps = -0.5_wp, for_steps = 0.6_wp, for_waves = 1.1_wp, &
     for_profiles = 2, for_narrow_necks = 0.3_wp, for_kinks = 1.5_wp
   !> Digits for each decade of the ratio of the contact's compliance to that on a half-space, times
@@ -53,7 +54,8 @@ contains
     least = max(fewest, for_folds*decades)
     if (lengths > 0) least = fewest + lengths + for_folds_of_lengths*decades
     if (profiles) digits = digits + for_profiles + for_narrow_necks*decades
-    if (problem%shape%smooth_from() > 0) digits = digits + for_kinks
+    if (problem%shape%smooth_from() > 0 .and. rim_passed_at(problem, widest) < widest) &
+      digits = digits + for_kinks
     digits = digits + digits_of_layers(problem, widest)
     away = abs(log(max(sigma, tiny(1.0_wp))/onset))/log(about_onset)
     digits = digits + at_onset*max(0.0_wp, min(1.0_wp, 1.5_wp*(1 - away)))

@@ -33,11 +33,13 @@ module seen_gaps
   end type seen_gaps_t
 
   !> A state, moved to other radii: its number, the radius at which it has the gap to which the new
-  !> mesh is locked, the least and the largest radius to which this gap is moved, and the radius of
-  !> a step of the pressure in the state, or 0 (lateral units).
+  !> mesh is locked or, if that is about the axis, the radius of its edge; the least and the largest
+  !> radius to which this gap is moved, and the radius of a step of the pressure in the state, or 0
+  !> (lateral units).
   type :: moved_t
     integer :: state = 0
     real(wp) :: from = 0, low = 0, high = 0, step = 0
+    logical :: about_axis = .false.
   end type moved_t
 
   !> Ratio of successive tried radii, if the law has no step.
@@ -75,12 +77,17 @@ contains
 
   !> The gaps of the newest state are to be tried, moved so that the gap at the radius `from` is at
   !> radii from low to high. step: the radius of a step of the pressure in this state; 0: there is
-  !> none.
-  pure subroutine try(self, from, low, high, step)
+  !> none. about_axis: whether the new mesh is about the axis, and the state has an edge; .false. if
+  !> absent.
+  pure subroutine try(self, from, low, high, step, about_axis)
     class(seen_gaps_t), intent(inout) :: self
     real(wp), intent(in) :: from, low, high, step
+    logical, intent(in), optional :: about_axis
+    logical :: fixed
 
-    self%moved = [self%moved, moved_t(self%held, from, min(low, high), high, step)]
+    fixed = .false.
+    if (present(about_axis)) fixed = about_axis
+    self%moved = [self%moved, moved_t(self%held, from, min(low, high), high, step, fixed)]
   end subroutine try
 
   !> Number of states to be tried, each at one or more radii.
@@ -115,18 +122,21 @@ contains
   end function radii
 
   !> The gap of the tried state number j, moved to a radius, at offsets from the centre of a mesh at
-  !> this radius, or from the axis. Outside a contact gaps keep their distance from the edge. Inside
-  !> they keep it approximately near the edge, and the gap on the axis stays there.
+  !> this radius (over the radius), or from the axis. Outside a contact gaps keep their distance
+  !> from the edge. Inside they keep it approximately near the edge, and the gap on the axis stays
+  !> there.
   pure function gap(self, shape, j, radius, offset)
     class(seen_gaps_t), intent(in) :: self
     class(shape_t), intent(in) :: shape
     integer, intent(in) :: j
     real(wp), intent(in) :: radius, offset(:)
-    real(wp) :: gap(size(offset)), r(size(offset))
+    real(wp), dimension(size(offset)) :: gap, r, beyond
 
+    beyond = offset
+    if (self%moved(j)%about_axis) beyond = offset/radius - 1
     associate (from => self%moved(j)%from, k => self%moved(j)%state)
-      r = from + radius*offset
-      where (offset < 0) r = abs(from + radius*from*offset/(from - offset*(radius - from)))
+      r = from + radius*beyond
+      where (beyond < 0) r = abs(from + radius*from*beyond/(from - beyond*(radius - from)))
       gap = shape%height(r)
       ! Beyond the mesh of the state deformations decrease as 1/r.
       r = r/self%scale(k)

@@ -288,10 +288,10 @@ contains
     end do
   end function outside
 
-  !> Replaces gaps within the cohesive zone's width of the edge, on a mesh about the axis, by
-  !> polynomials of s at constant distance from the edge, with the weights of values and slopes of
-  !> the states `nodes`. Inside the edge bodies follow each other's shape: there the gaps move,
-  !> outside it the gaps less the heights of the shape.
+  !> Replaces gaps near the edge, on a mesh about the axis, by polynomials of s at constant distance
+  !> from the edge, with the weights of values and slopes of the states `nodes`. Inside the edge
+  !> bodies follow each other's shape: there the gaps move, outside it the gaps less the heights of
+  !> the shape. Far from the edge gaps change in place.
   pure subroutine move_with_edge(self, problem, grid, nodes, of_value, of_slope, gap)
     class(arc_t), intent(in) :: self
     type(problem_t), intent(in) :: problem
@@ -299,8 +299,9 @@ contains
     integer, intent(in) :: nodes(:)
     real(wp), intent(in) :: of_value(:), of_slope(:)
     real(wp), intent(inout) :: gap(:)
-    !> Distance over which a derivative is taken, over the radius of the edge.
-    real(wp), parameter :: part = 1.0e-5_wp
+    !> Distance over which a derivative is taken, over the radius of the edge; largest distance of
+    !> gaps that move, in widths of the cohesive zone.
+    real(wp), parameter :: part = 1.0e-5_wp, widths = 1.5_wp
     real(wp) :: radius(size(nodes)), rate(size(nodes)), step, c, width
     real(wp), allocatable :: height(:)
     integer :: j, first, edge, last
@@ -317,7 +318,7 @@ contains
         c = c + of_value(j)*radius(j) + of_slope(j)*rate(j)
       end associate
     end do
-    width = cohesive_width(problem)
+    width = widths*cohesive_width(problem)
     first = count(grid%x < c - width) + 1
     edge = count(grid%x < c)
     last = count(grid%x < c + width)

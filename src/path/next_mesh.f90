@@ -2,6 +2,7 @@
 !> the gaps with which the path comes to it.
 module next_mesh
   use kinds, only: wp
+  use contact_scales, only: smallest_feature
   use contact_state, only: state_t, radius_of_gap, radius_of_step, felt_load
   use equilibrium, only: equations_t
   use mapped_mesh, only: mapped_shape_t
@@ -13,11 +14,11 @@ module next_mesh
 
   !> The largest radius that the path may reach on a mesh, over the largest of its band.
   real(wp), parameter :: beyond_passage = 1.1_wp
-  !> States ahead for which a mesh about the axis is laid out, in steps of the arc.
+  !> States ahead for which a mesh about the axis is laid out before contact, in steps of the arc.
   integer, parameter :: ahead(*) = [0, 1, 2, 3, 4, 6, 8]
-  !> The gap to which gaps ahead tend in contact, below the nearest gap of the arc, in repulsion
-  !> lengths: a little more compression than seen.
-  real(wp), parameter :: margin = 0.1_wp
+  !> Distance by which the edge may move in contact on a mesh about the axis, over the smallest
+  !> feature of the pressure.
+  real(wp), parameter :: widths_ahead = 2
   !> Largest number of digits of a layout for seen gaps: the polynomials of neighbouring panels meet
   !> in kinks, which no panel of another mesh resolves.
   real(wp), parameter :: most_digits_seen = 10
@@ -74,14 +75,14 @@ contains
   end subroutine lay_out_next
 
   !> The shape of the mesh after that of an arc, for its state number i and, about the axis, for
-  !> gaps extrapolated from it.
+  !> states that follow it.
   type(mapped_shape_t) function shape_for_next(equations, arc, i) result(shape)
     type(equations_t), intent(in), target :: equations
     type(arc_t), intent(in) :: arc
     integer, intent(in) :: i
     type(seen_gaps_t) :: seen
     real(wp), allocatable :: gap(:), change(:)
-    real(wp) :: load, radius, nearest
+    real(wp) :: load, radius
     integer :: to, k
 
     to = arc%mesh + 1
@@ -89,19 +90,16 @@ contains
       grid => equations%meshes%grid(arc%mesh), state => arc%state(i), before => arc%state(i - 1))
       call seen%begin_on(grid, size(ahead), 10.0_wp**(-min(meshes%digits, most_digits_seen)))
       load = felt_load(problem, grid, state)
-      if (meshes%is_about_axis(to)) then
+      radius = radius_of_gap(problem%shape, problem%law%edge_gap, grid, state)
+      if (meshes%is_about_axis(to) .and. radius > 0) then
+        call seen%add(problem%shape, state%gap, state%scale, state%h0, load)
+        call seen%try(radius, radius, &
+          radius + widths_ahead*smallest_feature(problem, radius), 0.0_wp, about_axis=.true.)
+      else if (meshes%is_about_axis(to)) then
         change = equations%raised(arc%mesh, state) - equations%raised(arc%mesh, before)
-        nearest = min(minval(state%gap), minval(state%gap - change)) - &
-          margin*problem%law%repulsion_length
         do k = 1, size(ahead)
-          if (minval(state%gap) < problem%law%rest_gap) then
-            ! The edge moves on, and what it passes comes to rest.
-            gap = nearest + (state%gap - nearest)* &
-              ((state%gap - nearest)/(state%gap - change - nearest))**ahead(k)
-          else
-            gap = state%gap + ahead(k)*change
-            if (minval(gap) < problem%law%rest_gap .and. k > 1) exit
-          end if
+          gap = state%gap + ahead(k)*change
+          if (minval(gap) < problem%law%rest_gap .and. k > 1) exit
           call seen%add(problem%shape, gap, state%scale, state%h0, load)
           call seen%try(0.0_wp, 1.0_wp, 1.0_wp, 0.0_wp)
         end do
