@@ -18,7 +18,7 @@ module shape_panels
   !> Widths of the cohesive zone: the largest radius over which the edge passes on meshes about the
   !> axis; on a wider face, the radius up to which it stays on them. The radius up to which it stays
   !> on them after a rim within that radius, over that of the rim, but at most one unit more.
-  real(wp), parameter :: widths_to_pass = 40, widths_before = 5, beyond_rim = 1.3_wp
+  real(wp), parameter :: widths_to_pass = 100, widths_before = 5, beyond_rim = 1.3_wp
   !> Width of the cohesive zone, lateral units, above which adhesion is weak.
   real(wp), parameter :: wide = 10
 
