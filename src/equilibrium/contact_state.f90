@@ -8,7 +8,7 @@ module contact_state
   use root_finding, only: root_search_t, new_root_search
   implicit none
   private
-  public :: state_t, undeformed_state, load_reach, gap_at_end, gap_at, radius_of_gap, &
+  public :: state_t, undeformed_state, load_reach, gap_at_end, gap_at, gaps_at, radius_of_gap, &
     radius_of_step, contact_radius_of, felt_load, far_gap
 
   !> At gaps above this value, in the law's lengths, forces do not depend on the last digits.
@@ -101,6 +101,23 @@ contains
       gap = grid%interpolate(state%gap, x)
     end if
   end function gap_at
+
+  !> The same at many positions, in ascending order.
+  pure function gaps_at(shape, grid, state, x) result(gap)
+    class(shape_t), intent(in) :: shape
+    type(discretisation_t), intent(in) :: grid
+    type(state_t), intent(in) :: state
+    real(wp), intent(in) :: x(:)
+    real(wp) :: gap(size(x))
+    integer :: n
+
+    do n = size(x), 1, -1
+      if (shape%parabolic .and. .not. grid%in_tail(x(n))) exit
+    end do
+    gap(:n) = grid%interpolate_all(state%gap, x(:n))
+    gap(n + 1:) = shape%height(state%scale*x(n + 1:)) + &
+      grid%interpolate_all(state%gap - shape%height(state%scale*grid%x), x(n + 1:))
+  end function gaps_at
 
   !> Position, in lateral units, of the outermost point with the given gap; 0 if all gaps are
   !> larger.

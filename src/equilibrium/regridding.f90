@@ -3,7 +3,7 @@ module regridding
   use kinds, only: wp
   use shape, only: shape_t
   use discretisation, only: discretisation_t
-  use contact_state, only: state_t, gap_at
+  use contact_state, only: state_t, gaps_at
   implicit none
   private
   public :: regrid
@@ -17,25 +17,23 @@ contains
     type(state_t), intent(in) :: state
     type(discretisation_t), intent(in) :: from, to
     real(wp), intent(in) :: scale
-    real(wp) :: r, raised
-    integer :: j
+    real(wp) :: raised(1)
+    integer :: within
 
     new = state
     deallocate (new%gap, new%pressure)
     allocate (new%gap(to%nodes), new%pressure(to%nodes))
     new%pressure = 0
     new%scale = scale
-    raised = 0
-    if (from%is_bounded()) raised = gap_at(shape, from, state, from%end) - state%h0 - &
-      shape%height(state%scale*from%end)
-    do j = 1, to%nodes
-      r = scale*to%x(j)
-      if (r/state%scale <= from%end) then
-        new%gap(j) = gap_at(shape, from, state, r/state%scale)
-      else
-        new%gap(j) = state%h0 + raised*state%scale*from%end/r + shape%height(r)
-      end if
-    end do
+    associate (x => to%x*(scale/state%scale), gap => new%gap)
+      within = count(x <= from%end)
+      gap(:within) = gaps_at(shape, from, state, x(:within))
+      if (within == to%nodes) return
+      raised = gaps_at(shape, from, state, [from%end]) - state%h0 - &
+        shape%height(state%scale*from%end)
+      gap(within + 1:) = state%h0 + raised(1)*from%end/x(within + 1:) + &
+        shape%height(state%scale*x(within + 1:))
+    end associate
   end function regrid
 
 end module regridding

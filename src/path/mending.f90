@@ -13,7 +13,7 @@ module mending
   use represented_pressure, only: pressure_on
   use law_panels, only: left_out
   use seen_gaps, only: seen_gaps_t
-  use contact_state, only: state_t, gap_at, felt_load, radius_of_step
+  use contact_state, only: state_t, gaps_at, felt_load, radius_of_step
   use equilibrium, only: equations_t
   use traced_path, only: traced_path_t
   implicit none
@@ -201,7 +201,7 @@ contains
     type(discretisation_t), intent(in) :: grid
     integer, intent(in) :: last
     real(wp) :: left(size(grid%panel)), gap(grid%nodes)
-    integer :: i, j
+    integer :: i
 
     left = 0
     associate (own => equations%meshes%grid(mesh), problem => equations%problem)
@@ -213,7 +213,7 @@ contains
           if (grid%nodes == own%nodes) then
             gap = point%state%gap
           else
-            gap = [(gap_at(problem%shape, own, point%state, grid%x(j)), j=1, grid%nodes)]
+            gap = gaps_at(problem%shape, own, point%state, grid%x)
           end if
           left = max(left, left_of(problem, grid, gap, point%state%scale, &
             felt_load(problem, own, point%state)))
