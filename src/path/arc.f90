@@ -4,16 +4,15 @@ module arc
   use kinds, only: wp, pi
   use interpolation, only: polynomial_weights, hermite_weights, hermite_t, hermite_through, &
     most_hermite_nodes, find_nodes_about
-  use shape, only: shape_t
   use dimensionless_problem, only: problem_t
   use discretisation, only: discretisation_t
-  use contact_scales, only: cohesive_width
-  use contact_state, only: state_t, radius_of_gap
+  use contact_state, only: state_t
   use solver, only: solver_t
   use solver_options, only: tightened
   use mesh_plan, only: approach
   use path_coordinate, only: path_control
   use path_tangent, only: tangent_t, tangent_along
+  use moved_gaps, only: moved_outside, move_with_edge
   implicit none
   private
   public :: arc_t, between, most_states
@@ -38,8 +37,6 @@ module arc
     procedure :: drop_first
     procedure :: guess
     procedure :: guess_from
-    procedure, private :: outside
-    procedure, private :: move_with_edge
     procedure, private :: has_moving_parts
     procedure :: curve
     procedure :: slope
@@ -205,7 +202,7 @@ contains
   !> error is most of the error of the guess. Inside the edge bodies in contact follow each other's
   !> shape, so that the gap is smooth where the shape is not. A parabola's heights are proportional
   !> to the square of the scale and need no such correction. moved: gaps outside the edge are those
-  !> of `outside` or, about the axis, gaps near the edge those of `move_with_edge`; .false. if
+  !> of `moved_outside` or, about the axis, gaps near the edge those of `move_with_edge`; .false. if
   !> absent.
   pure subroutine guess_from(self, problem, grid, nodes, s, expected, moved)
     class(arc_t), intent(in) :: self
@@ -243,116 +240,18 @@ contains
         expected%pressure(from:) = expected%pressure(from:) + shape%height(scale*grid%x(from:))
     end associate
     if (present(moved)) then
-      if (moved .and. grid%centre > 0) then
-        expected%pressure(from:) = &
-          self%outside(problem%shape, grid, nodes, of_value(:n), of_slope(:n), scale)
-      else if (moved) then
-        call self%move_with_edge(problem, grid, nodes, of_value(:n), of_slope(:n), &
-          expected%pressure)
-      end if
+      associate (gap => expected%pressure)
+        if (moved .and. grid%centre > 0) then
+          gap(from:) = moved_outside(problem%shape, grid, self%state, self%tangent, nodes, &
+            of_value(:n), of_slope(:n), scale)
+        else if (moved) then
+          call move_with_edge(problem, grid, self%state, self%tangent, nodes, of_value(:n), &
+            of_slope(:n), gap)
+        end if
+      end associate
     end if
     call take_if_sound(h0, scale, expected)
   end subroutine guess_from
-
-  !> The gaps outside the edge to which a mesh is locked, at a given scale, by polynomials of s at
-  !> constant distance from the edge, with the weights of values and slopes of the states `nodes`.
-  !> Rings of an oscillating pressure and the front of a step keep their distance approximately,
-  !> while they pass many nodes.
-  pure function outside(self, shape, grid, nodes, of_value, of_slope, scale) result(gap)
-    class(arc_t), intent(in) :: self
-    class(shape_t), intent(in) :: shape
-    type(discretisation_t), intent(in) :: grid
-    integer, intent(in) :: nodes(:)
-    real(wp), intent(in) :: of_value(:), of_slope(:), scale
-    !> Part of the distance over which a derivative is taken.
-    real(wp), parameter :: part = 1.0e-5_wp
-    integer :: j, from
-    real(wp), allocatable :: away(:), raised(:), value(:), change(:), gap(:)
-
-    from = count(grid%x <= grid%centre) + 1
-    gap = shape%height(scale*grid%x(from:))
-    do j = 1, size(nodes)
-      associate (state => self%state(nodes(j)), tangent => self%tangent(nodes(j)))
-        raised = state%gap - shape%height(state%scale*grid%x)
-        value = of_value(j)*raised + of_slope(j)*(tangent%gap - &
-          tangent%scale*grid%x*shape%slope(state%scale*grid%x))
-        away = (grid%x(from:) - grid%centre)*scale/state%scale
-        if (grid%is_bounded()) away = min(away, grid%x(grid%nodes) - grid%centre)
-        ! With the distance constant, a position on the mesh moves as the scale grows. The mean of
-        ! two neighbouring positions is the value between them.
-        change = of_slope(j)*tangent%scale/(state%scale*part)*raised
-        gap = gap + 0.5_wp*( &
-          grid%interpolate_all(value - change, grid%centre + (1 + part)*away) + &
-          grid%interpolate_all(value + change, grid%centre + (1 - part)*away))
-      end associate
-    end do
-  end function outside
-
-  !> Replaces gaps near the edge, on a mesh about the axis, by polynomials of s at constant distance
-  !> from the edge, with the weights of values and slopes of the states `nodes`. Inside the edge
-  !> bodies follow each other's shape: there the gaps move, outside it the gaps less the heights of
-  !> the shape. Far from the edge gaps change in place.
-  pure subroutine move_with_edge(self, problem, grid, nodes, of_value, of_slope, gap)
-    class(arc_t), intent(in) :: self
-    type(problem_t), intent(in) :: problem
-    type(discretisation_t), intent(in) :: grid
-    integer, intent(in) :: nodes(:)
-    real(wp), intent(in) :: of_value(:), of_slope(:)
-    real(wp), intent(inout) :: gap(:)
-    !> Distance over which a derivative is taken, over the radius of the edge; largest distance of
-    !> gaps that move, in widths of the cohesive zone.
-    real(wp), parameter :: part = 1.0e-5_wp, widths = 1.5_wp
-    real(wp) :: radius(size(nodes)), rate(size(nodes)), step, c, width
-    real(wp), allocatable :: height(:)
-    integer :: j, first, edge, last
-
-    c = 0
-    do j = 1, size(nodes)
-      associate (state => self%state(nodes(j)), tangent => self%tangent(nodes(j)))
-        radius(j) = radius_of_gap(problem%shape, problem%law%edge_gap, grid, state)
-        if (.not. radius(j) > 0) return
-        step = part*radius(j)
-        rate(j) = -2*step*grid%interpolate(tangent%gap, radius(j))/ &
-          (grid%interpolate(state%gap, radius(j) + step) - &
-          grid%interpolate(state%gap, radius(j) - step))
-        c = c + of_value(j)*radius(j) + of_slope(j)*rate(j)
-      end associate
-    end do
-    width = widths*cohesive_width(problem)
-    first = count(grid%x < c - width) + 1
-    edge = count(grid%x < c)
-    last = count(grid%x < c + width)
-    height = problem%shape%height(grid%x)
-    gap(first:edge) = 0
-    gap(edge + 1:last) = height(edge + 1:last)
-    do j = 1, size(nodes)
-      associate (state => self%state(nodes(j)), tangent => self%tangent(nodes(j)))
-        call move(state%gap, tangent%gap, gap(first:edge), grid%x(first:edge))
-        call move(state%gap - height, tangent%gap, gap(edge + 1:last), grid%x(edge + 1:last))
-      end associate
-    end do
-
-  contains
-
-    !> Adds the part of state j, whose quantity has the given values and derivatives by s at the
-    !> nodes, to the quantity at some positions.
-    pure subroutine move(value, slope, sum, x)
-      real(wp), intent(in) :: value(:), slope(:), x(:)
-      real(wp), intent(inout) :: sum(:)
-      real(wp) :: at(size(x)), mean(size(value)), change(size(value)), step
-
-      step = part*radius(j)
-      at = x - c + radius(j)
-      if (grid%is_bounded()) at = min(at, grid%x(grid%nodes) - step)
-      mean = of_value(j)*value + of_slope(j)*slope
-      ! With the distance constant, a position on the mesh moves with the edge. The mean of two
-      ! neighbouring positions is the value between them.
-      change = of_slope(j)*rate(j)/step*value
-      sum = sum + 0.5_wp*(grid%interpolate_all(mean - change, abs(at - step)) + &
-        grid%interpolate_all(mean + change, abs(at + step)))
-    end subroutine move
-
-  end subroutine move_with_edge
 
   !> The polynomial through states at the given values of a coordinate, evaluated at s.
   pure type(state_t) function between(coordinate, states, s) result(expected)
