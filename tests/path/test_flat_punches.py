@@ -85,7 +85,9 @@ def test_the_largest_tension_is_that_of_an_extremum_although_meshes_differ_by_mo
 
 
 @pytest.mark.parametrize("radius, flat_radius, stiffness", [
-    (1e-6, 1e-8, 1e11), (1e-6, 1e-8, 1e10), (1e-6, 6e-8, 1e11), (3e-6, 2e-8, 3e9)])
+    (1e-6, 1e-8, 1e11), (1e-6, 1e-8, 1e10), (1e-6, 6e-8, 1e11), (3e-6, 2e-8, 3e9),
+    # The widest contact has seventy widths of the cohesive zone.
+    (1e-6, 2e-8, 2.2e8)])
 def test_paths_of_rounded_punches_reach_the_accuracy_asked_for(run, radius, flat_radius, stiffness):
     """The rim passed over the panels of meshes locked to the edge, and numbers converged to five
     digits or six at any accuracy."""
@@ -102,6 +104,19 @@ def test_paths_of_rounded_punches_reach_the_accuracy_asked_for(run, radius, flat
         assert not any(said.startswith("the error is estimated") for said in found.warnings)
         for name in ("max_tension", "end_load", "end_displacement"):
             assert found.summary[name] == pytest.approx(exact[name], rel=accuracy), name
+
+
+def test_paths_about_the_axis_have_few_states(run):
+    """Guesses followed the gap at each node, over which the edge passes, and not the edge."""
+    found = run(deck(
+        bodies={"radius": 1e-6, "stiffness": 1e9},
+        shape={"kind": "rounded_punch", "flat_radius": 1.5e-7},
+        force={"law": "lennard_jones", "hamaker": 1e-19, "z0": 5e-10},
+        equilibrium_path={"h0_end": -1e-9}, numerics={"accuracy": 1e-6}))
+    # A finer program without guesses that follow the edge had these numbers with 197 states.
+    assert found.summary["max_tension"] == pytest.approx(5.726860409e-7, rel=1e-6)
+    assert found.summary["end_load"] == pytest.approx(1.763102691e-7, rel=1e-6)
+    assert found.cost["states"] < 140
 
 
 LONG_WAYS = {
