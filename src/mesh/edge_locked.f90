@@ -78,8 +78,8 @@ contains
     integer :: about
 
     if (self%is_about_axis(mesh)) then
-      shape = approach_shape(problem, max(self%reach(1, mesh), calm_gap(problem)), self%digits, &
-        seen)
+      shape = approach_shape(problem, max(self%reach(1, mesh), calm_gap(problem)), &
+        self%next_passage(mesh), self%digits, seen)
     else
       about = about_edge
       if (problem%law%step_width > 0 .and. abs(self%locked_gap(mesh) - problem%law%step_at) <= 0) &

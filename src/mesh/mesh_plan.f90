@@ -61,6 +61,7 @@ module mesh_plan
     procedure :: is_about_axis
     procedure :: is_in_outer_contact
     procedure :: locked_gap
+    procedure :: next_passage
     procedure :: insert
     procedure :: divide
   end type mesh_plan_t
@@ -185,6 +186,18 @@ contains
 
     is_in_outer_contact = self%inserted(mesh) .and. self%locked_gap(mesh) > 0
   end function is_in_outer_contact
+
+  !> The radius at which the path leaves a mesh and those inserted after it.
+  pure real(wp) function next_passage(self, mesh) result(radius)
+    class(mesh_plan_t), intent(in) :: self
+    integer, intent(in) :: mesh
+    integer :: k
+
+    do k = mesh, size(self%passage)
+      radius = self%passage(k)
+      if (radius > 0) exit
+    end do
+  end function next_passage
 
   !> The gap to which a mesh is locked; 0 for meshes about the axis or fixed in space.
   pure real(wp) function locked_gap(self, mesh) result(gap)

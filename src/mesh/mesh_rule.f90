@@ -60,17 +60,18 @@ contains
     is_narrow = problem%law%period > 0 .or. problem%law%step_width > 0
   end function is_narrow
 
-  !> The mesh before contact, about the axis, for H0 up to h0_high. seen: gaps of computed states.
-  type(mapped_shape_t) function approach_shape(problem, h0_high, digits, seen) result(shape)
+  !> The mesh before contact, about the axis, for H0 up to h0_high and contacts up to the radius
+  !> `widest`. seen: gaps of computed states.
+  type(mapped_shape_t) function approach_shape(problem, h0_high, widest, digits, seen) result(shape)
     type(problem_t), intent(in) :: problem
-    real(wp), intent(in) :: h0_high, digits
+    real(wp), intent(in) :: h0_high, widest, digits
     type(seen_gaps_t), intent(in), optional :: seen
     real(wp) :: density, reach, feature
 
     density = (0.35_wp + digits*(0.4_wp + 0.012_wp*digits))* &
       (1 + 0.03_wp*log(1 + adhesion_strength(problem)))
     reach = max(4.0_wp, beyond_poles*problem%shape%position_of(h0_high))
-    call give_tail(problem, problem%law%edge_gap, digits, reach, density, shape)
+    call give_tail(problem, problem%law%edge_gap, widest, digits, reach, density, shape)
     feature = smallest_feature(problem, 1.0_wp)
     if (front_leads(problem%law)) feature = min(feature, first_front(problem))
     shape%d = exp(rung*floor(log(finer*feature)/rung))
@@ -111,7 +112,7 @@ contains
     ! wider than the range of the force, this pressure is smooth enough.
     if (problem%law%adhesion > 0 .and. cohesive_width(problem) < 1) &
       outer = outer*(1 + 0.5_wp/(1 + 3*(low/cohesive_width(problem))**2))
-    call give_tail(problem, max(level, problem%law%edge_gap), digits, reach, outer, shape)
+    call give_tail(problem, max(level, problem%law%edge_gap), 0.0_wp, digits, reach, outer, shape)
     reach = max(tail_of_contact, reach/low)
     shape%centre = 1
     shape%even = problem%shape%is_even()
@@ -130,10 +131,12 @@ contains
 
   !> The tail of the pressure: an algebraic panel if the pressure decreases as a power. Otherwise
   !> the mesh ends where the pressure is negligible; this sets `reach` (lateral units) and increases
-  !> the density of nodes. from: a gap with a pressure of typical magnitude.
-  pure subroutine give_tail(problem, from, digits, reach, density, shape)
+  !> the density of nodes. from: a gap with a pressure of typical magnitude. widest: radius of a
+  !> contact, outside which gaps open at least as they do from the axis; 0 on a mesh that is locked
+  !> to the edge.
+  pure subroutine give_tail(problem, from, widest, digits, reach, density, shape)
     type(problem_t), intent(in) :: problem
-    real(wp), intent(in) :: from, digits
+    real(wp), intent(in) :: from, widest, digits
     real(wp), intent(inout) :: reach, density
     type(mapped_shape_t), intent(inout) :: shape
 
@@ -147,7 +150,7 @@ contains
         beyond_poles*problem%shape%smooth_from())
       if (problem%shape%ends < near_end*reach) reach = max(reach, beyond_poles*problem%shape%ends)
     else
-      reach = problem%shape%position_of( &
+      reach = widest + problem%shape%position_of( &
         max(fading_gap(problem, from, negligible*10.0_wp**(-digits)), 1.0_wp))
       density = crowding*density
     end if
