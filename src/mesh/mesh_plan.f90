@@ -187,12 +187,15 @@ contains
     is_in_outer_contact = self%inserted(mesh) .and. self%locked_gap(mesh) > 0
   end function is_in_outer_contact
 
-  !> The radius at which the path leaves a mesh and those inserted after it.
+  !> The radius of the contact at which the path leaves a mesh and those inserted after it; 0 if
+  !> there is no contact.
   pure real(wp) function next_passage(self, mesh) result(radius)
     class(mesh_plan_t), intent(in) :: self
     integer, intent(in) :: mesh
     integer :: k
 
+    radius = 0
+    if (.not. self%edge_gap > 0) return
     do k = mesh, size(self%passage)
       radius = self%passage(k)
       if (radius > 0) exit
