@@ -188,7 +188,7 @@ contains
       farthest_pole(steps%drainage%fluid_t)
     associate (meshes => steps%meshes)
       meshes = new_mesh_family(relaxed, maxval(drive%position), low, &
-        min(most_digits, digits + more_digits*(pass - 1)))
+        min(most_digits, digits + more_digits*(pass - 1)), further=.false.)
       if (any(meshes%waits)) call fit_to_path(relaxed, maxval(drive%position), low, &
         request%numerics%accuracy, listener, steps)
       if (allocated(steps%drainage)) call steps%drainage%lay_out(meshes%grid)

@@ -39,26 +39,29 @@ contains
   !> meshes of fewer digits for the same problem and range. Where these have halved or short panels,
   !> or as many nodes as those of more digits, their panels are kept and get more nodes, since a new
   !> layout could have fewer nodes and would then not be more accurate. fronts: whether meshes may
-  !> be locked to the front of a step; .true. if absent.
-  function new_mesh_family(problem, h0_high, h0_low, digits, shape_only, store, coarser, fronts) &
-    result(meshes)
+  !> be locked to the front of a step; further: whether meshes may be inserted later; both .true. if
+  !> absent.
+  function new_mesh_family(problem, h0_high, h0_low, digits, shape_only, store, coarser, fronts, &
+    further) result(meshes)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: h0_high, h0_low, digits
-    logical, intent(in), optional :: shape_only, fronts
+    logical, intent(in), optional :: shape_only, fronts, further
     type(mesh_store_t), intent(inout), optional :: store
     type(mesh_family_t), intent(in), optional :: coarser
     type(mesh_family_t) :: meshes
-    logical :: elastic, follow_fronts
+    logical :: elastic, follow_fronts, may_insert
     integer :: k
 
     follow_fronts = .true.
     if (present(fronts)) follow_fronts = fronts
+    may_insert = .true.
+    if (present(further)) may_insert = further
     elastic = .true.
     if (present(shape_only)) elastic = .not. shape_only
     if (present(coarser)) then
       meshes%mesh_plan_t = coarser%mesh_plan_t
     else
-      meshes%mesh_plan_t = new_mesh_plan(problem, h0_high, h0_low, follow_fronts)
+      meshes%mesh_plan_t = new_mesh_plan(problem, h0_high, h0_low, follow_fronts, may_insert)
     end if
     allocate (meshes%grid(size(meshes%locked)), meshes%shape(size(meshes%locked)))
     meshes%digits = digits

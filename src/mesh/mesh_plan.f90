@@ -69,11 +69,11 @@ module mesh_plan
 contains
 
   !> The plan of meshes for H0 from h0_high down to h0_low. fronts: whether meshes may be locked to
-  !> the front of a step.
-  type(mesh_plan_t) function new_mesh_plan(problem, h0_high, h0_low, fronts) result(plan)
+  !> the front of a step. further: whether meshes may be inserted later.
+  type(mesh_plan_t) function new_mesh_plan(problem, h0_high, h0_low, fronts, further) result(plan)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: h0_high, h0_low
-    logical, intent(in) :: fronts
+    logical, intent(in) :: fronts, further
     real(wp) :: widest
     real(wp), allocatable :: low(:), high(:)
     integer :: k, about_front
@@ -87,7 +87,7 @@ contains
     if (.not. plan%traceable) then
       call add_bands(1.0_wp, widest, 1, low, high)
     else if (problem%law%edge_gap > 0) then
-      associate (first => min(passage_to_contact(problem, plan%fronts, widest), widest))
+      associate (first => min(passage_to_contact(problem, plan%fronts, further, widest), widest))
         ! Where rounding hides the contact, the path ends at its first fold.
         if (lost_in_rounding(problem, widest)) widest = widest_band*first
         if (plan%fronts) call add_bands(first_front(problem), last_front(problem), &
@@ -214,10 +214,11 @@ contains
   !> Contact radius at which the edge becomes too sharp for the mesh of the approach: a fraction of
   !> the neck, and of the radius over which the gap between rigid bodies increases from the gap at
   !> rest to that of largest tension. If meshes are locked to a front, nothing inside it is sharp
-  !> before its last radius; the rim of a flat face is passed before. widest: the largest radius.
-  pure real(wp) function passage_to_contact(problem, fronts, widest) result(c)
+  !> before its last radius; if further meshes may be inserted, the rim of a flat face is passed
+  !> before. widest: the largest radius.
+  pure real(wp) function passage_to_contact(problem, fronts, further, widest) result(c)
     type(problem_t), intent(in) :: problem
-    logical, intent(in) :: fronts
+    logical, intent(in) :: fronts, further
     real(wp), intent(in) :: widest
 
     if (fronts) then
@@ -228,7 +229,7 @@ contains
     if (problem%law%edge_gap > 0) &
       c = min(c, 0.25_wp*problem%shape%position_of( &
       0.5_wp*(problem%law%edge_gap - problem%law%rest_gap)))
-    c = max(c, rim_passed_at(problem, widest))
+    if (further) c = max(c, rim_passed_at(problem, widest))
   end function passage_to_contact
 
 end module mesh_plan
