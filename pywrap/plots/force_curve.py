@@ -189,14 +189,15 @@ def _joined(first, second):
 def _end_at_fold(piece, h0, load):
     """Return the state before a jump.
 
-    At a fold displacement and load both vary as the square root of the distance in h0, so that
-    the displacement is a smooth function of the load.
+    Near a fold the displacement is a smooth function of the square root of the distance in h0. It
+    is not one of the load, which may have an extremum or be level before the fold.
     """
-    steps = np.diff(np.append(piece["load"][-3:], load))
+    before = {x: values[-3:] for x, values in piece.items()}
+    root = np.sqrt(abs(before["h0"] - h0))
     displacement = piece["displacement"][-1]
-    if steps.size == 3 and ((steps > 0).all() or (steps < 0).all()):
-        displacement = _parabola(piece["load"][-3:], piece["displacement"][-3:], load)
-    elif not np.isfinite(load):
+    if root.size == 3 and (np.diff(root) < 0).all():
+        displacement = _parabola(root, before["displacement"], 0.0)
+    if not np.isfinite(load):
         load = piece["load"][-1]
     return {x: np.array([value]) for x, value in
             (("displacement", displacement), ("h0", h0), ("load", load), ("stable", 1))}

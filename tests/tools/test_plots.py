@@ -8,11 +8,13 @@ import sys
 
 import numpy as np
 import pytest
+import snapin
 from conftest import ROOT
 from support.processes import HANG
 
 pytest.importorskip("matplotlib")
 from drawing import scale, smooth  # noqa: E402 (needs matplotlib)
+from force_curve import Curve  # noqa: E402 (needs matplotlib)
 
 SCRIPTS = ROOT / "pywrap" / "plots"
 BODIES = "&bodies radius = 1.5e-2, stiffness = 1.0e10 /\n"
@@ -230,3 +232,16 @@ def test_a_curve_does_not_swing_between_uneven_steps():
     curve = smooth(np.column_stack([h0, load]))
     assert len(curve) > len(h0)
     assert (np.diff(curve[:, 0]) <= 0).all()
+
+
+def test_a_curve_ends_at_its_fold_where_the_load_is_level_before(tmp_path):
+    """The load of a barrier has its maximum just before the fold; the displacement at the fold,
+    extrapolated in the load, was 9.5 nm instead of -0.16 nm."""
+    results = snapin.run((ROOT / "inputs/examples/hydration.nml").read_text(), out=tmp_path)
+    path = results.curve[results.curve["branch"] == "path"]
+    span = np.ptp(path["displacement"])
+    drawn = {branch.name: branch.jumps for branch in Curve(tmp_path).branches}
+    for name in ("loading", "unloading_1"):
+        ((start, _),) = drawn[name]
+        fold = np.argmin(abs(path["load"] / start["load"] - 1) + abs(path["h0"] / start["h0"] - 1))
+        assert abs(start["displacement"][0] - path["displacement"][fold]) < 0.01 * span
