@@ -52,7 +52,7 @@ def draw_law_and_curve(deck, results, terms=None, quantity="pressure"):
 
 def _look_at_contact(panel, curve):
     """Show the range of adhesion, without high loads and the level part of the curve."""
-    h0, load = curve.table["h0"] / curve.lengths[0], curve.table["load"] / curve.loads[0]
+    h0, load = curve.table["h0"] / curve.lengths["h0"][0], curve.table["load"] / curve.loads[0]
     deepest = abs(load.min())
     if load.min() < 0:
         seen = h0[(load <= _HIGHEST * deepest) & (abs(load) >= _FAINT * deepest)]

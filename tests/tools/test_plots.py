@@ -14,7 +14,7 @@ from support.processes import HANG
 
 pytest.importorskip("matplotlib")
 from drawing import scale, smooth  # noqa: E402 (needs matplotlib)
-from force_curve import Curve  # noqa: E402 (needs matplotlib)
+from force_curve import Curve, draw_force_curve  # noqa: E402 (needs matplotlib)
 
 SCRIPTS = ROOT / "pywrap" / "plots"
 BODIES = "&bodies radius = 1.5e-2, stiffness = 1.0e10 /\n"
@@ -245,3 +245,15 @@ def test_a_curve_ends_at_its_fold_where_the_load_is_level_before(tmp_path):
         ((start, _),) = drawn[name]
         fold = np.argmin(abs(path["load"] / start["load"] - 1) + abs(path["h0"] / start["h0"] - 1))
         assert abs(start["displacement"][0] - path["displacement"][fold]) < 0.01 * span
+
+
+def test_a_drive_has_its_own_branches_and_units(tmp_path):
+    """Its ways were all "unloading 0", and displacements of picometres in micrometres."""
+    snapin.run("&bodies radius = 1e-5, stiffness = 7e10 /\n"
+               "&force law = 'lennard_jones', z0 = 0.3e-9, surface_energy = 5e-3 /\n"
+               "&drive velocity = 2e-5, z_start = 1e-6, z_turn = -5e-9, stiffness = 10 /\n"
+               "&numerics accuracy = 1e-3 /", out=tmp_path)
+    figure = draw_force_curve(tmp_path)
+    (legend,) = figure.legends
+    assert [text.get_text() for text in legend.get_texts()] == ["approach", "retreat"]
+    assert [axes.get_xlabel()[-5:] for axes in figure.axes] == [" [pm]", " [µm]"]
