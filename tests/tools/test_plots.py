@@ -15,6 +15,7 @@ from support.processes import HANG
 pytest.importorskip("matplotlib")
 from drawing import scale, smooth  # noqa: E402 (needs matplotlib)
 from force_curve import Curve, draw_force_curve  # noqa: E402 (needs matplotlib)
+from force_law import OTHERS  # noqa: E402 (needs matplotlib)
 
 SCRIPTS = ROOT / "pywrap" / "plots"
 BODIES = "&bodies radius = 1.5e-2, stiffness = 1.0e10 /\n"
@@ -257,3 +258,21 @@ def test_a_drive_has_its_own_branches_and_units(tmp_path):
     (legend,) = figure.legends
     assert [text.get_text() for text in legend.get_texts()] == ["approach", "retreat"]
     assert [axes.get_xlabel()[-5:] for axes in figure.axes] == [" [pm]", " [µm]"]
+
+
+def test_the_forces_of_every_deck_are_drawn(plot, snapin, tmp_path):
+    """A group that the picture of forces did not know was taken for a force: a deck with layers, a
+    fluid or a drive had no picture."""
+    groups = set(re.findall(r"^&(\w+)", snapin("--keys").stdout, re.MULTILINE))
+    laws = {law.stem for law in (ROOT / "src/model/laws").glob("*.f90")}
+    assert groups - OTHERS == laws - {"lennard_jones", "exponential"} | {"force"}
+    done = plot("force_law.py", ROOT / "inputs/examples/drainage.nml", "--out", "here")
+    assert (done.returncode, done.stdout) == (0, "here/force_law.png\n"), done.stderr
+
+
+@pytest.mark.parametrize("deck", [b"&bodies radius = 1\n", b"\xf7\n"], ids=["open", "bytes"])
+def test_a_deck_that_cannot_be_read_has_no_picture_of_forces(plot, tmp_path, deck):
+    (tmp_path / "d.nml").write_bytes(deck)
+    done = plot("force_law.py", "d.nml")
+    assert done.returncode == 1
+    assert re.fullmatch(r"force_law.py: d.nml: .*\n", done.stderr), done.stderr
