@@ -11,7 +11,7 @@ import tempfile
 
 import numpy as np
 import snapin
-from drawing import scale
+from drawing import save, scale
 from force_curve import Curve
 from force_law import Law, forces_of, parts_of, results_of, styled
 from matplotlib.figure import Figure
@@ -73,7 +73,7 @@ def main():
     try:
         with tempfile.TemporaryDirectory() as folder:
             snapin.run(options.deck, out=folder)
-            draw_law_and_curve(options.deck, folder).savefig(picture, dpi=options.dpi)
+            save(draw_law_and_curve(options.deck, folder), picture, options.dpi)
     except (snapin.SnapinError, OSError) as trouble:
         sys.exit(f"{parser.prog}: {trouble}")
     print(picture)

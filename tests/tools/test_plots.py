@@ -173,6 +173,10 @@ def test_the_picture_can_be_elsewhere_and_larger(plot, results, tmp_path):
         (("profiles.py", "theories"), "no profiles.csv in .*no &profiles group"),
         (("profiles.py", "cycle", "--branch", "path"), "loading, unloading_1, unloading_2"),
         (("force_curve.py", "cycle", "-o", "no/such/folder.png"), "no/such"),
+        (("force_curve.py", "cycle", "-o", "here.xyz"), "here.xyz: Format 'xyz' is not supported"),
+        (("map.py", "map", "--dpi", "0"), "dpi must be positive"),
+        (("map.py", "map", "--per", "big_lambda"),
+         "no case has the column 'max_tension' and the column 'big_lambda'"),
     ],
 )
 def test_what_is_missing_is_said_in_one_line(plot, results, args, phrase):
