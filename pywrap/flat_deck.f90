@@ -33,7 +33,8 @@ contains
   end subroutine is_list
 
   !> The force law of a deck: pressure [Pa], its derivative by the separation [Pa/m] and its
-  !> integral from there to infinity [J/m^2], at separations `gap` [m]. numbers: units of gap [m]
+  !> integral from there to infinity [J/m^2], at separations `gap` [m]; pressures are NaN up to
+  !> and beyond a pole in contact, where the formulas go on. numbers: units of gap [m]
   !> and pressure [Pa], separation at gap 0 [m], surface energy [J/m^2], separations of largest
   !> tension, of zero pressure and of vanishing repulsion [m]; NaN if there is none.
   subroutine law_values(deck, gap, pressure, slope, energy, numbers, stat, message, n)
@@ -56,6 +57,9 @@ contains
     if (stat /= 0) return
     associate (law => problem%law)
       pressure = law%pressure_unit*law%pressure(law%gap_of(gap))
+      if (law%smallest_gap > law%gap_of(0.0_c_double)) then
+        where (law%gap_of(gap) < law%smallest_gap) pressure = nan
+      end if
       slope = law%pressure_unit/law%length*law%slope(law%gap_of(gap))
       energy = law%pressure_unit*law%length*law%energy(law%gap_of(gap))
       numbers = [law%length, law%pressure_unit, law%origin, surface_energy(problem), &

@@ -94,11 +94,12 @@ contains
 
   !> Displacement [m], its derivative by the gap, and load [N] of a deck's bodies at gaps on the
   !> axis [m], for slowly varying deformation. form: 'quadrature', 'closed_form' or
-  !> 'attraction_only'.
+  !> 'attraction_only'. Displacements are NaN up to and beyond a pole in contact.
   subroutine slow_states(deck, form, gap, displacement, slope, load, stat, message, n)
     use deck_problem, only: pose
     use dimensionless_problem, only: problem_t
     use failure, only: bad_input
+    use kinds, only: nan
     use slow_deformation, only: attraction_only, by_quadrature, closed_form, has_form, &
       slow_displacement, slow_load, slow_slope
     character(len=*), intent(in) :: deck, form
@@ -128,6 +129,9 @@ contains
       displacement = slow_displacement(problem, which, at)*problem%length
       slope = slow_slope(problem, which, at)
       load = slow_load(problem, which, at)*problem%load
+      if (problem%law%smallest_gap > problem%law%gap_of(0.0_c_double)) then
+        where (at < problem%law%smallest_gap) displacement = nan
+      end if
     end associate
   end subroutine slow_states
 

@@ -65,7 +65,7 @@ def manual(help_text, keys, version):
 def names_of(keys):
     """Every group, and every key as group.key, in the text of --keys."""
     for line in keys.splitlines():
-        if match := re.match(r"&(\w+)(?! \(skipped\))", line):
+        if match := re.match(r"&(\w+)(?!\w| \(skipped\))", line):
             group = match[1]
             yield group
         elif match := re.match(r"  (\w+) ", line):

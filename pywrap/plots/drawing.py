@@ -115,7 +115,16 @@ def run(draw, default_name, description, add_options=lambda parser: None):
     folder, dpi = options.pop("folder"), options.pop("dpi")
     output = pathlib.Path(options.pop("output") or pathlib.Path(folder) / default_name)
     try:
-        draw(folder, **options).savefig(output, dpi=dpi)
+        figure = draw(folder, **options)
+        save(figure, output, dpi)
     except (ResultsError, OSError) as problem:
         sys.exit(f"{parser.prog}: {problem}")
     print(output)
+
+
+def save(figure, output, dpi):
+    """Write a picture; a format or a number of dots that Matplotlib refuses is a ResultsError."""
+    try:
+        figure.savefig(output, dpi=dpi)
+    except ValueError as problem:
+        raise ResultsError(f"{output}: {problem}") from problem

@@ -17,6 +17,9 @@ from snapin.results import ResultsError, read_summary, read_table
 _LOADING = {"color": BLUE, "linewidth": 1.5, "zorder": 5}
 _UNLOADING = (ORANGE, SKY, PURPLE, GREEN, VERMILION)
 _WIDEST, _THINNEST = 5.0, 2.2
+# A drive in time; its branches differ from each other.
+_DRIVE = {"approach": _LOADING, "dwell": {"color": GREEN, "linewidth": 1.5, "zorder": 5},
+          "retreat": {"color": ORANGE, "linewidth": 1.5, "zorder": 4}}
 _PATH = {"color": BLACK, "linewidth": 1.1, "zorder": 6}
 _THEORIES = {
     "hertz": ("Hertz", {"color": GREY, "linestyle": (0, (1, 1.5))}),
@@ -67,16 +70,16 @@ class Curve:
         if self.theories:
             rest = self.summary.get("rest_gap", 0.0)
             self.theories = dict(self.theories, h0=self.theories["h0"] + rest)
-        self.lengths = scale(np.concatenate([self.table["h0"], self.table["displacement"]]), "m")
+        self.lengths = {x: scale(self.table[x], "m") for x in NAMES}
         self.loads = scale(self.table["load"], "N")
         self.branches = [_Branch(name, self.table, self.summary)
                          for name in dict.fromkeys(self.table["branch"])]
 
     def draw(self, panel, x):
         """Draw the curve without arrows."""
-        length, load = self.lengths[0], self.loads[0]
+        length, load = self.lengths[x][0], self.loads[0]
         name = _OF_THEORIES if x == "h0" and self.theories else NAMES[x]
-        dress(panel, f"{name} [{self.lengths[1]}]", f"load [{self.loads[1]}]")
+        dress(panel, f"{name} [{self.lengths[x][1]}]", f"load [{self.loads[1]}]")
         for branch in self.branches:
             branch.draw(panel, x, length, load)
         if self.theories:
@@ -86,7 +89,7 @@ class Curve:
     def draw_arrows(self, panel, x):
         """Draw the arrows of jumps and directions; the panel must have its final size."""
         for branch in self.branches:
-            branch.draw_arrows(panel, x, self.lengths[0], self.loads[0])
+            branch.draw_arrows(panel, x, self.lengths[x][0], self.loads[0])
 
 
 class _Branch:
@@ -99,7 +102,9 @@ class _Branch:
         self.number = int(name.split("_")[1]) if name.startswith("unloading_") else 0
         self.jumps = []
         self.pieces = [self.rows]
-        if name != "path":
+        if name in _DRIVE:
+            self.style, self.label = _DRIVE[name], name
+        elif name != "path":
             self._split(*self._jump_of(summary))
             count = np.size(summary.get("unload_from", []))
             self.style, self.label = _style_of(name, self.number, count)
@@ -166,6 +171,8 @@ class _Branch:
         # Arrows of loading and unloading are apart, since the curves often coincide.
         if self.number:
             fractions = (0.4 + 0.1 * min(self.number, 4), 0.4)
+        elif self.name == "retreat":
+            fractions = (0.4,)
         else:
             fractions = (0.25 if self.jumps else 0.75, 0.75)
         for piece, fraction in zip(self.pieces, fractions):
@@ -189,14 +196,15 @@ def _joined(first, second):
 def _end_at_fold(piece, h0, load):
     """Return the state before a jump.
 
-    At a fold displacement and load both vary as the square root of the distance in h0, so that
-    the displacement is a smooth function of the load.
+    Near a fold the displacement is a smooth function of the square root of the distance in h0. It
+    is not one of the load, which may have an extremum or be level before the fold.
     """
-    steps = np.diff(np.append(piece["load"][-3:], load))
+    before = {x: values[-3:] for x, values in piece.items()}
+    root = np.sqrt(abs(before["h0"] - h0))
     displacement = piece["displacement"][-1]
-    if steps.size == 3 and ((steps > 0).all() or (steps < 0).all()):
-        displacement = _parabola(piece["load"][-3:], piece["displacement"][-3:], load)
-    elif not np.isfinite(load):
+    if root.size == 3 and (np.diff(root) < 0).all():
+        displacement = _parabola(root, before["displacement"], 0.0)
+    if not np.isfinite(load):
         load = piece["load"][-1]
     return {x: np.array([value]) for x, value in
             (("displacement", displacement), ("h0", h0), ("load", load), ("stable", 1))}

@@ -31,9 +31,10 @@ _DASHES = ((5, 2), (2, 1.5), (5, 1.5, 1, 1.5), (1, 1.5))
 UNITS = {"pressure": "Pa", "energy": "J/m²"}
 # Groups of a deck that are not forces.
 OTHERS = {
-    "scene", "bodies", "shape", "loading", "unloading", "equilibrium_path", "profiles", "classical",
-    "approximations", "stability", "sweep", "numerics", "summary", "cost", "device", "fixed_load",
-    "regime", "table", "sensitivity", "measurement", "fit"}
+    "scene", "bodies", "layer", "shape", "loading", "unloading", "equilibrium_path", "profiles",
+    "classical", "approximations", "stability", "sweep", "numerics", "summary", "cost", "device",
+    "fixed_load", "regime", "table", "sensitivity", "drive", "viscoelastic", "fluid", "measurement",
+    "fit"}
 
 
 def forces_of(file):
@@ -186,8 +187,8 @@ def main():
     for deck in options.deck:
         try:
             figure = draw_force_law(forces_of(deck), title_of(deck))
-        except (snapin.SnapinError, OSError) as trouble:
-            sys.exit(str(trouble))
+        except (snapin.SnapinError, OSError, ValueError) as trouble:
+            sys.exit(f"{parser.prog}: {deck}: {trouble}")
         file = (options.out or results_of(deck)) / "force_law.png"
         file.parent.mkdir(parents=True, exist_ok=True)
         figure.savefig(file, dpi=150)

@@ -11,7 +11,7 @@ import tempfile
 
 import numpy as np
 import snapin
-from drawing import scale
+from drawing import save, scale
 from force_curve import Curve
 from force_law import Law, forces_of, parts_of, results_of, styled
 from matplotlib.figure import Figure
@@ -52,7 +52,7 @@ def draw_law_and_curve(deck, results, terms=None, quantity="pressure"):
 
 def _look_at_contact(panel, curve):
     """Show the range of adhesion, without high loads and the level part of the curve."""
-    h0, load = curve.table["h0"] / curve.lengths[0], curve.table["load"] / curve.loads[0]
+    h0, load = curve.table["h0"] / curve.lengths["h0"][0], curve.table["load"] / curve.loads[0]
     deepest = abs(load.min())
     if load.min() < 0:
         seen = h0[(load <= _HIGHEST * deepest) & (abs(load) >= _FAINT * deepest)]
@@ -73,7 +73,7 @@ def main():
     try:
         with tempfile.TemporaryDirectory() as folder:
             snapin.run(options.deck, out=folder)
-            draw_law_and_curve(options.deck, folder).savefig(picture, dpi=options.dpi)
+            save(draw_law_and_curve(options.deck, folder), picture, options.dpi)
     except (snapin.SnapinError, OSError) as trouble:
         sys.exit(f"{parser.prog}: {trouble}")
     print(picture)

@@ -55,7 +55,8 @@ def draw_map(folder, value="max_tension", per=None, over=None, where=()):
     failed = columns["converged"] != 1
     good = np.isfinite(shown) & ~failed
     if not good.any():
-        raise ResultsError(f"{folder}/sweep.csv: no case has the column {value!r}")
+        raise ResultsError(f"{folder}/sweep.csv: no case has " + " and ".join(
+            f"the column {name!r}" for name in (value, per) if name))
     others = [name for name in keys
               if {*over} <= {*keys} and name not in over and len(np.unique(columns[name])) > 1]
     if len(over) == 2 and (_has_words(columns[over[1]])

@@ -9,13 +9,19 @@ the table has the spring constant of the file.
 """
 
 import argparse
+import os
 import sys
+
+HEIGHTS = ("height (measured)", "height (piezo)")
 
 
 def table_of(curve):
     """Return the lines of the table of a curve: columns "height (measured)" or "height (piezo)",
     "force" and "segment" of afmformats, all SI."""
-    height = next(name for name in ("height (measured)", "height (piezo)") if name in curve.columns)
+    height = next((name for name in HEIGHTS if name in curve.columns), None)
+    if height is None or "force" not in curve.columns:
+        raise ValueError(f"a curve needs force, and {' or '.join(HEIGHTS)}; this one has "
+                         + ", ".join(curve.columns))
     yield f"# from {curve.path.name}; {height} is the position of the base"
     yield f"# spring_constant = {curve.metadata.get('spring constant', 'unknown')}"
     yield "z,force,segment"
@@ -33,8 +39,18 @@ def main():
         import afmformats
     except ImportError:
         sys.exit(f"{parser.prog}: missing: {sys.executable} -m pip install afmformats")
-    curves = afmformats.load_data(options.file)
-    print("\n".join(table_of(curves[options.number])))
+    try:
+        os.stat(options.file)
+        curves = afmformats.load_data(options.file)
+        if not 0 <= options.number < len(curves):
+            raise ValueError(f"--number {options.number}: the file has {len(curves)} curves, "
+                             "the first is 0")
+        table = "\n".join(table_of(curves[options.number]))
+    except KeyboardInterrupt:
+        raise
+    except BaseException as problem:  # errors of afmformats are of any kind, some of no other class
+        sys.exit(f"{parser.prog}: {options.file}: {problem}")
+    print(table)
 
 
 if __name__ == "__main__":

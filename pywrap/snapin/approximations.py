@@ -58,7 +58,8 @@ def slow_deformation(gap, *, radius, stiffness=None, law, rigid=False, form="qua
     accept_deck(stat, message)
     displacement, slope, load = values
     if not np.isfinite(values).all():
-        raise ValueError("gap: displacement, slope or load leave the range of float64")
+        raise ValueError("gap: the law has no pressure there, or displacement, slope or load leave "
+                         "the range of float64")
     return SlowDeformation(gap - displacement, displacement, slope, load)
 
 

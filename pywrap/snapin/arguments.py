@@ -6,6 +6,8 @@ the same values; no argument is changed.
 """
 
 import operator
+import os
+import pathlib
 import reprlib
 from decimal import Decimal
 from numbers import Real
@@ -39,6 +41,13 @@ def shown(value):
     # The repr of an unknown class may fail in any way, that of an int beyond 4300 digits.
     except Exception:
         return f"this {type(value).__name__}"
+
+
+def folder_path(name, value):
+    """Return the path of a folder."""
+    if not isinstance(value, (str, os.PathLike)):
+        raise TypeError(f"{name}: the path of a folder is needed, not {shown(value)}")
+    return pathlib.Path(value)
 
 
 # --- Numbers

@@ -18,7 +18,7 @@ from typing import NamedTuple
 import _snapin
 import numpy as np
 
-from .arguments import DeckError, SnapinError, SnapinWarning, vector
+from .arguments import DeckError, SnapinError, SnapinWarning, folder_path, vector
 from .deck import deck_of, scene
 from .results import Result, read_results, result_of
 
@@ -53,7 +53,7 @@ def _run(deck, out=None, resume=False, quiet=True):
         raise DeckError(f"{name}: a NUL byte: a deck is plain text")
     if out is None and resume:
         raise ValueError("resume: out must name the folder of the interrupted run")
-    place = ("--out", "-") if out is None else ("--into", os.fspath(pathlib.Path(out)))
+    place = ("--out", "-") if out is None else ("--into", os.fspath(folder_path("out", out)))
     if b"\0" in os.fsencode(place[1]):
         raise ValueError("out: the name of a folder cannot have a NUL")
     options = (["--quiet"] if quiet else []) + (["--resume"] if resume else [])

@@ -141,7 +141,8 @@ def force_law(law, gap):
     *values, _, stat, message = _snapin.flat_deck.law_values(problem_deck(law), gap)
     accept_deck(stat, message)
     if not np.isfinite(values).all():
-        raise ValueError("gap: pressure, slope or energy leave the range of float64")
+        raise ValueError("gap: the law has no pressure there, or pressure, slope or energy leave "
+                         "the range of float64")
     return LawValues(*values)
 
 

@@ -6,9 +6,11 @@ import re
 import _snapin
 import numpy as np
 
-from .arguments import SnapinError
+from .arguments import SnapinError, folder_path
 
 _TEXT_COLUMNS = ("branch", "direction", "theory", "quantity", "parameter", "failure")
+# How the program's tables begin.
+_HEAD = b"# title:"
 # A text in quotes, with quotes inside doubled, or another value.
 _WORD = re.compile(r"'((?:[^']|'')*)'|([^,\s]+)")
 _TRUTHS = {".true.": True, ".false.": False}
@@ -52,13 +54,13 @@ class Result:
 
 def read_results(folder):
     """Return the `Result` in a folder written by the program."""
+    folder = folder_path("folder", folder)
     _path_of(folder, "summary.nml")
-    files = {
-        path.name: path.read_text(encoding="utf-8")
-        for path in sorted(pathlib.Path(folder).glob("*"))
-        if path.suffix in (".csv", ".nml")
-    }
-    return result_of(files, folder)
+    files = {path.name: path.read_bytes() for path in sorted(folder.glob("*.*"))
+             if path.suffix == ".csv" or path.name in ("summary.nml", "fit.nml")}
+    # Other tables may be there, such as a measured curve.
+    return result_of({name: text.decode() for name, text in files.items()
+                      if name.endswith(".nml") or text.startswith(_HEAD)}, folder)
 
 
 def result_of(files, place):
@@ -67,7 +69,7 @@ def result_of(files, place):
     tables = {
         name.removesuffix(".csv"): _structured(_columns(text, f"{place}/{name}"))
         for name, text in sorted(files.items())
-        if name.endswith(".csv") and text.startswith("#")
+        if name.endswith(".csv")
     }
     return Result(tables, groups["summary"], groups["cost"], _fitted(files.get("fit.nml", "")))
 

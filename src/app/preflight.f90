@@ -1,8 +1,8 @@
-!> Checks before a run whether there is memory for its matrices and disk space for its files. A run
-!> without enough of either is not begun.
+!> Checks before a run whether there is memory for its matrices and disk space for its files, and
+!> whether these would replace files that the deck reads. Such a run is not begun.
 module preflight
   use kinds, only: wp
-  use failure, only: failure_t, fail, no_room
+  use failure, only: failure_t, fail, bad_input, no_room
   use text, only: brief
   use scene_groups, only: scene_t
   use dimensionless_problem, only: problem_t
@@ -14,12 +14,13 @@ module preflight
   use h0_schedule, only: states_planned
   use decimal, only: longest_real
   use memory, only: available_memory
-  use files, only: free_disk
+  use files, only: free_disk, same_file
+  use publication, only: result_files, summary_name
   use results, only: to_stream
   use blas_threads, only: thread_count, blas_buffers
   implicit none
   private
-  public :: check_room, large_results
+  public :: check_room, check_inputs, large_results
 
   !> Memory of a run with matrices apart from these [bytes].
   real(wp), parameter :: other_bytes = 1.0e7_wp
@@ -36,7 +37,43 @@ module preflight
   !> Size of results above which they are announced, and the free disk space is checked [bytes].
   real(wp), parameter :: large = 1.0e8_wp
 
+  !> Groups whose key `file` names a table of numbers.
+  character(len=*), parameter :: with_file(*) = [character(len=11) :: 'sweep', 'measurement', &
+    'shape', 'tabulated']
+
 contains
+
+  !> Fails if results in `folder` would replace a file that the deck reads: the deck itself, `name`,
+  !> or a table. A summary may be the deck of its own folder, since its successor has the same deck.
+  subroutine check_inputs(scene, name, folder, error)
+    type(scene_t), intent(in) :: scene
+    character(len=*), intent(in) :: name, folder
+    type(failure_t), allocatable, intent(out) :: error
+    integer :: i
+
+    if (folder == to_stream) return
+    call check(name, scene%deck%has_group('summary'))
+    do i = 1, size(with_file)
+      if (scene%deck%is_set(trim(with_file(i)), 'file')) &
+        call check(scene%deck%path_of(trim(with_file(i)), 'file'), .false.)
+    end do
+
+  contains
+
+    subroutine check(path, is_summary)
+      character(len=*), intent(in) :: path
+      logical, intent(in) :: is_summary
+      integer :: k
+
+      do k = 1, size(result_files)
+        if (is_summary .and. result_files(k) == summary_name) cycle
+        if (same_file(path, folder // '/' // trim(result_files(k)))) call fail(error, bad_input, &
+          name // ': results would replace ' // path // &
+          ', which the deck reads; rename it, or choose another folder')
+      end do
+    end subroutine check
+
+  end subroutine check_inputs
 
   !> Fails if memory, or the disk with the folder of the results, does not suffice for a run.
   subroutine check_room(scene, folder, error)

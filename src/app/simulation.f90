@@ -1,7 +1,7 @@
 !> One deck from scene to results. Effects that the scene does not have cost nothing.
 module simulation
   use kinds, only: wp, long
-  use failure, only: failure_t
+  use failure, only: failure_t, bad_input
   use build_info, only: version, compiler, blas, options
   use dimensionless_problem, only: problem_t
   use scene_groups, only: scene_t
@@ -95,7 +95,7 @@ contains
     call results%write_summary(summary, cost, scene%deck)
     call results%finish(error)
     if (allocated(error)) then
-      error%message = error%message//'; then go on with --resume'
+      if (error%kind /= bad_input) error%message = error%message // '; then go on with --resume'
       return
     end if
     call tell(scene, destination, summary, cost)

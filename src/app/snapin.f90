@@ -18,7 +18,7 @@ program snapin
   use sweeps, only: work_on_sweeps
   use dispatch, only: dismiss
   use ranks, only: crew_t
-  use preflight, only: check_room, large_results
+  use preflight, only: check_room, check_inputs, large_results
   use build_info, only: version, compiler, blas, options_of_build => options
   implicit none
 
@@ -112,14 +112,15 @@ contains
       else
         call read_scene(options%decks(i)%name, scenes(i), trouble)
       end if
+      if (.not. allocated(trouble)) &
+        call check_inputs(scenes(i), options%decks(i)%name, folder_of(i), trouble)
       if (allocated(trouble)) then
         status = 2
         if (crew%rank == 0) call print_line(error_unit, trouble%message)
         said = trouble%message
       else if (options%check .and. crew%rank == 0) then
         call print_line(output_unit, options%decks(i)%name // ': ok')
-        folder = options%out // '/' // stem_of(options%decks(i)%name)
-        call check_room(scenes(i), folder, trouble)
+        call check_room(scenes(i), folder_of(i), trouble)
         if (allocated(trouble)) call print_line(error_unit, 'snapin: ' // options%decks(i)%name // &
           ': ' // trouble%message)
         if (large_results(scenes(i)) /= '') call print_line(error_unit, 'snapin: ' // &
@@ -136,15 +137,23 @@ contains
       return
     end if
     do i = 1, size(scenes)
-      folder = options%out // '/' // stem_of(options%decks(i)%name)
-      if (allocated(options%into)) folder = options%into
-      if (options%out == to_stream) folder = to_stream
+      folder = folder_of(i)
       call run_scene(scenes(i), folder, options%quiet, options%resume, crew, i, converged, trouble)
       if (allocated(trouble)) call print_line(error_unit, folder // ': ' // trouble%message)
       if (allocated(trouble) .or. .not. converged) status = 1
     end do
     call dismiss(crew)
   end function run_decks
+
+  !> The folder of the results of a deck.
+  function folder_of(i) result(folder)
+    integer, intent(in) :: i
+    character(len=:), allocatable :: folder
+
+    folder = options%out // '/' // stem_of(options%decks(i)%name)
+    if (allocated(options%into)) folder = options%into
+    if (options%out == to_stream) folder = to_stream
+  end function folder_of
 
   !> Prints a line and ignores failures: a full disk behind a redirection must not end the program
   !> with a runtime error.

@@ -2,7 +2,7 @@
 !> one row: the values of its keys, and its numbers.
 module sweeps
   use kinds, only: wp
-  use failure, only: failure_t, fail, file_trouble
+  use failure, only: failure_t, fail, bad_input, file_trouble
   use clock, only: clock_now => seconds
   use linear_algebra, only: claim_buffers
   use scene_groups, only: scene_t
@@ -40,6 +40,7 @@ module sweeps
     procedure :: enter
     procedure :: add
     procedure :: has
+    procedure, private :: next_row
   end type queue_t
 
   !> Computes cases of the sweeps of several scenes; the number of a job is the index of its scene.
@@ -153,6 +154,7 @@ contains
     type(case_t), intent(inout) :: case
     logical, intent(out) :: found
     type(failure_t), allocatable :: error
+    real(wp), allocatable :: rest(:)
 
     found = .false.
     if (allocated(self%results%trouble) .or. allocated(self%results%journal%trouble)) return
@@ -161,9 +163,7 @@ contains
         self%handed_out = self%handed_out + 1
         case%number = self%handed_out
         if (allocated(sweep%file)) then
-          call self%rows%next(case%values, found, error)
-          if (.not. (found .or. allocated(error))) call fail(error, file_trouble, &
-            sweep%file%path // ' is shorter than when it was first read')
+          call self%next_row(case%values, .false., error)
         else
           case%values = sweep%values(case%number)
         end if
@@ -174,8 +174,35 @@ contains
         end if
         found = .not. self%has(case%number)
       end do
+      if (.not. found .and. allocated(sweep%file)) &
+        call self%next_row(rest, .true., self%results%trouble)
     end associate
   end subroutine next
+
+  !> Reads the row of the next case from the file, or, if all are `given`, what is after the last.
+  !> The file was read before without a mistake, and all of its lines are compared with that
+  !> reading: a changed row may be a case too. Nothing shows which cases are still of the deck, so
+  !> that no run may go on from them.
+  subroutine next_row(self, values, given, error)
+    class(queue_t), intent(inout) :: self
+    real(wp), allocatable, intent(inout) :: values(:)
+    logical, intent(in) :: given
+    type(failure_t), allocatable, intent(out) :: error
+    logical :: found
+
+    call self%rows%next(values, found, error)
+    associate (file => self%scene%sweep%file)
+      if (allocated(error)) then
+        if (error%kind == file_trouble) return
+      else if (given) then
+        if (.not. found .and. self%rows%digest == file%digest) return
+      else if (found) then
+        return
+      end if
+      call self%results%journal%discard()
+      call fail(error, bad_input, file%path // ' has changed since it was first read; start again')
+    end associate
+  end subroutine next_row
 
   subroutine put_next(self, batch, found)
     class(queue_t), intent(inout) :: self

@@ -1,7 +1,7 @@
 !> This program's groups, one derived type each; those of the experiments are in
 !> `experiment_request`. Optional groups and keys are allocatable.
 module scene_groups
-  use kinds, only: wp
+  use kinds, only: wp, long
   use text, only: brief, word_of
   use deck, only: deck_t
   use experiment_request, only: request_t
@@ -44,11 +44,13 @@ module scene_groups
     real(wp), allocatable :: values(:)
   end type axis_t
 
-  !> The cases of a file, which are not kept: their number, the first and the last, and for each key
-  !> three values (value, key) that show whether all its values are allowed, with their cases.
+  !> The cases of a file, which are not kept: their number, the checksum of all lines, the first and
+  !> the last case, and for each key three values (value, key) that show whether all its values are
+  !> allowed, with their cases.
   type :: case_file_t
     character(len=:), allocatable :: path
     integer :: cases = 0
+    integer(long) :: digest = 0
     real(wp), allocatable :: first(:), last(:), telling(:, :)
     integer, allocatable :: of_case(:, :)
   end type case_file_t

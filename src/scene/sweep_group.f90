@@ -186,6 +186,7 @@ contains
       call deck%mistake('sweep', 'file', quoted(file%path) // ' has no cases', error)
     else
       sweep%names = rows%names
+      file%digest = rows%digest
       sweep%file = file
     end if
   end subroutine take_file

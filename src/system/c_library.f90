@@ -6,8 +6,8 @@ module c_library
   implicit none
   private
   public :: c_open, c_read, c_write, c_sync, c_sync_above, c_close, c_size, c_cut, &
-    c_make_folder, c_current_folder, c_own_path, c_lock, c_kind, c_rename, c_remove, c_free_disk, &
-    c_is_terminal, c_prepare, c_end_with_parent, c_pause, &
+    c_make_folder, c_current_folder, c_own_path, c_lock, c_kind, c_same_file, c_rename, c_remove, &
+    c_free_disk, c_is_terminal, c_prepare, c_end_with_parent, c_pause, &
     c_openblas_threads, c_openblas_end_threads, c_openblas_config, c_build_id
   public :: explain, system_failure, nul
   public :: as_input, as_output, as_kept_output, as_folder
@@ -106,6 +106,12 @@ module c_library
       integer(c_int), value :: folder
       character(kind=c_char), intent(in) :: name(*)
     end function c_kind
+
+    !> 1 if both paths lead to the same file or folder, 0 if they do not, or there is none.
+    integer(c_int) function c_same_file(path, other) bind(c, name='snapin_same_file')
+      import :: c_char, c_int
+      character(kind=c_char), intent(in) :: path(*), other(*)
+    end function c_same_file
 
     integer(c_int) function c_rename(folder, from, to) bind(c, name='snapin_rename')
       import :: c_char, c_int

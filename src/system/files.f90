@@ -4,12 +4,13 @@ module files
   use, intrinsic :: iso_fortran_env, only: error_unit
   use kinds, only: wp, long
   use failure, only: failure_t
-  use c_library, only: c_make_folder, c_current_folder, c_own_path, c_free_disk, c_is_terminal, &
-    c_write, c_open, c_read, c_sync, c_sync_above, c_close, as_folder, system_failure, nul
+  use c_library, only: c_make_folder, c_current_folder, c_own_path, c_same_file, c_free_disk, &
+    c_is_terminal, c_write, c_open, c_read, c_sync, c_sync_above, c_close, as_folder, &
+    system_failure, nul
   implicit none
   private
-  public :: make_folder, sync_names, file_exists, free_disk, whole_path, own_path, read_file, &
-    read_standard_input, is_terminal, write_stderr
+  public :: make_folder, sync_names, file_exists, same_file, free_disk, whole_path, own_path, &
+    read_file, read_standard_input, is_terminal, write_stderr
 
   !> Numbers of the standard streams.
   integer(c_int), parameter :: standard_input = 0, standard_error = 2
@@ -66,6 +67,13 @@ contains
     call c_current_folder(here, len(here, kind=c_int))
     if (here /= '') whole = trim(here) // '/' // path
   end function whole_path
+
+  !> Whether both paths lead to the same file, by whatever names and links.
+  logical function same_file(path, other)
+    character(len=*), intent(in) :: path, other
+
+    same_file = c_same_file(path // nul, other // nul) == 1
+  end function same_file
 
   !> Path of this program's file; blank if it is not known.
   function own_path() result(path)

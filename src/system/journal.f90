@@ -55,6 +55,7 @@ module journal
     procedure :: append
     procedure :: close => close_journal
     procedure :: drop => let_go
+    procedure :: discard
     procedure, private :: put_on_disk
     procedure, private :: read_frame
     procedure, private :: hand_over
@@ -292,6 +293,17 @@ contains
     status = c_close(self%descriptor)
     self%descriptor = -1
   end subroutine let_go
+
+  !> Empties the journal and closes it, so that no run goes on from its records.
+  subroutine discard(self)
+    class(journal_t), intent(inout) :: self
+    integer(c_int) :: status
+
+    if (.not. self%is_open()) return
+    status = c_cut(self%descriptor, 0_c_long, 0_c_long)
+    if (status /= 0) call fail(self%trouble, file_trouble, self%path // ' cannot be emptied')
+    call let_go(self)
+  end subroutine discard
 
   !> Reads the record at the present position and moves `whole` [bytes] to its end. found = .false.
   !> at the end of the file, or if the record is not complete.

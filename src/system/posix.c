@@ -150,6 +150,12 @@ int snapin_kind(int folder, const char *name) {
   return S_ISDIR(file.st_mode) ? 2 : 1;
 }
 
+int snapin_same_file(const char *path, const char *other) {
+  struct stat one, two;
+  return stat(path, &one) == 0 && stat(other, &two) == 0 && one.st_dev == two.st_dev &&
+         one.st_ino == two.st_ino;
+}
+
 int snapin_rename(int folder, const char *from, const char *to) {
   return status_of(renameat(folder, from, folder, to));
 }

@@ -105,19 +105,28 @@ def test_an_interrupted_map_goes_on_to_the_same_bytes(snapin, snapin_path, tmp_p
         bench.check(first + b"".join(some))
 
 
-def test_a_file_that_becomes_shorter_meanwhile_stops_the_sweep(snapin_path, tmp_path):
-    rows = "".join(f"{1e-20 * (i + 1)!r}\n" for i in range(60000))
-    (tmp_path / "cases.csv").write_text("force.hamaker\n" + rows)
+@pytest.mark.parametrize("change", ["shorter", "last row", "no number"])
+def test_a_file_that_changes_meanwhile_stops_the_sweep(snapin_path, tmp_path, change):
+    """A row that was another when it was read again became a case. No run goes on from these."""
+    rows = "".join(f"{1e-20 * (i + 1)!r:<24}# a line of some bytes\n" for i in range(12000))
+    table = tmp_path / "cases.csv"
+    table.write_text("force.hamaker\n" + rows)
     (tmp_path / "d.nml").write_text(scene({"file": "cases.csv"}, **RIGID))
     with subprocess.Popen([snapin_path, "d.nml"], cwd=tmp_path, stderr=subprocess.PIPE,
                           text=True) as run:
         while not (tmp_path / "results/d/sweep.csv.partial").exists():
-            time.sleep(0.01)
+            time.sleep(0.001)
             assert run.poll() is None
-        os.truncate(tmp_path / "cases.csv", 1000)
+        with table.open("r+b") as file:
+            if change == "shorter":
+                file.truncate(1000)
+            else:
+                file.seek(-len(rows) // 12000, os.SEEK_END)
+                file.write(b"2" if change == "last row" else b"?")
         said = run.communicate(timeout=60)[1]
     assert run.returncode == 1
-    assert "cases.csv" in said
+    assert re.search("^results/d: cases.csv has changed since .*; start again$", said, re.MULTILINE)
+    assert (tmp_path / "results/d/journal.partial").stat().st_size == 0
 
 
 def test_two_threads_leave_the_same_bytes(run):

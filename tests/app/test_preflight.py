@@ -72,3 +72,32 @@ def test_whatever_takes_long_says_so_and_goes_on_saying_so(snapin, tmp_path):
         snapin("d.nml", cwd=tmp_path, timeout=7)
     said = (ended.value.stderr or b"").decode()
     assert re.search(r"^d: .*, [5-7] s so far$", said, re.M)
+
+
+@pytest.mark.parametrize("table", ["curve.csv", "deeper/sweep.csv"])
+def test_a_run_does_not_replace_what_its_deck_reads(snapin, tmp_path, table):
+    """With --into, or where a deck is in the folder of its results, the deck or its table of cases
+    was lost."""
+    swept = lennard_jones(1.0, equilibrium_path={"h0_end": 2}, sweep={"file": table})
+    folder = tmp_path / "deeper"
+    folder.mkdir()
+    (tmp_path / table).write_text("force.hamaker\n1e-19\n")
+    (tmp_path / "deeper.nml").write_text(swept)
+    (folder / "fit.nml").write_text(SMALL)
+    (folder / "summary.nml").write_text(SMALL)
+    before = {path: path.read_bytes() for path in tmp_path.rglob("*") if path.is_file()}
+    into = (tmp_path / table).parent
+    for args in (("--into", into, "deeper.nml"), ("--check", "--into", into, "deeper.nml"),
+                 ("--into", folder, folder / "../deeper/fit.nml"),
+                 ("--into", folder, folder / "summary.nml")):
+        done = snapin(*args, cwd=tmp_path)
+        assert done.returncode == 2
+        assert re.search(r"nml: results would replace .*, which the deck reads", done.stderr)
+    assert before == {path: path.read_bytes() for path in tmp_path.rglob("*") if path.is_file()}
+
+
+def test_a_summary_may_be_run_again_in_its_folder(snapin, tmp_path):
+    (tmp_path / "d.nml").write_text(SMALL)
+    for deck in ("d.nml", "d/summary.nml"):
+        done = snapin("--into", "d", deck, cwd=tmp_path)
+        assert done.returncode == 0, done.stderr

@@ -9,6 +9,7 @@ import venv
 from pathlib import Path
 
 import pytest
+from installed_pages import names_of
 
 TOP = Path(__file__).resolve().parents[2]
 MESON = [sys.executable, "-m", "mesonbuild.mesonmain"]
@@ -113,6 +114,14 @@ def offered(root, word, *, after="snapin"):
     code = ('compopt() { :; }; . "$1"; COMP_WORDS=(snapin "$3" "$2"); COMP_CWORD=2; _snapin; '
             'printf "%s\\n" "${COMPREPLY[@]}"')
     return set(run("bash", "-c", code, "bash", script, word, after).split())
+
+
+def test_completions_offer_groups_and_keys_by_their_names(snapin):
+    """Groups that a deck's reader skips were offered without their last letter."""
+    names = list(names_of(snapin("--keys").stdout))
+    assert {"scene", "scene.title", "sweep.key"} <= set(names)
+    done = snapin("--keys", *names)
+    assert done.returncode == 0, done.stderr
 
 
 @pytest.mark.long

@@ -8,11 +8,14 @@ import sys
 
 import numpy as np
 import pytest
+import snapin
 from conftest import ROOT
 from support.processes import HANG
 
 pytest.importorskip("matplotlib")
 from drawing import scale, smooth  # noqa: E402 (needs matplotlib)
+from force_curve import Curve, draw_force_curve  # noqa: E402 (needs matplotlib)
+from force_law import OTHERS  # noqa: E402 (needs matplotlib)
 
 SCRIPTS = ROOT / "pywrap" / "plots"
 BODIES = "&bodies radius = 1.5e-2, stiffness = 1.0e10 /\n"
@@ -170,6 +173,10 @@ def test_the_picture_can_be_elsewhere_and_larger(plot, results, tmp_path):
         (("profiles.py", "theories"), "no profiles.csv in .*no &profiles group"),
         (("profiles.py", "cycle", "--branch", "path"), "loading, unloading_1, unloading_2"),
         (("force_curve.py", "cycle", "-o", "no/such/folder.png"), "no/such"),
+        (("force_curve.py", "cycle", "-o", "here.xyz"), "here.xyz: Format 'xyz' is not supported"),
+        (("map.py", "map", "--dpi", "0"), "dpi must be positive"),
+        (("map.py", "map", "--per", "big_lambda"),
+         "no case has the column 'max_tension' and the column 'big_lambda'"),
     ],
 )
 def test_what_is_missing_is_said_in_one_line(plot, results, args, phrase):
@@ -230,3 +237,46 @@ def test_a_curve_does_not_swing_between_uneven_steps():
     curve = smooth(np.column_stack([h0, load]))
     assert len(curve) > len(h0)
     assert (np.diff(curve[:, 0]) <= 0).all()
+
+
+def test_a_curve_ends_at_its_fold_where_the_load_is_level_before(tmp_path):
+    """The load of a barrier has its maximum just before the fold; the displacement at the fold,
+    extrapolated in the load, was 9.5 nm instead of -0.16 nm."""
+    results = snapin.run((ROOT / "inputs/examples/hydration.nml").read_text(), out=tmp_path)
+    path = results.curve[results.curve["branch"] == "path"]
+    span = np.ptp(path["displacement"])
+    drawn = {branch.name: branch.jumps for branch in Curve(tmp_path).branches}
+    for name in ("loading", "unloading_1"):
+        ((start, _),) = drawn[name]
+        fold = np.argmin(abs(path["load"] / start["load"] - 1) + abs(path["h0"] / start["h0"] - 1))
+        assert abs(start["displacement"][0] - path["displacement"][fold]) < 0.01 * span
+
+
+def test_a_drive_has_its_own_branches_and_units(tmp_path):
+    """Its ways were all "unloading 0", and displacements of picometres in micrometres."""
+    snapin.run("&bodies radius = 1e-5, stiffness = 7e10 /\n"
+               "&force law = 'lennard_jones', z0 = 0.3e-9, surface_energy = 5e-3 /\n"
+               "&drive velocity = 2e-5, z_start = 1e-6, z_turn = -5e-9, stiffness = 10 /\n"
+               "&numerics accuracy = 1e-3 /", out=tmp_path)
+    figure = draw_force_curve(tmp_path)
+    (legend,) = figure.legends
+    assert [text.get_text() for text in legend.get_texts()] == ["approach", "retreat"]
+    assert [axes.get_xlabel()[-5:] for axes in figure.axes] == [" [pm]", " [µm]"]
+
+
+def test_the_forces_of_every_deck_are_drawn(plot, snapin, tmp_path):
+    """A group that the picture of forces did not know was taken for a force: a deck with layers, a
+    fluid or a drive had no picture."""
+    groups = set(re.findall(r"^&(\w+)", snapin("--keys").stdout, re.MULTILINE))
+    laws = {law.stem for law in (ROOT / "src/model/laws").glob("*.f90")}
+    assert groups - OTHERS == laws - {"lennard_jones", "exponential"} | {"force"}
+    done = plot("force_law.py", ROOT / "inputs/examples/drainage.nml", "--out", "here")
+    assert (done.returncode, done.stdout) == (0, "here/force_law.png\n"), done.stderr
+
+
+@pytest.mark.parametrize("deck", [b"&bodies radius = 1\n", b"\xf7\n"], ids=["open", "bytes"])
+def test_a_deck_that_cannot_be_read_has_no_picture_of_forces(plot, tmp_path, deck):
+    (tmp_path / "d.nml").write_bytes(deck)
+    done = plot("force_law.py", "d.nml")
+    assert done.returncode == 1
+    assert re.fullmatch(r"force_law.py: d.nml: .*\n", done.stderr), done.stderr

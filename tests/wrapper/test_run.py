@@ -248,9 +248,20 @@ def test_results_that_cannot_be_written_are_an_error(tmp_path):
 @pytest.mark.parametrize(("out", "error"), [("a\0", ValueError), (3, TypeError), (b"a", TypeError)])
 def test_what_is_no_folder_is_refused(out, error, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    with pytest.raises(error):
+    with pytest.raises(error, match="^out: "):
         snapin.run(CURVE, out=out)
     assert list(tmp_path.iterdir()) == []
+    if error is TypeError:
+        with pytest.raises(error, match="^folder: "):
+            snapin.read_results(out)
+
+
+@pytest.mark.parametrize("notes", ["# mine\n# x\n1;2\n3;4\n", "# Höhe\nz,F\n1,2\n"])
+def test_tables_of_others_in_the_folder_are_left_alone(notes, tmp_path):
+    """A measured curve beside its deck may have any form, and any encoding."""
+    (tmp_path / "notes.csv").write_text(notes, encoding="latin-1")
+    (tmp_path / "notes.nml").write_text(notes, encoding="latin-1")
+    assert list(snapin.run(CURVE, out=tmp_path).tables) == ["curve"]
 
 
 def test_the_program_says_nothing_unless_it_is_asked_to(capfd):

@@ -80,6 +80,10 @@ def path_with(**changes):
         # Beyond all physical sense, or beyond float64.
         (curve_with(law=law_of(1e99)), "hamaker"),
         (lambda: snapin.force_law(law_of(1.0), 1e-60), "gap"),
+        # Beyond the pole, where its formulas go on.
+        (lambda: snapin.force_law(law_of(1.0), [1.0, -1.0]), "gap"),
+        (lambda: snapin.slow_deformation([1.0, -1.0], radius=1.0, stiffness=1.0, law=law_of(1.0)),
+         "gap"),
         (lambda: snapin.panel_mesh(np.arange(400.0), 64), "ends"),
         (lambda: snapin.numerics.Mesh("uniform", 1.0, [0.0, 2.0], 5), "ends"),
     ],

@@ -54,9 +54,8 @@ _COMPARED = ("accuracy", "laws", "experiments", "ratios")
 
 def main():
     """Run the requested parts."""
-    options = _options()
+    options, folder = _options()
     build = options.build.resolve()
-    folder = (options.out or ROOT / ("results/bench" if options.quick else "docs/bench")).resolve()
     with tempfile.TemporaryDirectory() as scratch:
         runner = program.Program(build, scratch)
         for name in () if options.draw else options.only or _PARTS:
@@ -122,6 +121,7 @@ def _before(path):
 
 
 def _options():
+    """Return the options, and the folder of the measurements."""
     parser = argparse.ArgumentParser(
         prog="./bench", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--quick", action="store_true", help="coarser, in two minutes")
@@ -133,7 +133,13 @@ def _options():
     parser.add_argument("--out", type=pathlib.Path, help="folder for tables and pictures")
     parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build",
                         help="build folder of the program; default: build")
-    return parser.parse_args()
+    options = parser.parse_args()
+    folder = (options.out or ROOT / ("results/bench" if options.quick else "docs/bench")).resolve()
+    if not (options.build / "snapin").is_file():
+        parser.error(f"no program in {options.build}")
+    if options.draw and not any((folder / f"{name}.csv").is_file() for name in _PARTS):
+        parser.error(f"no measurements in {folder}")
+    return options, folder
 
 
 def _say(text):

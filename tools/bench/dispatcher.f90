@@ -95,12 +95,12 @@ program dispatcher
   use scene, only: scene_t, read_scene
   use scene_problem, only: problem_of
   use results, only: results_t
-  use equilibrium, only: cost_t
   use ranks, only: crew_t
   use empty_cases, only: counter_t, sleeper_t
   use dispatch, only: hand_out, work_through, dismiss
   use sweep_case, only: run_case
   use sweeps, only: run_sweep
+  use sweep_tally, only: sweep_tally_t
   implicit none
 
   !> A million cases at most, of which the requested number is handed out.
@@ -114,13 +114,13 @@ program dispatcher
   type(sleeper_t) :: sleeper
   type(scene_t) :: scene
   type(results_t) :: results
-  type(cost_t) :: cost
+  type(sweep_tally_t) :: tally
   type(mesh_store_t) :: store
   type(progress_t) :: unseen
   type(failure_t), allocatable :: error
   character(len=200) :: argument
   real(wp) :: began
-  integer :: cases, messages, failed
+  integer :: cases, messages
 
   call c_prepare()
   call get_command_argument(1, argument)
@@ -155,7 +155,7 @@ program dispatcher
       counter%left = cases
       call hand_out(crew, 1, counter, 1, messages)
     else
-      call run_sweep(scene, crew, 1, results, failed, cost)
+      call run_sweep(scene, crew, 1, results, tally)
       cases = scene%sweep%cases()
     end if
     began = time() - began

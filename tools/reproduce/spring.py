@@ -39,11 +39,16 @@ class Jumps(NamedTuple):
 
 
 def library_force(law):
-    """Return (p, p') of a force law of the library, functions of the gap [m]: Pa and Pa/m."""
+    """Return (p, p') of a force law of the library with a pole at gap 0, functions of the gap [m]:
+    Pa and Pa/m."""
     import snapin
 
     def pressure(gap):
-        return snapin.force_law(law, np.atleast_1d(gap)).pressure
+        gap = np.atleast_1d(gap)
+        # A walk towards contact may pass the pole, where the repulsion has no bound.
+        found = np.full(gap.shape, np.inf)
+        found[gap > 0] = snapin.force_law(law, gap[gap > 0]).pressure
+        return found
 
     def slope(gap):
         return snapin.force_law(law, np.atleast_1d(gap)).slope
