@@ -16,8 +16,8 @@ module next_mesh
   real(wp), parameter :: beyond_passage = 1.1_wp
   !> States ahead for which a mesh about the axis is laid out before contact, in steps of the arc.
   integer, parameter :: ahead(*) = [0, 1, 2, 3, 4, 6, 8]
-  !> Distance by which the edge may move in contact on a mesh about the axis, over the smallest
-  !> feature of the pressure.
+  !> Largest distance by which the edge may move in contact on a mesh about the axis, over the
+  !> smallest feature of the pressure.
   real(wp), parameter :: widths_ahead = 2
   !> Largest number of digits of a layout for seen gaps: the polynomials of neighbouring panels meet
   !> in kinks, which no panel of another mesh resolves.
@@ -82,7 +82,7 @@ contains
     integer, intent(in) :: i
     type(seen_gaps_t) :: seen
     real(wp), allocatable :: gap(:), change(:)
-    real(wp) :: load, radius
+    real(wp) :: load, radius, high
     integer :: to, k
 
     to = arc%mesh + 1
@@ -93,8 +93,9 @@ contains
       radius = radius_of_gap(problem%shape, problem%law%edge_gap, grid, state)
       if (meshes%is_about_axis(to) .and. radius > 0) then
         call seen%add(problem%shape, state%gap, state%scale, state%h0, load)
-        call seen%try(radius, radius, &
-          radius + widths_ahead*smallest_feature(problem, radius), 0.0_wp, about_axis=.true.)
+        high = min(radius + widths_ahead*smallest_feature(problem, radius), &
+          beyond_passage*meshes%next_passage(to))
+        call seen%try(radius, radius, max(radius, high), 0.0_wp, about_axis=.true.)
       else if (meshes%is_about_axis(to)) then
         change = equations%raised(arc%mesh, state) - equations%raised(arc%mesh, before)
         do k = 1, size(ahead)
