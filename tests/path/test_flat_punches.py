@@ -106,26 +106,26 @@ def test_paths_of_rounded_punches_reach_the_accuracy_asked_for(run, radius, flat
             assert found.summary[name] == pytest.approx(exact[name], rel=accuracy), name
 
 
+def punch(flat_radius, h0_end, accuracy, **law):
+    return deck(bodies={"radius": 1e-6, "stiffness": 1e9},
+                shape={"kind": "rounded_punch", "flat_radius": flat_radius}, **law,
+                equilibrium_path={"h0_end": h0_end}, numerics={"accuracy": accuracy})
+
+
 @pytest.mark.parametrize("accuracy", [1e-4, 1e-6])
 def test_meshes_about_the_axis_reach_beyond_the_tension_around_a_wide_contact(run, accuracy):
     """They ended where the tension of bodies before contact ends, for forces that decrease
     exponentially. Finer meshes ended there too, and estimates were some hundred times too small."""
-    found = run(deck(
-        bodies={"radius": 1e-6, "stiffness": 1e9},
-        shape={"kind": "rounded_punch", "flat_radius": 2e-8},
-        morse={"surface_energy": 0.002, "z0": 4e-10, "decay_length": 3e-10},
-        equilibrium_path={"h0_end": -4e-9}, numerics={"accuracy": accuracy})).summary
+    found = run(punch(2e-8, -4e-9, accuracy, morse={
+        "surface_energy": 0.002, "z0": 4e-10, "decay_length": 3e-10})).summary
     assert abs(found["end_load"] - 2.4889726261e-7) < 3 * found["end_load_error"] + 1e-17
 
 
 def test_paths_about_the_axis_have_few_states(run):
     """Guesses followed the gap at each node, over which the edge passes, and not the edge."""
-    found = run(deck(
-        bodies={"radius": 1e-6, "stiffness": 1e9},
-        shape={"kind": "rounded_punch", "flat_radius": 1.5e-7},
-        force={"law": "lennard_jones", "hamaker": 1e-19, "z0": 5e-10},
-        equilibrium_path={"h0_end": -1e-9}, numerics={"accuracy": 1e-6}))
-    # A finer program without guesses that follow the edge had these numbers with 197 states.
+    found = run(punch(1.5e-7, -1e-9, 1e-6,
+                      force={"law": "lennard_jones", "hamaker": 1e-19, "z0": 5e-10}))
+    # A program without guesses that follow the edge had these numbers, with 197 states.
     assert found.summary["max_tension"] == pytest.approx(5.726860409e-7, rel=1e-6)
     assert found.summary["end_load"] == pytest.approx(1.763102691e-7, rel=1e-6)
     assert found.cost["states"] < 140
