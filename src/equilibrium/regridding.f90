@@ -3,7 +3,7 @@ module regridding
   use kinds, only: wp
   use shape, only: shape_t
   use discretisation, only: discretisation_t
-  use contact_state, only: state_t, gaps_at
+  use contact_state, only: state_t, gap_at, gaps_at
   implicit none
   private
   public :: regrid
@@ -17,7 +17,7 @@ contains
     type(state_t), intent(in) :: state
     type(discretisation_t), intent(in) :: from, to
     real(wp), intent(in) :: scale
-    real(wp) :: raised(1)
+    real(wp) :: raised
     integer :: within
 
     new = state
@@ -29,9 +29,9 @@ contains
       within = count(x <= from%end)
       gap(:within) = gaps_at(shape, from, state, x(:within))
       if (within == to%nodes) return
-      raised = gaps_at(shape, from, state, [from%end]) - state%h0 - &
+      raised = gap_at(shape, from, state, from%end) - state%h0 - &
         shape%height(state%scale*from%end)
-      gap(within + 1:) = state%h0 + raised(1)*from%end/x(within + 1:) + &
+      gap(within + 1:) = state%h0 + raised*from%end/x(within + 1:) + &
         shape%height(state%scale*x(within + 1:))
     end associate
   end function regrid

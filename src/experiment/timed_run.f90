@@ -187,6 +187,7 @@ contains
     if (allocated(steps%drainage)) relaxed%film_gap = maxval(drive%position) + &
       farthest_pole(steps%drainage%fluid_t)
     associate (meshes => steps%meshes)
+      ! A drive inserts no meshes on the way of an edge to a rim.
       meshes = new_mesh_family(relaxed, maxval(drive%position), low, &
         min(most_digits, digits + more_digits*(pass - 1)), further=.false.)
       if (any(meshes%waits)) call fit_to_path(relaxed, maxval(drive%position), low, &

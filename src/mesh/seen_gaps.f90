@@ -83,11 +83,11 @@ contains
     class(seen_gaps_t), intent(inout) :: self
     real(wp), intent(in) :: from, low, high, step
     logical, intent(in), optional :: about_axis
-    logical :: fixed
+    type(moved_t) :: moved
 
-    fixed = .false.
-    if (present(about_axis)) fixed = about_axis
-    self%moved = [self%moved, moved_t(self%held, from, min(low, high), high, step, fixed)]
+    moved = moved_t(self%held, from, min(low, high), high, step)
+    if (present(about_axis)) moved%about_axis = about_axis
+    self%moved = [self%moved, moved]
   end subroutine try
 
   !> Number of states to be tried, each at one or more radii.
