@@ -247,7 +247,8 @@ def test_mistakes_are_named(run, fluid, other, said):
     assert said in message and ":" in message and "&fluid" in message
 
 
-@pytest.mark.parametrize("accuracy", [1e-3, pytest.param(1e-4, marks=pytest.mark.long)])
+@pytest.mark.long
+@pytest.mark.parametrize("accuracy", [1e-3, 1e-4])
 def test_a_suction_that_is_not_determined_has_a_warning(run, accuracy):
     """Between creeping bodies in a thin fluid, details that the mesh of the memory does not resolve
     make the film jump at the last moment of contact. Rounding decides how large the suction is."""
