@@ -1,7 +1,7 @@
 """The small programs that measure, most of which the usual builds do not make."""
 
+import json
 import re
-import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -15,12 +15,13 @@ from conftest import ROOT
 def test_a_measuring_program_fits_the_modules(snapin_path, tmp_path, source):
     """The dispatcher called a procedure with arguments of former times, and no build with MPI could
     be made."""
-    modules = Path(snapin_path).parent / "libsnapin.a.p"
-    compiler = shutil.which("gfortran")
-    if not compiler or not (modules / "sweeps.mod").is_file():
-        pytest.skip("no gfortran, or no modules of it beside the program")
-    done = subprocess.run([compiler, "-std=f2008", "-fsyntax-only", "-I", modules, "-J", tmp_path,
-                           source], capture_output=True, text=True, check=False)
+    build = Path(snapin_path).parent
+    compilers = build / "meson-info" / "intro-compilers.json"
+    if not compilers.is_file():
+        pytest.skip("the program is in no build folder, beside its modules")
+    compiler = json.loads(compilers.read_text())["host"]["fortran"]["exelist"]
+    done = subprocess.run([*compiler, "-fsyntax-only", "-I", build / "libsnapin.a.p", "-J",
+                           tmp_path, source], capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
 
 
