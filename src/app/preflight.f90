@@ -17,6 +17,7 @@ module preflight
   use files, only: free_disk, same_file
   use publication, only: result_files, summary_name
   use results, only: to_stream
+  use case_columns, only: column_count
   use blas_threads, only: thread_count, blas_buffers
   implicit none
   private
@@ -26,9 +27,9 @@ module preflight
   real(wp), parameter :: other_bytes = 1.0e7_wp
   !> Number of matrices for a verified eigenvalue.
   real(wp), parameter :: eigenvalue_matrices = 5
-  !> Number of cells in a row of the curve, of a profile, of a table of theories and of a sweep;
-  !> bytes of a step in the journal.
-  integer, parameter :: of_curve = 10, of_profile = 7, of_theory = 5, of_case = 60, kept = 900
+  !> Number of cells in a row of the curve, of a profile and of a table of theories; bytes of a step
+  !> in the journal.
+  integer, parameter :: of_curve = 10, of_profile = 7, of_theory = 5, kept = 900
   !> Digits of meshes that are laid out only to count their nodes, whose number is taken as
   !> proportional to the digits.
   real(wp), parameter :: few_digits = 3
@@ -168,7 +169,7 @@ contains
     type(scene_t), intent(in) :: scene
 
     if (allocated(scene%sweep)) then
-      bytes = 2.0_wp*scene%sweep%cases()*row(of_case)
+      bytes = 2.0_wp*scene%sweep%cases()*row(column_count(scene))
       return
     end if
     bytes = states_planned(scene)*(row(of_curve) + kept)

@@ -13,6 +13,7 @@ module simulation
   use h0_schedule, only: states_planned
   use drive_rates, only: rate_drive
   use sweeps, only: run_sweep
+  use case_columns, only: groups_left_out
   use sweep_tally, only: sweep_tally_t
   use ranks, only: crew_t
   use preflight, only: check_room, large_results
@@ -187,6 +188,8 @@ contains
       if (tally%warned > 0) call summary%warn(brief(tally%warned)//' of '// &
         brief(scene%sweep%cases())//' cases gave a warning; the first, case '// &
         brief(tally%first_warned)//': '//trim(tally%warning))
+      if (groups_left_out(scene) /= '') call summary%note('sweep: no number in '// &
+        'sweep.csv comes from '//groups_left_out(scene)//'; run a case alone to see states')
     else
       call results%progress%start(states_planned(scene), name, destination%quiet)
       call run_observed(scene, problem, results, summary, cost)

@@ -7,15 +7,17 @@ module result_rows
     of_profile
   implicit none
   private
-  public :: row_t, rows, row_of, in_summary, in_cost
+  public :: row_t, rows, row_of, in_summary, in_cost, turning, spring, given_load
 
   !> The group of summary.nml that has a row.
   integer, parameter :: in_summary = 1, in_cost = 2
   !> When a row is a column of sweep.csv: never, always, with a group of the deck, with forces other
-  !> than the paper's, or once for each turning point.
+  !> than the paper's, or once for each turning point, spring or load.
   character(len=*), parameter :: never = '', always = 'always', classical = 'classical', &
     approximations = 'approximations', regime = 'regime', forces = '(forces)', &
-    turning = 'unloading', layer = 'layer', drive = 'drive', fluid = 'fluid'
+    turning = 'unloading', spring = 'device', given_load = 'fixed_load', table = 'table', &
+    layer = 'layer', drive = 'drive', fluid = 'fluid', viscoelastic = 'viscoelastic', &
+    tabulated = 'tabulated'
 
   !> Key, unit and meaning; a list has one value for each turning point, fold, profile or the like.
   type :: row_t
@@ -56,7 +58,8 @@ module result_rows
       'energy needed to separate unit area from contact; negative: contact is metastable', &
       forces), &
     row_t('table_error', '', &
-      'estimated relative error of work_of_adhesion and pull-off from the points of a table'), &
+      'estimated relative error of work_of_adhesion and pull-off from the points of a table', &
+      tabulated), &
     row_t('rest_gap', 'm', 'smallest separation without force', forces), &
     row_t('edge_gap', 'm', 'separation of largest tension', forces), &
     row_t('cohesive_stress', 'Pa', 'largest tension', forces), &
@@ -117,7 +120,8 @@ module result_rows
     row_t('effective_work_of_adhesion', 'J/m^2', &
       'largest tension of a drive in time over 1.5 pi R', drive, error=judged), &
     row_t('max_suction', 'Pa', 'largest suction of the draining fluid', fluid, error=judged), &
-    row_t('sigma_relaxed', '', 'strength of adhesion of viscoelastic bodies at rest'), &
+    row_t('sigma_relaxed', '', 'strength of adhesion of viscoelastic bodies at rest', &
+      viscoelastic), &
     row_t('time_steps', '', 'number of steps of a drive in time', drive), &
     row_t('path_traced_h0', 'm', &
       'h0 from which the path was traced, if numbers are read from the path'), &
@@ -126,30 +130,33 @@ module result_rows
     row_t('device_stiffness', 'N/m', &
       'stiffness of each spring; 0: dead load; Infinity: h0 is prescribed', list=.true.), &
     row_t('device_jump_in_z', 'm', 'position of the drive at the first jump of each approach', &
-      list=.true., place='device_jump_in', quantity=of_position, error=judged), &
-    row_t('device_jump_in_load', 'N', 'load just before this jump', list=.true., &
+      spring, list=.true., place='device_jump_in', quantity=of_position, error=judged), &
+    row_t('device_jump_in_load', 'N', 'load just before this jump', spring, list=.true., &
       place='device_jump_in', quantity=of_load, error=judged), &
-    row_t('device_jump_in_load_after', 'N', 'load just after this jump', list=.true., &
+    row_t('device_jump_in_load_after', 'N', 'load just after this jump', spring, list=.true., &
       place='device_landing_in', quantity=of_load, error=judged), &
     row_t('device_jump_out_z', 'm', 'position of the drive at the first jump of each retreat', &
-      list=.true., place='device_jump_out', quantity=of_position, error=judged), &
-    row_t('device_jump_out_load', 'N', 'load just before this jump', list=.true., &
+      spring, list=.true., place='device_jump_out', quantity=of_position, error=judged), &
+    row_t('device_jump_out_load', 'N', 'load just before this jump', spring, list=.true., &
       place='device_jump_out', quantity=of_load, error=judged), &
-    row_t('device_jump_out_load_after', 'N', 'load just after this jump', list=.true., &
+    row_t('device_jump_out_load_after', 'N', 'load just after this jump', spring, list=.true., &
       place='device_landing_out', quantity=of_load, error=judged), &
     row_t('device_energy_lost', 'J', &
-      'energy lost in all jumps of each cycle, bodies and spring', list=.true., &
+      'energy lost in all jumps of each cycle, bodies and spring', spring, list=.true., &
       place='device_energy', quantity=of_energy, error=judged), &
     row_t('device_cycle_energy', 'J', &
       'the energy lost as the area between approach and retreat', list=.true., error=judged), &
     row_t('device_energy_uncertainty', 'J', 'difference of these two, or the error of either', &
       list=.true.), &
     row_t('fixed_load', 'N', 'loads whose equilibria were searched for', list=.true.), &
-    row_t('fixed_load_equilibria', '', 'number of equilibria at each load', list=.true.), &
-    row_t('fixed_load_stable', '', 'number of stable equilibria at each load', list=.true.), &
-    row_t('table_load_error', 'N', 'largest estimated error of a load in table.csv'), &
+    row_t('fixed_load_equilibria', '', 'number of equilibria at each load', given_load, &
+      list=.true.), &
+    row_t('fixed_load_stable', '', 'number of stable equilibria at each load', given_load, &
+      list=.true.), &
+    row_t('table_load_error', 'N', 'largest estimated error of a load in table.csv', table), &
     row_t('table_interpolation_error', 'N', &
-      'largest error of a load between the rows, by cubic polynomials with their slopes'), &
+      'largest error of a load between the rows, by cubic polynomials with their slopes', &
+      table), &
     row_t('regime_tabor', '', 'Tabor''s parameter with the length of the law', regime), &
     row_t('regime_tabor_range', '', &
       'Tabor''s parameter with the range, surface energy over largest tension', regime), &

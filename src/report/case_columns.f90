@@ -1,23 +1,33 @@
 !> The columns and numbers of a case in sweep.csv: the values of its keys, and those rows of
-!> `result_rows` that are columns for this deck, with one number each from the case's summary.
+!> `result_rows` that are columns for this deck, each with one number from the case's summary. A row
+!> that is a list has a column for each turning point, spring or load of the deck.
 module case_columns
-  use kinds, only: wp, nan
+  use kinds, only: wp
   use failure, only: failure_t
-  use text, only: brief, word_of
+  use text, only: brief, listing, lower, word_of
   use deck_numbers, only: find_number
-  use places, only: readings_t
-  use result_rows, only: row_t, rows
+  use result_rows, only: row_t, rows, turning, spring, given_load
   use scene_groups, only: scene_t
   use summary, only: summary_t
   implicit none
   private
-  public :: columns_of, numbers_of, column_width
+  public :: columns_of, numbers_of, column_count, groups_left_out, column_width
 
   !> Number of characters of a column's description.
   integer, parameter :: column_width = 132
   !> The last column.
   character(len=*), parameter :: failure_column = &
     'failure [] why results of the case are missing; blank if none is'
+  !> The groups with a list, each element of which has its columns.
+  character(len=*), parameter :: with_list(*) = [character(len=10) :: turning, spring, given_load]
+
+  !> The groups whose results are states and no numbers of a case; a sweep keeps no states.
+  character(len=*), parameter :: of_states(*) = [character(len=9) :: 'profiles', 'stability']
+
+  !> A number of the summary: row of `result_rows`, and element if this is a list.
+  type :: number_t
+    integer :: row = 0, element = 1
+  end type number_t
 
 contains
 
@@ -27,34 +37,47 @@ contains
     type(scene_t), intent(in) :: scene
     character(len=column_width), allocatable :: columns(:)
     type(failure_t), allocatable :: error
-    character(len=:), allocatable :: number
-    integer, allocatable :: single(:)
-    integer :: i, k, n, row, term
+    type(number_t), allocatable :: numbers(:)
+    character(len=:), allocatable :: suffix
+    integer :: i, k, row, term
 
-    single = single_columns(scene)
+    numbers = chosen_numbers(scene)
     associate (keys => size(scene%sweep%words))
-      allocate (columns(keys + size(single) + turning_points(scene)*count(each_turn(rows)) + 1))
+      allocate (columns(keys + size(numbers) + 1))
       ! Filled item by item: compiler note 2.
       do k = 1, keys
         call find_number(scene%deck, word_of(scene%sweep%names, k), row, term, error, words=.true.)
         columns(k) = word_of(scene%sweep%names, k) // ' [' // &
           trim(scene%deck%specs(row)%unit) // '] a key of the deck'
       end do
-      do i = 1, size(single)
-        columns(keys + i) = described(rows(single(i)), '')
+      do i = 1, size(numbers)
+        suffix = ''
+        if (rows(numbers(i)%row)%list) suffix = '_' // brief(numbers(i)%element)
+        columns(keys + i) = described(rows(numbers(i)%row), suffix)
       end do
-      n = keys + size(single)
     end associate
-    do k = 1, turning_points(scene)
-      number = brief(k)
-      do i = 1, size(rows)
-        if (.not. each_turn(rows(i))) cycle
-        n = n + 1
-        columns(n) = described(rows(i), '_' // number)
-      end do
-    end do
-    columns(n + 1) = failure_column
+    columns(size(columns)) = failure_column
   end function columns_of
+
+  !> Number of columns of this scene's sweep.
+  pure integer function column_count(scene)
+    type(scene_t), intent(in) :: scene
+
+    column_count = size(scene%sweep%words) + size(chosen_numbers(scene)) + 1
+  end function column_count
+
+  !> The groups of the scene that leave no number in sweep.csv, as 'profiles, stability'.
+  function groups_left_out(scene) result(text)
+    type(scene_t), intent(in) :: scene
+    character(len=:), allocatable :: text
+    integer :: i
+
+    text = ''
+    do i = 1, size(of_states)
+      if (scene%deck%has_group(trim(of_states(i)))) text = text // trim(of_states(i)) // ' '
+    end do
+    text = listing(trim(text), '', '')
+  end function groups_left_out
 
   !> The numbers of a case's summary, one for each of `columns_of(scene)` between keys and failure;
   !> NaN for a number that does not exist.
@@ -62,37 +85,36 @@ contains
     type(summary_t), intent(in) :: summary
     type(scene_t), intent(in) :: scene
     real(wp), allocatable :: values(:)
-    type(readings_t) :: found
-    integer, allocatable :: single(:)
-    integer :: i, k
+    type(number_t), allocatable :: numbers(:)
+    integer :: i
 
-    single = single_columns(scene)
-    allocate (values(size(single)), source=nan)
-    do i = 1, size(single)
-      associate (key => rows(single(i))%key)
-        if (summary%has(key)) values(i) = summary%number(key)
-      end associate
-    end do
-    do k = 1, turning_points(scene)
-      do i = 1, size(rows)
-        if (.not. each_turn(rows(i))) cycle
-        found = summary%numbers_of_row(i)
-        values = [values, item(found%value, k)]
-      end do
+    numbers = chosen_numbers(scene)
+    allocate (values(size(numbers)))
+    do i = 1, size(numbers)
+      values(i) = summary%element(numbers(i)%row, numbers(i)%element)
     end do
   end function numbers_of
 
-  !> The rows that have one column in a sweep of the scene: first those of every sweep, then those
-  !> that a group adds.
-  pure function single_columns(scene) result(single)
+  !> The numbers of a sweep of the scene: first those of every sweep, then those that a group adds,
+  !> at last those of lists, element by element.
+  pure function chosen_numbers(scene) result(numbers)
     type(scene_t), intent(in) :: scene
-    integer, allocatable :: single(:)
-    integer :: i
+    type(number_t), allocatable :: numbers(:)
+    integer :: i, k, n
+    integer, allocatable :: single(:), of_list(:)
 
     single = [pack([(i, i=1, size(rows))], rows%sweep == 'always'), &
       pack([(i, i=1, size(rows))], [(comes_with_group(rows(i)), i=1, size(rows))])]
     if (scene%law%terms > 1 .or. scene%law%group /= 'force') &
       single = [single, pack([(i, i=1, size(rows))], rows%sweep == '(forces)')]
+    numbers = [(number_t(single(i)), i=1, size(single))]
+    do n = 1, size(with_list)
+      ! Row by row, since gfortran 12.2 finds no equal word in `rows%sweep == with_list(n)`.
+      of_list = pack([(i, i=1, size(rows))], [(rows(i)%sweep == with_list(n), i=1, size(rows))])
+      do k = 1, elements(scene, with_list(n))
+        numbers = [numbers, (number_t(of_list(i), k), i=1, size(of_list))]
+      end do
+    end do
 
   contains
 
@@ -101,28 +123,46 @@ contains
       type(row_t), intent(in) :: row
 
       select case (row%sweep)
-      case ('', 'always', '(forces)', 'unloading')
+      case ('', 'always', '(forces)')
         comes_with_group = .false.
       case default
-        comes_with_group = scene%deck%has_group(trim(row%sweep))
+        comes_with_group = .not. row%list
+        if (comes_with_group) comes_with_group = scene%deck%has_group(trim(row%sweep))
       end select
     end function comes_with_group
 
-  end function single_columns
+  end function chosen_numbers
 
-  !> Whether a row has one column for each turning point.
-  elemental logical function each_turn(row)
-    type(row_t), intent(in) :: row
-
-    each_turn = row%sweep == 'unloading'
-  end function each_turn
-
-  pure integer function turning_points(scene)
+  !> Number of elements in the results of a group with a list: those of the deck's list, but one if
+  !> the sweep replaces the whole list by one value.
+  pure integer function elements(scene, group)
     type(scene_t), intent(in) :: scene
+    character(len=*), intent(in) :: group
 
-    turning_points = 0
-    if (allocated(scene%unloading)) turning_points = size(scene%unloading%from)
-  end function turning_points
+    elements = 0
+    select case (group)
+    case (turning)
+      if (allocated(scene%unloading)) elements = count_of('from', size(scene%unloading%from))
+    case (spring)
+      ! Without a stiffness h0 is prescribed, which is one way to drive.
+      if (allocated(scene%device)) &
+        elements = count_of('stiffness', max(1, size(scene%device%stiffness)))
+    case (given_load)
+      if (allocated(scene%fixed_load)) elements = count_of('load', size(scene%fixed_load%load))
+    end select
+
+  contains
+
+    pure integer function count_of(key, values)
+      character(len=*), intent(in) :: key
+      integer, intent(in) :: values
+
+      count_of = values
+      if (index(' ' // lower(scene%sweep%names) // ' ', ' ' // trim(group) // '.' // key // ' ') > &
+        0) count_of = 1
+    end function count_of
+
+  end function elements
 
   pure function described(row, suffix) result(text)
     type(row_t), intent(in) :: row
@@ -131,15 +171,5 @@ contains
 
     text = trim(row%key) // suffix // ' [' // trim(row%unit) // '] ' // row%meaning
   end function described
-
-  !> Element k of an array; NaN if there is none, as in a case that failed, or that has fewer
-  !> turning points than the deck.
-  pure real(wp) function item(values, k)
-    real(wp), intent(in) :: values(:)
-    integer, intent(in) :: k
-
-    item = nan
-    if (k <= size(values)) item = values(k)
-  end function item
 
 end module case_columns

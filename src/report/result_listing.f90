@@ -1,7 +1,7 @@
 !> The output of `snapin --results`: all files of results with their columns, and all entries of
 !> summary.nml, from the tables that write the files.
 module result_listing
-  use result_rows, only: row_t, rows, in_summary, in_cost
+  use result_rows, only: row_t, rows, in_summary, in_cost, turning, spring, given_load
   use result_tables, only: tables
   implicit none
   private
@@ -70,8 +70,12 @@ contains
       note = 'in sweep.csv'
     case ('(forces)')
       note = 'in sweep.csv with forces other than a plain &force'
-    case ('unloading')
+    case (turning)
       note = 'in sweep.csv for each turning point'
+    case (spring)
+      note = 'in sweep.csv for each stiffness'
+    case (given_load)
+      note = 'in sweep.csv for each load'
     case default
       note = 'in sweep.csv with &' // trim(row%sweep)
     end select

@@ -2,7 +2,7 @@
 !> summary.nml, which gfortran, f90nml and this program can read.
 module summary
   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
-  use kinds, only: wp, long
+  use kinds, only: wp, long, nan
   use equilibrium, only: cost_t
   use namelist_writer, only: line_t, assignment_of
   use places, only: readings_t
@@ -40,6 +40,7 @@ module summary
     procedure :: numbers_of_row
     procedure :: has
     procedure :: number
+    procedure :: element
     procedure :: is_true
     procedure :: text
     procedure :: take_cost
@@ -153,19 +154,31 @@ contains
     end associate
   end function has
 
-  !> The number of a key, or 1 or 0 for a truth.
+  !> The first number of a key, as `element`.
   pure real(wp) function number(self, key)
     class(summary_t), intent(in) :: self
     character(len=*), intent(in) :: key
 
-    number = 0
-    if (.not. allocated(self%value)) return
-    associate (value => self%value(row_of(key)))
-      if (allocated(value%number)) number = value%number(1)
-      if (allocated(value%count)) number = real(value%count(1), wp)
-      if (allocated(value%truth)) number = merge(1, 0, value%truth)
-    end associate
+    number = self%element(row_of(key), 1)
   end function number
+
+  !> Element k of row i as a number, or 1 or 0 for a truth; NaN if there is none.
+  pure real(wp) function element(self, i, k)
+    class(summary_t), intent(in) :: self
+    integer, intent(in) :: i, k
+
+    element = nan
+    if (.not. allocated(self%value)) return
+    associate (value => self%value(i))
+      if (allocated(value%number)) then
+        if (k <= size(value%number)) element = value%number(k)
+      else if (allocated(value%count)) then
+        if (k <= size(value%count)) element = real(value%count(k), wp)
+      else if (allocated(value%truth)) then
+        element = merge(1, 0, value%truth)
+      end if
+    end associate
+  end function element
 
   !> Whether a key has a value that is true.
   pure logical function is_true(self, key)

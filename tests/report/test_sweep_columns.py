@@ -156,14 +156,81 @@ def test_a_case_that_fails_has_its_end_and_nan_for_what_it_did_not_reach(run):
 
 
 def test_a_sweep_of_a_list_gives_each_case_the_one_value(run):
-    # Where the deck has two turning points the case has one, and nothing stands for the other.
+    # Where the deck has two turning points the case has one, and so has the table.
     sweep = {"key": "unloading.from", "values": [2.5, -2.0]}
     swept = run(adhesive(sweep=sweep)).table("sweep.csv")
     single = run(adhesive()).summary
     np.testing.assert_allclose(
         swept["unload_max_tension_1"], several(single["unload_max_tension"])[::-1], rtol=1e-6)
-    assert np.isnan(swept["unload_max_tension_2"]).all()
-    assert np.isnan(swept["unload_jump_out_h0_2"]).all()
+    assert not {"unload_max_tension_2", "unload_jump_out_h0_2"} & set(swept.names)
+
+
+DRIVEN = [f"device_{name}" for name in (
+    "jump_in_z", "jump_in_load", "jump_in_load_after",
+    "jump_out_z", "jump_out_load", "jump_out_load_after", "energy_lost")]
+LOADED = ["fixed_load_equilibria", "fixed_load_stable"]
+
+
+def held(sigma=0.87, stiffness=(0.5, 0.1), load=(0.0, -1.0, 0.5), **groups):
+    """Springs, fixed loads and a table of one path."""
+    springs = {} if stiffness is None else {"stiffness": [sigma * k for k in stiffness]}
+    return lennard_jones(
+        sigma, equilibrium_path={"h0_end": -3.0}, device=springs,
+        fixed_load={"load": [sigma * one for one in load]}, table={}, **groups)
+
+
+def as_alone(swept, row, summary):
+    """Compares the lists in a row of a sweep with those of a case alone."""
+    for key in DRIVEN + LOADED:
+        for k, value in enumerate(several(summary[key]), 1):
+            assert swept[f"{key}_{k}"][row] == pytest.approx(value, rel=1e-8, nan_ok=True), (key, k)
+
+
+def test_springs_and_loads_have_a_column_each(run):
+    """A sweep over scenes with springs or fixed loads had no number of them."""
+    sweep = {"key": "numerics.accuracy", "values": [1e-6, 1e-4]}
+    swept = run(held(sweep=sweep)).table("sweep.csv")
+    for row, accuracy in enumerate(sweep["values"]):
+        as_alone(swept, row, run(held(numerics={"accuracy": accuracy})).summary)
+    lists = [f"{key}_{k}" for keys, count in ((DRIVEN, 2), (LOADED, 3))
+             for k in range(1, count + 1) for key in keys]
+    assert swept.names[-1 - len(lists):-1] == lists
+    assert (swept["table_load_error"] > 0).all()
+
+
+@pytest.mark.parametrize("key, values", [
+    ("device.stiffness", [0.5, 0.0]), ("fixed_load.load", [-1.0, 0.5])])
+def test_a_swept_spring_or_load_has_one_column(run, key, values):
+    name = key.partition(".")[2]
+    swept = run(held(sweep={"key": key.upper(), "values": [0.87 * value for value in values]}))
+    table = swept.table("sweep.csv")
+    for row, value in enumerate(values):
+        as_alone(table, row, run(held(**{name: [value]})).summary)
+    names = DRIVEN if name == "stiffness" else LOADED
+    assert not {f"{each}_2" for each in names} & set(table.names)
+
+
+def test_a_swept_term_of_a_list_leaves_the_other_terms(run):
+    sweep = {"key": "device.stiffness(2)", "values": [0.2, 0.1]}
+    swept = run(held(0.87, sweep=sweep)).table("sweep.csv")
+    first, second = (swept[f"device_jump_in_z_{k}"] for k in (1, 2))
+    assert first[0] == pytest.approx(first[1], rel=1e-12)
+    assert second[0] < 0.9 * second[1]
+
+
+def test_a_prescribed_h0_is_one_drive(run):
+    sweep = {"key": "device.z_end", "values": [-1.0, -2.0]}
+    swept = run(held(stiffness=None, sweep=sweep)).table("sweep.csv")
+    np.testing.assert_allclose(swept["device_jump_in_z_1"], swept["jump_in_h0"], rtol=1e-9)
+    assert "device_jump_in_z_2" not in swept.names
+
+
+def test_groups_of_states_are_said_to_leave_no_number(run):
+    sweep = {"key": "profiles.h0", "values": [0.0, 1.0]}
+    found = run(lennard_jones(0.5, equilibrium_path={"h0_end": -1.0}, profiles={"h0": 1.0},
+                              stability={}, sweep=sweep)).summary
+    assert found["notes"] == "sweep: no number in sweep.csv comes from profiles, stability; " \
+        "run a case alone to see states"
 
 
 def test_warnings_of_cases_are_counted_and_the_first_is_shown(run):
