@@ -7,17 +7,20 @@ module result_rows
     of_profile
   implicit none
   private
-  public :: row_t, rows, row_of, in_summary, in_cost, turning, spring, given_load
+  public :: row_t, rows, row_of, in_summary, in_cost
+  public :: turning, spring, given_load, carpick, pietrement_troyon, layered_regime
 
   !> The group of summary.nml that has a row.
   integer, parameter :: in_summary = 1, in_cost = 2
   !> When a row is a column of sweep.csv: never, always, with a group of the deck, with forces other
-  !> than the paper's, or once for each turning point, spring or load.
+  !> than the paper's, with a theory of &classical, with &regime of layers, or once for each turning
+  !> point, spring or load.
   character(len=*), parameter :: never = '', always = 'always', classical = 'classical', &
     approximations = 'approximations', regime = 'regime', forces = '(forces)', &
     turning = 'unloading', spring = 'device', given_load = 'fixed_load', table = 'table', &
     layer = 'layer', drive = 'drive', fluid = 'fluid', viscoelastic = 'viscoelastic', &
-    tabulated = 'tabulated'
+    tabulated = 'tabulated', carpick = '(carpick)', pietrement_troyon = '(troyon)', &
+    layered_regime = '(layers)'
 
   !> Key, unit and meaning; a list has one value for each turning point, fold, profile or the like.
   type :: row_t
@@ -74,11 +77,12 @@ module result_rows
     row_t('maugis_pull_off', 'N', 'pull-off of Maugis-Dugdale theory, positive', classical), &
     row_t('transition_alpha', '', &
       'with carpick or pietrement_troyon: their alpha, 0 for DMT theory, 0.98 for JKR theory'), &
-    row_t('carpick_pull_off', 'N', 'with theories = ''carpick'': pull-off, positive'), &
-    row_t('carpick_radius', 'm', 'contact radius at zero load by carpick'), &
+    row_t('carpick_pull_off', 'N', 'with theories = ''carpick'': pull-off, positive', carpick), &
+    row_t('carpick_radius', 'm', 'contact radius at zero load by carpick', carpick), &
     row_t('pietrement_troyon_pull_off', 'N', &
-      'with theories = ''pietrement_troyon'': pull-off, positive'), &
-    row_t('pietrement_troyon_radius', 'm', 'contact radius at zero load by pietrement_troyon'), &
+      'with theories = ''pietrement_troyon'': pull-off, positive', pietrement_troyon), &
+    row_t('pietrement_troyon_radius', 'm', 'contact radius at zero load by pietrement_troyon', &
+      pietrement_troyon), &
     row_t('max_tension', 'N', 'largest tension of all branches, positive', always, &
       place='max_tension', quantity=of_tension, error=judged), &
     row_t('max_tension_h0', 'm', 'h0 at the largest tension', always, &
@@ -182,8 +186,10 @@ module result_rows
     row_t('regime_worst_jkr', '', 'the same for JKR theory', regime), &
     row_t('regime_worst_dmt', '', 'the same for DMT theory', regime), &
     row_t('regime_worst_maugis', '', 'the same for Maugis-Dugdale theory', regime), &
-    row_t('regime_worst_hertz_layered', '', 'the same for Hertz theory of layers'), &
-    row_t('regime_worst_jkr_layered', '', 'the same for JKR theory of layers'), &
+    row_t('regime_worst_hertz_layered', '', 'the same for Hertz theory of layers', &
+      layered_regime), &
+    row_t('regime_worst_jkr_layered', '', 'the same for JKR theory of layers', &
+      layered_regime), &
     row_t('regime_worst_pietrement', '', 'the same for Pietrement and Troyon''s formula', &
       regime), &
     row_t('regime_theory', '', 'recommended theory: 1 Hertz, 2 JKR, 3 DMT, 4 Maugis, 5 and 6 ' // &

@@ -6,7 +6,9 @@ module case_columns
   use failure, only: failure_t
   use text, only: brief, listing, lower, word_of
   use deck_numbers, only: find_number
-  use result_rows, only: row_t, rows, turning, spring, given_load
+  use result_rows, only: row_t, rows, turning, spring, given_load, layered_regime, &
+    of_carpick => carpick, of_troyon => pietrement_troyon
+  use theory_names, only: carpick, pietrement_troyon
   use scene_groups, only: scene_t
   use summary, only: summary_t
   implicit none
@@ -125,11 +127,24 @@ contains
       select case (row%sweep)
       case ('', 'always', '(forces)')
         comes_with_group = .false.
+      case (of_carpick)
+        comes_with_group = shows(carpick)
+      case (of_troyon)
+        comes_with_group = shows(pietrement_troyon)
+      case (layered_regime)
+        comes_with_group = scene%regime .and. allocated(scene%bodies%surface)
       case default
         comes_with_group = .not. row%list
         if (comes_with_group) comes_with_group = scene%deck%has_group(trim(row%sweep))
       end select
     end function comes_with_group
+
+    pure logical function shows(theory)
+      integer, intent(in) :: theory
+
+      shows = allocated(scene%classical)
+      if (shows) shows = scene%classical%shown(theory)
+    end function shows
 
   end function chosen_numbers
 

@@ -1,7 +1,8 @@
 !> The output of `snapin --results`: all files of results with their columns, and all entries of
 !> summary.nml, from the tables that write the files.
 module result_listing
-  use result_rows, only: row_t, rows, in_summary, in_cost, turning, spring, given_load
+  use result_rows, only: row_t, rows, in_summary, in_cost, turning, spring, &
+    given_load, carpick, pietrement_troyon, layered_regime
   use result_tables, only: tables
   implicit none
   private
@@ -76,6 +77,10 @@ contains
       note = 'in sweep.csv for each stiffness'
     case (given_load)
       note = 'in sweep.csv for each load'
+    case (carpick, pietrement_troyon)
+      note = 'in sweep.csv with this theory'
+    case (layered_regime)
+      note = 'in sweep.csv with &regime and &layer'
     case default
       note = 'in sweep.csv with &' // trim(row%sweep)
     end select

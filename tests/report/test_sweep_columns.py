@@ -1,6 +1,7 @@
 """What a sweep leaves of each case: the scalars of its summary, in columns that follow the deck."""
 
 import math
+import re
 
 import numpy as np
 import pytest
@@ -70,6 +71,26 @@ def test_a_group_that_is_absent_costs_no_column(run, table):
         f"{name}_{k}" for k in (1, 2) for name in ("unload_max_tension", "unload_jump_out_h0")]
     assert table.names == [*bare.names[:-1], *extra, "failure"] and bare.names[-1] == "failure"
     assert set(END) <= set(bare.names)
+
+
+@pytest.mark.parametrize("groups, names", [
+    ({"classical": {"theories": ["carpick"]}}, ["carpick_pull_off", "carpick_radius"]),
+    ({"classical": {"theories": ["jkr", "pietrement_troyon"]}},
+     ["pietrement_troyon_pull_off", "pietrement_troyon_radius"]),
+    ({"regime": {}, "layer": {"thickness": 5.0, "young": 1.0, "poisson": 0.3}},
+     ["regime_worst_hertz_layered", "regime_worst_jkr_layered"])],
+    ids=["carpick", "troyon", "layers"])
+def test_theories_that_not_every_deck_has_are_columns_where_it_has_them(run, groups, names):
+    """Numbers of these theories were in no column."""
+    bodies = {"radius": 1.0, "young": [2.0, 2.0], "poisson": [0.3, 0.3]}
+    scene = {"bodies": bodies, "equilibrium_path": {"h0_end": -2.0}, **groups}
+    sweep = {"key": "bodies.radius", "values": [1.0, 2.0]}
+    table = run(lennard_jones(0.5, **scene, sweep=sweep)).table("sweep.csv")
+    alone = run(lennard_jones(0.5, **scene)).summary
+    found = [name for name in table.names if re.search("carpick|troyon|layered", name)]
+    assert found == names
+    for name in names:
+        assert table[name][0] == pytest.approx(alone[name], rel=1e-6)
 
 
 def test_jumps_of_the_summary_are_rows_of_the_approximations(run):
