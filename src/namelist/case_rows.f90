@@ -1,5 +1,5 @@
 !> The rows of a file with a line of names, one after the other. Only a piece of the file is in
-!> memory, however many rows it has. Lines are as in `data_table`.
+!> memory, however many rows it has. Lines are as in `table_line`.
 module case_rows
   use, intrinsic :: iso_c_binding, only: c_int, c_long
   use kinds, only: wp, long
@@ -12,7 +12,8 @@ module case_rows
   use deck_scan, only: span_t
   use deck_source, only: source_t, take_source
   use deck_store, only: deck_t
-  use data_table, only: split, is_header, after_mark, uncommented, point_decimals, counted
+  use data_table, only: is_header
+  use table_line, only: split, blanks, after_mark, uncommented, point_decimals, miscount
   implicit none
   private
   public :: case_rows_t
@@ -101,6 +102,9 @@ contains
       if (names(k)%last < names(k)%first) then
         call named%complain(1, '', '', 'a column without a name', error)
         return
+      else if (scan(named%part(names(k)%first, names(k)%last), blanks) > 0) then
+        call named%complain(names(k)%first, '', '', 'a name with a blank', error)
+        return
       end if
       if (k > 1) self%names = self%names // ' '
       self%names = self%names // lower(named%part(names(k)%first, names(k)%last))
@@ -130,8 +134,8 @@ contains
     end do
     self%waiting = .false.
     if (size(self%cells) /= size(self%words)) then
-      call self%line%complain(1, '', '', counted(size(self%cells)) // ' where ' // &
-        counted(size(self%words)) // ' are expected', error)
+      call self%line%complain(1, '', '', miscount(self%line%text, size(self%cells), &
+        size(self%words)), error)
       return
     end if
     if (.not. allocated(values)) allocate (values(size(self%words)))

@@ -1,20 +1,21 @@
 !> A text file with a table of numbers, as measuring programs write it: comments after #, perhaps a
-!> line with the names of the columns, which may itself be a comment, then one row a line. Blanks,
-!> tabs, commas or semicolons separate cells. In a line with semicolons or tabs between cells, a
-!> comma within a number is a decimal comma.
+!> line with the names of the columns, which may itself be a comment, then one row a line
+!> (`table_line`).
 module data_table
   use kinds, only: wp
   use checksums, only: checksum
   use failure, only: failure_t
-  use text, only: lower, quoted, brief, clip, guess
+  use text, only: lower, quoted, clip, guess
   use deck_number, only: parse_real, parse_integer
   use deck_scan, only: span_t
   use deck_source, only: source_t, load_source
   use deck_store, only: deck_t
+  use table_line, only: split, after_mark, uncommented, ends_empty, point_decimals, counted, &
+    miscount
   implicit none
   private
   public :: data_table_t, read_data_table, largest_table, read_columns
-  public :: split, is_header, after_mark, uncommented, point_decimals, counted
+  public :: is_header
 
   !> The columns asked for, value(row, column), the position of each row in the file's text, and the
   !> number of columns in the file.
@@ -28,8 +29,6 @@ module data_table
   !> Largest number of bytes of a table.
   integer, parameter :: largest_table = 64*2**20
   character(len=*), parameter :: newline = new_line('a')
-  !> Separators of cells: blank, tab, comma, semicolon.
-  character(len=*), parameter :: blanks = ' ' // achar(9), marks = ',;', between = blanks // marks
 
 contains
 
@@ -70,6 +69,13 @@ contains
       table%columns = size(names)
       if (first > 0) table%columns = size(cells)
       if (size(names) /= table%columns) then
+        if (header .and. first > 0 .and. size(cells) < size(names)) then
+          if (ends_empty(line_at(table%source, first))) then
+            call table%source%complain(first, '', '', miscount(line_at(table%source, first), &
+              size(cells), size(names)), error)
+            return
+          end if
+        end if
         if (header .and. any(verify(wanted, '-0123456789 ') > 0)) then
           call table%source%complain(named, '', '', counted(size(names)) // ' where ' // &
             counted(table%columns) // ' are expected', error)
@@ -83,8 +89,8 @@ contains
     end if
     do while (first > 0)
       if (size(cells) /= table%columns) then
-        call table%source%complain(first, '', '', counted(size(cells)) // ' where ' // &
-          counted(table%columns) // ' are expected', error)
+        call table%source%complain(first, '', '', miscount(line_at(table%source, first), &
+          size(cells), table%columns), error)
         return
       end if
       n = n + 1
@@ -139,77 +145,14 @@ contains
     first = 0
   end subroutine next_row
 
-  !> A line without its comment.
-  pure function uncommented(line) result(text)
-    character(len=*), intent(in) :: line
-    character(len=:), allocatable :: text
-
-    text = line(:index(line//'#', '#') - 1)
-  end function uncommented
-
-  !> The first line of `lines`, with blanks for its comment marks.
-  pure function after_mark(lines) result(line)
-    character(len=*), intent(in) :: lines
+  !> The line at position `first`.
+  pure function line_at(source, first) result(line)
+    type(source_t), intent(in) :: source
+    integer, intent(in) :: first
     character(len=:), allocatable :: line
-    integer :: i
 
-    i = index(lines, newline) - 1
-    if (i < 0) i = len(lines)
-    line = lines(:i)
-    do i = 1, len(line)
-      if (line(i:i) == '#') line(i:i) = ' '
-    end do
-  end function after_mark
-
-  !> Replaces decimal commas by points: commas between digits in lines with semicolons or tabs.
-  pure subroutine point_decimals(text)
-    character(len=*), intent(inout) :: text
-    character(len=*), parameter :: digits = '0123456789'
-    integer :: first, next, i
-
-    next = 1
-    do while (next <= len(text))
-      first = next
-      next = first + scan(text(first:), newline)
-      if (next == first) next = len(text) + 2
-      if (scan(text(first:next - 2), ';' // achar(9)) == 0) cycle
-      do i = first + 1, next - 3
-        if (text(i:i) /= ',') cycle
-        if (scan(text(i - 1:i - 1), digits) > 0 .and. scan(text(i + 1:i + 1), digits) > 0) &
-          text(i:i) = '.'
-      end do
-    end do
-  end subroutine point_decimals
-
-  !> The cells of a line up to the last that is not empty. A comma or semicolon after another, or
-  !> before the first cell, is that of an empty cell.
-  subroutine split(line, cells)
-    character(len=*), intent(in) :: line
-    type(span_t), allocatable, intent(out) :: cells(:)
-    integer :: first, next
-
-    allocate (cells(0))
-    first = after_blanks(1)
-    do while (first <= len(line))
-      next = first + scan(line(first:) // ' ', between) - 1
-      cells = [cells, span_t(first, next - 1)]
-      next = after_blanks(next)
-      first = next
-      if (next > len(line)) exit
-      if (scan(line(next:next), marks) > 0) first = after_blanks(next + 1)
-    end do
-    cells = cells(:findloc(cells%last >= cells%first, .true., 1, back=.true.))
-
-  contains
-
-    !> The first position from `at` on that is no blank.
-    pure integer function after_blanks(at)
-      integer, intent(in) :: at
-
-      after_blanks = at + verify(line(at:) // marks, blanks) - 1
-    end function after_blanks
-
-  end subroutine split
+    line = source%part(first, first + scan(source%text(first:) // newline, newline) - 2)
+  end function line_at
 
   !> Whether a line has names, and not a number.
   logical function is_header(source, start, cells)
@@ -300,13 +243,5 @@ contains
       if (turned(i)) row(i) = -row(i)
     end do
   end subroutine read_row
-
-  !> '1 column', '3 columns'.
-  pure function counted(n)
-    integer, intent(in) :: n
-    character(len=:), allocatable :: counted
-
-    counted = brief(n) // ' column' // trim(merge(' ', 's', n == 1))
-  end function counted
 
 end module data_table

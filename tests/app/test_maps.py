@@ -76,6 +76,19 @@ def test_a_table_of_the_same_cases_gives_the_same_rows(run, folder):
     assert rows_of(run(scene({"file": "cases.csv"}))) == rows_of(grid)
 
 
+def test_cells_may_stand_in_quotes(run, folder):
+    """As spreadsheets write them; they were refused with a guess at the same name."""
+    keys = ["bodies.radius,force.hamaker", "1e-6,1e-19", "2e-6,2e-19"]
+    plain = "\n".join(keys)
+    quoted = re.sub("([^,\n]+)", r'"\1"', plain)
+    tables = {}
+    for name, text in (("plain", plain), ("quoted", quoted), ("decimal commas", quoted.replace(
+            ",", ";").replace("1e-6", "1,0e-6")), ("comment", "# " + quoted)):
+        (folder / "cells.csv").write_text(text + "\n")
+        tables[name] = rows_of(run(scene({"file": "cells.csv"}, **RIGID)))
+    assert len(set(map(tuple, tables.values()))) == 1 and len(tables["plain"]) == 3
+
+
 def test_a_file_is_read_in_pieces_whatever_its_line_ends(run, folder):
     """The pieces have 64 kB: rows lie across their ends."""
     count = 4000
@@ -208,6 +221,11 @@ WRONG = {
     "void": ({"file": "void.csv"}, "has no cases"),
     "late": ({"file": "late.csv"}, "late.csv:20002: 1e is not a number"),
     "columns": ({"file": "columns.csv"}, "2 columns where 1 column are expected"),
+    "last cell": ({"file": "last.csv"}, "last.csv:2: 1 column where 2 columns are expected; the "
+                                        "last cell is empty"),
+    "quoted last cell": ({"file": "none.csv"}, "the last cell is empty"),
+    "blank": ({"file": "blank.csv"}, "blank.csv:1: a name with a blank"),
+    "open quote": ({"file": "open.csv"}, 'open.csv:2: "1e9 is not a number'),
     "whole": ({"file": "whole.csv"}, "case 3: 2.5"),
     "folder": ({"file": "."}, "cannot be"),
     "twice": ({**GRID, "key": ["force.hamaker", "Force.Hamaker"]}, "is there twice"),
@@ -235,6 +253,10 @@ def test_a_wrong_sweep_is_refused(snapin, tmp_path, case):
                        ("sign", "bodies.stiffness\n1\n-1\n"), ("empty", "bodies.stiffness\n"),
                        ("void", ""), ("late", "bodies.stiffness\n" + "1e9\n" * 20000 + "1e\n"),
                        ("columns", "bodies.stiffness\n1e9, 2\n"),
+                       ("last", "bodies.stiffness,force.hamaker\n1e9,\n"),
+                       ("none", 'bodies.stiffness,force.hamaker\n1e9,""\n'),
+                       ("blank", '"bodies.stiffness force.hamaker"\n1e9\n'),
+                       ("open", 'bodies.stiffness\n"1e9\n'),
                        ("whole", "numerics.nodes\n100\n200\n2.5\n"),
                        ("twice", "bodies.stiffness, bodies.stiffness\n1e9, 2e9\n"),
                        ("nul", "bodies.stiffness\n1e9\n2e9\0\n"),

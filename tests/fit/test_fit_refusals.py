@@ -82,6 +82,9 @@ BAD_FILES = {
     "words": ("z,force,segment\n1,two,0\n", "two is not a number"),
     "nan": ("z,force,segment\n1,nan,0\n", "not a finite number"),
     "empty cell": ("z,force,segment\n1,,0\n", "nothing where a number is expected"),
+    "empty last cell": ("z,force,segment\n1,2,0\n1,2,\n", "3 columns are expected; the last cell "),
+    "first row with an empty last cell": (
+        "z,force,segment\n1,2,\n", "3 columns are expected; the last cell is empty"),
     "two columns of a name": ("z,force,segment,force\n1,2,0,3\n", "more than one column 'force'"),
 }
 
