@@ -16,11 +16,13 @@ module command_line
     !> Folder in which each deck gets a folder of its own, or '-' for standard output; folder for
     !> the results of a single deck.
     character(len=:), allocatable :: out, into
-    !> The name of the deck on standard input in messages.
+    !> The name of the deck on standard input in messages and results.
     character(len=:), allocatable :: name
     logical :: check = .false., resume = .false., quiet = .false.
     logical :: keys = .false., results = .false., version = .false., help = .false.
     type(file_t), allocatable :: decks(:)
+  contains
+    procedure :: informs
   end type options_t
 
   character(len=*), parameter :: usage = &
@@ -36,13 +38,11 @@ contains
   subroutine read_command_line(options, error)
     type(options_t), intent(out) :: options
     type(failure_t), allocatable, intent(out) :: error
-    character(len=:), allocatable :: argument
+    character(len=:), allocatable :: argument, value
     type(file_t) :: file
     logical :: only_decks
-    integer :: i
+    integer :: i, sign
 
-    options%out = 'results'
-    options%name = 'deck'
     allocate (options%decks(0))
     only_decks = .false.
     i = 0
@@ -54,6 +54,11 @@ contains
         file = file_t(argument)
         options%decks = [options%decks, file]
         cycle
+      end if
+      sign = index(argument, '=')
+      if (any(argument(:sign) == ['--out= ', '--into=', '--name='])) then
+        value = argument(sign + 1:)
+        argument = argument(:sign - 1)
       end if
       select case (argument)
       case ('--')
@@ -73,26 +78,30 @@ contains
       case ('--help', '-h')
         options%help = .true.
       case ('--out', '-o')
-        call take_folder(argument, options%out)
+        call take_value(options%out)
       case ('--into')
-        call take_folder(argument, options%into)
+        call take_value(options%into)
       case ('--name')
-        call take_folder(argument, options%name)
+        call take_value(options%name)
       case default
-        if (index(argument, '--out=') == 1) then
-          options%out = argument(7:)
-          if (len_trim(options%out) == 0) call fail(error, bad_input, '--out needs a folder')
-        else
-          call fail(error, bad_input, 'unknown option "' // printable(argument) // '"' // &
-                    guess(argument, known, ''))
-        end if
+        call fail(error, bad_input, 'unknown option "' // printable(argument) // '"' // &
+                  guess(argument, known, ''))
       end select
       if (allocated(error)) return
     end do
-    if (options%keys .or. options%results .or. options%version .or. options%help) return
+    if (options%informs()) return
     if (size(options%decks) == 0) then
       call fail(error, bad_input, 'no deck; name at least one file')
-    else if (size(options%decks) > 1 .and. (allocated(options%into) .or. options%out == '-')) then
+    else if (allocated(options%out) .and. allocated(options%into)) then
+      call fail(error, bad_input, 'give --out or --into, not both')
+    else if (allocated(options%name) .and. &
+      all([(options%decks(i)%name /= '-', i=1, size(options%decks))])) then
+      call fail(error, bad_input, '--name is for a deck on standard input, -')
+    end if
+    if (allocated(error)) return
+    if (.not. allocated(options%out)) options%out = 'results'
+    if (.not. allocated(options%name)) options%name = 'deck'
+    if (size(options%decks) > 1 .and. (allocated(options%into) .or. options%out == '-')) then
       call fail(error, bad_input, 'the results of several decks cannot go to one place; give ' // &
         'one deck, or --out DIR')
     else if (.not. options%check) then
@@ -101,19 +110,28 @@ contains
 
   contains
 
-    !> Takes the next argument.
-    subroutine take_folder(option, folder)
-      character(len=*), intent(in) :: option
-      character(len=:), allocatable, intent(inout) :: folder
+    !> Takes the text after the sign of an option, or the next argument.
+    subroutine take_value(taken)
+      character(len=:), allocatable, intent(inout) :: taken
 
-      i = i + 1
-      folder = ''
-      if (i <= command_argument_count()) folder = argument_at(i)
-      if (len_trim(folder) == 0) call fail(error, bad_input, option // ' needs a ' // &
-        trim(merge('name  ', 'folder', option == '--name')))
-    end subroutine take_folder
+      if (.not. allocated(value)) then
+        i = i + 1
+        value = ''
+        if (i <= command_argument_count()) value = argument_at(i)
+      end if
+      if (len_trim(value) == 0) call fail(error, bad_input, argument // ' needs a ' // &
+        trim(merge('name  ', 'folder', argument == '--name')))
+      call move_alloc(value, taken)
+    end subroutine take_value
 
   end subroutine read_command_line
+
+  !> Whether the program is asked about itself, and no deck is read.
+  pure logical function informs(self)
+    class(options_t), intent(in) :: self
+
+    informs = self%keys .or. self%results .or. self%version .or. self%help
+  end function informs
 
   !> Refuses two decks whose results would have one folder.
   subroutine check_stems(options, error)

@@ -18,6 +18,7 @@ program snapin
   use sweeps, only: work_on_sweeps
   use dispatch, only: dismiss
   use ranks, only: crew_t
+  use launch, only: started_together, own_rank
   use preflight, only: check_room, check_inputs, large_results
   use build_info, only: version, compiler, blas, options_of_build => options
   implicit none
@@ -44,6 +45,8 @@ program snapin
     call print_line(error_unit, 'try "snapin --help"')
     call leave(2)
   end if
+  ! Of several processes the first answers.
+  if (options%informs() .and. started_together() > 1 .and. own_rank() > 0) call leave(0)
   if (options%help) then
     call write_help(output_unit)
   else if (options%version) then

@@ -73,6 +73,19 @@ def test_version_names_compiler_and_libraries(snapin):
     assert [line.split(":")[0] for line in lines[1:]] == ["compiler", "blas", "options"]
 
 
+@pytest.mark.parametrize("option", ["--version", "--help", "--keys", "--results"])
+def test_of_several_processes_the_first_answers(snapin, monkeypatch, option):
+    """Under mpirun each process printed all of it."""
+    monkeypatch.setenv("OMPI_COMM_WORLD_SIZE", "2")
+    said = []
+    for rank in "01":
+        monkeypatch.setenv("OMPI_COMM_WORLD_RANK", rank)
+        done = snapin(option)
+        assert done.returncode == 0
+        said.append(done.stdout)
+    assert said[0] and not said[1]
+
+
 @pytest.mark.parametrize(
     "args, phrase",
     [
@@ -86,6 +99,10 @@ def test_version_names_compiler_and_libraries(snapin):
         (["good.nml", "--out"], "--out needs a folder"),
         (["--out", "", "good.nml"], "--out needs a folder"),
         (["--out=", "good.nml"], "--out needs a folder"),
+        (["--into=", "good.nml"], "--into needs a folder"),
+        (["--name=", "-"], "--name needs a name"),
+        (["--out", "a", "--into=b", "good.nml"], "give --out or --into, not both"),
+        (["--name", "other", "good.nml"], "--name is for a deck on standard input"),
         (["good.nml", "good.nml"], "would both write to the folder good"),
         (["good.nml", "other.nml", "sub/good.nml"], "good.nml and sub/good.nml"),
         (["--name", "good", "good.nml", "-"], "good.nml and - would both write"),
@@ -132,6 +149,14 @@ def test_out_chooses_another_folder(snapin, decks, args):
     done = snapin("--quiet", "sub/good.nml", *args, cwd=decks)
     assert done.returncode == 0, done.stderr
     assert (decks / "here" / "there" / "good" / "summary.nml").is_file()
+    assert not (decks / "results").exists()
+
+
+@pytest.mark.parametrize("args", [["--into", "here/there"], ["--into=here/there"]])
+def test_into_is_the_folder_itself(snapin, decks, args):
+    done = snapin("--quiet", "sub/good.nml", *args, cwd=decks)
+    assert done.returncode == 0, done.stderr
+    assert (decks / "here" / "there" / "summary.nml").is_file()
     assert not (decks / "results").exists()
 
 
