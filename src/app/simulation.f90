@@ -150,11 +150,14 @@ contains
     if (folder == to_stream) return
     if (.not. results%lock%is_held()) call destination%say('warning: folders cannot be locked '// &
       'here; let no other run write into this one')
-    if (left_over .and. resume) then
+    if (results%journal%inherited > 0) then
       call destination%say('continuing a run that was interrupted after '// &
         duration(results%journal%earlier))
+    else if (left_over .and. resume) then
+      call destination%say('the interrupted run left nothing to continue; ' // &
+        'starting from the beginning')
     else if (left_over) then
-      call destination%say('starting over; --resume would have continued the interrupted run')
+      call destination%say('starting over; --resume continues an interrupted run of the same deck')
     end if
   end subroutine open_folder
 

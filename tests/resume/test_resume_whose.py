@@ -106,6 +106,17 @@ def test_resume_runs_a_deck_whose_results_are_of_another(snapin, tmp_path):
     assert len(rows) == 5
 
 
+@pytest.mark.parametrize("parts", [0, 1])
+def test_a_run_that_left_no_case_is_not_said_to_be_continued(sweep, parts):
+    """Also a sweep that was refused since its file of cases had changed leaves an empty journal."""
+    sweep.emptied(b"".join(frames(sweep.journal)[:parts]))
+    done = sweep.run("cut", "--resume")
+    assert done.returncode == 0
+    assert "left nothing to continue; starting from the beginning" in done.stderr
+    assert "continuing a run" not in done.stderr
+    assert sweep.files("cut") == sweep.whole
+
+
 def test_without_resume_what_was_interrupted_is_dropped_and_that_is_said(sweep):
     sweep.emptied(b"".join(frames(sweep.journal)[:3]))
     done = sweep.run("cut")
