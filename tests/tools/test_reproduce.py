@@ -236,6 +236,15 @@ def test_the_command_writes_report_table_and_picture_and_fails_on_a_bad_name(sna
     assert run("-j", "0", "fig03").returncode == 2
 
 
+def test_a_folder_that_cannot_be_made_is_named_in_one_line(snapin_path, tmp_path):
+    (tmp_path / "file").write_text("")
+    folder = tmp_path / "file/below"
+    done = subprocess.run([sys.executable, str(ROOT / "tools/reproduce/reproduce.py"), "--out",
+                           str(folder), "--program", str(snapin_path), "fig02"],
+                          capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stderr) == (1, f"reproduce: {folder}: Not a directory\n")
+
+
 # --- Figures, and chapters as a whole
 
 

@@ -131,3 +131,6 @@ if __name__ == "__main__":
     except KeyboardInterrupt:
         _say("interrupted; the runs that were done stay, ./reproduce goes on with the others")
         sys.exit(130)
+    except OSError as trouble:  # such as a folder that cannot be written
+        _say(f"{trouble.filename}: {trouble.strerror}")
+        sys.exit(1)
