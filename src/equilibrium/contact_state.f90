@@ -86,15 +86,24 @@ contains
       shape%height(state%scale*grid%x(grid%nodes)))
   end function gap_at_end
 
-  !> The gap of a state at a position on its mesh. On an unbounded mesh, and for bodies that may end
-  !> within a panel, the bounded and smooth difference of gap and shape is interpolated.
+  !> Whether the gap at a position is interpolated as the difference of gap and shape, which is
+  !> bounded on an unbounded mesh, and smooth for bodies that may end within a panel.
+  pure logical function as_difference(shape, grid, x)
+    class(shape_t), intent(in) :: shape
+    type(discretisation_t), intent(in) :: grid
+    real(wp), intent(in) :: x
+
+    as_difference = .not. shape%parabolic .or. grid%in_tail(x)
+  end function as_difference
+
+  !> The gap of a state at a position on its mesh.
   pure real(wp) function gap_at(shape, grid, state, x) result(gap)
     class(shape_t), intent(in) :: shape
     type(discretisation_t), intent(in) :: grid
     type(state_t), intent(in) :: state
     real(wp), intent(in) :: x
 
-    if (grid%in_tail(x) .or. .not. shape%parabolic) then
+    if (as_difference(shape, grid, x)) then
       gap = shape%height(state%scale*x) + &
         grid%interpolate(state%gap - shape%height(state%scale*grid%x), x)
     else
@@ -112,9 +121,10 @@ contains
     integer :: n
 
     do n = size(x), 1, -1
-      if (shape%parabolic .and. .not. grid%in_tail(x(n))) exit
+      if (.not. as_difference(shape, grid, x(n))) exit
     end do
     gap(:n) = grid%interpolate_all(state%gap, x(:n))
+    if (n == size(x)) return
     gap(n + 1:) = shape%height(state%scale*x(n + 1:)) + &
       grid%interpolate_all(state%gap - shape%height(state%scale*grid%x), x(n + 1:))
   end function gaps_at
