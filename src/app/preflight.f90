@@ -38,10 +38,6 @@ module preflight
   !> Size of results above which they are announced, and the free disk space is checked [bytes].
   real(wp), parameter :: large = 1.0e8_wp
 
-  !> Groups whose key `file` names a table of numbers.
-  character(len=*), parameter :: with_file(*) = [character(len=11) :: 'sweep', 'measurement', &
-    'shape', 'tabulated']
-
 contains
 
   !> Fails if results in `folder` would replace a file that the deck reads: the deck itself, `name`,
@@ -54,10 +50,12 @@ contains
 
     if (folder == to_stream) return
     call check(name, scene%deck%has_group('summary'))
-    do i = 1, size(with_file)
-      if (scene%deck%is_set(trim(with_file(i)), 'file')) &
-        call check(scene%deck%path_of(trim(with_file(i)), 'file'), .false.)
-    end do
+    associate (deck => scene%deck)
+      do i = 1, size(deck%specs)
+        if (deck%values(i)%is_file()) &
+          call check(deck%path_of(trim(deck%specs(i)%group), trim(deck%specs(i)%key)), .false.)
+      end do
+    end associate
 
   contains
 

@@ -1,8 +1,10 @@
 """Claims about what is said of a run before it begins, and about runs that do not fit."""
 
 import re
+import shutil
 
 import pytest
+from conftest import ROOT
 from support.processes import limited
 from support.scenes import lennard_jones, loading
 
@@ -94,6 +96,17 @@ def test_a_run_does_not_replace_what_its_deck_reads(snapin, tmp_path, table):
         assert done.returncode == 2
         assert re.search(r"nml: results would replace .*, which the deck reads", done.stderr)
     assert before == {path: path.read_bytes() for path in tmp_path.rglob("*") if path.is_file()}
+
+
+@pytest.mark.parametrize("name", ["profile", "tabulated", "fit"])
+def test_every_file_that_a_deck_names_is_seen(snapin, tmp_path, name):
+    deck = (ROOT / f"inputs/examples/{name}.nml").read_text()
+    (file,) = re.findall("file = '(.*?)'", deck)
+    shutil.copy(ROOT / "inputs/examples" / file, tmp_path / "curve.csv")
+    (tmp_path / "d.nml").write_text(deck.replace(file, "curve.csv"))
+    done = snapin("--check", "--into", tmp_path, "d.nml", cwd=tmp_path)
+    assert done.returncode == 2
+    assert re.search(r"results would replace \S*curve.csv, which the deck reads", done.stderr)
 
 
 def test_a_summary_may_be_run_again_in_its_folder(snapin, tmp_path):
