@@ -111,7 +111,7 @@ contains
       single = [single, pack([(i, i=1, size(rows))], rows%sweep == '(forces)')]
     numbers = [(number_t(single(i)), i=1, size(single))]
     do n = 1, size(with_list)
-      ! Row by row, since gfortran 12.2 finds no equal word in `rows%sweep == with_list(n)`.
+      ! Row by row: compiler note 14.
       of_list = pack([(i, i=1, size(rows))], [(rows(i)%sweep == with_list(n), i=1, size(rows))])
       do k = 1, elements(scene, with_list(n))
         numbers = [numbers, (number_t(of_list(i), k), i=1, size(of_list))]
