@@ -18,7 +18,7 @@ program snapin
   use sweeps, only: work_on_sweeps
   use dispatch, only: dismiss
   use ranks, only: crew_t
-  use launch, only: started_together, own_rank
+  use launch, only: own_rank
   use preflight, only: check_room, check_inputs, large_results
   use build_info, only: version, compiler, blas, options_of_build => options
   implicit none
@@ -46,7 +46,9 @@ program snapin
     call leave(2)
   end if
   ! Of several processes the first answers.
-  if (options%informs() .and. started_together() > 1 .and. own_rank() > 0) call leave(0)
+  if (options%informs()) then
+    if (own_rank() > 0) call leave(0)
+  end if
   if (options%help) then
     call write_help(output_unit)
   else if (options%version) then
