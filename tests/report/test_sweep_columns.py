@@ -246,6 +246,15 @@ def test_a_prescribed_h0_is_one_drive(run):
     assert "device_jump_in_z_2" not in swept.names
 
 
+def test_bodies_that_yield_have_their_relaxed_strength_of_adhesion(run):
+    scene = lennard_jones(
+        0.5, viscoelastic={"stiffness_relaxed": 0.5, "retardation_time": 1.0},
+        drive={"velocity": 1.0, "z_start": 5.0, "z_turn": 2.0, "z_end": 5.0},
+        numerics={"accuracy": 1e-3}, sweep={"key": "drive.velocity", "values": [1.0, 2.0]})
+    table = run(scene).table("sweep.csv")
+    np.testing.assert_allclose(table["sigma_relaxed"], 2 * table["sigma"], rtol=1e-6)
+
+
 def test_groups_of_states_are_said_to_leave_no_number(run):
     sweep = {"key": "profiles.h0", "values": [0.0, 1.0]}
     found = run(lennard_jones(0.5, equilibrium_path={"h0_end": -1.0}, profiles={"h0": 1.0},
