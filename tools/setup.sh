@@ -153,9 +153,11 @@ tools/verify tools/reproduce" "$@"
 }
 
 # The conditions of environment and build: their place, since both contain absolute paths, the
-# Python version, and the required versions.
+# Python version, whether the processor has AVX2, for which the build may be, and the required
+# versions.
 foundation() {
   printf '%s\n' "$top" "$(readlink -f "$venv/bin/python")"
+  grep -m 1 -o -w avx2 /proc/cpuinfo 2> /dev/null || :
   cat "$requirements"
 }
 

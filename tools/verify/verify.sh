@@ -73,7 +73,7 @@ coverage() {
 levels() {
   builds build-O0 -Dpython=disabled -Doptimization=0 -Ddebug=false &&
     builds build-O2 -Dpython=disabled -Doptimization=2 -Ddebug=false &&
-    builds build-native -Dpython=disabled -Dnative=true || return
+    builds build-native -Dpython=disabled -Dprocessor=native || return
   "$python" "$here/levels.py" "$build/snapin" O0=build-O0/snapin O2=build-O2/snapin \
     native=build-native/snapin
   different=$?
