@@ -11,7 +11,7 @@ module lapack
       integer, intent(in) :: n, incx
       real(wp), intent(in) :: x(*)
     end function idamax
-    subroutine dgemv(trans, m, n, alpha, a, lda, x, incx, beta, y, incy)
+    pure subroutine dgemv(trans, m, n, alpha, a, lda, x, incx, beta, y, incy)
       import :: wp
       character, intent(in) :: trans
       integer, intent(in) :: m, n, lda, incx, incy

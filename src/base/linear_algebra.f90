@@ -37,7 +37,7 @@ contains
   end subroutine claim_buffers
 
   !> y = a(:size(y), :columns) x(:columns).
-  subroutine multiply(a, columns, x, y)
+  pure subroutine multiply(a, columns, x, y)
     real(wp), intent(in), contiguous :: a(:, :)
     integer, intent(in) :: columns
     real(wp), intent(in) :: x(:)
@@ -51,7 +51,7 @@ contains
   end subroutine multiply
 
   !> y = x a(:size(x), :size(y)).
-  subroutine multiply_left(x, a, y)
+  pure subroutine multiply_left(x, a, y)
     real(wp), intent(in), contiguous :: a(:, :)
     real(wp), intent(in) :: x(:)
     real(wp), intent(out) :: y(:)

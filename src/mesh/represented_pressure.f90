@@ -16,7 +16,7 @@ module represented_pressure
   use force_law, only: force_law_t
   use discretisation, only: discretisation_t, local_nodes_t, gauss_nodes
   use panel_map, only: algebraic_map
-  use linear_algebra, only: add_by_transposed
+  use linear_algebra, only: multiply, multiply_left, add_by_transposed
   implicit none
   private
   public :: pressure_slope_t, pressure_on, slope_on, panel_pressure, pressure_at_nodes
@@ -89,8 +89,8 @@ contains
     class(force_law_t), intent(in) :: law
     type(local_nodes_t), intent(in) :: local
     real(wp), intent(in) :: gap(:)
-    real(wp) :: pressure(size(gap))
-    real(wp), allocatable :: s(:), weight(:), basis(:, :)
+    real(wp) :: pressure(size(gap)), projected(size(gap))
+    real(wp), allocatable :: s(:), weight(:), basis(:, :), between(:)
     real(wp) :: share
 
     share = 0
@@ -98,14 +98,12 @@ contains
     if (share < 1) pressure = law%pressure(gap)
     if (.not. share > 0) return
     basis = bases(local, s)
-    associate (projected => &
-      matmul(basis, weight*law%pressure(matmul(gap, basis)))/local%weight)
-      if (share < 1) then
-        pressure = pressure + share*(projected - pressure)
-      else
-        pressure = projected
-      end if
-    end associate
+    allocate (between(size(s)))
+    call multiply_left(gap, basis, between)
+    call multiply(basis, size(s), weight*law%pressure(between), projected)
+    projected = projected/local%weight
+    if (share < 1) projected = pressure + share*(projected - pressure)
+    pressure = projected
   end function panel_pressure
 
   !> The derivative of `pressure_on` by the gaps.
@@ -115,7 +113,7 @@ contains
     real(wp), intent(in) :: gap(:)
     type(pressure_slope_t) :: slope
     type(panel_slope_t) :: panel
-    real(wp), allocatable :: s(:), weight(:), basis(:, :), part(:)
+    real(wp), allocatable :: s(:), weight(:), basis(:, :), between(:), weighted(:, :)
     real(wp) :: share
     integer :: k, i
 
@@ -130,11 +128,16 @@ contains
         call split(law, local, gap(panel%first:panel%last), s, weight, share)
         if (.not. share > 0) cycle
         basis = bases(local, s)
-        part = weight*law%slope(matmul(gap(panel%first:panel%last), basis))
+        between = s
+        call multiply_left(gap(panel%first:panel%last), basis, between)
+        between = share*weight*law%slope(between)
+        weighted = basis
+        do i = 1, size(s)
+          weighted(:, i) = between(i)*basis(:, i)/local%weight
+        end do
         if (allocated(panel%by_gap)) deallocate (panel%by_gap)
         allocate (panel%by_gap(size(local%node), size(local%node)), source=0.0_wp)
-        call add_by_transposed(basis*spread(part, 1, size(local%node)), basis, panel%by_gap)
-        panel%by_gap = share*panel%by_gap/spread(local%weight, 2, size(local%node))
+        call add_by_transposed(weighted, basis, panel%by_gap)
         do i = 1, size(local%node)
           panel%by_gap(i, i) = panel%by_gap(i, i) + (1 - share)*slope%at_node(panel%first - 1 + i)
         end do
