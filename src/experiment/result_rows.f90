@@ -157,6 +157,12 @@ module result_rows
       list=.true.), &
     row_t('fixed_load_stable', '', 'number of stable equilibria at each load', given_load, &
       list=.true.), &
+    row_t('fixed_load_h0', 'm', 'h0 of the stable equilibrium with the smallest h0 at each load', &
+      given_load, list=.true., error=judged), &
+    row_t('fixed_load_displacement', 'm', 'its displacement', given_load, list=.true., &
+      error=judged), &
+    row_t('fixed_load_contact_radius', 'm', 'its contact radius', given_load, list=.true., &
+      error=judged), &
     row_t('table_load_error', 'N', 'largest estimated error of a load in table.csv', table), &
     row_t('table_interpolation_error', 'N', &
       'largest error of a load between the rows, by cubic polynomials with their slopes', &

@@ -1,8 +1,8 @@
 !> Equilibria at given loads, as rows of a table and numbers of the summary.
 module fixed_load_rows
-  use kinds, only: wp
+  use kinds, only: wp, nan
   use dimensionless_problem, only: problem_t
-  use path_readings, only: path_readings_t, loaded_state_t
+  use path_readings, only: path_readings_t
   use reported_place, only: of_h0, of_displacement, of_radius
   use places, only: places_t, readings_t
   use tables, only: cells
@@ -35,23 +35,54 @@ contains
     end do
   end subroutine write_fixed_loads
 
-  !> Adds the number of equilibria at each load, and of stable ones.
-  subroutine summarise_fixed_loads(problem, loads, loaded, summary)
+  !> Adds, for each load, the number of equilibria and of stable ones, and the stable one with the
+  !> smallest h0: the contact, if there is one.
+  subroutine summarise_fixed_loads(problem, loads, readings, places, summary)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: loads(:)
-    type(loaded_state_t), intent(in) :: loaded(:)
+    type(path_readings_t), intent(in) :: readings
+    type(places_t), intent(in) :: places
     type(summary_t), intent(inout) :: summary
-    integer :: held(size(loads)), stable(size(loads)), i
+    type(readings_t) :: h0
+    integer :: held(size(loads)), stable(size(loads)), nearest(size(loads)), i
 
-    do i = 1, size(loads)
-      associate (same => abs(loaded%wanted - loads(i)/problem%load) <= 0)
-        held(i) = count(same)
-        stable(i) = count(same .and. loaded%stable)
-      end associate
-    end do
+    h0 = places%read_numbers(problem, 'fixed_load', of_h0)
+    associate (loaded => readings%loaded)
+      do i = 1, size(loads)
+        associate (same => abs(loaded%wanted - loads(i)/problem%load) <= 0)
+          held(i) = count(same)
+          stable(i) = count(same .and. loaded%stable)
+          nearest(i) = minloc(h0%value, 1, same .and. loaded%stable)
+        end associate
+      end do
+    end associate
     call summary%set('fixed_load', loads)
     call summary%set('fixed_load_equilibria', held)
     call summary%set('fixed_load_stable', stable)
+    call set('fixed_load_h0', of_h0)
+    call set('fixed_load_displacement', of_displacement)
+    call set('fixed_load_contact_radius', of_radius)
+
+  contains
+
+    subroutine set(key, quantity)
+      character(len=*), intent(in) :: key
+      integer, intent(in) :: quantity
+      type(readings_t) :: found
+      real(wp), dimension(size(loads)) :: value, error
+      integer :: i
+
+      found = places%read_numbers(problem, 'fixed_load', quantity)
+      value = nan
+      error = nan
+      do i = 1, size(loads)
+        if (nearest(i) == 0) cycle
+        value(i) = found%value(nearest(i))
+        error(i) = found%error(nearest(i))
+      end do
+      call summary%set(key, value, error)
+    end subroutine set
+
   end subroutine summarise_fixed_loads
 
 end module fixed_load_rows

@@ -223,7 +223,7 @@ contains
         readings%table_interpolation_error*problem%load)
     end if
     if (allocated(readings%loaded)) call summarise_fixed_loads(problem, scene%fixed_load%load, &
-      readings%loaded, summary)
+      readings, places, summary)
   end subroutine take_readings
 
 end module summarise

@@ -21,6 +21,9 @@ def test_two_equilibria_under_tension_one_under_pressure_none_beyond_the_pull_of
     table = found.table("fixed_load.csv")
     assert list(table["stable"]) == [0, 1, 0, 1, 1]
     assert (table["contact_radius"][table["stable"] == 1] > 0).all()
+    for key in ("h0", "displacement", "contact_radius", "h0_error", "contact_radius_error"):
+        np.testing.assert_array_equal(several(found.summary[f"fixed_load_{key}"]),
+                                      [*table[key][table["stable"] == 1], np.nan])
 
 
 def test_equilibria_have_the_load_that_stepping_h0_finds(run):

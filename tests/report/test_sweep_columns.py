@@ -189,7 +189,8 @@ def test_a_sweep_of_a_list_gives_each_case_the_one_value(run):
 DRIVEN = [f"device_{name}" for name in (
     "jump_in_z", "jump_in_load", "jump_in_load_after",
     "jump_out_z", "jump_out_load", "jump_out_load_after", "energy_lost")]
-LOADED = ["fixed_load_equilibria", "fixed_load_stable"]
+LOADED = [f"fixed_load_{name}" for name in (
+    "equilibria", "stable", "h0", "displacement", "contact_radius")]
 
 
 def held(sigma=0.87, stiffness=(0.5, 0.1), load=(0.0, -1.0, 0.5), **groups):
