@@ -1,0 +1,88 @@
+!> What a run says on standard error: each line begins with the folder of the results.
+module run_messages
+  use kinds, only: wp
+  use text, only: brief, rounded
+  use files, only: write_stderr
+  use scene_groups, only: scene_t
+  use equilibrium, only: cost_t
+  use summary, only: summary_t
+  use map_command, only: drawing_of
+  implicit none
+  private
+  public :: destination_t, tell
+
+  !> The folder of a run's results, and whether it writes messages to standard error.
+  type :: destination_t
+    character(len=:), allocatable :: folder
+    logical :: quiet = .false.
+  contains
+    procedure :: say
+  end type destination_t
+
+contains
+
+  !> Writes warnings, the numerics, and a line of results to standard error.
+  subroutine tell(scene, destination, summary, cost)
+    type(scene_t), intent(in) :: scene
+    type(destination_t), intent(in) :: destination
+    type(summary_t), intent(in) :: summary
+    type(cost_t), intent(in) :: cost
+    character(len=160) :: found, tension
+    character(len=:), allocatable :: command
+    real(wp) :: took
+    integer :: i
+
+    if (allocated(summary%warnings)) then
+      do i = 1, size(summary%warnings)
+        call destination%say('warning: '//summary%warnings(i)%text)
+      end do
+    end if
+    if (allocated(summary%notes)) then
+      do i = 1, size(summary%notes)
+        call destination%say('note: '//summary%notes(i)%text)
+      end do
+    end if
+    if (summary%has('grid')) call destination%say('grid '//summary%text('grid')//', method '// &
+      summary%text('method')//': '//summary%text('chosen_because'))
+    if (summary%has('path_traced_h0')) call destination%say( &
+      'read from the path, traced from h0 ='//in_metres('path_traced_h0'))
+    if (summary%has('path_undeformed_h0')) call destination%say( &
+      'undeformed bodies before it, from h0 ='//in_metres('path_undeformed_h0'))
+    if (summary%has('regime_reason')) &
+      call destination%say('regime: '//summary%text('regime_reason'))
+    took = summary%number('wall_seconds')
+    write (found, '(i0, a, f0.2, a)') cost%states, ' states in ', took, ' s'
+    if (took < 1) write (found, '(i0, a, f5.3, a)') cost%states, ' states in ', took, ' s'
+    tension = ''
+    if (summary%has('max_tension')) write (tension, '(a, es11.4, a, es12.4, a)') &
+      ', largest tension', summary%number('max_tension'), ' N at h0 =', &
+      summary%number('max_tension_h0'), ' m'
+    call destination%say(trim(found)//trim(tension))
+    if (allocated(scene%sweep)) then
+      command = drawing_of(destination%folder)
+      if (command /= '') command = '; to draw it: '//command
+      call destination%say(brief(scene%sweep%cases())//' cases, '// &
+        rounded(scene%sweep%cases()/max(took, 1e-3_wp))//' a second: '//destination%folder// &
+        '/sweep.csv'//command)
+    end if
+
+  contains
+
+    function in_metres(key) result(text)
+      character(len=*), intent(in) :: key
+      character(len=13) :: text
+
+      write (text, '(es11.4, a)') summary%number(key), ' m'
+    end function in_metres
+
+  end subroutine tell
+
+  !> Writes a line to standard error.
+  subroutine say(self, text)
+    class(destination_t), intent(in) :: self
+    character(len=*), intent(in) :: text
+
+    if (.not. self%quiet) call write_stderr(self%folder//': '//text//new_line('a'))
+  end subroutine say
+
+end module run_messages
