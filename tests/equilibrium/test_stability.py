@@ -239,8 +239,8 @@ def test_before_contact_criterion_28_is_29_at_its_largest(run):
 
 
 def test_eigenvalues_of_blunt_bodies_are_verified(run):
-    """Far out, where their pressures vanish, eigenvectors of nodes were parallel to rounding: hardly
-    one of the eigenvalues was verified."""
+    """Far out, where their pressures vanish, eigenvectors of nodes were parallel to rounding:
+    hardly one of the eigenvalues was verified."""
     found = run(lennard_jones(
         0.1, bodies={"stiffness": 1.0}, equilibrium_path={"h0_end": -1.0}, stability={},
         shape={"kind": "power", "exponent": 9.0, "coefficient": 0.5}))

@@ -229,8 +229,8 @@ def test_the_energy_of_a_force_that_falls_slowly_is_the_area_of_the_loop(run, ex
 
 @pytest.mark.parametrize("stiffness, liquid", [(2e12, {"humidity": 0.5}), (4e8, None)])
 def test_the_energy_of_spheres_is_the_area_of_the_loop(run, stiffness, liquid):
-    """It was counted from that of undeformed bodies near contact, which no mesh resolves: the energy
-    lost was off by 0.1 % to many times itself, without a warning unless there was a &device."""
+    """It was counted from that of undeformed bodies near contact, which no mesh resolves: the
+    energy lost was off by 0.1 % to many times itself, without a warning but beside &device."""
     found = run(deck(
         bodies={"radius": 1.5e-2, "stiffness": stiffness}, shape={"kind": "sphere"},
         force={"law": "lennard_jones", "hamaker": 1e-19, "z0": 0.5e-9}, capillary=liquid,

@@ -2,8 +2,8 @@
 layers or without, under every law with a contact: random scenes.
 
 The truth is the same scene at a much higher accuracy, as in `study_laws`, which makes the tables.
-Besides, a truth has two ways to the energy that a cycle loses, which must agree. Scene k of a seed is
-always the same scene.
+Besides, a truth has two ways to the energy that a cycle loses, which must agree. Scene k of a seed
+is always the same scene.
 """
 
 import functools
