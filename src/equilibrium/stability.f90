@@ -30,6 +30,8 @@ module stability
   !> Bound of the errors of all computed eigenvalues.
   type(margin_t), parameter :: lower = margin_t(1.0e-2_wp, 1.0e-12_wp)
   integer, parameter :: most_iterations = 50
+  !> Effect of a node over the largest effect that is below rounding.
+  real(wp), parameter :: negligible = 0.01_wp*epsilon(1.0_wp)
   !> Smaller pressures count as zero and are not used as divisors.
   real(wp), parameter :: least_pressure = 1.0e-100_wp
 
@@ -50,28 +52,37 @@ contains
     logical, intent(out) :: certain
     type(cost_t), intent(inout) :: cost
     type(pressure_slope_t) :: slope
-    real(wp), dimension(size(state%gap)) :: factor, root, part
-    real(wp), allocatable :: matrix(:, :)
+    real(wp), dimension(size(state%gap)) :: factor, root, effect
+    real(wp), allocatable :: matrix(:, :), part(:)
+    logical :: matters(size(state%gap))
+    integer, allocatable :: node(:)
     type(elastic_operator_t) :: operator
     real(wp) :: error, widest
-    integer :: n, j
+    integer :: j
 
     eigenvalue = 1
     certain = .true.
-    n = size(state%gap)
     slope = slope_on(problem%law, grid, state%gap)
     ! Rigid bodies, or bodies that do not attract each other: repulsion increases the eigenvalues,
     ! and these accumulate at 1.
     if (.not. (problem%coupling > 0 .and. maxval(slope%at_node) > 0)) return
-    ! If rows and columns share the slope equally, the eigenvectors are far from parallel.
     factor = slope%factor()
+    ! Nodes at which the pressure hardly changes have eigenvalues close to 1, whose vectors are
+    ! nearly parallel.
+    effect = abs(factor)*grid%largest
+    matters = effect > negligible*maxval(effect)
+    do j = 1, size(slope%mixed)
+      matters(slope%mixed(j)%first:slope%mixed(j)%last) = .true.
+    end do
+    node = pack([(j, j=1, size(matters))], matters)
+    ! If rows and columns share the slope equally, the eigenvectors are far from parallel.
     root = sqrt(abs(factor))
-    allocate (matrix(n, n))
-    call operator%matrix(problem, grid, state%scale, sign(root, factor), &
-      [(first_node - 1 + j, j=1, n)], [(j, j=1, n)], matrix)
-    call slope%mix([(j, j=1, n)], matrix)
-    do j = 1, n
-      matrix(:, j) = root*matrix(:, j)
+    allocate (matrix(size(node), size(node)), part(size(node)))
+    call operator%matrix(problem, grid, state%scale, sign(root(node), factor(node)), &
+      first_node - 1 + node, node, matrix)
+    call slope%mix(node, matrix)
+    do j = 1, size(node)
+      matrix(:, j) = root(node)*matrix(:, j)
     end do
     call eigenvalues(matrix, part, error, certain)
     if (certain) then

@@ -36,7 +36,7 @@ module path_readings
     type(rate_t), allocatable :: rate(:, :)
     !> The h0 from which the path was traced, and the h0 from which the bodies are undeformed up to
     !> there.
-    real(wp) :: traced_from = 0, undeformed_from = 0
+    real(wp) :: traced_from = -huge(1.0_wp), undeformed_from = -huge(1.0_wp)
     !> For the table, the largest error of cubic interpolation of the load between rows.
     real(wp) :: table_interpolation_error = 0
     !> Of the states that are read, which may be beyond the path's rows: what tells of strains.

@@ -45,6 +45,7 @@ contains
         outcome%differentiated = found
       end if
     end if
+    if (.not. allocated(outcome%places%place)) return
     associate (places => outcome%places)
       do i = 1, size(places%place)
         associate (place => places%place(i))

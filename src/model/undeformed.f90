@@ -6,7 +6,7 @@ module undeformed
   use kinds, only: wp, pi
   use adaptive_quadrature, only: integral_t, new_integral, rule_nodes, in_order
   use dimensionless_problem, only: problem_t
-  use beyond_mesh, only: energy_density, farthest
+  use beyond_mesh, only: energy_density, falls_slowly, farthest
   implicit none
   private
   public :: measured_t, measured_load, measured_slope
@@ -26,6 +26,9 @@ module undeformed
   !> Height of the shape at the end of the first piece. Each further piece doubles the position, up
   !> to the position at which the height is this many times h0 or 1; the last one goes to infinity.
   real(wp), parameter :: first = 0.25_wp, last = 4
+  !> Gap over 1 or h0 from which on a difference of energies is that of first order: the error of
+  !> this, the inverse square, is less than that of rounding.
+  real(wp), parameter :: far = 1.0e6_wp
   !> Power of r from which on a pressure falls so fast that the integral beyond `farthest` is
   !> negligible.
   real(wp), parameter :: fast = 4
@@ -147,6 +150,9 @@ contains
         g = problem%law%slope(gap)
       case default
         g = energy_density(problem, gap, r, at_reference)
+        ! Far away, where rounding hides the difference of two energies, it is that of first order.
+        if (falls_slowly(problem)) where (gap > far*max(1.0_wp, abs(h0))) &
+          g = (at_reference - h0)*problem%law%pressure(gap + 0.5_wp*(at_reference - h0))
       end select
     end function integrand
 

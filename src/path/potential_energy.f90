@@ -5,12 +5,16 @@
 module potential_energy
   use kinds, only: wp, pi
   use beyond_mesh, only: energy_beyond, energy_density, falls_slowly
+  use dimensionless_problem, only: calm_gap
   use undeformed, only: energy_undeformed
   use contact_state, only: state_t, load_reach, gap_at_end
   use equilibrium, only: equations_t
   implicit none
   private
   public :: energy_of, energy_of_surface
+
+  !> Power of r of a pressure that hardly acts beyond a mesh.
+  real(wp), parameter :: falls_far = 3
 
 contains
 
@@ -48,8 +52,8 @@ contains
 
   !> The energy of the surface force, and the sum of the magnitudes of its terms. From an energy
   !> that falls slowly that of undeformed bodies is subtracted at each node, and added as an exact
-  !> integral. Their H0 is the height at the contact edge, so that their energy per area is as
-  !> smooth on the mesh as that of the state.
+  !> integral. Their H0 is the height at the contact edge, or a gap beyond the law's features, so
+  !> that their energy per area is smooth on the mesh.
   subroutine find_energy_of_surface(equations, mesh, state, energy, whole)
     type(equations_t), intent(in) :: equations
     integer, intent(in) :: mesh
@@ -60,9 +64,10 @@ contains
     associate (n => size(state%gap), c => state%scale, grid => equations%meshes%grid(mesh), &
       problem => equations%problem)
       reference = 1
-      ! Between other shapes the energy of the reference itself may hardly converge.
-      if (problem%shape%parabolic .and. falls_slowly(problem)) &
-        reference = max(reference, problem%shape%height(c))
+      ! Where pressures fall more slowly than this, load and energy beyond the mesh have few digits.
+      if (falls_slowly(problem) .and. max(problem%shape%exponent, problem%shape%growth)* &
+        problem%law%tail_power >= falls_far) &
+        reference = max(problem%shape%height(c), calm_gap(problem))
       terms = 2*pi*c**2*grid%weight(:n)*energy_density(problem, state%gap, c*grid%x(:n), reference)
       energy = sum(terms)
       whole = sum(abs(terms))

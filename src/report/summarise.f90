@@ -211,7 +211,8 @@ contains
     type(places_t), intent(in) :: places
     type(summary_t), intent(inout) :: summary
 
-    call summary%set('path_traced_h0', problem%law%separation_of(readings%traced_from))
+    if (readings%traced_from > -huge(readings%traced_from)) call summary%set( &
+      'path_traced_h0', problem%law%separation_of(readings%traced_from))
     if (readings%undeformed_from > readings%traced_from) call summary%set( &
       'path_undeformed_h0', problem%law%separation_of(readings%undeformed_from))
     if (.not. readings%solved) &

@@ -236,3 +236,15 @@ def test_before_contact_criterion_28_is_29_at_its_largest(run):
     ratio = curve["criterion_28"][far] / -curve["criterion_29"][far]
     np.testing.assert_allclose(ratio, 1, atol=0.01)
     assert (ratio <= 1).all()
+
+
+def test_eigenvalues_of_blunt_bodies_are_verified(run):
+    """Far out, where their pressures vanish, eigenvectors of nodes were parallel to rounding:
+    hardly one of the eigenvalues was verified."""
+    found = run(lennard_jones(
+        0.1, bodies={"stiffness": 1.0}, equilibrium_path={"h0_end": -1.0}, stability={},
+        shape={"kind": "power", "exponent": 9.0, "coefficient": 0.5}))
+    assert not found.warnings
+    values = found.curve["smallest_eigenvalue"]
+    assert ((values > 0) == (found.curve["stable"] == 1)).all()
+    assert values.min() < 0.95

@@ -245,3 +245,15 @@ def test_a_path_goes_on_until_what_is_read_from_it_is_reached(run, name):
         assert shallow.table("fixed_load.csv")[key] == pytest.approx(
             deep.table("fixed_load.csv")[key], rel=1e-5)
     assert (shallow.table("fixed_load.csv")["stable"] == 1).any()
+
+
+def test_pressures_that_vanish_everywhere_do_not_move_layers(run):
+    """A product of no columns left what was in memory: no state was found far from contact."""
+    found = run(deck(
+        bodies={"radius": 0.015, "young": [9.6e9, 1.2e9], "poisson": 0.0},
+        layer={"thickness": 6e-6, "young": 7.5e9, "poisson": 0.46, "body": "2"},
+        morse={"surface_energy": 0.05, "z0": 4.4e-10, "decay_length": 1.4e-10},
+        equilibrium_path={"h0_start": 1e-7, "h0_end": 0.0}))
+    assert not found.warnings
+    assert (abs(found.curve["load"][:2]) < 1e-100).all()
+    assert (abs(found.curve["displacement"][:2]) < 1e-20).all()

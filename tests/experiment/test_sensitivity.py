@@ -270,3 +270,11 @@ def test_the_curve_has_no_derivative_at_its_folds(run, accuracy):
     assert at_fold.sum() == folds.size
     assert np.isnan(table["load_derivative"][at_fold]).all()
     assert np.isnan(table["load_derivative"]).sum() < folds.size + 3
+
+
+def test_a_path_without_states_has_no_derivatives(run):
+    """It ended by a segmentation fault."""
+    found = run(lennard_jones(1.0, equilibrium_path={"h0_end": -1.0}, numerics={
+        "max_iterations": 1}, sensitivity={"parameters": ["force.hamaker"]}), status=1)
+    assert any("no equilibrium was found far from contact" in text for text in found.warnings)
+    assert "path_traced_h0" not in found.summary

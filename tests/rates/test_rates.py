@@ -82,6 +82,19 @@ def test_layered_bodies_in_contact_store_the_work_of_a_drive_without_jumps(run):
     assert found.summary["energy_dissipated_error"] < 1e-4 * 1e-9 * found.curve["load"].max()
 
 
+@pytest.mark.parametrize("stiffness", [None, 0.4])
+def test_a_drive_that_turns_at_a_fold_goes_back(run, stiffness):
+    """It went on along the unstable states, into contact without the energy of the jump."""
+    device = {"stiffness": stiffness} if stiffness else {}
+    path = run(lennard_jones(2.0, equilibrium_path={"h0_end": -2.0}, device=device,
+                             numerics={"accuracy": 1e-8})).summary
+    for beside in (0.0, 1e-5):
+        found = run(scene(2.0, stiffness=stiffness, start=60.0, accuracy=1e-3,
+                          turn=path["device_jump_in_z"] + beside)).summary
+        assert found["max_tension"] == pytest.approx(-path["device_jump_in_load"], rel=0.05)
+        assert abs(found["energy_dissipated"]) < 1e-3 * path["device_energy_lost"]
+
+
 def test_strong_adhesion_takes_few_steps_without_memory(run):
     path = at_rest(run, 20.0)
     found = run(scene(20.0, start=30.0, turn=-20.0)).summary

@@ -32,6 +32,11 @@ FINER, FINEST = 1e-4, 1e-10
 # The error of the truth is its estimate; a deviation this many times larger is that of the run.
 WELL_ABOVE = 3
 SECONDS = 30
+# A run without an estimate of its error is no truth.
+NO_ERROR = "the error could not be estimated"
+# Largest difference between the two ways to an energy, the area of a cycle and its jumps: relative,
+# and over largest load times length, which narrow cycles are much smaller than.
+TWO_WAYS, NARROW = 1e-3, 1e-5
 
 
 class Law(NamedTuple):
@@ -220,6 +225,7 @@ def judged(scene, law, found, truth):
     cost = {"seconds": mine.get("wall_seconds", math.inf),
             "warnings": tuple(several(mine.get("warnings", [])))}
     # There is no result without a truth, or for a run that took too long.
+    doubt = doubt or any(NO_ERROR in said for said in several(theirs.get("warnings", [])))
     if doubt or trouble.startswith("more than"):
         return Finding(scene, [], 0, [], **cost)
     if trouble:
@@ -244,7 +250,16 @@ def judged(scene, law, found, truth):
                 deviations.append(Deviation(key, b, abs(a - b), allowed))
             else:
                 unknown += 1
+    wrong += contradictions(theirs, load * law.length)
     return Finding(scene, deviations, unknown, wrong, **cost)
+
+
+def contradictions(summary, unit):
+    """Energies lost in the jumps of a spring's cycle that are not its area."""
+    pairs = zip(*(several(summary.get(f"device_{name}", [])) for name in (
+        "energy_lost", "cycle_energy")))
+    return [f"energy {lost} is not the area {area}" for lost, area in pairs
+            if abs(lost - area) > TWO_WAYS * abs(area) + NARROW * unit]
 
 
 def of_number(summary, key, i, size):

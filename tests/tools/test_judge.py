@@ -4,7 +4,8 @@ import math
 
 import pytest
 from support import (
-    study_cycles, study_estimates, study_experiments, study_folds, study_laws, study_layers)
+    study_cycles, study_estimates, study_experiments, study_folds, study_laws, study_layers,
+    study_shapes)
 from support.comparison import deviations, is_bad
 from support.decks_in_units import Report
 from support.reference import Path
@@ -95,9 +96,10 @@ def test_an_error_above_its_estimate_is_within_the_accuracy(tmp_path, number):
         assert one.error <= finding.scene.accuracy * abs(one.value), one
 
 
-def test_springs_and_fixed_loads_under_random_laws_are_within_the_accuracy(tmp_path):
-    for scene in study_experiments.jobs(6, tmp_path):
-        [finding] = study_experiments.examine(scene)
+@pytest.mark.parametrize("study", [study_experiments, study_shapes])
+def test_springs_and_fixed_loads_under_random_laws_are_within_the_accuracy(tmp_path, study):
+    for scene in study.jobs(6, tmp_path):
+        [finding] = study.examine(scene)
         assert finding.unknown > 0 and not finding.wrong, finding
         for one in finding.deviations:
             assert one.error <= max(one.allowed, scene.accuracy * abs(one.value)), (scene, one)

@@ -11,6 +11,7 @@
                 itself at a higher accuracy
     layers      the same for bodies with layers
     experiments the same for springs and fixed loads under every law
+    shapes      the same for springs, fixed loads and cycles of every shape, layers among them
 
 The program is $SNAPIN, else build/snapin. Ends with status 1 if a study finds an error.
 """
@@ -27,7 +28,7 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 sys.path.insert(0, str(ROOT / "tests"))
 
 from support import study_cycles, study_estimates, study_folds  # noqa: E402
-from support import study_experiments, study_laws, study_layers  # noqa: E402
+from support import study_experiments, study_laws, study_layers, study_shapes  # noqa: E402
 from support.comparison import is_bad  # noqa: E402
 from support.decks_in_units import program_path  # noqa: E402
 from support.spread import spread  # noqa: E402
@@ -48,9 +49,10 @@ STUDIES = {
     "laws": (study_laws, study_laws.jobs, 1000, is_bad),
     "layers": (study_layers, study_layers.jobs, 200, is_bad),
     "experiments": (study_experiments, study_experiments.jobs, 500, is_bad),
+    "shapes": (study_shapes, study_shapes.jobs, 500, is_bad),
     "energy": (study_estimates, study_estimates.energy_jobs, 40, is_bad),
 }
-SEEDED = ("cycles", "cusp", "laws", "layers", "experiments")
+SEEDED = ("cycles", "cusp", "laws", "layers", "experiments", "shapes")
 
 
 def study(name, arguments, folder):
