@@ -35,7 +35,7 @@ module path_readings
     !> Derivatives at the nodes by each parameter of &sensitivity, (parameters, nodes).
     type(rate_t), allocatable :: rate(:, :)
     !> The h0 from which the path was traced, and the h0 from which the bodies are undeformed up to
-    !> there.
+    !> there; -huge: none.
     real(wp) :: traced_from = -huge(1.0_wp), undeformed_from = -huge(1.0_wp)
     !> For the table, the largest error of cubic interpolation of the load between rows.
     real(wp) :: table_interpolation_error = 0
