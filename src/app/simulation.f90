@@ -164,7 +164,7 @@ contains
     type(summary_t), intent(out) :: summary
     type(cost_t), intent(out) :: cost
     type(experiment_result_t) :: outcome
-    character(len=:), allocatable :: name
+    character(len=:), allocatable :: name, left_out
     type(sweep_tally_t) :: tally
 
     name = destination%folder(index(destination%folder, '/', .true.) + 1:)
@@ -183,8 +183,9 @@ contains
       if (tally%warned > 0) call summary%warn(brief(tally%warned)//' of '// &
         brief(scene%sweep%cases())//' cases gave a warning; the first, case '// &
         brief(tally%first_warned)//': '//trim(tally%warning))
-      if (groups_left_out(scene) /= '') call summary%note('sweep: no number in '// &
-        'sweep.csv comes from '//groups_left_out(scene)//'; run a case alone to see states')
+      left_out = groups_left_out(scene)
+      if (left_out /= '') call summary%note('sweep: no number in sweep.csv comes from '// &
+        left_out//'; run a case alone to see states')
     else
       call results%progress%start(states_planned(scene), name, destination%quiet)
       call run_observed(scene, problem, results, summary, cost)

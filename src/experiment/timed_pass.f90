@@ -76,7 +76,8 @@ contains
         ! The motion before a turn does not predict the motion after it; rates and loads of a fluid
         ! jump.
         steps%before = at
-        ! From a turn close to a fold a path leads inward too, along unstable states.
+        ! A path also leads inward from a turn close to a fold, along unstable states; the third way
+        ! is back.
         if (way == 3) now%inwards = .false.
         at%since_turn = 0
         if (.not. allocated(steps%drainage)) call take_row(at, now)

@@ -22,7 +22,6 @@ module case_columns
     'failure [] why results of the case are missing; blank if none is'
   !> The groups with a list, each element of which has its columns.
   character(len=*), parameter :: with_list(*) = [character(len=10) :: turning, spring, given_load]
-
   !> The groups whose results are states and no numbers of a case; a sweep keeps no states.
   character(len=*), parameter :: of_states(*) = [character(len=9) :: 'profiles', 'stability']
 

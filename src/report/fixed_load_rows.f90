@@ -43,16 +43,15 @@ contains
     type(path_readings_t), intent(in) :: readings
     type(places_t), intent(in) :: places
     type(summary_t), intent(inout) :: summary
-    type(readings_t) :: h0
     integer :: held(size(loads)), stable(size(loads)), nearest(size(loads)), i
 
-    h0 = places%read_numbers(problem, 'fixed_load', of_h0)
     associate (loaded => readings%loaded)
       do i = 1, size(loads)
         associate (same => abs(loaded%wanted - loads(i)/problem%load) <= 0)
           held(i) = count(same)
           stable(i) = count(same .and. loaded%stable)
-          nearest(i) = minloc(h0%value, 1, same .and. loaded%stable)
+          ! They are in the order from large to small h0.
+          nearest(i) = findloc(same .and. loaded%stable, .true., 1, back=.true.)
         end associate
       end do
     end associate

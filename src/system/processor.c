@@ -1,5 +1,6 @@
 /* A program that is compiled for processors with AVX2 (meson.build) ends on others with a message,
-   where it would be killed at its first such instruction. This file is compiled for any. */
+   where it would be killed at its first such instruction; so does the probe of meson.build, which
+   includes this file. This file is compiled for any processor. */
 #include <stdio.h>
 #include <unistd.h>
 
