@@ -46,6 +46,8 @@ module continuation
       slope_error = slope_error
     !> Part of the load that the nodes of a mesh may miss where the path comes to it.
     real(wp) :: most = huge(1.0_wp)
+    !> Whether no step on the current mesh converged.
+    logical :: stuck = .false.
   contains
     procedure :: follow_closely
     procedure :: take
@@ -55,6 +57,7 @@ module continuation
     procedure :: has_come_to_next
     procedure :: change_mesh
     procedure, private :: next_step
+    procedure, private :: may_leave_early
     procedure, private :: step_past_step
   end type continuation_t
 
@@ -91,6 +94,7 @@ contains
     nothing%extrapolated_from = self%extrapolated_from
     self%arc_t = nothing
     self%step = first_step
+    self%stuck = .false.
   end subroutine forget
 
   !> Whether there are as many states as the extrapolation uses.
@@ -128,6 +132,7 @@ contains
     logical :: converged
 
     lost = .false.
+    self%stuck = .false.
     do
       step = self%next_step(solver%equations_t)
       s = self%coordinate(self%held) + step
@@ -147,6 +152,7 @@ contains
       end if
       solver%cost%rejected_steps = solver%cost%rejected_steps + 1
       lost = self%step < shortest_step
+      self%stuck = lost
       if (lost) return
     end do
     if (self%is_full()) call self%drop_first()
@@ -212,8 +218,9 @@ contains
   end function step_past_step
 
   !> Whether the contact radius has crossed the passage to the next mesh, and the previous state is
-  !> near the passage or beyond it. A path stays on its first mesh for two steps, since the last
-  !> step before a passage is on the next mesh.
+  !> near the passage or beyond it; where no step converged, whether the path may leave the mesh
+  !> before. A path stays on its first mesh for two steps, since the last step before a passage is
+  !> on the next mesh.
   pure logical function has_come_to_next(self, equations) result(come)
     class(continuation_t), intent(in) :: self
     type(equations_t), intent(in) :: equations
@@ -221,6 +228,10 @@ contains
     associate (meshes => equations%meshes)
       come = self%held > 2 .and. equations%problem%law%edge_gap > 0 .and. &
         self%mesh < size(meshes%grid)
+      if (come .and. self%stuck) then
+        come = self%may_leave_early(equations)
+        return
+      end if
       if (come) come = radius_for(equations, self%mesh, self%mesh + 1, self%state(self%held)) >= &
         meshes%passage(self%mesh)
       if (come) come = radius_for(equations, self%mesh, self%mesh + 1, &
@@ -228,11 +239,28 @@ contains
     end associate
   end function has_come_to_next
 
+  !> Whether the gap on the axis may have a fold as a coordinate, and the radius of the contact, to
+  !> which the next mesh is locked, has none: between blunt bodies on layers the gap on the axis
+  !> may rise again while the contact grows.
+  pure logical function may_leave_early(self, equations) result(may)
+    class(continuation_t), intent(in) :: self
+    type(equations_t), intent(in) :: equations
+    real(wp) :: before, now
+
+    associate (meshes => equations%meshes, next => self%mesh + 1)
+      may = meshes%is_about_axis(self%mesh) .and. .not. meshes%is_about_axis(next)
+      if (.not. may) return
+      before = radius_for(equations, self%mesh, next, self%state(self%held - 1))
+      now = radius_for(equations, self%mesh, next, self%state(self%held))
+      may = before > 0 .and. now > before
+    end associate
+  end function may_leave_early
+
   !> Passes to the next mesh once the contact radius has crossed the passage to that mesh (to be
   !> called after each `advance`). The last two states are transferred, so that the next mesh has
   !> the interval between them too. A mesh that was laid out for predicted gaps is laid out anew for
-  !> those of the path if it does not resolve the first of the two states. h0 and load must change
-  !> in the same sense on both meshes there.
+  !> those of the path if it does not resolve the first of the two states, or if the path comes to
+  !> it before the passage. h0 and load must change in the same sense on both meshes there.
   subroutine change_mesh(self, solver, lost)
     class(continuation_t), intent(inout) :: self
     class(solver_t), intent(inout) :: solver
@@ -242,7 +270,7 @@ contains
 
     lost = .false.
     if (.not. self%has_come_to_next(solver%equations_t)) return
-    suffices = .not. solver%meshes%waits(self%mesh + 1)
+    suffices = .not. (self%stuck .or. solver%meshes%waits(self%mesh + 1))
     if (suffices) then
       call transfer(self, solver, next, lost)
       suffices = .not. lost
@@ -263,6 +291,8 @@ contains
     end associate
     self%arc_t = next
     self%step = 0.5_wp*self%step
+    if (self%stuck) self%step = self%coordinate(self%held) - self%coordinate(self%held - 1)
+    self%stuck = .false.
   end subroutine change_mesh
 
   !> Solves the last two states of an arc on the next mesh. lost: this failed.

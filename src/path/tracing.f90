@@ -85,6 +85,7 @@ contains
     walker%most = mender%most
     do while (.not. (known%ending%early() .or. finished))
       call extend(known%path, walker, solver, lost)
+      if (lost) lost = .not. walker%has_come_to_next(solver%equations_t)
       steps = steps + 1
       if (mod(steps, steps_a_message) == 0) then
         write (so_far, '(a, i0, a)') 'tracing the path: ', known%path%held, ' states'
@@ -92,7 +93,9 @@ contains
       end if
       mended = .false.
       if (.not. lost) then
-        further = further_mesh(solver%equations_t, walker%arc_t, accuracy)
+        further = further_mesh_t()
+        if (.not. walker%stuck) &
+          further = further_mesh(solver%equations_t, walker%arc_t, accuracy)
         adrift = mod(steps, steps_a_check) == 0
         if (adrift) adrift = left_in_state(solver%equations_t, walker%mesh, &
           walker%state(walker%held)) > most_adrift
@@ -221,6 +224,7 @@ contains
 
     mesh = walker%mesh
     call walker%change_mesh(solver, lost)
+    lost = lost .or. walker%stuck
     if (lost .or. walker%mesh == mesh) return
     path%point(path%held - 1)%leads_on = .false.
     call append(path, walker%arc_t, 1)

@@ -180,3 +180,46 @@ def test_paths_about_the_axis_reach_their_end(run, way):
     found = run(deck(**groups, numerics={"accuracy": accuracy}))
     assert found.status == 0
     assert found.summary["end_load"] == pytest.approx(load, rel=accuracy)
+
+
+BLUNT = {
+    # Bodies, shape, layer, hamaker constant and gap at rest, last h0.
+    "a stiff coat": (
+        {"radius": 1.418e-5, "young": 3.847e9, "poisson": 0.3}, {"kind": "power", "exponent": 8},
+        {"thickness": 1.34e-7, "young": 3.847e10, "poisson": 0.4, "partner": "rigid"},
+        (1.96e-20, 3.946e-10), -6.954e-9),
+    "a thin coat a hundred times as stiff": (
+        {"radius": 6.676e-6, "young": 1.504e8, "poisson": 0.3}, {"kind": "power", "exponent": 8},
+        {"thickness": 6.06e-8, "young": 1.504e10, "poisson": 0.4, "partner": "rigid"},
+        (1.09e-20, 3.436e-10), -3.285e-9),
+    "a punch on a stiff coat": (
+        {"radius": 1e-6, "young": 1.089e9, "poisson": 0.3},
+        {"kind": "rounded_punch", "flat_radius": 1.727e-7},
+        {"thickness": 9.614e-8, "young": 1.089e11, "poisson": 0.4, "partner": "rigid"},
+        (1.49e-19, 2.511e-10), -1.571e-8),
+}
+
+
+@pytest.mark.parametrize("name", BLUNT)
+def test_paths_of_blunt_bodies_on_layers_go_on_where_the_gap_on_the_axis_rises_again(run, name):
+    """The gap on the axis, the coordinate before contact, has a fold while the contact grows; the
+    path was lost there. In contact one state has this h0, and a fixed grid reaches it too."""
+    bodies, shape, layer, (hamaker, z0), end = BLUNT[name]
+
+    def found(**groups):
+        return run(deck(bodies=bodies, shape=shape, layer=layer, force={
+            "law": "lennard_jones", "hamaker": hamaker, "z0": z0}, **groups))
+
+    path = found(equilibrium_path={"h0_end": end}, numerics={"accuracy": 1e-4})
+    # On the mesh that is locked to the edge the rim of a punch moves, which costs digits.
+    assert path.status == 0 and all(said.startswith("the error is estimated")
+                                    for said in path.warnings)
+    assert path.warnings == [] or "flat_radius" in shape
+    steps = found(loading={"h0_start": 2e-8, "h0_end": end, "h0_step": 2e-10},
+                  numerics={"method": "newton", "grid": "uniform", "nodes": 500}).summary
+    assert abs(path.summary["end_load"] - steps["end_load"]) <= \
+        steps["end_load_error"] + path.summary["end_load_error"]
+    finer = found(equilibrium_path={"h0_end": end}, numerics={"accuracy": 1e-6}).summary
+    for key in ("max_tension", "folds_h0", "folds_load", "end_load"):
+        assert several(path.summary[key]) == pytest.approx(
+            several(finer[key]), rel=max(1e-4, path.summary["error_estimate"])), key
