@@ -1,7 +1,7 @@
 !> The sum of several forces. A single law is kept as it is, without the cost of a sum.
 module force_sum
   use kinds, only: wp
-  use force_law, only: force_law_t
+  use force_law, only: force_law_t, of_slope, of_energy
   use law_scan, only: find_scales
   implicit none
   private
@@ -17,9 +17,7 @@ module force_sum
   type, extends(force_law_t) :: force_sum_t
     type(term_t), allocatable :: term(:)
   contains
-    procedure :: pressure
-    procedure :: slope
-    procedure :: energy
+    procedure :: evaluate
     procedure :: closure
     procedure :: table_error
   end type force_sum_t
@@ -192,47 +190,25 @@ contains
     lengths = pack([(law%term(i)%law%length, i=1, size(has))], has .or. .not. any(has))
   end function lengths
 
-  pure function pressure(self, gap) result(value)
+  pure subroutine evaluate(self, quantity, gap, value)
     class(force_sum_t), intent(in) :: self
+    integer, intent(in) :: quantity
     real(wp), intent(in) :: gap(:)
-    real(wp) :: value(size(gap))
+    real(wp), intent(out) :: value(size(gap))
+    real(wp) :: own(size(gap)), factor
     integer :: i
 
     value = 0
     do i = 1, size(self%term)
       associate (term => self%term(i))
-        value = value + term%weight*term%law%pressure(own_gap(term, gap))
+        call term%law%evaluate(quantity, own_gap(term, gap), own)
+        factor = term%weight
+        if (quantity == of_slope) factor = term%weight*term%stretch
+        if (quantity == of_energy) factor = term%weight/term%stretch
+        value = value + factor*own
       end associate
     end do
-  end function pressure
-
-  pure function slope(self, gap) result(value)
-    class(force_sum_t), intent(in) :: self
-    real(wp), intent(in) :: gap(:)
-    real(wp) :: value(size(gap))
-    integer :: i
-
-    value = 0
-    do i = 1, size(self%term)
-      associate (term => self%term(i))
-        value = value + term%weight*term%stretch*term%law%slope(own_gap(term, gap))
-      end associate
-    end do
-  end function slope
-
-  pure function energy(self, gap) result(value)
-    class(force_sum_t), intent(in) :: self
-    real(wp), intent(in) :: gap(:)
-    real(wp) :: value(size(gap))
-    integer :: i
-
-    value = 0
-    do i = 1, size(self%term)
-      associate (term => self%term(i))
-        value = value + term%weight/term%stretch*term%law%energy(own_gap(term, gap))
-      end associate
-    end do
-  end function energy
+  end subroutine evaluate
 
   pure function table_error(self, gap) result(value)
     class(force_sum_t), intent(in) :: self

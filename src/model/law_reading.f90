@@ -6,9 +6,10 @@ module law_reading
   use text, only: brief, quoted
   use deck, only: deck_t
   use deck_keys, only: key_spec, group, word_key
+  use force_law, only: force_law_t
   implicit none
   private
-  public :: keys_of_force, is_law, check_parameter, check_decades
+  public :: keys_of_force, is_law, check_parameter, check_decades, accept_law
 
   !> Largest decimal order, positive or negative, of units and derived quantities.
   integer, parameter :: most_decades = 100
@@ -72,5 +73,23 @@ contains
         ' of 1e'//brief(nint(decades))//unit//'; allowed: from 1e-100 to 1e100', error)
     end if
   end subroutine check_decades
+
+  !> Hands out a law that was read from a group, with the names of the group and of its keys for the
+  !> magnitudes of pressure and gap; refuses it if its pressure is out of range.
+  subroutine accept_law(deck, group, strength_key, length_key, this, law, error)
+    type(deck_t), intent(in) :: deck
+    character(len=*), intent(in) :: group, strength_key, length_key
+    class(force_law_t), intent(inout) :: this
+    class(force_law_t), allocatable, intent(out) :: law
+    type(failure_t), allocatable, intent(inout) :: error
+
+    call check_decades(deck, group, strength_key, log10(this%pressure_unit), 'a pressure', ' Pa', &
+      error)
+    if (allocated(error)) return
+    this%group = group
+    this%strength_key = strength_key
+    this%length_key = length_key
+    allocate (law, source=this)
+  end subroutine accept_law
 
 end module law_reading

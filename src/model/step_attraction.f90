@@ -6,8 +6,8 @@ module step_attraction
   use failure, only: failure_t
   use deck, only: deck_t
   use deck_keys, only: key_spec, real_key
-  use force_law, only: force_law_t, whole_step
-  use law_reading, only: check_decades
+  use force_law, only: force_law_t, of_pressure, of_slope, whole_step
+  use law_reading, only: accept_law
   implicit none
   private
   public :: new_step, read_step, smoothing_key
@@ -16,9 +16,7 @@ module step_attraction
   type, extends(force_law_t) :: step_t
     real(wp) :: smoothing = 0
   contains
-    procedure :: pressure
-    procedure :: slope
-    procedure :: energy
+    procedure :: evaluate
     procedure :: closure
   end type step_t
 
@@ -63,22 +61,17 @@ contains
     type(failure_t), allocatable, intent(inout) :: error
     type(step_t) :: this
 
-    call check_decades(deck, group, strength_key, log10(stress), 'a pressure', ' Pa', error)
     call deck%assume(group, 'smoothing', usual*range)
     call deck%get(group, 'smoothing', this%smoothing)
     if (this%smoothing > 0.5_wp*range) call deck%mistake(group, 'smoothing', &
       'is more than half of the range; above that there is no step', error)
-    if (allocated(error)) return
     this%length = range
     this%pressure_unit = stress
     this%smoothing = this%smoothing/range
     this%step_at = 1
     this%step_width = this%smoothing
     this%breaks = 1 + max(whole_step*this%smoothing, least)*[-1.0_wp, 1.0_wp]
-    this%group = group
-    this%strength_key = strength_key
-    this%length_key = length_key
-    allocate (law, source=this)
+    call accept_law(deck, group, strength_key, length_key, this, law, error)
   end subroutine new_step
 
   !> Distance of the gap from the step in smoothing lengths.
@@ -89,33 +82,25 @@ contains
     place = min((gap - 1)/self%smoothing, farthest)
   end function place
 
-  pure function pressure(self, gap) result(value)
+  pure subroutine evaluate(self, quantity, gap, value)
     class(step_t), intent(in) :: self
+    integer, intent(in) :: quantity
     real(wp), intent(in) :: gap(:)
-    real(wp) :: value(size(gap))
-
-    value = -0.5_wp*erfc(place(self, gap))
-    where (place(self, gap) >= farthest) value = 0
-  end function pressure
-
-  pure function slope(self, gap) result(value)
-    class(step_t), intent(in) :: self
-    real(wp), intent(in) :: gap(:)
-    real(wp) :: value(size(gap))
-
-    value = exp(-min(place(self, gap)**2, farthest**2))/(self%smoothing*sqrt(pi))
-    where (abs(place(self, gap)) >= farthest) value = 0
-  end function slope
-
-  pure function energy(self, gap) result(value)
-    class(step_t), intent(in) :: self
-    real(wp), intent(in) :: gap(:)
-    real(wp) :: value(size(gap)), x(size(gap))
+    real(wp), intent(out) :: value(size(gap))
+    real(wp) :: x(size(gap))
 
     x = place(self, gap)
-    value = -0.5_wp*self%smoothing*(exp(-min(x**2, farthest**2))/sqrt(pi) - x*erfc(x))
+    select case (quantity)
+    case (of_pressure)
+      value = -0.5_wp*erfc(x)
+    case (of_slope)
+      value = exp(-min(x**2, farthest**2))/(self%smoothing*sqrt(pi))
+      where (x <= -farthest) value = 0
+    case default
+      value = -0.5_wp*self%smoothing*(exp(-min(x**2, farthest**2))/sqrt(pi) - x*erfc(x))
+    end select
     where (x >= farthest) value = 0
-  end function energy
+  end subroutine evaluate
 
   !> Largest decrease of gaps in one iteration: half the way to the step, and its width.
   pure function closure(self, gap) result(most)

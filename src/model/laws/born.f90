@@ -6,7 +6,7 @@ module born
   use deck, only: deck_t
   use deck_keys, only: key_spec, group, real_key
   use force_law, only: force_law_t
-  use law_reading, only: check_decades
+  use law_reading, only: accept_law
   use power_pair, only: power_pair_t
   implicit none
   private
@@ -47,17 +47,11 @@ contains
     call deck%get('born', 'hamaker', hamaker)
     call deck%get('born', 'z0', this%length)
     call deck%get('born', 'exponent', this%n)
-    call check_decades(deck, 'born', 'hamaker', &
-      log10(hamaker) - log10(6*pi) - 3*log10(this%length), 'a pressure', ' Pa', error)
-    if (allocated(error)) return
     this%pressure_unit = hamaker/(6*pi*this%length**3)
     this%repulsive = 1
     this%tail_power = this%n
     call this%set_scales()
-    this%group = 'born'
-    this%strength_key = 'hamaker'
-    this%length_key = 'z0'
-    allocate (law, source=this)
+    call accept_law(deck, 'born', 'hamaker', 'z0', this, law, error)
   end subroutine read_law
 
 end module born

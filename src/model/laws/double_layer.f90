@@ -13,12 +13,11 @@ module double_layer
   use failure, only: failure_t
   use deck, only: deck_t
   use deck_keys, only: key_spec, group, real_key, integer_key, list_key, word_key
-  use force_law, only: force_law_t
+  use force_law, only: force_law_t, of_slope
   use law_reading, only: check_decades
   use poisson_boltzmann, only: surface_t
   use linear_layers, only: linear_values
-  use layer_table, only: layer_table_t, new_layer_table, nearest_gap, of_pressure, &
-    of_slope, of_energy
+  use layer_table, only: layer_table_t, new_layer_table, nearest_gap
   implicit none
   private
   public :: keys, read_law
@@ -33,10 +32,7 @@ module double_layer
     real(wp) :: scale = 1
     type(layer_table_t) :: table
   contains
-    procedure :: pressure
-    procedure :: slope
-    procedure :: energy
-    procedure, private :: values
+    procedure :: evaluate
   end type double_layer_t
 
   !> CODATA 2018: elementary charge [C], Boltzmann's constant [J/K], vacuum permittivity [F/m],
@@ -186,12 +182,12 @@ contains
     end if
   end subroutine take_surfaces
 
-  !> Pressure, slope or energy (`quantity`) in the law's units.
-  pure function values(self, quantity, gap) result(value)
+  pure subroutine evaluate(self, quantity, gap, value)
     class(double_layer_t), intent(in) :: self
     integer, intent(in) :: quantity
     real(wp), intent(in) :: gap(:)
-    real(wp) :: value(size(gap)), h(size(gap)), all_values(3)
+    real(wp), intent(out) :: value(size(gap))
+    real(wp) :: h(size(gap)), all_values(3)
     integer :: i
 
     h = max(self%smallest_gap, min(gap, largest_gap))
@@ -207,30 +203,6 @@ contains
     case default
       value = self%scale*self%table%value(quantity, h)
     end select
-  end function values
-
-  pure function pressure(self, gap) result(value)
-    class(double_layer_t), intent(in) :: self
-    real(wp), intent(in) :: gap(:)
-    real(wp) :: value(size(gap))
-
-    value = self%values(of_pressure, gap)
-  end function pressure
-
-  pure function slope(self, gap) result(value)
-    class(double_layer_t), intent(in) :: self
-    real(wp), intent(in) :: gap(:)
-    real(wp) :: value(size(gap))
-
-    value = self%values(of_slope, gap)
-  end function slope
-
-  pure function energy(self, gap) result(value)
-    class(double_layer_t), intent(in) :: self
-    real(wp), intent(in) :: gap(:)
-    real(wp) :: value(size(gap))
-
-    value = self%values(of_energy, gap)
-  end function energy
+  end subroutine evaluate
 
 end module double_layer

@@ -6,7 +6,7 @@ module lennard_jones
   use failure, only: failure_t
   use deck, only: deck_t
   use deck_keys, only: key_spec, real_key, list_key, word_key
-  use force_law, only: force_law_t
+  use force_law, only: force_law_t, of_pressure, of_slope
   use power_pair, only: power_pair_t, new_power_pair, pair_factor
   use law_reading, only: is_law, check_parameter, check_decades
   implicit none
@@ -16,9 +16,7 @@ module lennard_jones
   !> The pair of the powers 9 and 3, by products, which are faster.
   type, extends(power_pair_t) :: lennard_jones_t
   contains
-    procedure :: pressure
-    procedure :: slope
-    procedure :: energy
+    procedure :: evaluate
   end type lennard_jones_t
 
 contains
@@ -112,32 +110,24 @@ contains
     law%strength_key = 'hamaker'
   end function new_lennard_jones
 
-  pure function pressure(self, gap) result(value)
+  pure subroutine evaluate(self, quantity, gap, value)
     class(lennard_jones_t), intent(in) :: self
+    integer, intent(in) :: quantity
     real(wp), intent(in) :: gap(:)
-    real(wp) :: value(size(gap))
+    real(wp), intent(out) :: value(size(gap))
 
-    ! `value` first holds the inverse cube, which saves an array.
-    value = 1/gap**3
-    value = value*(self%repulsive*value*value - self%attractive)
-  end function pressure
-
-  pure function slope(self, gap) result(value)
-    class(lennard_jones_t), intent(in) :: self
-    real(wp), intent(in) :: gap(:)
-    real(wp) :: value(size(gap)), cube(size(gap))
-
-    cube = 1/gap**3
-    value = 3*cube/gap*(self%attractive - 3*self%repulsive*cube*cube)
-  end function slope
-
-  pure function energy(self, gap) result(value)
-    class(lennard_jones_t), intent(in) :: self
-    real(wp), intent(in) :: gap(:)
-    real(wp) :: value(size(gap)), square(size(gap))
-
-    square = 1/gap**2
-    value = square/8*(self%repulsive*square**3 - 4*self%attractive)
-  end function energy
+    select case (quantity)
+    case (of_pressure)
+      ! `value` first holds the inverse cube, which saves an array.
+      value = 1/gap**3
+      value = value*(self%repulsive*value*value - self%attractive)
+    case (of_slope)
+      value = 1/gap**3
+      value = 3*value/gap*(self%attractive - 3*self%repulsive*value*value)
+    case default
+      value = 1/gap**2
+      value = value/8*(self%repulsive*value**3 - 4*self%attractive)
+    end select
+  end subroutine evaluate
 
 end module lennard_jones

@@ -7,17 +7,15 @@ module morse
   use failure, only: failure_t
   use deck, only: deck_t
   use deck_keys, only: key_spec, group, real_key
-  use force_law, only: force_law_t
-  use law_reading, only: check_decades
+  use force_law, only: force_law_t, of_pressure, of_slope
+  use law_reading, only: accept_law
   implicit none
   private
   public :: keys, read_law
 
   type, extends(force_law_t) :: morse_t
   contains
-    procedure :: pressure
-    procedure :: slope
-    procedure :: energy
+    procedure :: evaluate
   end type morse_t
 
   !> Exponent above which exponentials would underflow or overflow.
@@ -51,18 +49,12 @@ contains
     call deck%get('morse', 'surface_energy', surface_energy)
     call deck%get('morse', 'z0', z0)
     call deck%get('morse', 'decay_length', decay_length)
-    call check_decades(deck, 'morse', 'surface_energy', &
-      log10(surface_energy) - log10(decay_length), 'a pressure', ' Pa', error)
-    if (allocated(error)) return
     this%length = 2*decay_length
     this%pressure_unit = surface_energy/this%length
     this%origin = z0 - this%length
     this%repulsion_length = 0.25_wp
     this%closure_length = 0.5_wp
-    this%group = 'morse'
-    this%strength_key = 'surface_energy'
-    this%length_key = 'decay_length'
-    allocate (law, source=this)
+    call accept_law(deck, 'morse', 'surface_energy', 'decay_length', this, law, error)
   end subroutine read_law
 
   !> exp(-2 (gap - 1)), finite at any gap and constant where it would underflow.
@@ -80,28 +72,20 @@ contains
     if (2*(gap - 1) < largest_exponent) falling = decay(gap)
   end function falling
 
-  pure function pressure(self, gap) result(value)
+  pure subroutine evaluate(self, quantity, gap, value)
     class(morse_t), intent(in) :: self
+    integer, intent(in) :: quantity
     real(wp), intent(in) :: gap(:)
-    real(wp) :: value(size(gap))
+    real(wp), intent(out) :: value(size(gap))
 
-    value = 4*falling(gap)*(falling(gap) - 1)
-  end function pressure
-
-  pure function slope(self, gap) result(value)
-    class(morse_t), intent(in) :: self
-    real(wp), intent(in) :: gap(:)
-    real(wp) :: value(size(gap))
-
-    value = 8*falling(gap)*(1 - 2*falling(gap))
-  end function slope
-
-  pure function energy(self, gap) result(value)
-    class(morse_t), intent(in) :: self
-    real(wp), intent(in) :: gap(:)
-    real(wp) :: value(size(gap))
-
-    value = decay(gap)*(decay(gap) - 2)
-  end function energy
+    select case (quantity)
+    case (of_pressure)
+      value = 4*falling(gap)*(falling(gap) - 1)
+    case (of_slope)
+      value = 8*falling(gap)*(1 - 2*falling(gap))
+    case default
+      value = decay(gap)*(decay(gap) - 2)
+    end select
+  end subroutine evaluate
 
 end module morse

@@ -4,8 +4,8 @@ module structural
   use failure, only: failure_t
   use deck, only: deck_t
   use deck_keys, only: key_spec, group, real_key
-  use force_law, only: force_law_t
-  use law_reading, only: check_decades
+  use force_law, only: force_law_t, of_pressure, of_slope
+  use law_reading, only: accept_law
   implicit none
   private
   public :: keys, read_law
@@ -14,9 +14,7 @@ module structural
     !> 2 pi/d in units of 1/length, and the phase.
     real(wp) :: wave_number = 0, phase = 0
   contains
-    procedure :: pressure
-    procedure :: slope
-    procedure :: energy
+    procedure :: evaluate
   end type structural_t
 
   !> Exponent above which exponentials would underflow or overflow.
@@ -57,8 +55,6 @@ contains
       call deck%mistake('structural', 'amplitude', 'is 0; leave the group out', error)
       return
     end if
-    call check_decades(deck, 'structural', 'amplitude', log10(abs(amplitude)), 'a pressure', &
-      ' Pa', error)
     if (amplitude < 0) this%phase = this%phase + pi
     this%pressure_unit = abs(amplitude)
     this%wave_number = 2*pi*this%length/period
@@ -66,10 +62,7 @@ contains
     this%closure_length = min(2.0_wp, 0.25_wp*this%period)
     ! Within the first layer there is no liquid, and the formula would oscillate without bounds.
     this%smallest_gap = 0
-    this%group = 'structural'
-    this%strength_key = 'amplitude'
-    this%length_key = 'decay_length'
-    allocate (law, source=this)
+    call accept_law(deck, 'structural', 'amplitude', 'decay_length', this, law, error)
   end subroutine read_law
 
   !> exp(-gap), finite at any gap.
@@ -79,32 +72,23 @@ contains
     decay = exp(-max(min(gap, 2*largest_exponent), -largest_exponent))
   end function decay
 
-  pure function pressure(self, gap) result(value)
+  pure subroutine evaluate(self, quantity, gap, value)
     class(structural_t), intent(in) :: self
+    integer, intent(in) :: quantity
     real(wp), intent(in) :: gap(:)
-    real(wp) :: value(size(gap))
+    real(wp), intent(out) :: value(size(gap))
 
-    value = -cos(self%wave_number*gap + self%phase)*decay(gap)
-  end function pressure
-
-  pure function slope(self, gap) result(value)
-    class(structural_t), intent(in) :: self
-    real(wp), intent(in) :: gap(:)
-    real(wp) :: value(size(gap))
-
-    associate (k => self%wave_number)
-      ! cos x + k sin x, as one cosine.
-      value = sqrt(1 + k**2)*cos(k*gap + (self%phase - atan(k)))*decay(gap)
+    associate (k => self%wave_number, phase => self%phase)
+      select case (quantity)
+      case (of_pressure)
+        value = -cos(k*gap + phase)*decay(gap)
+      case (of_slope)
+        ! cos x + k sin x, as one cosine.
+        value = sqrt(1 + k**2)*cos(k*gap + (phase - atan(k)))*decay(gap)
+      case default
+        value = (k*sin(k*gap + phase) - cos(k*gap + phase))*decay(gap)/(1 + k**2)
+      end select
     end associate
-  end function slope
-
-  pure function energy(self, gap) result(value)
-    class(structural_t), intent(in) :: self
-    real(wp), intent(in) :: gap(:)
-    real(wp) :: value(size(gap))
-
-    value = (self%wave_number*sin(self%wave_number*gap + self%phase) - &
-      cos(self%wave_number*gap + self%phase))*decay(gap)/(1 + self%wave_number**2)
-  end function energy
+  end subroutine evaluate
 
 end module structural

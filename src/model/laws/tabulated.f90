@@ -5,7 +5,7 @@ module tabulated
   use deck, only: deck_t
   use deck_keys, only: key_spec, group, real_key, text_key, word_key
   use data_table, only: data_table_t, read_columns
-  use force_law, only: force_law_t
+  use force_law, only: force_law_t, of_pressure, of_energy
   use force_table, only: force_table_t, new_force_table, largest_step
   use law_reading, only: check_decades
   implicit none
@@ -20,9 +20,7 @@ module tabulated
     !> Change of the energy of the tail if it fell as the last points do.
     real(wp) :: tail_error = 0
   contains
-    procedure :: pressure
-    procedure :: slope
-    procedure :: energy
+    procedure :: evaluate
     procedure :: table_error
   end type tabulated_t
 
@@ -235,29 +233,14 @@ contains
     this%has_units = .false.
   end subroutine take_scales
 
-  pure function pressure(self, gap) result(value)
+  pure subroutine evaluate(self, quantity, gap, value)
     class(tabulated_t), intent(in) :: self
+    integer, intent(in) :: quantity
     real(wp), intent(in) :: gap(:)
-    real(wp) :: value(size(gap))
+    real(wp), intent(out) :: value(size(gap))
 
-    value = column_of(self%fine, gap, self%smallest_gap, 1)
-  end function pressure
-
-  pure function slope(self, gap) result(value)
-    class(tabulated_t), intent(in) :: self
-    real(wp), intent(in) :: gap(:)
-    real(wp) :: value(size(gap))
-
-    value = column_of(self%fine, gap, self%smallest_gap, 2)
-  end function slope
-
-  pure function energy(self, gap) result(value)
-    class(tabulated_t), intent(in) :: self
-    real(wp), intent(in) :: gap(:)
-    real(wp) :: value(size(gap))
-
-    value = column_of(self%fine, gap, self%smallest_gap, 3)
-  end function energy
+    value = quantity_of(self%fine, quantity, max(gap, self%smallest_gap))
+  end subroutine evaluate
 
   !> From the table of every second point: for smooth laws its additional error is a known multiple
   !> of the error of the whole table. The energy also has the error of the tail.
@@ -266,24 +249,23 @@ contains
     real(wp), intent(in) :: gap(:)
     real(wp) :: value(2, size(gap))
 
-    value(1, :) = column_of(self%coarse, gap, self%smallest_gap, 1) - self%pressure(gap)
-    value(2, :) = column_of(self%coarse, gap, self%smallest_gap, 3) - self%energy(gap)
+    associate (at => max(gap, self%smallest_gap))
+      value(1, :) = quantity_of(self%coarse, of_pressure, at) - self%pressure(gap)
+      value(2, :) = quantity_of(self%coarse, of_energy, at) - self%energy(gap)
+    end associate
     value = self%share*abs(value)
     value(2, :) = value(2, :) + self%tail_error
   end function table_error
 
-  !> Pressure (1), slope (2) or energy (3) of a table at gaps.
-  pure function column_of(table, gap, smallest, column) result(value)
+  !> A quantity of a table at a gap.
+  elemental real(wp) function quantity_of(table, quantity, gap) result(value)
     type(force_table_t), intent(in) :: table
-    real(wp), intent(in) :: gap(:), smallest
-    integer, intent(in) :: column
-    real(wp) :: value(size(gap)), at(3)
-    integer :: i
+    integer, intent(in) :: quantity
+    real(wp), intent(in) :: gap
+    real(wp) :: at(3)
 
-    do i = 1, size(gap)
-      at = table%values(max(gap(i), smallest), with_energy=column == 3)
-      value(i) = at(column)
-    end do
-  end function column_of
+    at = table%values(gap, with_energy=quantity == of_energy)
+    value = at(quantity)
+  end function quantity_of
 
 end module tabulated

@@ -6,8 +6,8 @@ module van_der_waals
   use failure, only: failure_t
   use deck, only: deck_t
   use deck_keys, only: key_spec, group, real_key
-  use force_law, only: force_law_t
-  use law_reading, only: check_decades
+  use force_law, only: force_law_t, of_pressure, of_slope
+  use law_reading, only: accept_law
   implicit none
   private
   public :: keys, read_law
@@ -16,9 +16,7 @@ module van_der_waals
     !> c in units of 1/length; 0: not retarded.
     real(wp) :: retardation = 0
   contains
-    procedure :: pressure
-    procedure :: slope
-    procedure :: energy
+    procedure :: evaluate
   end type van_der_waals_t
 
   !> Gregory's constant, and the unit of gap [m].
@@ -51,9 +49,6 @@ contains
     call deck%get('van_der_waals', 'hamaker', hamaker)
     this%length = nanometre
     this%has_length = .false.
-    call check_decades(deck, 'van_der_waals', 'hamaker', &
-      log10(hamaker) - log10(6*pi) - 3*log10(this%length), 'a pressure', ' Pa', error)
-    if (allocated(error)) return
     this%pressure_unit = hamaker/(6*pi*this%length**3)
     this%tail_power = 3
     if (deck%is_set('van_der_waals', 'retardation_length')) then
@@ -63,39 +58,26 @@ contains
     end if
     this%smallest_gap = 1.0e-12_wp
     this%closure_fraction = 0.3_wp
-    this%group = 'van_der_waals'
-    this%strength_key = 'hamaker'
-    this%length_key = 'hamaker'
-    allocate (law, source=this)
+    call accept_law(deck, 'van_der_waals', 'hamaker', 'hamaker', this, law, error)
   end subroutine read_law
 
-  pure function pressure(self, gap) result(value)
+  pure subroutine evaluate(self, quantity, gap, value)
     class(van_der_waals_t), intent(in) :: self
+    integer, intent(in) :: quantity
     real(wp), intent(in) :: gap(:)
-    real(wp) :: value(size(gap))
+    real(wp), intent(out) :: value(size(gap))
 
     associate (c => self%retardation)
-      value = -(1 + 1.5_wp*c*gap)/((1 + c*gap)**2*gap**3)
+      select case (quantity)
+      case (of_pressure)
+        value = -(1 + 1.5_wp*c*gap)/((1 + c*gap)**2*gap**3)
+      case (of_slope)
+        value = (3*(1 + 1.5_wp*c*gap)/gap + c*(0.5_wp + 1.5_wp*c*gap)/(1 + c*gap)) &
+          /((1 + c*gap)**2*gap**3)
+      case default
+        value = -0.5_wp/((1 + c*gap)*gap**2)
+      end select
     end associate
-  end function pressure
-
-  pure function slope(self, gap) result(value)
-    class(van_der_waals_t), intent(in) :: self
-    real(wp), intent(in) :: gap(:)
-    real(wp) :: value(size(gap))
-
-    associate (c => self%retardation)
-      value = (3*(1 + 1.5_wp*c*gap)/gap + c*(0.5_wp + 1.5_wp*c*gap)/(1 + c*gap)) &
-        /((1 + c*gap)**2*gap**3)
-    end associate
-  end function slope
-
-  pure function energy(self, gap) result(value)
-    class(van_der_waals_t), intent(in) :: self
-    real(wp), intent(in) :: gap(:)
-    real(wp) :: value(size(gap))
-
-    value = -0.5_wp/((1 + self%retardation*gap)*gap**2)
-  end function energy
+  end subroutine evaluate
 
 end module van_der_waals
