@@ -9,9 +9,8 @@ module path_groups
   use scene_groups, only: scene_t
   implicit none
   private
-  public :: path_keys, regime_keys, profiles_keys, stability_keys
-  public :: take_path, take_readings, take_regime, take_profiles, take_stability
-  public :: check_path, check_order
+  public :: path_keys, profiles_keys, take_path, take_readings, take_regime, take_profiles, &
+    take_stability, check_path, check_order
 
 contains
 
@@ -42,13 +41,7 @@ contains
             'finite elements; needs &equilibrium_path.')]
   end function path_keys
 
-  pure function regime_keys() result(specs)
-    type(key_spec), allocatable :: specs(:)
-
-    specs = [group('regime', 'Which theory of contact describes the scene: parameters, and ' // &
-      'errors against the path; needs &equilibrium_path.')]
-  end function regime_keys
-
+  !> The rows of &profiles.
   pure function profiles_keys() result(specs)
     type(key_spec), allocatable :: specs(:)
 
@@ -58,13 +51,6 @@ contains
       list_key('profiles', 'h0', 'm', 'The h0 of the profiles.', most=1000, &
                required=.true.)]
   end function profiles_keys
-
-  pure function stability_keys() result(specs)
-    type(key_spec), allocatable :: specs(:)
-
-    specs = [group('stability', 'Stability of every equilibrium, by criterion and by smallest ' // &
-      'eigenvalue; needs &loading or &equilibrium_path.')]
-  end function stability_keys
 
   !> Reads &equilibrium_path.
   subroutine take_path(scene, error)

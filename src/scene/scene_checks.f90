@@ -1,18 +1,68 @@
-!> Checks that a body is large enough for a scene, and that its load is finite.
-module shape_checks
+!> Checks of a scene as a whole: that its numbers, and the units that follow from them, stay within
+!> the range of numbers, that a body is large enough, and that its load is finite. The calculation
+!> is dimensionless, but the units are products of powers of the numbers in the deck.
+module scene_checks
   use kinds, only: wp, pi
   use failure, only: failure_t
   use text, only: brief
   use dimensionless_problem, only: problem_t
   use contact_scales, only: largest_radius, contact_level
   use h0_range, only: range_of
+  use law_reading, only: check_decades
   use scene_groups, only: scene_t
   use scene_problem, only: problem_of
   implicit none
   private
-  public :: check_shape
+  public :: check_derived, check_shape
+
+  !> Decimal order of the largest h0 in the law's lengths; beyond, rounding exceeds this length.
+  integer, parameter :: most_lengths = 15
+  !> The groups, and their keys, that have the h0 or the positions of a drive.
+  character(len=*), parameter :: groups(*) = [character(len=16) :: 'loading', 'unloading', &
+    'equilibrium_path', 'device', 'classical', 'approximations'], &
+    keys(*) = [character(len=8) :: 'h0_start', 'h0_end', 'z_start', 'z_end']
 
 contains
+
+  !> Refuses a scene whose units, coupling or h0 are out of range. It adds logarithms, which cannot
+  !> overflow.
+  subroutine check_derived(scene, error)
+    type(scene_t), intent(in) :: scene
+    type(failure_t), allocatable, intent(inout) :: error
+    real(wp) :: length, pressure, radius, farthest, position
+    integer :: i, k
+
+    radius = log10(scene%shape%radius)
+    length = log10(scene%law%length)
+    pressure = log10(scene%law%pressure_unit)
+    call check(pressure + radius + length, 'loads', ' N')
+    if (.not. scene%bodies%rigid) call check(pressure - log10(scene%bodies%stiffness) + &
+      0.5_wp*(radius - length), 'a coupling of law and bodies (sigma or Lambda)', '')
+    farthest = 0
+    do i = 1, size(groups)
+      if (.not. scene%deck%has_group(trim(groups(i)))) cycle
+      do k = 1, size(keys)
+        position = 0
+        call scene%deck%get(trim(groups(i)), trim(keys(k)), position)
+        farthest = max(farthest, abs(position))
+      end do
+    end do
+    if (.not. farthest <= 10.0_wp**most_lengths*scene%law%length) &
+      call scene%deck%mistake(trim(scene%law%group), trim(scene%law%length_key), 'h0 reaches '// &
+      brief(farthest)//' m, more than 1e15 of these lengths, so that the law is lost in rounding', &
+      error)
+
+  contains
+
+    subroutine check(decades, what, unit)
+      real(wp), intent(in) :: decades
+      character(len=*), intent(in) :: what, unit
+
+      call check_decades(scene%deck, trim(scene%law%group), trim(scene%law%strength_key), decades, &
+        what, unit, error)
+    end subroutine check
+
+  end subroutine check_derived
 
   !> Refuses a scene whose load cannot be computed.
   subroutine check_shape(scene, error)
@@ -62,4 +112,4 @@ contains
       ' of the load, above the accuracy; give &numerics a larger accuracy', error)
   end subroutine check_end
 
-end module shape_checks
+end module scene_checks
