@@ -81,7 +81,7 @@ GUARDS = {
     "known_stability": Guard("an eigenvalue does not change what is known of stability",
         "stability_records", "if stable stable_unasked", ALWAYS,
         ("equilibrium/test_stability.py::test_the_group_leaves_the_path_as_it_is",)),
-    "failed_case": Guard("a case of a sweep that fails is counted", "sweep_tally",
+    "failed_case": Guard("a case of a sweep that fails is counted", "sweep_case",
         "if converged failed", GONE,
         ("report/test_sweep_columns.py", "report/test_results.py")),
     "memory": Guard("matrices larger than the memory are refused", "preflight",
