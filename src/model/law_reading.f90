@@ -5,7 +5,7 @@ module law_reading
   use failure, only: failure_t
   use text, only: brief, quoted
   use deck, only: deck_t
-  use deck_keys, only: key_spec, group, word_key
+  use deck_keys, only: key_spec, word_value
   use force_law, only: force_law_t
   implicit none
   private
@@ -14,18 +14,14 @@ module law_reading
   !> Largest decimal order, positive or negative, of units and derived quantities.
   integer, parameter :: most_decades = 100
 
-contains
-
   !> The row of &force, the group of the paper's two laws, and the row of its key `law`; the laws
   !> add their own rows.
-  pure function keys_of_force() result(rows)
-    type(key_spec), allocatable :: rows(:)
+  type(key_spec), parameter :: keys_of_force(*) = [ &
+    key_spec('force', meaning='Force per area between the surfaces, against their separation.'), &
+    key_spec('force', 'law', word_value, 'Name of the force law.', &
+      choices='lennard_jones exponential', required=.true.)]
 
-    rows = [ &
-      group('force', 'Force per area between the surfaces, against their separation.'), &
-      word_key('force', 'law', 'lennard_jones exponential', 'Name of the force law.', &
-               required=.true.)]
-  end function keys_of_force
+contains
 
   !> Whether the deck has &force with this law.
   pure logical function is_law(deck, law)

@@ -4,7 +4,7 @@ module shape_reading
   use failure, only: failure_t
   use text, only: quoted
   use deck, only: deck_t
-  use deck_keys, only: key_spec, group, word_key, real_key
+  use deck_keys, only: key_spec, real_value, word_value
   implicit none
   private
   public :: keys_of_shape, require, read_radius, refuse_radius, refuse_foreign
@@ -18,12 +18,12 @@ contains
     type(key_spec), allocatable :: rows(:)
 
     rows = [ &
-      group('shape', 'Shape of the undeformed gap f(r): bodies at h0 are h0 + f(r) apart. ' // &
-            'Without this group it is r^2/(2R).'), &
-      word_key('shape', 'kind', kinds, 'Kind of shape.', required=.true.), &
-      real_key('shape', 'radius', 'm', 'Radius R of a parabola or sphere, of the end of a ' // &
-               'spheroid, of the rim of a punch; for a power B = 1/(2 R^(n-1)).', above=0.0_wp, &
-               otherwise='that of &bodies')]
+      key_spec('shape', meaning='Shape of the undeformed gap f(r): bodies at h0 are h0 + f(r) ' // &
+        'apart. Without this group it is r^2/(2R).'), &
+      key_spec('shape', 'kind', word_value, 'Kind of shape.', choices=kinds, required=.true.), &
+      key_spec('shape', 'radius', real_value, 'Radius R of a parabola or sphere, of the end ' // &
+        'of a spheroid, of the rim of a punch; for a power B = 1/(2 R^(n-1)).', 'm', above=0.0_wp, &
+        otherwise='that of &bodies')]
   end function keys_of_shape
 
   !> Fails if the deck does not give a key that its kind of shape needs.

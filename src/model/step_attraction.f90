@@ -5,12 +5,11 @@ module step_attraction
   use kinds, only: wp, pi
   use failure, only: failure_t
   use deck, only: deck_t
-  use deck_keys, only: key_spec, real_key
   use force_law, only: force_law_t, of_pressure, of_slope, whole_step
   use law_reading, only: accept_law
   implicit none
   private
-  public :: new_step, read_step, smoothing_key
+  public :: new_step, read_step
 
   !> The law, in units of its range and stress.
   type, extends(force_law_t) :: step_t
@@ -27,14 +26,6 @@ module step_attraction
   real(wp), parameter :: least = 1.0e-12_wp
 
 contains
-
-  !> The row of the key `smoothing`.
-  pure type(key_spec) function smoothing_key(group) result(row)
-    character(len=*), intent(in) :: group
-
-    row = real_key(group, 'smoothing', 'm', 'Length over which the attraction ends.', &
-      above=0.0_wp, otherwise='0.02 of its range')
-  end function smoothing_key
 
   !> The law of a group whose keys `strength_key` [Pa] and `length_key` [m] give stress and range,
   !> if the deck has the group.

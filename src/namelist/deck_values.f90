@@ -150,9 +150,7 @@ contains
     type(key_spec), intent(in) :: spec
     real(wp), intent(in) :: x
 
-    outside = .not. (x >= spec%low .and. x <= spec%high)
-    if (spec%low_open .and. x <= spec%low) outside = .true.
-    if (spec%high_open .and. x >= spec%high) outside = .true.
+    outside = .not. (x >= spec%low .and. x <= spec%high .and. x > spec%above .and. x < spec%below)
   end function outside
 
   !> One assignment as in a deck; a long list takes several lines.

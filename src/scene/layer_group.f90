@@ -4,7 +4,7 @@ module layer_group
   use failure, only: failure_t
   use text, only: brief
   use deck, only: deck_t
-  use deck_keys, only: key_spec, group, list_key, word_key
+  use deck_keys, only: key_spec, real_list, word_value
   use layered_surface, only: layered_surface_t
   use scene_groups, only: scene_t, bodies_t
   implicit none
@@ -18,27 +18,27 @@ module layer_group
   !> at this limit they take gigabytes of memory, and minutes of work.
   real(wp), parameter :: thinnest = 1.0e-3_wp
 
-contains
+  !> Largest number of layers.
+  integer, parameter :: most = 20
 
   !> The rows of &layer.
-  pure function layer_keys() result(specs)
-    type(key_spec), allocatable :: specs(:)
-    integer, parameter :: most = 20
+  type(key_spec), parameter :: layer_keys(*) = [ &
+    key_spec('layer', meaning='Layers bonded to a body, from the top down, on the half-space ' // &
+      'of &bodies.'), &
+    key_spec('layer', 'thickness', real_list, 'Thickness of each layer.', 'm', most=most, &
+      above=0.0_wp, required=.true.), &
+    key_spec('layer', 'young', real_list, 'Young''s modulus of each layer.', 'Pa', most=most, &
+      above=0.0_wp, required=.true.), &
+    key_spec('layer', 'poisson', real_list, 'Poisson''s ratio of each layer; 0.5: ' // &
+      'incompressible.', most=most, above=-1.0_wp, high=0.5_wp, required=.true.), &
+    key_spec('layer', 'body', word_value, 'The body that has the layers.', choices='1 2 both', &
+      default='1'), &
+    key_spec('layer', 'base', word_value, 'The base below the layers: the half-space of ' // &
+      '&bodies, or rigid.', choices='elastic rigid', otherwise='elastic, or as &bodies rigid'), &
+    key_spec('layer', 'partner', word_value, 'The body without layers.', choices='elastic rigid', &
+      otherwise='elastic, or as &bodies rigid')]
 
-    specs = [ &
-      group('layer', 'Layers bonded to a body, from the top down, on the half-space of &bodies.'), &
-      list_key('layer', 'thickness', 'm', 'Thickness of each layer.', most=most, above=0.0_wp, &
-               required=.true.), &
-      list_key('layer', 'young', 'Pa', 'Young''s modulus of each layer.', most=most, above=0.0_wp, &
-               required=.true.), &
-      list_key('layer', 'poisson', '', 'Poisson''s ratio of each layer; 0.5: incompressible.', &
-               most=most, above=-1.0_wp, high=0.5_wp, required=.true.), &
-      word_key('layer', 'body', '1 2 both', 'The body that has the layers.', default='1'), &
-      word_key('layer', 'base', 'elastic rigid', 'The base below the layers: the half-space ' // &
-               'of &bodies, or rigid.', otherwise='elastic, or as &bodies rigid'), &
-      word_key('layer', 'partner', 'elastic rigid', 'The body without layers.', &
-               otherwise='elastic, or as &bodies rigid')]
-  end function layer_keys
+contains
 
   !> Whether only layers deform, so that &bodies need not say how the bodies do.
   logical function layer_bears_all(deck)

@@ -1,13 +1,13 @@
 !> The content of a deck: this program's groups, with defaults, checked as a whole. The reader,
-!> `--keys` and the resolved deck use one table of all groups and keys; the rows of a group with keys
-!> are in the module that reads it.
+!> `--keys` and the resolved deck use one table of all groups and keys; the rows of a group with
+!> keys are in the module that reads it.
 module scene
   use kinds, only: wp
   use failure, only: failure_t, fail, bad_input
   use text, only: brief, quoted, listing, first_line, word_count, word_of
   use deck, only: deck_t, read_deck
   use deck_numbers, only: find_number, set_number
-  use deck_keys, only: key_spec, group, text_key
+  use deck_keys, only: key_spec, ignored_group, text_value
   use scene_groups, only: scene_t
   use scene_problem, only: keys_of_model, take_model
   use cycle_groups, only: cycle_keys, take_loading, take_unloading
@@ -36,27 +36,27 @@ contains
     type(key_spec), allocatable :: specs(:)
 
     specs = [ &
-      group('scene', 'Name of the calculation.'), &
-      text_key('scene', 'title', 200, 'Title, repeated in all files of results.', &
-               otherwise='none'), &
+      key_spec('scene', meaning='Name of the calculation.'), &
+      key_spec('scene', 'title', text_value, 'Title, repeated in all files of results.', most=200, &
+        otherwise='none'), &
       keys_of_model(), &
-      cycle_keys(), &
-      path_keys(), &
-      sensitivity_keys(), &
-      group('regime', 'Which theory of contact describes the scene: parameters, and errors ' // &
-            'against the path; needs &equilibrium_path.'), &
-      rate_keys(), &
-      profiles_keys(), &
+      cycle_keys, &
+      path_keys, &
+      sensitivity_keys, &
+      key_spec('regime', meaning='Which theory of contact describes the scene: parameters, ' // &
+        'and errors against the path; needs &equilibrium_path.'), &
+      rate_keys, &
+      profiles_keys, &
       theory_keys(), &
-      group('stability', 'Stability of every equilibrium, by criterion and by smallest ' // &
-            'eigenvalue; needs &loading or &equilibrium_path.'), &
-      measurement_keys(), &
-      fit_keys(), &
-      sweep_keys(), &
-      numerics_keys(), &
-      group('summary', 'Results in a summary file; skipped, so that the file can be run again.', &
-            ignored=.true.), &
-      group('cost', 'As &summary.', ignored=.true.)]
+      key_spec('stability', meaning='Stability of every equilibrium, by criterion and by ' // &
+        'smallest eigenvalue; needs &loading or &equilibrium_path.'), &
+      measurement_keys, &
+      fit_keys, &
+      sweep_keys, &
+      numerics_keys, &
+      key_spec('summary', meaning='Results in a summary file; skipped, so that the file can ' // &
+        'be run again.', kind=ignored_group), &
+      key_spec('cost', meaning='As &summary.', kind=ignored_group)]
   end function keys_of_scene
 
   !> Reads and checks a deck: the file, or `text`, whose name in messages is `file`. `error` lists

@@ -20,7 +20,7 @@ contains
   pure function keys_of_model() result(specs)
     type(key_spec), allocatable :: specs(:)
 
-    specs = [bodies_keys(), layer_keys(), keys_of_shapes(), keys_of_laws()]
+    specs = [bodies_keys, layer_keys, keys_of_shapes(), keys_of_laws()]
   end function keys_of_model
 
   !> Reads bodies, layers, forces and shape of the scene's deck.

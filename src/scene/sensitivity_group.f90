@@ -3,7 +3,7 @@ module sensitivity_group
   use failure, only: failure_t, fail, bad_input
   use text, only: lower, quoted, word_count, word_of
   use deck_numbers, only: find_number
-  use deck_keys, only: key_spec, group, names_key
+  use deck_keys, only: key_spec, names_value
   use variation, only: vary, to_report
   use scene_groups, only: scene_t
   use path_groups, only: check_path
@@ -12,18 +12,14 @@ module sensitivity_group
   private
   public :: sensitivity_keys, take_sensitivity
 
-contains
-
   !> The rows of &sensitivity.
-  pure function sensitivity_keys() result(specs)
-    type(key_spec), allocatable :: specs(:)
+  type(key_spec), parameter :: sensitivity_keys(*) = [ &
+    key_spec('sensitivity', meaning='Derivatives of reported numbers by numbers of bodies, ' // &
+      'shape and forces; needs &equilibrium_path, or &drive.'), &
+    key_spec('sensitivity', 'parameters', names_value, 'The numbers, as ''group.key''; an ' // &
+      'element of a list as ''group.key(2)''.', most=20, required=.true.)]
 
-    specs = [ &
-      group('sensitivity', 'Derivatives of reported numbers by numbers of bodies, shape and ' // &
-            'forces; needs &equilibrium_path, or &drive.'), &
-      names_key('sensitivity', 'parameters', 20, 'The numbers, as ''group.key''; an element ' // &
-                'of a list as ''group.key(2)''.', required=.true.)]
-  end function sensitivity_keys
+contains
 
   !> Reads &sensitivity.
   subroutine take_sensitivity(scene, error)

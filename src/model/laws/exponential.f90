@@ -4,7 +4,7 @@ module exponential
   use kinds, only: wp
   use failure, only: failure_t
   use deck, only: deck_t
-  use deck_keys, only: key_spec, real_key
+  use deck_keys, only: key_spec, real_value
   use force_law, only: force_law_t, of_pressure, of_slope
   use force_sum, only: add_term
   use law_reading, only: is_law, check_parameter, accept_law
@@ -22,18 +22,14 @@ module exponential
   !> Exponent above which the pressure would underflow or overflow.
   real(wp), parameter :: largest_exponent = 700
 
-contains
-
   !> The keys of the law in &force.
-  pure function keys() result(rows)
-    type(key_spec), allocatable :: rows(:)
+  type(key_spec), parameter :: keys(*) = [ &
+    key_spec('force', 'p0', real_value, 'exponential: pressure at zero separation.', 'Pa', &
+      above=0.0_wp, otherwise='none; exponential needs it'), &
+    key_spec('force', 'decay_length', real_value, 'exponential: decay length.', 'm', above=0.0_wp, &
+      otherwise='none; exponential needs it')]
 
-    rows = [ &
-      real_key('force', 'p0', 'Pa', 'exponential: pressure at zero separation.', above=0.0_wp, &
-               otherwise='none; exponential needs it'), &
-      real_key('force', 'decay_length', 'm', 'exponential: decay length.', above=0.0_wp, &
-               otherwise='none; exponential needs it')]
-  end function keys
+contains
 
   !> The law, if the deck has its group.
   subroutine read_law(deck, law, error)

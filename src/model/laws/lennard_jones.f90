@@ -5,7 +5,7 @@ module lennard_jones
   use kinds, only: wp, pi
   use failure, only: failure_t
   use deck, only: deck_t
-  use deck_keys, only: key_spec, real_key, list_key, word_key
+  use deck_keys, only: key_spec, real_value, real_list, word_value
   use force_law, only: force_law_t, of_pressure, of_slope
   use power_pair, only: power_pair_t, new_power_pair, pair_factor
   use law_reading, only: is_law, check_parameter, check_decades
@@ -19,25 +19,21 @@ module lennard_jones
     procedure :: evaluate
   end type lennard_jones_t
 
-contains
-
   !> The keys of the law in &force.
-  pure function keys() result(rows)
-    type(key_spec), allocatable :: rows(:)
+  type(key_spec), parameter :: keys(*) = [ &
+    key_spec('force', 'hamaker', real_value, 'lennard_jones: Hamaker constant.', 'J', &
+      above=0.0_wp, otherwise='none; lennard_jones needs it'), &
+    key_spec('force', 'z0', real_value, 'lennard_jones: separation of zero force.', 'm', &
+      above=0.0_wp, otherwise='none; lennard_jones needs it'), &
+    key_spec('force', 'surface_energy', real_value, 'lennard_jones: energy needed to separate ' // &
+      'unit area, instead of hamaker.', 'J/m^2', above=0.0_wp), &
+    key_spec('force', 'exponents', real_list, 'lennard_jones: exponents n, m of the pressure: ' // &
+      '9, 3 half-spaces; 10, 4 half-space and sheet; 11, 5 sheets.', most=2, above=1.0_wp, &
+      high=30.0_wp, otherwise='9, 3'), &
+    key_spec('force', 'part', word_value, 'lennard_jones: the part of the law that acts.', &
+      choices='full repulsive attractive', otherwise='full')]
 
-    rows = [ &
-      real_key('force', 'hamaker', 'J', 'lennard_jones: Hamaker constant.', above=0.0_wp, &
-               otherwise='none; lennard_jones needs it'), &
-      real_key('force', 'z0', 'm', 'lennard_jones: separation of zero force.', above=0.0_wp, &
-               otherwise='none; lennard_jones needs it'), &
-      real_key('force', 'surface_energy', 'J/m^2', 'lennard_jones: energy needed to separate ' // &
-               'unit area, instead of hamaker.', above=0.0_wp), &
-      list_key('force', 'exponents', '', 'lennard_jones: exponents n, m of the pressure: 9, 3 ' // &
-               'half-spaces; 10, 4 half-space and sheet; 11, 5 sheets.', most=2, above=1.0_wp, &
-               high=30.0_wp, otherwise='9, 3'), &
-      word_key('force', 'part', 'full repulsive attractive', 'lennard_jones: the part of the ' // &
-               'law that acts.', otherwise='full')]
-  end function keys
+contains
 
   !> The law, if the deck has its group.
   subroutine read_law(deck, law, error)

@@ -6,7 +6,7 @@ module morse
   use kinds, only: wp
   use failure, only: failure_t
   use deck, only: deck_t
-  use deck_keys, only: key_spec, group, real_key
+  use deck_keys, only: key_spec, real_value
   use force_law, only: force_law_t, of_pressure, of_slope
   use law_reading, only: accept_law
   implicit none
@@ -21,21 +21,17 @@ module morse
   !> Exponent above which exponentials would underflow or overflow.
   real(wp), parameter :: largest_exponent = 340
 
-contains
-
   !> The rows of &morse.
-  pure function keys() result(rows)
-    type(key_spec), allocatable :: rows(:)
+  type(key_spec), parameter :: keys(*) = [ &
+    key_spec('morse', meaning='Morse law: an exponential repulsion within an exponential ' // &
+      'attraction of twice its range.'), &
+    key_spec('morse', 'surface_energy', real_value, 'Energy needed to separate unit area.', &
+      'J/m^2', above=0.0_wp, required=.true.), &
+    key_spec('morse', 'z0', real_value, 'Separation of zero force.', 'm', required=.true.), &
+    key_spec('morse', 'decay_length', real_value, 'Length over which the attraction falls by ' // &
+      'a factor of e.', 'm', above=0.0_wp, required=.true.)]
 
-    rows = [ &
-      group('morse', 'Morse law: an exponential repulsion within an exponential attraction of ' // &
-            'twice its range.'), &
-      real_key('morse', 'surface_energy', 'J/m^2', 'Energy needed to separate unit area.', &
-               above=0.0_wp, required=.true.), &
-      real_key('morse', 'z0', 'm', 'Separation of zero force.', required=.true.), &
-      real_key('morse', 'decay_length', 'm', 'Length over which the attraction falls by a ' // &
-               'factor of e.', above=0.0_wp, required=.true.)]
-  end function keys
+contains
 
   !> The law, if the deck has its group.
   subroutine read_law(deck, law, error)

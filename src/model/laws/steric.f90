@@ -5,7 +5,7 @@ module steric
   use kinds, only: wp
   use failure, only: failure_t
   use deck, only: deck_t
-  use deck_keys, only: key_spec, group, real_key, integer_key, word_key
+  use deck_keys, only: key_spec, real_value, integer_value, word_value
   use force_law, only: force_law_t, of_pressure, of_slope
   use law_reading, only: accept_law
   implicit none
@@ -22,24 +22,22 @@ module steric
   !> Boltzmann's constant [J/K].
   real(wp), parameter :: boltzmann = 1.380649e-23_wp
 
-contains
-
   !> The rows of &steric.
-  pure function keys() result(rows)
-    type(key_spec), allocatable :: rows(:)
+  type(key_spec), parameter :: keys(*) = [ &
+    key_spec('steric', meaning='Repulsion of polymer brushes.'), &
+    key_spec('steric', 'model', word_value, 'Profile of the brush: a step, whose force begins ' // &
+      'with a kink, or a parabola.', choices='alexander_de_gennes milner_witten_cates', &
+      default='alexander_de_gennes'), &
+    key_spec('steric', 'brush_thickness', real_value, 'Thickness L of a brush.', 'm', &
+      above=0.0_wp, required=.true.), &
+    key_spec('steric', 'grafting_density', real_value, 'Number of chains on unit area.', '1/m^2', &
+      above=0.0_wp, required=.true.), &
+    key_spec('steric', 'sides', integer_value, 'Number of surfaces with a brush.', low=1, high=2, &
+      default='2'), &
+    key_spec('steric', 'temperature', real_value, 'Temperature.', 'K', above=0.0_wp, &
+      default='298.15')]
 
-    rows = [ &
-      group('steric', 'Repulsion of polymer brushes.'), &
-      word_key('steric', 'model', 'alexander_de_gennes milner_witten_cates', 'Profile of the ' &
-               // 'brush: a step, whose force begins with a kink, or a parabola.', &
-               default='alexander_de_gennes'), &
-      real_key('steric', 'brush_thickness', 'm', 'Thickness L of a brush.', above=0.0_wp, &
-               required=.true.), &
-      real_key('steric', 'grafting_density', '1/m^2', 'Number of chains on unit area.', &
-               above=0.0_wp, required=.true.), &
-      integer_key('steric', 'sides', 'Number of surfaces with a brush.', 1, 2, default='2'), &
-      real_key('steric', 'temperature', 'K', 'Temperature.', above=0.0_wp, default='298.15')]
-  end function keys
+contains
 
   !> The law, if the deck has its group.
   subroutine read_law(deck, law, error)

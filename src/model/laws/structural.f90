@@ -3,7 +3,7 @@ module structural
   use kinds, only: wp, pi
   use failure, only: failure_t
   use deck, only: deck_t
-  use deck_keys, only: key_spec, group, real_key
+  use deck_keys, only: key_spec, real_value
   use force_law, only: force_law_t, of_pressure, of_slope
   use law_reading, only: accept_law
   implicit none
@@ -20,23 +20,19 @@ module structural
   !> Exponent above which exponentials would underflow or overflow.
   real(wp), parameter :: largest_exponent = 300
 
-contains
-
   !> The rows of &structural.
-  pure function keys() result(rows)
-    type(key_spec), allocatable :: rows(:)
+  type(key_spec), parameter :: keys(*) = [ &
+    key_spec('structural', meaning='Oscillatory force of a structured liquid, -p0 cos(2 pi ' // &
+      'h/d + phase) exp(-h/decay_length).'), &
+    key_spec('structural', 'amplitude', real_value, 'Pressure p0; negative for the opposite ' // &
+      'sign.', 'Pa', required=.true.), &
+    key_spec('structural', 'period', real_value, 'Period d, about the size of a molecule.', 'm', &
+      above=0.0_wp, required=.true.), &
+    key_spec('structural', 'decay_length', real_value, 'Length over which the oscillation ' // &
+      'falls by a factor of e.', 'm', above=0.0_wp, required=.true.), &
+    key_spec('structural', 'phase', real_value, 'Phase [rad] at h = 0.', default='0')]
 
-    rows = [ &
-      group('structural', 'Oscillatory force of a structured liquid, ' // &
-            '-p0 cos(2 pi h/d + phase) exp(-h/decay_length).'), &
-      real_key('structural', 'amplitude', 'Pa', 'Pressure p0; negative for the opposite sign.', &
-               required=.true.), &
-      real_key('structural', 'period', 'm', 'Period d, about the size of a molecule.', &
-               above=0.0_wp, required=.true.), &
-      real_key('structural', 'decay_length', 'm', 'Length over which the oscillation falls by ' &
-               // 'a factor of e.', above=0.0_wp, required=.true.), &
-      real_key('structural', 'phase', '', 'Phase [rad] at h = 0.', default='0')]
-  end function keys
+contains
 
   !> The law, if the deck has its group. A negative amplitude is a positive one with another phase.
   subroutine read_law(deck, law, error)

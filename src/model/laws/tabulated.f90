@@ -3,7 +3,7 @@ module tabulated
   use kinds, only: wp
   use failure, only: failure_t
   use deck, only: deck_t
-  use deck_keys, only: key_spec, group, real_key, text_key, word_key
+  use deck_keys, only: key_spec, real_value, word_value, text_value
   use data_table, only: data_table_t, read_columns
   use force_law, only: force_law_t, of_pressure, of_energy
   use force_table, only: force_table_t, new_force_table, largest_step
@@ -35,26 +35,23 @@ module tabulated
   !> that are monotone as the second power at an extremum.
   real(wp), parameter :: share_of_spline = 1.0_wp/15, share_of_monotone = 1.0_wp/3
 
-contains
-
   !> The rows of &tabulated.
-  pure function keys() result(rows)
-    type(key_spec), allocatable :: rows(:)
+  type(key_spec), parameter :: keys(*) = [ &
+    key_spec('tabulated', meaning='A law from a file. Give tail_exponent or tail_decay_length.'), &
+    key_spec('tabulated', 'file', text_value, 'File of two columns, gap and quantity in SI, # ' // &
+      'before comments; a relative path begins at the deck''s folder.', most=1000, &
+      required=.true.), &
+    key_spec('tabulated', 'quantity', word_value, 'The second column: pressure [Pa] or energy ' // &
+      'per area [J/m^2].', choices='pressure energy', default='pressure'), &
+    key_spec('tabulated', 'interpolation', word_value, 'Smooth curvature, or no extremum ' // &
+      'between points.', choices='spline monotone', default='spline'), &
+    key_spec('tabulated', 'tail_exponent', real_value, 'Beyond the last point the pressure ' // &
+      'falls as this power of the gap: 3 for van der Waals attraction.', above=1.0_wp, &
+      high=30.0_wp, otherwise='none'), &
+    key_spec('tabulated', 'tail_decay_length', real_value, 'Beyond the last point the ' // &
+      'pressure falls by a factor of e over this length.', 'm', above=0.0_wp, otherwise='none')]
 
-    rows = [ &
-      group('tabulated', 'A law from a file. Give tail_exponent or tail_decay_length.'), &
-      text_key('tabulated', 'file', 1000, 'File of two columns, gap and quantity in SI, # before ' &
-               // 'comments; a relative path begins at the deck''s folder.', required=.true.), &
-      word_key('tabulated', 'quantity', 'pressure energy', 'The second column: pressure [Pa] or ' &
-               // 'energy per area [J/m^2].', default='pressure'), &
-      word_key('tabulated', 'interpolation', 'spline monotone', 'Smooth curvature, or no ' // &
-               'extremum between points.', default='spline'), &
-      real_key('tabulated', 'tail_exponent', '', 'Beyond the last point the pressure falls as ' // &
-               'this power of the gap: 3 for van der Waals attraction.', above=1.0_wp, &
-               high=30.0_wp, otherwise='none'), &
-      real_key('tabulated', 'tail_decay_length', 'm', 'Beyond the last point the pressure falls ' &
-               // 'by a factor of e over this length.', above=0.0_wp, otherwise='none')]
-  end function keys
+contains
 
   !> The law, if the deck has its group.
   subroutine read_law(deck, law, error)

@@ -5,7 +5,7 @@ module van_der_waals
   use kinds, only: wp, pi
   use failure, only: failure_t
   use deck, only: deck_t
-  use deck_keys, only: key_spec, group, real_key
+  use deck_keys, only: key_spec, real_value
   use force_law, only: force_law_t, of_pressure, of_slope
   use law_reading, only: accept_law
   implicit none
@@ -22,20 +22,17 @@ module van_der_waals
   !> Gregory's constant, and the unit of gap [m].
   real(wp), parameter :: gregory = 5.32_wp, nanometre = 1.0e-9_wp
 
-contains
-
   !> The rows of &van_der_waals.
-  pure function keys() result(rows)
-    type(key_spec), allocatable :: rows(:)
+  type(key_spec), parameter :: keys(*) = [ &
+    key_spec('van_der_waals', meaning='Van der Waals attraction, retarded or not; needs a ' // &
+      'repulsion such as &born beside it.'), &
+    key_spec('van_der_waals', 'hamaker', real_value, 'Hamaker constant.', 'J', above=0.0_wp, &
+      required=.true.), &
+    key_spec('van_der_waals', 'retardation_length', real_value, &
+      'Wavelength beyond which the attraction is retarded, about 100 nm.', 'm', above=0.0_wp, &
+      otherwise='no retardation')]
 
-    rows = [ &
-      group('van_der_waals', 'Van der Waals attraction, retarded or not; needs a repulsion ' // &
-            'such as &born beside it.'), &
-      real_key('van_der_waals', 'hamaker', 'J', 'Hamaker constant.', above=0.0_wp, &
-               required=.true.), &
-      real_key('van_der_waals', 'retardation_length', 'm', 'Wavelength beyond which the ' // &
-               'attraction is retarded, about 100 nm.', above=0.0_wp, otherwise='no retardation')]
-  end function keys
+contains
 
   !> The law, if the deck has its group. It has no characteristic length.
   subroutine read_law(deck, law, error)

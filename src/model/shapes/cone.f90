@@ -3,7 +3,7 @@ module cone
   use kinds, only: wp, pi
   use failure, only: failure_t
   use deck, only: deck_t
-  use deck_keys, only: key_spec, real_key
+  use deck_keys, only: key_spec, real_value
   use shape, only: shape_t
   use shape_reading, only: require, refuse_radius
   use power, only: take_power
@@ -11,15 +11,12 @@ module cone
   private
   public :: keys, read_shape
 
-contains
-
   !> The row of a cone in &shape.
-  pure function keys() result(rows)
-    type(key_spec), allocatable :: rows(:)
+  type(key_spec), parameter :: keys(*) = [ &
+    key_spec('shape', 'half_angle', real_value, 'Angle of a cone between axis and surface; ' // &
+      'the gap is r/tan(half_angle).', 'rad', above=0.0_wp, below=0.5_wp*pi)]
 
-    rows = [real_key('shape', 'half_angle', 'rad', 'Angle of a cone between axis and surface; ' // &
-      'the gap is r/tan(half_angle).', above=0.0_wp, below=0.5_wp*pi)]
-  end function keys
+contains
 
   !> Reads kind = 'cone'. length: the law's [m].
   subroutine read_shape(deck, length, shape, error)

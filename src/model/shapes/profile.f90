@@ -4,7 +4,7 @@ module profile
   use kinds, only: wp, pi
   use failure, only: failure_t
   use deck, only: deck_t
-  use deck_keys, only: key_spec, text_key
+  use deck_keys, only: key_spec, text_value
   use data_table, only: data_table_t, read_columns
   use cubic, only: spline
   use interpolation, only: interval_of
@@ -32,15 +32,13 @@ module profile
   !> of a table, or from a spline through a body that is flat at its tip.
   real(wp), parameter :: straight = 0.02_wp
 
-contains
-
   !> The row of a profile in &shape.
-  pure function keys() result(rows)
-    type(key_spec), allocatable :: rows(:)
+  type(key_spec), parameter :: keys(*) = [ &
+    key_spec('shape', 'file', text_value, 'File of two columns, r from 0 on and height f in ' // &
+      'm, # before comments; a relative path begins at the deck''s folder.', most=1000, &
+      otherwise='none')]
 
-    rows = [text_key('shape', 'file', 1000, 'File of two columns, r from 0 on and height f in m, ' &
-      // '# before comments; a relative path begins at the deck''s folder.', otherwise='none')]
-  end function keys
+contains
 
   !> Reads kind = 'profile'. length: the law's [m].
   subroutine read_shape(deck, length, shape, error)

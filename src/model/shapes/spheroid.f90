@@ -6,7 +6,7 @@ module spheroid
   use failure, only: failure_t
   use text, only: brief
   use deck, only: deck_t
-  use deck_keys, only: key_spec, real_key
+  use deck_keys, only: key_spec, real_value
   use shape, only: shape_t
   use shape_reading, only: require, read_radius
   implicit none
@@ -27,15 +27,12 @@ module spheroid
   !> Smallest half-axis in lengths of the law.
   real(wp), parameter :: smallest = 5
 
-contains
-
   !> The row of a spheroid in &shape.
-  pure function keys() result(rows)
-    type(key_spec), allocatable :: rows(:)
+  type(key_spec), parameter :: keys(*) = [ &
+    key_spec('shape', 'semi_axis', real_value, 'Half the axis b of a spheroid along the line ' // &
+      'through the bodies; across it is sqrt(R b).', 'm', above=0.0_wp)]
 
-    rows = [real_key('shape', 'semi_axis', 'm', 'Half the axis b of a spheroid along the line ' // &
-      'through the bodies; across it is sqrt(R b).', above=0.0_wp)]
-  end function keys
+contains
 
   !> Reads kind = 'spheroid'. length: the law's [m].
   subroutine read_shape(deck, length, shape, error)
