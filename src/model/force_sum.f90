@@ -84,7 +84,9 @@ contains
   subroutine settle(law)
     class(force_law_t), allocatable, intent(inout) :: law
     type(force_sum_t) :: alone
+    type(term_t), allocatable :: terms(:)
     real(wp) :: most(1), length, unit, origin
+    logical :: has_z0
     integer :: i
 
     if (.not. law%has_units) then
@@ -95,21 +97,25 @@ contains
     select type (law)
     type is (force_sum_t)
       unit = maxval([(law%term(i)%law%pressure_unit, i=1, size(law%term))])
-      call take_units(law, minval(lengths(law)), unit, 0.0_wp)
+      length = minval(lengths(law))
+      call move_alloc(law%term, terms)
+      call take_units(law, terms, length, unit, 0.0_wp)
       call find_scales(law)
       if (law%edge_gap > 0 .and. law%adhesion > 0) then
         most = -law%pressure([law%edge_gap])
         length = law%length*law%adhesion/most(1)
-        law%has_z0 = .false.
+        has_z0 = .false.
         do i = 1, size(law%term)
           if (.not. law%term(i)%law%has_z0) cycle
           length = law%term(i)%law%length
-          law%has_z0 = .true.
+          has_z0 = .true.
           exit
         end do
         unit = law%pressure_unit*most(1)
         origin = law%separation_of(law%rest_gap) - length
-        call take_units(law, length, unit, origin)
+        call move_alloc(law%term, terms)
+        call take_units(law, terms, length, unit, origin)
+        law%has_z0 = has_z0
         call find_scales(law)
       end if
     class default
@@ -117,30 +123,21 @@ contains
     end select
   end subroutine settle
 
-  !> Sets the units of a sum; its scales must then be found again.
-  subroutine take_units(law, length, unit, origin)
-    type(force_sum_t), intent(inout) :: law
+  !> The sum of these terms, which are moved, in the given units; its scales are not known yet.
+  subroutine take_units(law, terms, length, unit, origin)
+    type(force_sum_t), intent(out) :: law
+    type(term_t), allocatable, intent(inout) :: terms(:)
     real(wp), intent(in) :: length, unit, origin
     real(wp), allocatable :: breaks(:), kinks(:)
     integer :: i
 
+    call move_alloc(terms, law%term)
     law%terms = size(law%term)
     law%length = length
     law%pressure_unit = unit
     law%origin = origin
-    law%adhesion = 0
-    law%work = 0
-    law%edge_gap = 0
-    law%rest_gap = 0
-    law%falls_below = 0
-    law%range = 0
-    law%power_from = 0
     law%smallest_gap = -huge(1.0_wp)
     law%repulsion_length = huge(1.0_wp)
-    law%tail_power = huge(1.0_wp)
-    law%period = 0
-    law%step_at = 0
-    law%step_width = 0
     allocate (breaks(0), kinks(0))
     do i = 1, size(law%term)
       associate (term => law%term(i), part => law%term(i)%law)
@@ -162,7 +159,6 @@ contains
       end associate
     end do
     call move_alloc(breaks, law%breaks)
-    if (allocated(law%kinks)) deallocate (law%kinks)
     if (size(kinks) > 0) call move_alloc(kinks, law%kinks)
     if (.not. law%repulsion_length < huge(1.0_wp)) law%repulsion_length = 1
     ! Messages refer to the first term.

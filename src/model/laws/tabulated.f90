@@ -69,7 +69,7 @@ contains
         'tail_decay_length, one of the two, for gaps beyond the table', error)
       return
     end if
-    call read_columns(deck, 'tabulated', 'file', table, trouble)
+    call read_columns(deck, 'tabulated', 'file', fewest, table, trouble)
     if (.not. allocated(trouble)) call put_in_order(table, trouble)
     if (allocated(trouble)) then
       call deck%mistake('tabulated', 'file', 'the table cannot be used: ' // trouble%message, error)
@@ -79,28 +79,22 @@ contains
     if (.not. allocated(error)) allocate (law, source=this)
   end subroutine read_law
 
-  !> Puts gaps in ascending order; fails if they neither ascend nor descend, are not positive, or
-  !> are too few.
+  !> Puts gaps in ascending order; fails if they neither ascend nor descend, or are not positive.
   subroutine put_in_order(table, error)
     type(data_table_t), intent(inout) :: table
     type(failure_t), allocatable, intent(inout) :: error
     integer :: i
 
     associate (gap => table%value(:, 1), n => size(table%place))
-      if (n < fewest) then
-        call table%source%complain(len(table%source%text) + 1, '', '', &
-          'fewer than 8 points', error)
-        return
-      end if
       do i = 1, n
         if (.not. gap(i) > 0) then
-          call table%source%complain(table%place(i), '', '', 'a gap that is not positive', error)
+          call table%source%complain(table%place(i), 'a gap that is not positive', error)
           return
         end if
         if (i == 1) cycle
         if ((gap(i) - gap(i - 1))*(gap(2) - gap(1)) > 0) cycle
-        call table%source%complain(table%place(i), '', '', &
-          'gaps neither increase all the way nor decrease', error)
+        call table%source%complain(table%place(i), 'gaps neither increase all the way nor ' // &
+          'decrease', error)
         return
       end do
       if (gap(1) < gap(n)) return

@@ -53,7 +53,7 @@ contains
     call require(deck, 'profile', 'file', error)
     call refuse_radius(deck, 'the profile has its own', error)
     if (allocated(error)) return
-    call read_columns(deck, 'shape', 'file', table, trouble)
+    call read_columns(deck, 'shape', 'file', fewest, table, trouble)
     if (.not. allocated(trouble)) call check_points(table, trouble)
     if (.not. allocated(trouble)) call take_points(table, length, this, trouble)
     if (allocated(trouble)) then
@@ -71,19 +71,13 @@ contains
     integer :: i
 
     associate (r => table%value(:, 1), f => table%value(:, 2), n => size(table%place))
-      if (n < fewest) then
-        call table%source%complain(len(table%source%text) + 1, '', '', &
-          'fewer than 5 points', error)
-        return
-      end if
       if (abs(r(1)) > 0) then
-        call table%source%complain(table%place(1), '', '', &
-          'the first position is not 0, the axis', error)
+        call table%source%complain(table%place(1), 'the first position is not 0, the axis', error)
         return
       end if
       do i = 2, n
         if (r(i) > r(i - 1) .and. f(i) > f(i - 1)) cycle
-        call table%source%complain(table%place(i), '', '', &
+        call table%source%complain(table%place(i), &
           'position and height do not both grow from the line before', error)
         return
       end do
@@ -114,7 +108,7 @@ contains
       do i = 1, n
         if (curvature(i) >= -straight*maxval(curvature) .and. &
           (i == 1 .or. this%taylor(1, i) > 0)) cycle
-        call table%source%complain(table%place(i), '', '', 'the profile is not convex ' // &
+        call table%source%complain(table%place(i), 'the profile is not convex ' // &
           'here; contacts with several edges are not computed', error)
         return
       end do
