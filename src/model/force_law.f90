@@ -92,6 +92,7 @@ module force_law
     procedure :: pressure
     procedure :: slope
     procedure :: energy
+    procedure :: at
     procedure :: closure
     procedure :: table_error
     procedure :: gap_of
@@ -134,6 +135,17 @@ contains
 
     call self%evaluate(of_energy, gap, value)
   end function energy
+
+  !> One of the three quantities at a single gap.
+  pure real(wp) function at(self, quantity, gap)
+    class(force_law_t), intent(in) :: self
+    integer, intent(in) :: quantity
+    real(wp), intent(in) :: gap
+    real(wp) :: value(1)
+
+    call self%evaluate(quantity, [gap], value)
+    at = value(1)
+  end function at
 
   !> Largest decrease of gaps in one iteration.
   pure function closure(self, gap) result(most)

@@ -1,7 +1,7 @@
 !> The sum of several forces. A single law is kept as it is, without the cost of a sum.
 module force_sum
   use kinds, only: wp
-  use force_law, only: force_law_t, of_slope, of_energy
+  use force_law, only: force_law_t, of_pressure, of_slope, of_energy
   use law_scan, only: find_scales
   implicit none
   private
@@ -85,7 +85,7 @@ contains
     class(force_law_t), allocatable, intent(inout) :: law
     type(force_sum_t) :: alone
     type(term_t), allocatable :: terms(:)
-    real(wp) :: most(1), length, unit, origin
+    real(wp) :: most, length, unit, origin
     logical :: has_z0
     integer :: i
 
@@ -102,8 +102,8 @@ contains
       call take_units(law, terms, length, unit, 0.0_wp)
       call find_scales(law)
       if (law%edge_gap > 0 .and. law%adhesion > 0) then
-        most = -law%pressure([law%edge_gap])
-        length = law%length*law%adhesion/most(1)
+        most = -law%at(of_pressure, law%edge_gap)
+        length = law%length*law%adhesion/most
         has_z0 = .false.
         do i = 1, size(law%term)
           if (.not. law%term(i)%law%has_z0) cycle
@@ -111,7 +111,7 @@ contains
           has_z0 = .true.
           exit
         end do
-        unit = law%pressure_unit*most(1)
+        unit = law%pressure_unit*most
         origin = law%separation_of(law%rest_gap) - length
         call move_alloc(law%term, terms)
         call take_units(law, terms, length, unit, origin)

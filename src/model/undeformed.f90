@@ -43,7 +43,7 @@ contains
     real(wp), intent(in) :: h0
 
     if (problem%shape%parabolic) then
-      load%value = 2*pi*sum(problem%law%energy([h0]))
+      load%value = 2*pi*problem%law%at(of_energy, h0)
       load%error = rounding*abs(load%value)
     else
       load = integral_of(problem, h0, of_pressure)
@@ -56,7 +56,7 @@ contains
     real(wp), intent(in) :: h0
 
     if (problem%shape%parabolic) then
-      slope%value = -2*pi*sum(problem%law%pressure([h0]))
+      slope%value = -2*pi*problem%law%at(of_pressure, h0)
       slope%error = rounding*abs(slope%value)
     else
       slope = integral_of(problem, h0, of_slope)

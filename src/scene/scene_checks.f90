@@ -5,6 +5,7 @@ module scene_checks
   use kinds, only: wp, pi
   use failure, only: failure_t
   use text, only: brief
+  use force_law, only: of_pressure, of_energy
   use dimensionless_problem, only: problem_t
   use contact_scales, only: largest_radius, contact_level
   use h0_range, only: range_of
@@ -102,9 +103,9 @@ contains
           'body, ' // share // ' m from the axis', error)
         return
       end if
-      part = abs(sum(law%pressure([gap])))*shape%ends**2
+      part = abs(law%at(of_pressure, gap))*shape%ends**2
       if (part > 0) part = part/(2*pi*max(law%adhesion, tiny(1.0_wp), &
-        abs(sum(law%energy([max(low, 1.0_wp)])))))
+        abs(law%at(of_energy, max(low, 1.0_wp)))))
     end associate
     write (share, '(es7.1)') min(part, 1.0_wp)
     if (.not. part <= scene%numerics%accuracy) call scene%deck%mistake('shape', 'kind', &
