@@ -7,6 +7,7 @@ module rate_groups
   use deck_keys, only: key_spec, real_value, real_list
   use creep, only: creep_t
   use scene_groups, only: scene_t
+  use path_groups, only: check_order
   implicit none
   private
   public :: rate_keys, take_rates
@@ -84,11 +85,10 @@ contains
       call deck%assume('drive', 'z_end', drive%z_start)
       call deck%get('drive', 'z_end', drive%z_end)
       call deck%assume('numerics', 'accuracy', usual_accuracy)
-      if (drive%z_start <= drive%z_turn) call deck%mistake('drive', 'z_start', &
-        brief(drive%z_start) // ' is not above z_turn = ' // brief(drive%z_turn) // ' m', error)
-      if (deck%is_set('drive', 'z_end') .and. drive%z_end <= drive%z_turn) &
-        call deck%mistake('drive', 'z_end', brief(drive%z_end) // ' is not above z_turn = ' // &
-        brief(drive%z_turn) // ' m', error)
+      call check_order(deck, 'drive', 'z_start', drive%z_start, 'above', 'z_turn', drive%z_turn, &
+        error)
+      if (deck%is_set('drive', 'z_end')) call check_order(deck, 'drive', 'z_end', drive%z_end, &
+        'above', 'z_turn', drive%z_turn, error)
       if (allocated(drive%time_step)) then
         time = (drive%z_start - 2*drive%z_turn + drive%z_end)/drive%velocity + drive%dwell
         if (time > most_steps*drive%time_step) call deck%mistake('drive', 'time_step', &
