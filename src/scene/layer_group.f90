@@ -44,19 +44,8 @@ contains
   logical function layer_bears_all(deck)
     type(deck_t), intent(in) :: deck
 
-    layer_bears_all = .false.
-    if (.not. deck%has_group('layer') .or. word_of('base') /= 'rigid') return
-    layer_bears_all = word_of('body') == 'both' .or. word_of('partner') == 'rigid'
-
-  contains
-
-    function word_of(key) result(word)
-      character(len=*), intent(in) :: key
-      character(len=:), allocatable :: word
-
-      call deck%get('layer', key, word)
-    end function word_of
-
+    layer_bears_all = deck%has_group('layer') .and. word_is(deck, 'base', 'rigid') .and. &
+      (word_is(deck, 'body', 'both') .or. word_is(deck, 'partner', 'rigid'))
   end function layer_bears_all
 
   !> Reads &layer, after &bodies: the surfaces, and the stiffness of the two bodies as given by
@@ -85,7 +74,7 @@ contains
       call deck%get('layer', 'poisson', coat%poisson)
       call join_alike(coat%thickness, young, coat%poisson)
       coat%shear = young/(2*(1 + coat%poisson))
-      coat%on_rigid = word_is(scene, 'base', 'rigid')
+      coat%on_rigid = word_is(deck, 'base', 'rigid')
       has_coat = [body /= '2', body /= '1']
       allocate (bodies%surface(2))
       do i = 1, 2
@@ -164,10 +153,10 @@ contains
         ' layers; give one value for each thickness, from the top down', error)
       call check_spread(scene, 'thickness', thickness, error)
       call check_spread(scene, 'young', young, error)
-      if (allocated(bodies%young) .and. word_is(scene, 'base', 'elastic')) &
+      if (allocated(bodies%young) .and. word_is(deck, 'base', 'elastic')) &
         call check_spread(scene, 'young', [young, bodies%young], error)
       if (allocated(error)) return
-      if (word_is(scene, 'base', 'elastic')) then
+      if (word_is(deck, 'base', 'elastic')) then
         if (bodies%rigid) then
           call deck%mistake('layer', 'base', 'the bodies are rigid; give base = ''rigid'', or ' // &
             'young and poisson in &bodies', error)
@@ -176,10 +165,10 @@ contains
             'known; give young and poisson here, or base = ''rigid'' in &layer', error)
         end if
       end if
-      if (word_is(scene, 'body', 'both')) then
+      if (word_is(deck, 'body', 'both')) then
         if (deck%is_set('layer', 'partner')) call deck%mistake('layer', 'partner', &
           'both bodies have layers; leave it out', error)
-      else if (bodies%rigid .and. word_is(scene, 'partner', 'elastic')) then
+      else if (bodies%rigid .and. word_is(deck, 'partner', 'elastic')) then
         call deck%mistake('layer', 'partner', 'the bodies are rigid; leave it out, or give ' // &
           'how they deform in &bodies', error)
       end if
@@ -200,12 +189,12 @@ contains
   end subroutine check_spread
 
   !> Whether a key of the group has this value.
-  pure logical function word_is(scene, key, word)
-    type(scene_t), intent(in) :: scene
+  pure logical function word_is(deck, key, word)
+    type(deck_t), intent(in) :: deck
     character(len=*), intent(in) :: key, word
     character(len=:), allocatable :: held
 
-    call scene%deck%get('layer', key, held)
+    call deck%get('layer', key, held)
     word_is = held == word
   end function word_is
 
