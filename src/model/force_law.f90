@@ -112,6 +112,7 @@ module force_law
 
 contains
 
+  !> The pressure at gaps.
   pure function pressure(self, gap) result(value)
     class(force_law_t), intent(in) :: self
     real(wp), intent(in) :: gap(:)
@@ -120,6 +121,7 @@ contains
     call self%evaluate(of_pressure, gap, value)
   end function pressure
 
+  !> The derivative of the pressure by the gap.
   pure function slope(self, gap) result(value)
     class(force_law_t), intent(in) :: self
     real(wp), intent(in) :: gap(:)
@@ -128,6 +130,7 @@ contains
     call self%evaluate(of_slope, gap, value)
   end function slope
 
+  !> The integral of the pressure from the gaps to infinity.
   pure function energy(self, gap) result(value)
     class(force_law_t), intent(in) :: self
     real(wp), intent(in) :: gap(:)
