@@ -1,4 +1,4 @@
-!> Common parts of the readers of force laws.
+!> Common parts of the readers of force laws; `require` and `refuse_foreign` also of shapes.
 module law_reading
   use kinds, only: wp
   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
@@ -9,7 +9,7 @@ module law_reading
   use force_law, only: force_law_t
   implicit none
   private
-  public :: keys_of_force, is_law, check_parameter, check_decades, accept_law
+  public :: keys_of_force, is_law, require, refuse_foreign, check_decades, accept_law
 
   !> Largest decimal order, positive or negative, of units and derived quantities.
   integer, parameter :: most_decades = 100
@@ -35,23 +35,34 @@ contains
     is_law = name == law
   end function is_law
 
-  !> Requires a parameter of &force for its law, if it is `needed`, and refuses it for another law.
-  pure subroutine check_parameter(deck, law, key, needed, error)
+  !> Fails if the deck does not give a key of a group that a `choice` needs, the value of the
+  !> group's key `by`.
+  pure subroutine require(deck, group, by, choice, key, error)
     type(deck_t), intent(in) :: deck
-    character(len=*), intent(in) :: law, key
-    logical, intent(in) :: needed
+    character(len=*), intent(in) :: group, by, choice, key
     type(failure_t), allocatable, intent(inout) :: error
-    character(len=:), allocatable :: name
 
-    if (.not. deck%has_group('force')) return
-    call deck%get('force', 'law', name)
-    if (name == law .and. needed .and. .not. deck%is_set('force', key)) then
-      call deck%mistake('force', key, 'missing; law '//quoted(law)//' needs it', error)
-    else if (name /= law .and. deck%is_set('force', key)) then
-      call deck%mistake('force', key, 'belongs to law '//quoted(law)//', not to '//quoted(name), &
-        error)
-    end if
-  end subroutine check_parameter
+    if (.not. deck%is_set(group, key)) call deck%mistake(group, key, 'missing; '//by//' '// &
+      quoted(choice)//' needs it', error)
+  end subroutine require
+
+  !> Fails if the deck gives one of the keys `rows`, which belong to one choice, to another.
+  pure subroutine refuse_foreign(deck, group, by, choice, rows, error)
+    type(deck_t), intent(in) :: deck
+    character(len=*), intent(in) :: group, by, choice
+    type(key_spec), intent(in) :: rows(:)
+    type(failure_t), allocatable, intent(inout) :: error
+    character(len=:), allocatable :: other
+    integer :: i
+
+    if (.not. deck%has_group(group)) return
+    call deck%get(group, by, other)
+    if (other == choice) return
+    do i = 1, size(rows)
+      if (deck%is_set(group, trim(rows(i)%key))) call deck%mistake(group, trim(rows(i)%key), &
+        'belongs to '//by//' '//quoted(choice)//', not to '//quoted(other), error)
+    end do
+  end subroutine refuse_foreign
 
   !> Refuses `what`, a quantity of 10^decades `unit` that follows from values of &bodies and of the
   !> group, if it is out of range.

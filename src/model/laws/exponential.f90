@@ -7,7 +7,7 @@ module exponential
   use deck_keys, only: key_spec, real_value
   use force_law, only: force_law_t, of_pressure, of_slope
   use force_sum, only: add_term
-  use law_reading, only: is_law, check_parameter, accept_law
+  use law_reading, only: is_law, require, refuse_foreign, accept_law
   implicit none
   private
   public :: exponential_t, keys, read_law, read_exponentials
@@ -39,9 +39,11 @@ contains
     type(exponential_t) :: this
     real(wp) :: p0, decay_length
 
-    call check_parameter(deck, 'exponential', 'p0', .true., error)
-    call check_parameter(deck, 'exponential', 'decay_length', .true., error)
-    if (allocated(error) .or. .not. is_law(deck, 'exponential')) return
+    call refuse_foreign(deck, 'force', 'law', 'exponential', keys, error)
+    if (.not. is_law(deck, 'exponential')) return
+    call require(deck, 'force', 'law', 'exponential', 'p0', error)
+    call require(deck, 'force', 'law', 'exponential', 'decay_length', error)
+    if (allocated(error)) return
     call deck%get('force', 'p0', p0)
     call deck%get('force', 'decay_length', decay_length)
     this = new_exponential(p0, decay_length)

@@ -8,7 +8,7 @@ module lennard_jones
   use deck_keys, only: key_spec, real_value, real_list, word_value
   use force_law, only: force_law_t, of_pressure, of_slope
   use power_pair, only: power_pair_t, new_power_pair, pair_factor
-  use law_reading, only: is_law, check_parameter, check_decades
+  use law_reading, only: is_law, require, refuse_foreign, check_decades
   implicit none
   private
   public :: lennard_jones_t, keys, read_law
@@ -44,13 +44,12 @@ contains
     real(wp), allocatable :: exponents(:)
     real(wp) :: hamaker, z0, surface_energy
 
-    call check_parameter(deck, 'lennard_jones', 'hamaker', &
-      .not. deck%is_set('force', 'surface_energy'), error)
-    call check_parameter(deck, 'lennard_jones', 'z0', .true., error)
-    call check_parameter(deck, 'lennard_jones', 'surface_energy', .false., error)
-    call check_parameter(deck, 'lennard_jones', 'exponents', .false., error)
-    call check_parameter(deck, 'lennard_jones', 'part', .false., error)
-    if (allocated(error) .or. .not. is_law(deck, 'lennard_jones')) return
+    call refuse_foreign(deck, 'force', 'law', 'lennard_jones', keys, error)
+    if (.not. is_law(deck, 'lennard_jones')) return
+    if (.not. deck%is_set('force', 'surface_energy')) &
+      call require(deck, 'force', 'law', 'lennard_jones', 'hamaker', error)
+    call require(deck, 'force', 'law', 'lennard_jones', 'z0', error)
+    if (allocated(error)) return
     call deck%assume('force', 'part', 'full')
     if (deck%is_set('force', 'surface_energy') .and. deck%is_set('force', 'hamaker')) &
       call deck%mistake('force', 'surface_energy', 'follows from hamaker; give one of the two', &

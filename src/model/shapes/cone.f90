@@ -5,7 +5,8 @@ module cone
   use deck, only: deck_t
   use deck_keys, only: key_spec, real_value
   use shape, only: shape_t
-  use shape_reading, only: require, refuse_radius
+  use law_reading, only: require
+  use shape_reading, only: refuse_radius
   use power, only: take_power
   implicit none
   private
@@ -26,7 +27,7 @@ contains
     type(failure_t), allocatable, intent(inout) :: error
     real(wp) :: half_angle
 
-    call require(deck, 'cone', 'half_angle', error)
+    call require(deck, 'shape', 'kind', 'cone', 'half_angle', error)
     call refuse_radius(deck, 'a cone has none', error)
     if (allocated(error)) return
     call deck%get('shape', 'half_angle', half_angle)

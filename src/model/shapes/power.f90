@@ -5,9 +5,9 @@ module power
   use failure, only: failure_t
   use deck, only: deck_t
   use deck_keys, only: key_spec, real_value
-  use law_reading, only: check_decades
+  use law_reading, only: require, check_decades
   use shape, only: shape_t
-  use shape_reading, only: require, read_radius, refuse_radius
+  use shape_reading, only: read_radius, refuse_radius
   use parabola, only: new_parabola
   implicit none
   private
@@ -42,7 +42,7 @@ contains
     type(failure_t), allocatable, intent(inout) :: error
     real(wp) :: n, coefficient, radius
 
-    call require(deck, 'power', 'exponent', error)
+    call require(deck, 'shape', 'kind', 'power', 'exponent', error)
     if (allocated(error)) return
     call deck%get('shape', 'exponent', n)
     if (deck%is_set('shape', 'coefficient')) then

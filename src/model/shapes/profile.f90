@@ -9,9 +9,9 @@ module profile
   use cubic, only: spline
   use interpolation, only: interval_of
   use quadrature, only: gauss_legendre
-  use law_reading, only: check_decades
+  use law_reading, only: require, check_decades
   use shape, only: shape_t
-  use shape_reading, only: require, refuse_radius
+  use shape_reading, only: refuse_radius
   implicit none
   private
   public :: keys, read_shape
@@ -50,7 +50,7 @@ contains
     type(profile_t) :: this
     type(data_table_t) :: table
 
-    call require(deck, 'profile', 'file', error)
+    call require(deck, 'shape', 'kind', 'profile', 'file', error)
     call refuse_radius(deck, 'the profile has its own', error)
     if (allocated(error)) return
     call read_columns(deck, 'shape', 'file', fewest, table, trouble)

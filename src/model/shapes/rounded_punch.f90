@@ -5,7 +5,8 @@ module rounded_punch
   use deck, only: deck_t
   use deck_keys, only: key_spec, real_value
   use shape, only: shape_t
-  use shape_reading, only: require, read_radius
+  use law_reading, only: require
+  use shape_reading, only: read_radius
   implicit none
   private
   public :: keys, read_shape
@@ -37,7 +38,7 @@ contains
     type(rounded_punch_t) :: this
     real(wp) :: flat_radius
 
-    call require(deck, 'rounded_punch', 'flat_radius', error)
+    call require(deck, 'shape', 'kind', 'rounded_punch', 'flat_radius', error)
     call read_radius(deck, this%radius, error)
     if (allocated(error)) return
     call deck%get('shape', 'flat_radius', flat_radius)

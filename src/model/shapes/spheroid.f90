@@ -8,7 +8,8 @@ module spheroid
   use deck, only: deck_t
   use deck_keys, only: key_spec, real_value
   use shape, only: shape_t
-  use shape_reading, only: require, read_radius
+  use law_reading, only: require
+  use shape_reading, only: read_radius
   implicit none
   private
   public :: keys, read_shape, take_spheroid
@@ -42,7 +43,7 @@ contains
     type(failure_t), allocatable, intent(inout) :: error
     real(wp) :: radius, semi_axis
 
-    call require(deck, 'spheroid', 'semi_axis', error)
+    call require(deck, 'shape', 'kind', 'spheroid', 'semi_axis', error)
     call read_radius(deck, radius, error)
     if (allocated(error)) return
     call deck%get('shape', 'semi_axis', semi_axis)
