@@ -109,9 +109,9 @@ GUARDS = {
         ("swap", "whole", "self%room*word"),
         ("resume/test_resume_sweep.py::test_what_was_torn_is_cut_off",)),
     "journal_flush": Guard("a record of the journal that the system could not write stops the run",
-        "journal", "call system_failure trouble write", GONE, (LIMITED,)),
+        "journal", "call check_status trouble write", GONE, (LIMITED,)),
     "table_flush": Guard("a table that the system could not write is an error", "text_file",
-        "call system_failure cannot write status", GONE,
+        "call check_status cannot write status", GONE,
         ("report/test_results.py", "resume/test_unwritable.py")),
     "intent_last": Guard(
         "a folder says that its files may not belong together until they are cleaned up",
