@@ -33,7 +33,7 @@ METHODS = ("mixing", "anderson", "newton")
 _LARGEST_ORDER = 64
 # The map of meshes without one; mapped meshes are not for users.
 _UNMAPPED = (0.0, 0.0, 0.0, 1.0)
-# As in src/scene/scene_keys.f90.
+# As in src/scene/numerics_group.f90.
 _MOST_NODES = 20000
 _MOST_DEPTH = 1000
 

@@ -52,7 +52,7 @@ contains
     call check(name, scene%deck%has_group('summary'))
     associate (deck => scene%deck)
       do i = 1, size(deck%specs)
-        if (deck%values(i)%is_file()) &
+        if (allocated(deck%values(i)%remark)) &
           call check(deck%path_of(trim(deck%specs(i)%group), trim(deck%specs(i)%key)), .false.)
       end do
     end associate

@@ -2,11 +2,10 @@
 module run_messages
   use kinds, only: wp
   use text, only: brief, rounded
-  use files, only: write_stderr
+  use files, only: file_exists, own_path, whole_path, write_stderr
   use scene_groups, only: scene_t
   use equilibrium, only: cost_t
   use summary, only: summary_t
-  use map_command, only: drawing_of
   implicit none
   private
   public :: destination_t, tell
@@ -18,6 +17,13 @@ module run_messages
   contains
     procedure :: say
   end type destination_t
+
+  !> Python and the script: in a checkout, with the program in a build folder, and in an
+  !> installation.
+  character(len=*), parameter :: pythons(2) = [character(len=16) :: '.venv/bin/python', &
+    'bin/python3']
+  character(len=*), parameter :: scripts(2) = [character(len=25) :: 'pywrap/plots/map.py', &
+    'share/snapin/plots/map.py']
 
 contains
 
@@ -84,5 +90,26 @@ contains
 
     if (.not. self%quiet) call write_stderr(self%folder//': '//text//new_line('a'))
   end subroutine say
+
+  !> The command that draws the sweep in a folder of results; empty if there is no script.
+  function drawing_of(folder) result(command)
+    character(len=*), intent(in) :: folder
+    character(len=:), allocatable :: command, program, top, python
+    integer :: i
+
+    command = ''
+    program = trim(own_path())
+    top = program(:index(program, '/', back=.true.) - 1)
+    top = top(:index(top, '/', back=.true.))
+    do i = 1, size(scripts)
+      if (.not. file_exists(top // trim(scripts(i)))) cycle
+      python = top // trim(pythons(i))
+      if (.not. file_exists(python)) python = 'python3'
+      if (top == whole_path('')) top = ''
+      if (top == '' .and. python /= 'python3') python = trim(pythons(i))
+      command = python // ' ' // top // trim(scripts(i)) // ' ' // folder
+      return
+    end do
+  end function drawing_of
 
 end module run_messages

@@ -14,7 +14,7 @@ module simulation
   use drive_rates, only: rate_drive
   use sweeps, only: run_sweep
   use case_columns, only: groups_left_out
-  use sweep_tally, only: sweep_tally_t
+  use sweep_case, only: sweep_tally_t
   use ranks, only: crew_t
   use preflight, only: check_room, large_results
   use blas_threads, only: thread_count

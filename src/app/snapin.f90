@@ -6,8 +6,7 @@ program snapin
   use failure, only: failure_t, fail, bad_input
   use text, only: lower, quoted, clip, guess
   use deck_keys, only: key_spec, write_keys, is_of, names_of
-  use scene, only: scene_t, read_scene
-  use scene_keys, only: keys_of_scene
+  use scene, only: scene_t, keys_of_scene, read_scene
   use c_library, only: c_prepare, c_end_with_parent
   use files, only: read_standard_input
   use results, only: to_stream

@@ -6,8 +6,7 @@ module sweeps
   use clock, only: clock_now => seconds
   use linear_algebra, only: claim_buffers
   use scene_groups, only: scene_t
-  use sweep_case, only: case_t, pass_case, run_case
-  use sweep_tally, only: sweep_tally_t
+  use sweep_case, only: case_t, sweep_tally_t, pass_case, run_case
   use case_rows, only: case_rows_t
   use progress, only: progress_t
   use case_columns, only: columns_of, column_width

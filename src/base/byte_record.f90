@@ -153,23 +153,16 @@ contains
   subroutine pass_text(self, text)
     class(byte_record_t), intent(inout) :: self
     character(len=:), allocatable :: text
-    integer(long) :: words(1)
-    character(len=letters) :: piece
-    integer :: length, first, last
+    integer(long), allocatable :: words(:)
+    integer :: length
 
     if (.not. self%reading) length = len(text)
     call pass_count(self, length)
-    if (self%reading) then
-      if (allocated(text)) deallocate (text)
-      allocate (character(len=length) :: text)
-    end if
-    do first = 1, length, letters
-      last = min(first + letters - 1, length)
-      if (.not. self%reading) piece = text(first:last)
-      words = transfer(piece, words)
-      call self%pass(words)
-      if (self%reading) text(first:last) = transfer(words, piece)
-    end do
+    if (self%reading) text = repeat(' ', length)
+    ! Blanks fill the last word.
+    words = transfer(text // repeat(' ', letters - 1), words, (length + letters - 1)/letters)
+    call self%pass(words)
+    if (self%reading) text = transfer(words, text)
   end subroutine pass_text
 
   !> Passes a number of items; a number that the record cannot hold counts as exhausted.

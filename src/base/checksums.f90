@@ -61,18 +61,9 @@ contains
     character(len=*), intent(in) :: text
     !> Number of characters in a word.
     integer, parameter :: letters = storage_size(0_long)/8
-    integer(long) :: words((len(text) + letters - 1)/letters)
-    character(len=letters) :: piece
-    integer :: i, first, last
 
-    do i = 1, size(words)
-      first = letters*(i - 1) + 1
-      last = min(letters*i, len(text))
-      piece = repeat(achar(0), letters)
-      piece(:last - first + 1) = text(first:last)
-      words(i) = transfer(piece, words(i))
-    end do
-    checksum = of_words(words)
+    checksum = of_words(transfer(text // repeat(achar(0), letters - 1), [0_long], &
+      (len(text) + letters - 1)/letters))
   end function of_text
 
 end module checksums

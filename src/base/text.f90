@@ -126,12 +126,8 @@ contains
   pure function rounded(x) result(text)
     real(wp), intent(in) :: x
     character(len=:), allocatable :: text
-    character(len=16) :: buffer
-    real(wp) :: near
 
-    write (buffer, '(es10.2)') x
-    read (buffer, *) near
-    text = brief(near)
+    text = rounded_to(x, 0.0_wp)
   end function rounded
 
   !> `x` for a message, down to the second digit of its `error`, but with three digits at least.

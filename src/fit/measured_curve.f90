@@ -70,7 +70,7 @@ contains
       if (size(request%columns) > 2) then
         do i = 1, size(z)
           if (any(abs(table%value(i, 3) - [0, 1]) <= 0)) cycle
-          call table%source%complain(table%place(i), '', '', &
+          call table%source%complain(table%place(i), &
             'the segment is neither 0, approach, nor 1, retreat', error)
           return
         end do

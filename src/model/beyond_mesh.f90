@@ -3,6 +3,7 @@
 !> law's own, Derjaguin's (23). For other shapes they are integrals over r0/r.
 module beyond_mesh
   use kinds, only: wp
+  use force_law, only: of_pressure, of_energy
   use dimensionless_problem, only: problem_t
   use quadrature, only: gauss_legendre
   implicit none
@@ -30,7 +31,7 @@ contains
     type(rule_t) :: rule
 
     if (problem%shape%parabolic) then
-      load = sum(problem%law%energy([gap]))
+      load = problem%law%at(of_energy, gap)
     else
       rule = rule_beyond(problem, gap, from)
       load = sum(rule%weight*problem%law%pressure(rule%gap))
@@ -44,7 +45,7 @@ contains
     real(wp) :: slope(2)
     type(rule_t) :: rule
 
-    slope(1) = -sum(problem%law%pressure([gap]))
+    slope(1) = -problem%law%at(of_pressure, gap)
     slope(2) = 0
     if (problem%shape%parabolic) return
     slope(2) = slope(1)*from

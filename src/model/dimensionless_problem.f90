@@ -8,7 +8,7 @@
 !> law, 0 for rigid bodies. For other shapes R is defined by their lateral unit, sqrt(R L).
 module dimensionless_problem
   use kinds, only: wp, pi
-  use force_law, only: force_law_t, whole_step
+  use force_law, only: force_law_t, whole_step, of_pressure
   use shape, only: shape_t
   use elastic_body, only: elastic_body_t
   implicit none
@@ -178,12 +178,10 @@ contains
   !> Largest tension of the law [Pa], at the contact edge; 0 for a law without a largest tension.
   pure real(wp) function largest_tension(problem)
     type(problem_t), intent(in) :: problem
-    real(wp) :: pressure(1)
 
     largest_tension = 0
-    if (.not. problem%law%edge_gap > 0) return
-    pressure = problem%law%pressure([problem%law%edge_gap])
-    largest_tension = -pressure(1)*problem%pressure
+    if (problem%law%edge_gap > 0) &
+      largest_tension = -problem%law%at(of_pressure, problem%law%edge_gap)*problem%pressure
   end function largest_tension
 
   !> Largest gap of bodies in contact (law's lengths); -huge if the law does not define it.

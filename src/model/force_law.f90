@@ -8,7 +8,11 @@ module force_law
   use kinds, only: wp
   implicit none
   private
-  public :: force_law_t, whole_step
+  public :: force_law_t, whole_step, of_pressure, of_slope, of_energy
+
+  !> The quantities of a law: the pressure, its derivative by the gap, and its integral from the gap
+  !> to infinity.
+  integer, parameter :: of_pressure = 1, of_slope = 2, of_energy = 3
 
   !> Distance from a step of the pressure, in its widths, beyond which nothing of the step is left:
   !> there erfc is below rounding.
@@ -83,10 +87,12 @@ module force_law
     !> Gap beyond which the repulsion is below rounding; 0 until it is known.
     real(wp) :: range = 0
   contains
-    !> Pressure, its derivative by the gap, and its integral from the gap to infinity.
-    procedure(gap_function), deferred :: pressure
-    procedure(gap_function), deferred :: slope
-    procedure(gap_function), deferred :: energy
+    !> One of the three quantities at gaps.
+    procedure(evaluate_law), deferred :: evaluate
+    procedure :: pressure
+    procedure :: slope
+    procedure :: energy
+    procedure :: at
     procedure :: closure
     procedure :: table_error
     procedure :: gap_of
@@ -95,15 +101,54 @@ module force_law
   end type force_law_t
 
   abstract interface
-    pure function gap_function(self, gap) result(value)
+    pure subroutine evaluate_law(self, quantity, gap, value)
       import :: force_law_t, wp
       class(force_law_t), intent(in) :: self
+      integer, intent(in) :: quantity
       real(wp), intent(in) :: gap(:)
-      real(wp) :: value(size(gap))
-    end function gap_function
+      real(wp), intent(out) :: value(size(gap))
+    end subroutine evaluate_law
   end interface
 
 contains
+
+  !> The pressure at gaps.
+  pure function pressure(self, gap) result(value)
+    class(force_law_t), intent(in) :: self
+    real(wp), intent(in) :: gap(:)
+    real(wp) :: value(size(gap))
+
+    call self%evaluate(of_pressure, gap, value)
+  end function pressure
+
+  !> The derivative of the pressure by the gap.
+  pure function slope(self, gap) result(value)
+    class(force_law_t), intent(in) :: self
+    real(wp), intent(in) :: gap(:)
+    real(wp) :: value(size(gap))
+
+    call self%evaluate(of_slope, gap, value)
+  end function slope
+
+  !> The integral of the pressure from the gaps to infinity.
+  pure function energy(self, gap) result(value)
+    class(force_law_t), intent(in) :: self
+    real(wp), intent(in) :: gap(:)
+    real(wp) :: value(size(gap))
+
+    call self%evaluate(of_energy, gap, value)
+  end function energy
+
+  !> One of the three quantities at a single gap.
+  pure real(wp) function at(self, quantity, gap)
+    class(force_law_t), intent(in) :: self
+    integer, intent(in) :: quantity
+    real(wp), intent(in) :: gap
+    real(wp) :: value(1)
+
+    call self%evaluate(quantity, [gap], value)
+    at = value(1)
+  end function at
 
   !> Largest decrease of gaps in one iteration.
   pure function closure(self, gap) result(most)

@@ -1,7 +1,7 @@
 !> The sum of several forces. A single law is kept as it is, without the cost of a sum.
 module force_sum
   use kinds, only: wp
-  use force_law, only: force_law_t
+  use force_law, only: force_law_t, of_pressure, of_slope, of_energy
   use law_scan, only: find_scales
   implicit none
   private
@@ -17,9 +17,7 @@ module force_sum
   type, extends(force_law_t) :: force_sum_t
     type(term_t), allocatable :: term(:)
   contains
-    procedure :: pressure
-    procedure :: slope
-    procedure :: energy
+    procedure :: evaluate
     procedure :: closure
     procedure :: table_error
   end type force_sum_t
@@ -86,7 +84,9 @@ contains
   subroutine settle(law)
     class(force_law_t), allocatable, intent(inout) :: law
     type(force_sum_t) :: alone
-    real(wp) :: most(1), length, unit, origin
+    type(term_t), allocatable :: terms(:)
+    real(wp) :: most, length, unit, origin
+    logical :: has_z0
     integer :: i
 
     if (.not. law%has_units) then
@@ -97,21 +97,25 @@ contains
     select type (law)
     type is (force_sum_t)
       unit = maxval([(law%term(i)%law%pressure_unit, i=1, size(law%term))])
-      call take_units(law, minval(lengths(law)), unit, 0.0_wp)
+      length = minval(lengths(law))
+      call move_alloc(law%term, terms)
+      call take_units(law, terms, length, unit, 0.0_wp)
       call find_scales(law)
       if (law%edge_gap > 0 .and. law%adhesion > 0) then
-        most = -law%pressure([law%edge_gap])
-        length = law%length*law%adhesion/most(1)
-        law%has_z0 = .false.
+        most = -law%at(of_pressure, law%edge_gap)
+        length = law%length*law%adhesion/most
+        has_z0 = .false.
         do i = 1, size(law%term)
           if (.not. law%term(i)%law%has_z0) cycle
           length = law%term(i)%law%length
-          law%has_z0 = .true.
+          has_z0 = .true.
           exit
         end do
-        unit = law%pressure_unit*most(1)
+        unit = law%pressure_unit*most
         origin = law%separation_of(law%rest_gap) - length
-        call take_units(law, length, unit, origin)
+        call move_alloc(law%term, terms)
+        call take_units(law, terms, length, unit, origin)
+        law%has_z0 = has_z0
         call find_scales(law)
       end if
     class default
@@ -119,30 +123,21 @@ contains
     end select
   end subroutine settle
 
-  !> Sets the units of a sum; its scales must then be found again.
-  subroutine take_units(law, length, unit, origin)
-    type(force_sum_t), intent(inout) :: law
+  !> The sum of these terms, which are moved, in the given units; its scales are not known yet.
+  subroutine take_units(law, terms, length, unit, origin)
+    type(force_sum_t), intent(out) :: law
+    type(term_t), allocatable, intent(inout) :: terms(:)
     real(wp), intent(in) :: length, unit, origin
     real(wp), allocatable :: breaks(:), kinks(:)
     integer :: i
 
+    call move_alloc(terms, law%term)
     law%terms = size(law%term)
     law%length = length
     law%pressure_unit = unit
     law%origin = origin
-    law%adhesion = 0
-    law%work = 0
-    law%edge_gap = 0
-    law%rest_gap = 0
-    law%falls_below = 0
-    law%range = 0
-    law%power_from = 0
     law%smallest_gap = -huge(1.0_wp)
     law%repulsion_length = huge(1.0_wp)
-    law%tail_power = huge(1.0_wp)
-    law%period = 0
-    law%step_at = 0
-    law%step_width = 0
     allocate (breaks(0), kinks(0))
     do i = 1, size(law%term)
       associate (term => law%term(i), part => law%term(i)%law)
@@ -164,7 +159,6 @@ contains
       end associate
     end do
     call move_alloc(breaks, law%breaks)
-    if (allocated(law%kinks)) deallocate (law%kinks)
     if (size(kinks) > 0) call move_alloc(kinks, law%kinks)
     if (.not. law%repulsion_length < huge(1.0_wp)) law%repulsion_length = 1
     ! Messages refer to the first term.
@@ -192,47 +186,25 @@ contains
     lengths = pack([(law%term(i)%law%length, i=1, size(has))], has .or. .not. any(has))
   end function lengths
 
-  pure function pressure(self, gap) result(value)
+  pure subroutine evaluate(self, quantity, gap, value)
     class(force_sum_t), intent(in) :: self
+    integer, intent(in) :: quantity
     real(wp), intent(in) :: gap(:)
-    real(wp) :: value(size(gap))
+    real(wp), intent(out) :: value(size(gap))
+    real(wp) :: own(size(gap)), factor
     integer :: i
 
     value = 0
     do i = 1, size(self%term)
       associate (term => self%term(i))
-        value = value + term%weight*term%law%pressure(own_gap(term, gap))
+        call term%law%evaluate(quantity, own_gap(term, gap), own)
+        factor = term%weight
+        if (quantity == of_slope) factor = term%weight*term%stretch
+        if (quantity == of_energy) factor = term%weight/term%stretch
+        value = value + factor*own
       end associate
     end do
-  end function pressure
-
-  pure function slope(self, gap) result(value)
-    class(force_sum_t), intent(in) :: self
-    real(wp), intent(in) :: gap(:)
-    real(wp) :: value(size(gap))
-    integer :: i
-
-    value = 0
-    do i = 1, size(self%term)
-      associate (term => self%term(i))
-        value = value + term%weight*term%stretch*term%law%slope(own_gap(term, gap))
-      end associate
-    end do
-  end function slope
-
-  pure function energy(self, gap) result(value)
-    class(force_sum_t), intent(in) :: self
-    real(wp), intent(in) :: gap(:)
-    real(wp) :: value(size(gap))
-    integer :: i
-
-    value = 0
-    do i = 1, size(self%term)
-      associate (term => self%term(i))
-        value = value + term%weight/term%stretch*term%law%energy(own_gap(term, gap))
-      end associate
-    end do
-  end function energy
+  end subroutine evaluate
 
   pure function table_error(self, gap) result(value)
     class(force_sum_t), intent(in) :: self

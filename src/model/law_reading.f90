@@ -1,30 +1,27 @@
-!> Common parts of the readers of force laws.
+!> Common parts of the readers of force laws; `require` and `refuse_foreign` also of shapes.
 module law_reading
   use kinds, only: wp
   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
   use failure, only: failure_t
   use text, only: brief, quoted
   use deck, only: deck_t
-  use deck_keys, only: key_spec, group, word_key
+  use deck_keys, only: key_spec, word_value
+  use force_law, only: force_law_t
   implicit none
   private
-  public :: keys_of_force, is_law, check_parameter, check_decades
+  public :: keys_of_force, is_law, require, refuse_foreign, check_decades, accept_law
 
   !> Largest decimal order, positive or negative, of units and derived quantities.
   integer, parameter :: most_decades = 100
 
-contains
-
   !> The row of &force, the group of the paper's two laws, and the row of its key `law`; the laws
   !> add their own rows.
-  pure function keys_of_force() result(rows)
-    type(key_spec), allocatable :: rows(:)
+  type(key_spec), parameter :: keys_of_force(*) = [ &
+    key_spec('force', meaning='Force per area between the surfaces, against their separation.'), &
+    key_spec('force', 'law', word_value, 'Name of the force law.', &
+      choices='lennard_jones exponential', required=.true.)]
 
-    rows = [ &
-      group('force', 'Force per area between the surfaces, against their separation.'), &
-      word_key('force', 'law', 'lennard_jones exponential', 'Name of the force law.', &
-               required=.true.)]
-  end function keys_of_force
+contains
 
   !> Whether the deck has &force with this law.
   pure logical function is_law(deck, law)
@@ -38,23 +35,34 @@ contains
     is_law = name == law
   end function is_law
 
-  !> Requires a parameter of &force for its law, if it is `needed`, and refuses it for another law.
-  pure subroutine check_parameter(deck, law, key, needed, error)
+  !> Fails if the deck does not give a key of a group that a `choice` needs, the value of the
+  !> group's key `by`.
+  pure subroutine require(deck, group, by, choice, key, error)
     type(deck_t), intent(in) :: deck
-    character(len=*), intent(in) :: law, key
-    logical, intent(in) :: needed
+    character(len=*), intent(in) :: group, by, choice, key
     type(failure_t), allocatable, intent(inout) :: error
-    character(len=:), allocatable :: name
 
-    if (.not. deck%has_group('force')) return
-    call deck%get('force', 'law', name)
-    if (name == law .and. needed .and. .not. deck%is_set('force', key)) then
-      call deck%mistake('force', key, 'missing; law '//quoted(law)//' needs it', error)
-    else if (name /= law .and. deck%is_set('force', key)) then
-      call deck%mistake('force', key, 'belongs to law '//quoted(law)//', not to '//quoted(name), &
-        error)
-    end if
-  end subroutine check_parameter
+    if (.not. deck%is_set(group, key)) call deck%mistake(group, key, 'missing; '//by//' '// &
+      quoted(choice)//' needs it', error)
+  end subroutine require
+
+  !> Fails if the deck gives one of the keys `rows`, which belong to one choice, to another.
+  pure subroutine refuse_foreign(deck, group, by, choice, rows, error)
+    type(deck_t), intent(in) :: deck
+    character(len=*), intent(in) :: group, by, choice
+    type(key_spec), intent(in) :: rows(:)
+    type(failure_t), allocatable, intent(inout) :: error
+    character(len=:), allocatable :: other
+    integer :: i
+
+    if (.not. deck%has_group(group)) return
+    call deck%get(group, by, other)
+    if (other == choice) return
+    do i = 1, size(rows)
+      if (deck%is_set(group, trim(rows(i)%key))) call deck%mistake(group, trim(rows(i)%key), &
+        'belongs to '//by//' '//quoted(choice)//', not to '//quoted(other), error)
+    end do
+  end subroutine refuse_foreign
 
   !> Refuses `what`, a quantity of 10^decades `unit` that follows from values of &bodies and of the
   !> group, if it is out of range.
@@ -72,5 +80,23 @@ contains
         ' of 1e'//brief(nint(decades))//unit//'; allowed: from 1e-100 to 1e100', error)
     end if
   end subroutine check_decades
+
+  !> Hands out a law that was read from a group, with the names of the group and of its keys for the
+  !> magnitudes of pressure and gap; refuses it if its pressure is out of range.
+  subroutine accept_law(deck, group, strength_key, length_key, this, law, error)
+    type(deck_t), intent(in) :: deck
+    character(len=*), intent(in) :: group, strength_key, length_key
+    class(force_law_t), intent(inout) :: this
+    class(force_law_t), allocatable, intent(out) :: law
+    type(failure_t), allocatable, intent(inout) :: error
+
+    call check_decades(deck, group, strength_key, log10(this%pressure_unit), 'a pressure', ' Pa', &
+      error)
+    if (allocated(error)) return
+    this%group = group
+    this%strength_key = strength_key
+    this%length_key = length_key
+    allocate (law, source=this)
+  end subroutine accept_law
 
 end module law_reading

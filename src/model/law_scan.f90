@@ -3,7 +3,7 @@
 module law_scan
   use kinds, only: wp
   use root_finding, only: bracket_t
-  use force_law, only: force_law_t
+  use force_law, only: force_law_t, of_pressure, of_slope, of_energy
   implicit none
   private
   public :: find_scales, surroundings_t, surroundings_of
@@ -55,31 +55,31 @@ contains
       ends = huge(1.0_wp)
       i = next_zero(pressure, 1, falling=.false.)
       if (i > 0) then
-        ends = zero_between(law, gap(i), gap(i + 1), of_slope=.false.)
+        ends = zero_between(law, gap(i), gap(i + 1), of_pressure)
         law%falls_below = ends
         i = next_zero(slope, i, falling=.true.)
-        if (i > 0) law%falls_below = zero_between(law, gap(i), gap(i + 1), of_slope=.true.)
+        if (i > 0) law%falls_below = zero_between(law, gap(i), gap(i + 1), of_slope)
       end if
     end if
     rest = next_zero(pressure, 1, falling=.true.)
     largest = 1
     if (rest > 0) then
-      law%rest_gap = zero_between(law, gap(rest), gap(rest + 1), of_slope=.false.)
-      law%work = -energy_at(law, law%rest_gap)
+      law%rest_gap = zero_between(law, gap(rest), gap(rest + 1), of_pressure)
+      law%work = -law%at(of_energy, law%rest_gap)
       law%adhesion = law%work
       i = next_zero(pressure, rest + 1, falling=.false.)
       if (i > 0) law%adhesion = law%work + &
-        energy_at(law, zero_between(law, gap(i), gap(i + 1), of_slope=.false.))
+        law%at(of_energy, zero_between(law, gap(i), gap(i + 1), of_pressure))
       i = next_zero(slope, rest, falling=.false.)
       if (i > 0) then
-        law%edge_gap = zero_between(law, gap(i), gap(i + 1), of_slope=.true.)
-        largest = -pressure_at(law, law%edge_gap)
+        law%edge_gap = zero_between(law, gap(i), gap(i + 1), of_slope)
+        largest = -law%at(of_pressure, law%edge_gap)
         law%outer_edges = [real(wp) ::]
         do
           i = next_zero(slope, i + 1, falling=.false.)
           if (i == 0) exit
           if (pressure(i) < -nothing*largest) law%outer_edges = [law%outer_edges, &
-            zero_between(law, gap(i), gap(i + 1), of_slope=.true.)]
+            zero_between(law, gap(i), gap(i + 1), of_slope)]
         end do
       end if
     else if (law%falls_below > 0) then
@@ -106,12 +106,12 @@ contains
 
     from = law%gap_of(0.0_wp)
     if (law%smallest_gap <= from) then
-      law%work = -energy_at(law, from)
+      law%work = -law%at(of_energy, from)
     else
       from = min(1.0_wp, 0.5_wp*ends)
     end if
-    law%adhesion = -energy_at(law, from)
-    if (ends < huge(1.0_wp)) law%adhesion = law%adhesion + energy_at(law, ends)
+    law%adhesion = -law%at(of_energy, from)
+    if (ends < huge(1.0_wp)) law%adhesion = law%adhesion + law%at(of_energy, ends)
   end subroutine find_adhesion_without_rest
 
   !> Finds the features outside the well of contact.
@@ -127,7 +127,7 @@ contains
     pressure = law%pressure(gap)
     ! Smaller pressures are negligible or rounding errors; a barrier that fades into them has no
     ! well.
-    counts = abs(pressure) >= nothing*abs(pressure_at(law, law%edge_gap))
+    counts = abs(pressure) >= nothing*abs(law%at(of_pressure, law%edge_gap))
     gap = pack(gap, counts)
     pressure = pack(pressure, counts)
     i = next_zero(pressure, 1, falling=.true.)
@@ -136,19 +136,19 @@ contains
       j = next_zero(pressure, i + 1, falling=.false.)
       if (j == 0) return
       i = next_zero(pressure, j + 1, falling=.true.)
-      top = zero_between(law, gap(j), gap(j + 1), of_slope=.false.)
+      top = zero_between(law, gap(j), gap(j + 1), of_pressure)
       peak = j + maxloc(pressure(j + 1:merge(i, size(gap), i > 0)), 1)
       if (.not. pressure(peak) > 0) return
-      if (.not. found%has_barrier .or. energy_at(law, top) > found%barrier_energy) then
-        found%barrier_energy = energy_at(law, top)
+      if (.not. found%has_barrier .or. law%at(of_energy, top) > found%barrier_energy) then
+        found%barrier_energy = law%at(of_energy, top)
         found%barrier_pressure = pressure(peak)
         if (peak > 1 .and. peak < size(gap)) found%barrier_pressure = &
-          pressure_at(law, zero_between(law, gap(peak - 1), gap(peak + 1), of_slope=.true.))
+          law%at(of_pressure, zero_between(law, gap(peak - 1), gap(peak + 1), of_slope))
         found%has_barrier = .true.
       end if
       if (i == 0) return
-      bottom = zero_between(law, gap(i), gap(i + 1), of_slope=.false.)
-      depth = -energy_at(law, bottom)
+      bottom = zero_between(law, gap(i), gap(i + 1), of_pressure)
+      depth = -law%at(of_energy, bottom)
       if (.not. found%has_well .or. depth > -found%well_energy) then
         found%has_well = .true.
         found%well_gap = bottom
@@ -171,55 +171,22 @@ contains
     i = 0
   end function next_zero
 
-  !> A zero of the pressure, or of its slope, between two gaps of different signs, bisected to
-  !> rounding, since all scales depend on it.
-  real(wp) function zero_between(law, from, to, of_slope) result(middle)
+  !> A zero of the pressure, or of its slope (`quantity`), between two gaps of different signs,
+  !> bisected to rounding, since all scales depend on it.
+  real(wp) function zero_between(law, from, to, quantity) result(middle)
     class(force_law_t), intent(in) :: law
     real(wp), intent(in) :: from, to
-    logical, intent(in) :: of_slope
+    integer, intent(in) :: quantity
     type(bracket_t) :: bracket
     logical :: positive
 
     bracket = bracket_t(from, to)
-    positive = is_positive(from)
+    positive = law%at(quantity, from) > 0
     do while (bracket%is_open())
-      call bracket%narrow(is_positive(bracket%middle()) .eqv. positive)
+      call bracket%narrow((law%at(quantity, bracket%middle()) > 0) .eqv. positive)
     end do
     middle = bracket%middle()
-
-  contains
-
-    logical function is_positive(gap)
-      real(wp), intent(in) :: gap
-      real(wp) :: value(1)
-
-      if (of_slope) then
-        value = law%slope([gap])
-      else
-        value = law%pressure([gap])
-      end if
-      is_positive = value(1) > 0
-    end function is_positive
-
   end function zero_between
-
-  real(wp) function pressure_at(law, gap)
-    class(force_law_t), intent(in) :: law
-    real(wp), intent(in) :: gap
-    real(wp) :: value(1)
-
-    value = law%pressure([gap])
-    pressure_at = value(1)
-  end function pressure_at
-
-  real(wp) function energy_at(law, gap)
-    class(force_law_t), intent(in) :: law
-    real(wp), intent(in) :: gap
-    real(wp) :: value(1)
-
-    value = law%energy([gap])
-    energy_at = value(1)
-  end function energy_at
 
   !> The gaps of the scan, in ascending order; a step of the law, which may be narrower than they
   !> are apart, has gaps of its own.

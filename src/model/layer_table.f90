@@ -11,13 +11,11 @@ module layer_table
   use chebyshev, only: chebyshev_points, chebyshev_series, series_value, series_slope, &
     series_integral, power_series
   use interpolation, only: polynomial_weights
+  use force_law, only: of_pressure, of_slope, of_energy
   use poisson_boltzmann, only: surface_t, gap_state_t, far_state, solve_gap
   implicit none
   private
-  public :: layer_table_t, new_layer_table, nearest_gap, of_pressure, of_slope, of_energy
-
-  !> The quantities of the table.
-  integer, parameter :: of_pressure = 1, of_slope = 2, of_energy = 3
+  public :: layer_table_t, new_layer_table, nearest_gap
 
   !> Binary exponents of the first and the last factor of two of the table.
   integer, parameter :: first_octave = -19, last_octave = 6

@@ -3,7 +3,7 @@
 !> n, m = 9, 3 it is the Lennard-Jones law between half-spaces.
 module power_pair
   use kinds, only: wp
-  use force_law, only: force_law_t
+  use force_law, only: force_law_t, of_pressure, of_slope
   implicit none
   private
   public :: power_pair_t, new_power_pair, pair_factor
@@ -15,9 +15,7 @@ module power_pair
     real(wp) :: repulsive = 0, attractive = 0
   contains
     procedure :: set_scales
-    procedure :: pressure
-    procedure :: slope
-    procedure :: energy
+    procedure :: evaluate
   end type power_pair_t
 
 contains
@@ -69,34 +67,26 @@ contains
     self%closure_fraction = 2.7_wp/self%n
   end subroutine set_scales
 
-  pure function pressure(self, gap) result(value)
+  pure subroutine evaluate(self, quantity, gap, value)
     class(power_pair_t), intent(in) :: self
+    integer, intent(in) :: quantity
     real(wp), intent(in) :: gap(:)
-    real(wp) :: value(size(gap))
+    real(wp), intent(out) :: value(size(gap))
 
-    value = self%repulsive*inverse_power(gap, self%n)
-    if (self%attractive > 0) value = value - self%attractive*inverse_power(gap, self%m)
-  end function pressure
-
-  pure function slope(self, gap) result(value)
-    class(power_pair_t), intent(in) :: self
-    real(wp), intent(in) :: gap(:)
-    real(wp) :: value(size(gap))
-
-    value = -self%repulsive*self%n*inverse_power(gap, self%n + 1)
-    if (self%attractive > 0) &
-      value = value + self%attractive*self%m*inverse_power(gap, self%m + 1)
-  end function slope
-
-  pure function energy(self, gap) result(value)
-    class(power_pair_t), intent(in) :: self
-    real(wp), intent(in) :: gap(:)
-    real(wp) :: value(size(gap))
-
-    value = self%repulsive/(self%n - 1)*inverse_power(gap, self%n - 1)
-    if (self%attractive > 0) &
-      value = value - self%attractive/(self%m - 1)*inverse_power(gap, self%m - 1)
-  end function energy
+    select case (quantity)
+    case (of_pressure)
+      value = self%repulsive*inverse_power(gap, self%n)
+      if (self%attractive > 0) value = value - self%attractive*inverse_power(gap, self%m)
+    case (of_slope)
+      value = -self%repulsive*self%n*inverse_power(gap, self%n + 1)
+      if (self%attractive > 0) &
+        value = value + self%attractive*self%m*inverse_power(gap, self%m + 1)
+    case default
+      value = self%repulsive/(self%n - 1)*inverse_power(gap, self%n - 1)
+      if (self%attractive > 0) &
+        value = value - self%attractive/(self%m - 1)*inverse_power(gap, self%m - 1)
+    end select
+  end subroutine evaluate
 
   !> gap**(-n). Whole exponents need multiplications alone, which take a quarter of the time.
   pure function inverse_power(gap, n) result(value)

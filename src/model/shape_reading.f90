@@ -2,12 +2,11 @@
 module shape_reading
   use kinds, only: wp
   use failure, only: failure_t
-  use text, only: quoted
   use deck, only: deck_t
-  use deck_keys, only: key_spec, group, word_key, real_key
+  use deck_keys, only: key_spec, real_value, word_value
   implicit none
   private
-  public :: keys_of_shape, require, read_radius, refuse_radius, refuse_foreign
+  public :: keys_of_shape, read_radius, refuse_radius
 
 contains
 
@@ -18,23 +17,13 @@ contains
     type(key_spec), allocatable :: rows(:)
 
     rows = [ &
-      group('shape', 'Shape of the undeformed gap f(r): bodies at h0 are h0 + f(r) apart. ' // &
-            'Without this group it is r^2/(2R).'), &
-      word_key('shape', 'kind', kinds, 'Kind of shape.', required=.true.), &
-      real_key('shape', 'radius', 'm', 'Radius R of a parabola or sphere, of the end of a ' // &
-               'spheroid, of the rim of a punch; for a power B = 1/(2 R^(n-1)).', above=0.0_wp, &
-               otherwise='that of &bodies')]
+      key_spec('shape', meaning='Shape of the undeformed gap f(r): bodies at h0 are h0 + f(r) ' // &
+        'apart. Without this group it is r^2/(2R).'), &
+      key_spec('shape', 'kind', word_value, 'Kind of shape.', choices=kinds, required=.true.), &
+      key_spec('shape', 'radius', real_value, 'Radius R of a parabola or sphere, of the end ' // &
+        'of a spheroid, of the rim of a punch; for a power B = 1/(2 R^(n-1)).', 'm', above=0.0_wp, &
+        otherwise='that of &bodies')]
   end function keys_of_shape
-
-  !> Fails if the deck does not give a key that its kind of shape needs.
-  pure subroutine require(deck, kind, key, error)
-    type(deck_t), intent(in) :: deck
-    character(len=*), intent(in) :: kind, key
-    type(failure_t), allocatable, intent(inout) :: error
-
-    if (.not. deck%is_set('shape', key)) &
-      call deck%mistake('shape', key, 'missing; kind '//quoted(kind)//' needs it', error)
-  end subroutine require
 
   !> Reads R [m] from &shape or &bodies.
   subroutine read_radius(deck, radius, error)
@@ -65,20 +54,5 @@ contains
     if (deck%is_set('bodies', 'radius')) &
       call deck%mistake('bodies', 'radius', 'has no meaning here: '//reason, error)
   end subroutine refuse_radius
-
-  !> Fails if the deck gives a key of the kind `owner`, whose rows these are, to another kind.
-  pure subroutine refuse_foreign(deck, kind, owner, rows, error)
-    type(deck_t), intent(in) :: deck
-    character(len=*), intent(in) :: kind, owner
-    type(key_spec), intent(in) :: rows(:)
-    type(failure_t), allocatable, intent(inout) :: error
-    integer :: i
-
-    if (kind == owner) return
-    do i = 1, size(rows)
-      if (deck%is_set('shape', trim(rows(i)%key))) call deck%mistake('shape', trim(rows(i)%key), &
-        'belongs to kind '//quoted(owner)//', not to '//quoted(kind), error)
-    end do
-  end subroutine refuse_foreign
 
 end module shape_reading

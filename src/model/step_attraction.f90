@@ -5,20 +5,17 @@ module step_attraction
   use kinds, only: wp, pi
   use failure, only: failure_t
   use deck, only: deck_t
-  use deck_keys, only: key_spec, real_key
-  use force_law, only: force_law_t, whole_step
-  use law_reading, only: check_decades
+  use force_law, only: force_law_t, of_pressure, of_slope, whole_step
+  use law_reading, only: accept_law
   implicit none
   private
-  public :: new_step, read_step, smoothing_key
+  public :: new_step, read_step
 
   !> The law, in units of its range and stress.
   type, extends(force_law_t) :: step_t
     real(wp) :: smoothing = 0
   contains
-    procedure :: pressure
-    procedure :: slope
-    procedure :: energy
+    procedure :: evaluate
     procedure :: closure
   end type step_t
 
@@ -29,14 +26,6 @@ module step_attraction
   real(wp), parameter :: least = 1.0e-12_wp
 
 contains
-
-  !> The row of the key `smoothing`.
-  pure type(key_spec) function smoothing_key(group) result(row)
-    character(len=*), intent(in) :: group
-
-    row = real_key(group, 'smoothing', 'm', 'Length over which the attraction ends.', &
-      above=0.0_wp, otherwise='0.02 of its range')
-  end function smoothing_key
 
   !> The law of a group whose keys `strength_key` [Pa] and `length_key` [m] give stress and range,
   !> if the deck has the group.
@@ -63,22 +52,17 @@ contains
     type(failure_t), allocatable, intent(inout) :: error
     type(step_t) :: this
 
-    call check_decades(deck, group, strength_key, log10(stress), 'a pressure', ' Pa', error)
     call deck%assume(group, 'smoothing', usual*range)
     call deck%get(group, 'smoothing', this%smoothing)
     if (this%smoothing > 0.5_wp*range) call deck%mistake(group, 'smoothing', &
       'is more than half of the range; above that there is no step', error)
-    if (allocated(error)) return
     this%length = range
     this%pressure_unit = stress
     this%smoothing = this%smoothing/range
     this%step_at = 1
     this%step_width = this%smoothing
     this%breaks = 1 + max(whole_step*this%smoothing, least)*[-1.0_wp, 1.0_wp]
-    this%group = group
-    this%strength_key = strength_key
-    this%length_key = length_key
-    allocate (law, source=this)
+    call accept_law(deck, group, strength_key, length_key, this, law, error)
   end subroutine new_step
 
   !> Distance of the gap from the step in smoothing lengths.
@@ -89,33 +73,25 @@ contains
     place = min((gap - 1)/self%smoothing, farthest)
   end function place
 
-  pure function pressure(self, gap) result(value)
+  pure subroutine evaluate(self, quantity, gap, value)
     class(step_t), intent(in) :: self
+    integer, intent(in) :: quantity
     real(wp), intent(in) :: gap(:)
-    real(wp) :: value(size(gap))
-
-    value = -0.5_wp*erfc(place(self, gap))
-    where (place(self, gap) >= farthest) value = 0
-  end function pressure
-
-  pure function slope(self, gap) result(value)
-    class(step_t), intent(in) :: self
-    real(wp), intent(in) :: gap(:)
-    real(wp) :: value(size(gap))
-
-    value = exp(-min(place(self, gap)**2, farthest**2))/(self%smoothing*sqrt(pi))
-    where (abs(place(self, gap)) >= farthest) value = 0
-  end function slope
-
-  pure function energy(self, gap) result(value)
-    class(step_t), intent(in) :: self
-    real(wp), intent(in) :: gap(:)
-    real(wp) :: value(size(gap)), x(size(gap))
+    real(wp), intent(out) :: value(size(gap))
+    real(wp) :: x(size(gap))
 
     x = place(self, gap)
-    value = -0.5_wp*self%smoothing*(exp(-min(x**2, farthest**2))/sqrt(pi) - x*erfc(x))
+    select case (quantity)
+    case (of_pressure)
+      value = -0.5_wp*erfc(x)
+    case (of_slope)
+      value = exp(-min(x**2, farthest**2))/(self%smoothing*sqrt(pi))
+      where (x <= -farthest) value = 0
+    case default
+      value = -0.5_wp*self%smoothing*(exp(-min(x**2, farthest**2))/sqrt(pi) - x*erfc(x))
+    end select
     where (x >= farthest) value = 0
-  end function energy
+  end subroutine evaluate
 
   !> Largest decrease of gaps in one iteration: half the way to the step, and its width.
   pure function closure(self, gap) result(most)

@@ -6,6 +6,7 @@ module undeformed
   use kinds, only: wp, pi
   use adaptive_quadrature, only: integral_t, new_integral, rule_nodes, in_order
   use dimensionless_problem, only: problem_t
+  use force_law, only: of_pressure, of_slope, of_energy
   use beyond_mesh, only: energy_density, falls_slowly, farthest
   implicit none
   private
@@ -17,8 +18,6 @@ module undeformed
     real(wp) :: value = 0, error = 0
   end type measured_t
 
-  !> The integrands.
-  integer, parameter :: of_pressure = 1, of_slope = 2, of_energy = 3
   !> The H0 whose energy is subtracted from energies that fall slowly.
   real(wp), parameter :: at_reference = 1
   !> Relative error of numbers without a quadrature.
@@ -44,7 +43,7 @@ contains
     real(wp), intent(in) :: h0
 
     if (problem%shape%parabolic) then
-      load%value = 2*pi*sum(problem%law%energy([h0]))
+      load%value = 2*pi*problem%law%at(of_energy, h0)
       load%error = rounding*abs(load%value)
     else
       load = integral_of(problem, h0, of_pressure)
@@ -57,7 +56,7 @@ contains
     real(wp), intent(in) :: h0
 
     if (problem%shape%parabolic) then
-      slope%value = -2*pi*sum(problem%law%pressure([h0]))
+      slope%value = -2*pi*problem%law%at(of_pressure, h0)
       slope%error = rounding*abs(slope%value)
     else
       slope = integral_of(problem, h0, of_slope)
@@ -143,17 +142,14 @@ contains
       real(wp), dimension(rule_nodes) :: g, gap
 
       gap = min(h0 + problem%shape%height(r), farthest)
-      select case (what)
-      case (of_pressure)
-        g = problem%law%pressure(gap)
-      case (of_slope)
-        g = problem%law%slope(gap)
-      case default
+      if (what == of_energy) then
         g = energy_density(problem, gap, r, at_reference)
         ! Far away, where rounding hides the difference of two energies, it is that of first order.
         if (falls_slowly(problem)) where (gap > far*max(1.0_wp, abs(h0))) &
           g = (at_reference - h0)*problem%law%pressure(gap + 0.5_wp*(at_reference - h0))
-      end select
+      else
+        call problem%law%evaluate(what, gap, g)
+      end if
     end function integrand
 
     !> The integral of the slope over a piece so narrow that only the pressure varies in it.

@@ -52,7 +52,7 @@ contains
   !> Opens a file and reads its line of names: the first line that is not a comment or, if it holds
   !> numbers, the last comment before it. `deck` knows which names are keys that hold a word.
   subroutine open_rows(self, file, deck, error)
-    class(case_rows_t), intent(inout) :: self
+    class(case_rows_t), intent(out) :: self
     character(len=*), intent(in) :: file
     type(deck_t), intent(in) :: deck
     type(failure_t), allocatable, intent(out) :: error
@@ -63,14 +63,8 @@ contains
     logical :: found
     integer :: k
 
-    call self%close()
     self%file = file
     self%names = ''
-    self%digest = 0
-    self%held = 0
-    self%used = 0
-    self%lines = 0
-    self%waiting = .false.
     self%descriptor = c_open(file // nul, as_input)
     if (self%descriptor < 0) then
       call explain(self%descriptor, sort, reason)
@@ -92,18 +86,17 @@ contains
       named = comment
       call split(after_mark(comment%text), names)
       if (size(names) /= size(self%cells)) then
-        call self%line%complain(1, '', '', 'no line of names before the numbers', error)
+        call self%line%complain(1, 'no line of names before the numbers', error)
         return
       end if
     end if
-    if (allocated(self%words)) deallocate (self%words)
     allocate (self%words(size(names)))
     do k = 1, size(names)
       if (names(k)%last < names(k)%first) then
-        call named%complain(1, '', '', 'a column without a name', error)
+        call named%complain(1, 'a column without a name', error)
         return
       else if (scan(named%part(names(k)%first, names(k)%last), blanks) > 0) then
-        call named%complain(names(k)%first, '', '', 'a name with a blank', error)
+        call named%complain(names(k)%first, 'a name with a blank', error)
         return
       end if
       if (k > 1) self%names = self%names // ' '
@@ -134,8 +127,8 @@ contains
     end do
     self%waiting = .false.
     if (size(self%cells) /= size(self%words)) then
-      call self%line%complain(1, '', '', miscount(self%line%text, size(self%cells), &
-        size(self%words)), error)
+      call self%line%complain(1, miscount(self%line%text, size(self%cells), size(self%words)), &
+        error)
       return
     end if
     if (.not. allocated(values)) allocate (values(size(self%words)))
@@ -147,7 +140,7 @@ contains
           call number_of_word(self%line%text(first:last), self%words(k), values(k), what)
         end if
         if (.not. allocated(what)) cycle
-        call self%line%complain(first, '', '', what, error)
+        call self%line%complain(first, what, error)
         return
       end associate
     end do

@@ -5,7 +5,7 @@ module data_table
   use kinds, only: wp
   use checksums, only: checksum
   use failure, only: failure_t
-  use text, only: lower, quoted, clip, guess
+  use text, only: brief, lower, quoted, clip, guess
   use deck_number, only: parse_real, parse_integer
   use deck_scan, only: span_t
   use deck_source, only: source_t, load_source
@@ -71,13 +71,13 @@ contains
       if (size(names) /= table%columns) then
         if (header .and. first > 0 .and. size(cells) < size(names)) then
           if (ends_empty(line_at(table%source, first))) then
-            call table%source%complain(first, '', '', miscount(line_at(table%source, first), &
-              size(cells), size(names)), error)
+            call table%source%complain(first, miscount(line_at(table%source, first), size(cells), &
+              size(names)), error)
             return
           end if
         end if
         if (header .and. any(verify(wanted, '-0123456789 ') > 0)) then
-          call table%source%complain(named, '', '', counted(size(names)) // ' where ' // &
+          call table%source%complain(named, counted(size(names)) // ' where ' // &
             counted(table%columns) // ' are expected', error)
           return
         end if
@@ -89,8 +89,8 @@ contains
     end if
     do while (first > 0)
       if (size(cells) /= table%columns) then
-        call table%source%complain(first, '', '', miscount(line_at(table%source, first), &
-          size(cells), table%columns), error)
+        call table%source%complain(first, miscount(line_at(table%source, first), size(cells), &
+          table%columns), error)
         return
       end if
       n = n + 1
@@ -103,18 +103,24 @@ contains
     table%place = table%place(:n)
   end subroutine read_data_table
 
-  !> Reads the file of two columns that a key of the deck names.
-  subroutine read_columns(deck, group, key, table, error)
+  !> Reads the file of two columns, with at least `fewest` rows, that a key of the deck names.
+  subroutine read_columns(deck, group, key, fewest, table, error)
     type(deck_t), intent(inout) :: deck
     character(len=*), intent(in) :: group, key
+    integer, intent(in) :: fewest
     type(data_table_t), intent(out) :: table
     type(failure_t), allocatable, intent(out) :: error
 
     call read_data_table(deck%path_of(group, key), ['1', '2'], table, error)
     if (allocated(error)) return
     call deck%note_file(group, key, checksum(table%source%text))
-    if (size(table%place) > 0 .and. table%columns > 2) call table%source%complain(table%place(1), &
-      '', '', counted(table%columns) // ' where 2 columns are expected', error)
+    if (size(table%place) > 0 .and. table%columns > 2) then
+      call table%source%complain(table%place(1), counted(table%columns) // &
+        ' where 2 columns are expected', error)
+    else if (size(table%place) < fewest) then
+      call table%source%complain(len(table%source%text) + 1, 'fewer than ' // brief(fewest) // &
+        ' points', error)
+    end if
   end subroutine read_columns
 
   !> Number of lines of a text, at most.
@@ -193,11 +199,11 @@ contains
       if (allocated(what)) then
         found = [(lower(cell(k)) == lower(name), k=1, size(cells))]
         at(i) = findloc(found, .true., 1)
-        if (count(found) > 1) call source%complain(start, '', '', 'more than one column ' // &
+        if (count(found) > 1) call source%complain(start, 'more than one column ' // &
           quoted(clip(name)) // '; give its number', error)
       end if
       if (at(i) >= 1 .and. at(i) <= size(cells)) cycle
-      call source%complain(start, '', '', 'no column ' // quoted(clip(name)) // &
+      call source%complain(start, 'no column ' // quoted(clip(name)) // &
         guess(name, names(2:), '') // '; this line has ' // counted(size(cells)), error)
     end do
 
@@ -237,7 +243,7 @@ contains
         call parse_real(source%part(first, last), row(i), what)
       end associate
       if (allocated(what)) then
-        call source%complain(start + cells(i)%first - 1, '', '', what, error)
+        call source%complain(start + cells(i)%first - 1, what, error)
         return
       end if
       if (turned(i)) row(i) = -row(i)

@@ -79,7 +79,7 @@ contains
       integer, intent(in) :: where
 
       mistakes = mistakes + 1
-      call deck%source%complain(where, group, key, what, error)
+      call deck%source%complain(where, what, error, group, key)
       if (mistakes == most_mistakes) &
         error%message = error%message // new_line('a') // 'further mistakes are not shown'
     end subroutine report

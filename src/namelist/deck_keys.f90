@@ -7,7 +7,6 @@ module deck_keys
   public :: key_spec, group_row, ignored_group
   public :: real_value, real_list, integer_value, logical_value, word_value, text_value
   public :: names_value
-  public :: group, real_key, list_key, integer_key, logical_key, word_key, text_key, names_key
   public :: allowed, names_of, is_of, write_keys
 
   !> Kinds of row: a group, a group that is skipped, and seven kinds of key.
@@ -21,19 +20,17 @@ module deck_keys
     character(len=24) :: group = ''
     character(len=24) :: key = ''
     integer :: kind = group_row
+    character(len=240) :: meaning = ''
     character(len=8) :: unit = ''
     !> The value of a key that the deck does not give; blank if there is none.
     character(len=32) :: default = ''
     !> Meaning of a blank default in words ("as in &loading"); shown, never read.
     character(len=48) :: otherwise = ''
-    character(len=240) :: meaning = ''
     !> Blank-separated words that a `word_value` may be.
     character(len=80) :: choices = ''
-    real(wp) :: low = -huge(1.0_wp)
-    real(wp) :: high = huge(1.0_wp)
-    !> Whether the interval excludes the bound itself.
-    logical :: low_open = .false.
-    logical :: high_open = .false.
+    !> The bounds of a number: `low` and `high` are allowed, `above` and `below` are not.
+    real(wp) :: low = -huge(1.0_wp), high = huge(1.0_wp), above = -huge(1.0_wp), &
+      below = huge(1.0_wp)
     !> Largest number of values in a list, of numbers or names; of characters in a text.
     integer :: most = 1
     logical :: required = .false.
@@ -42,130 +39,6 @@ module deck_keys
   end type key_spec
 
 contains
-
-  !> Row of a group.
-  pure type(key_spec) function group(name, meaning, required, always, ignored) result(spec)
-    character(len=*), intent(in) :: name, meaning
-    logical, intent(in), optional :: required, always, ignored
-
-    spec%group = name
-    spec%meaning = meaning
-    if (present(required)) spec%required = required
-    if (present(always)) spec%always = always
-    if (present(ignored)) then
-      if (ignored) spec%kind = ignored_group
-    end if
-  end function group
-
-  !> Row of a real key: `above` and `below` exclude the bound, `low` and `high` include it.
-  pure function real_key(group, key, unit, meaning, default, otherwise, above, low, below, high, &
-                         required) result(spec)
-    character(len=*), intent(in) :: group, key, unit, meaning
-    character(len=*), intent(in), optional :: default, otherwise
-    real(wp), intent(in), optional :: above, low, below, high
-    logical, intent(in), optional :: required
-    type(key_spec) :: spec
-
-    spec = key_row(group, key, real_value, meaning, default, otherwise, required)
-    spec%unit = unit
-    if (present(low)) spec%low = low
-    if (present(high)) spec%high = high
-    if (present(above)) then
-      spec%low = above
-      spec%low_open = .true.
-    end if
-    if (present(below)) then
-      spec%high = below
-      spec%high_open = .true.
-    end if
-  end function real_key
-
-  !> Row of a list of at most `most` reals; bounds as in `real_key`.
-  pure function list_key(group, key, unit, meaning, most, otherwise, above, low, below, high, &
-                         required) result(spec)
-    character(len=*), intent(in) :: group, key, unit, meaning
-    integer, intent(in) :: most
-    character(len=*), intent(in), optional :: otherwise
-    real(wp), intent(in), optional :: above, low, below, high
-    logical, intent(in), optional :: required
-    type(key_spec) :: spec
-
-    spec = real_key(group, key, unit, meaning, otherwise=otherwise, above=above, low=low, &
-                    below=below, high=high, required=required)
-    spec%kind = real_list
-    spec%most = most
-  end function list_key
-
-  !> Row of a whole number between `low` and `high`.
-  pure function integer_key(group, key, meaning, low, high, default, otherwise) result(spec)
-    character(len=*), intent(in) :: group, key, meaning
-    integer, intent(in) :: low, high
-    character(len=*), intent(in), optional :: default, otherwise
-    type(key_spec) :: spec
-
-    spec = key_row(group, key, integer_value, meaning, default, otherwise)
-    spec%low = low
-    spec%high = high
-  end function integer_key
-
-  !> Row of a logical key.
-  pure type(key_spec) function logical_key(group, key, meaning, default) result(spec)
-    character(len=*), intent(in) :: group, key, meaning, default
-
-    spec = key_row(group, key, logical_value, meaning, default)
-  end function logical_key
-
-  !> Row of a key that is one of the blank-separated words `choices`.
-  pure function word_key(group, key, choices, meaning, default, otherwise, required) result(spec)
-    character(len=*), intent(in) :: group, key, choices, meaning
-    character(len=*), intent(in), optional :: default, otherwise
-    logical, intent(in), optional :: required
-    type(key_spec) :: spec
-
-    spec = key_row(group, key, word_value, meaning, default, otherwise, required)
-    spec%choices = choices
-  end function word_key
-
-  !> Row of a free text of at most `most` characters.
-  pure function text_key(group, key, most, meaning, default, otherwise, required) result(spec)
-    character(len=*), intent(in) :: group, key, meaning
-    integer, intent(in) :: most
-    character(len=*), intent(in), optional :: default, otherwise
-    logical, intent(in), optional :: required
-    type(key_spec) :: spec
-
-    spec = key_row(group, key, text_value, meaning, default, otherwise, required)
-    spec%most = most
-  end function text_key
-
-  !> Row of a list of at most `most` names, without blanks in them.
-  pure function names_key(group, key, most, meaning, default, otherwise, required) result(spec)
-    character(len=*), intent(in) :: group, key, meaning
-    integer, intent(in) :: most
-    character(len=*), intent(in), optional :: default, otherwise
-    logical, intent(in), optional :: required
-    type(key_spec) :: spec
-
-    spec = key_row(group, key, names_value, meaning, default, otherwise, required)
-    spec%most = most
-  end function names_key
-
-  !> The components that the rows of all keys have.
-  pure function key_row(group, key, kind, meaning, default, otherwise, required) result(spec)
-    character(len=*), intent(in) :: group, key, meaning
-    integer, intent(in) :: kind
-    character(len=*), intent(in), optional :: default, otherwise
-    logical, intent(in), optional :: required
-    type(key_spec) :: spec
-
-    spec%group = group
-    spec%key = key
-    spec%kind = kind
-    spec%meaning = meaning
-    if (present(default)) spec%default = default
-    if (present(otherwise)) spec%otherwise = otherwise
-    if (present(required)) spec%required = required
-  end function key_row
 
   !> The values that a key may have, in words.
   pure function allowed(spec) result(text)
@@ -196,21 +69,24 @@ contains
   pure function bounds(spec) result(text)
     type(key_spec), intent(in) :: spec
     character(len=:), allocatable :: text
-    logical :: below, above
+    real(wp) :: least, most
+    logical :: bounded(2), open(2)
 
-    below = spec%low > -huge(1.0_wp)
-    above = spec%high < huge(1.0_wp)
+    least = max(spec%low, spec%above)
+    most = min(spec%high, spec%below)
+    open = [spec%above > spec%low, spec%below < spec%high]
+    bounded = [least > -huge(least), most < huge(most)]
     text = ''
-    if (below .and. above .and. .not. (spec%low_open .or. spec%high_open)) then
-      text = ' from ' // brief(spec%low) // ' to ' // brief(spec%high)
+    if (all(bounded) .and. .not. any(open)) then
+      text = ' from ' // brief(least) // ' to ' // brief(most)
     else
-      if (below) text = merge(' > ', ' >=', spec%low_open)
-      if (below) text = trim(text) // ' ' // brief(spec%low)
-      if (below .and. above) text = text // ' and'
-      if (above) text = text // trim(merge(' < ', ' <=', spec%high_open)) // ' ' // brief(spec%high)
+      if (bounded(1)) text = merge(' > ', ' >=', open(1))
+      if (bounded(1)) text = trim(text) // ' ' // brief(least)
+      if (all(bounded)) text = text // ' and'
+      if (bounded(2)) text = text // trim(merge(' < ', ' <=', open(2))) // ' ' // brief(most)
     end if
     if (len_trim(spec%unit) > 0) then
-      if (below .or. above) then
+      if (any(bounded)) then
         text = text // ' ' // trim(spec%unit)
       else
         text = text // ' in ' // trim(spec%unit)

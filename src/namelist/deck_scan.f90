@@ -245,7 +245,7 @@ contains
       integer, intent(in) :: where
       character(len=*), intent(in) :: key, what
 
-      call source%complain(where, group, key, what, error)
+      call source%complain(where, what, error, group, key)
     end subroutine complain
 
   end subroutine scan_deck

@@ -94,7 +94,7 @@ contains
     end if
     call straighten(bytes, source%text)
     n = index(source%text, achar(0))
-    if (n > 0) call source%complain(n, '', '', 'a NUL byte: a deck is plain text', error)
+    if (n > 0) call source%complain(n, 'a NUL byte: a deck is plain text', error)
   end subroutine take_source
 
   !> Makes every line end (LF, CR LF or CR) a single line feed and drops a byte-order mark.
@@ -145,17 +145,20 @@ contains
 
   !> Adds `FILE:LINE: &group: key "key": what`, the line itself and a caret below position `at` to
   !> `error`, which may hold earlier mistakes. `group` and `key` may be blank.
-  pure subroutine complain(self, at, group, key, what, error)
+  pure subroutine complain(self, at, what, error, group, key)
     class(source_t), intent(in) :: self
     integer, intent(in) :: at
-    character(len=*), intent(in) :: group, key, what
+    character(len=*), intent(in) :: what
     type(failure_t), allocatable, intent(inout) :: error
+    character(len=*), intent(in), optional :: group, key
     character(len=:), allocatable :: line, message
 
     line = brief(self%line_at(at))
     message = self%file // ':' // line // ': '
-    if (len_trim(group) > 0) message = message // '&' // trim(group) // ': '
-    if (len_trim(key) > 0) message = message // 'key "' // trim(key) // '": '
+    if (present(group)) then
+      if (len_trim(group) > 0) message = message // '&' // trim(group) // ': '
+      if (len_trim(key) > 0) message = message // 'key "' // trim(key) // '": '
+    end if
     message = message // what // excerpt(self%text, at, line)
     if (allocated(error)) then
       error%message = error%message // newline // message

@@ -87,7 +87,7 @@ contains
     character(len=*), intent(in) :: group, key, what
     type(failure_t), allocatable, intent(inout) :: error
 
-    call self%source%complain(self%place(group, key), group, key, what, error)
+    call self%source%complain(self%place(group, key), what, error, group, key)
   end subroutine mistake
 
   pure subroutine get_real(self, group, key, value)

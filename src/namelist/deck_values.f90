@@ -23,20 +23,12 @@ module deck_values
     integer :: whole = 0
     logical :: flag = .false.
     character(len=:), allocatable :: text
-    !> Checksum of the file that the value names, as a comment behind the value.
+    !> Checksum of the file that the value names, as a comment behind the value; not allocated if
+    !> no file was read.
     character(len=:), allocatable :: remark
-  contains
-    procedure :: is_file
   end type value_t
 
 contains
-
-  !> Whether the value names a file that was read.
-  pure logical function is_file(self)
-    class(value_t), intent(in) :: self
-
-    is_file = allocated(self%remark)
-  end function is_file
 
   !> Turns the items of an assignment into a value of the kind of `spec`. what: the mistake, if
   !> there is one, at the position `at`.
@@ -150,9 +142,7 @@ contains
     type(key_spec), intent(in) :: spec
     real(wp), intent(in) :: x
 
-    outside = .not. (x >= spec%low .and. x <= spec%high)
-    if (spec%low_open .and. x <= spec%low) outside = .true.
-    if (spec%high_open .and. x >= spec%high) outside = .true.
+    outside = .not. (x >= spec%low .and. x <= spec%high .and. x > spec%above .and. x < spec%below)
   end function outside
 
   !> One assignment as in a deck; a long list takes several lines.

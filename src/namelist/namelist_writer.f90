@@ -24,16 +24,13 @@ contains
     character(len=*), intent(in) :: key
     real(wp), allocatable, intent(in) :: values(:)
     character(len=:), allocatable :: text
-    type(line_t), allocatable :: items(:)
-    integer :: i
+    integer :: column, i
 
     text = ''
     if (.not. allocated(values)) return
-    allocate (items(size(values)))
     do i = 1, size(values)
-      items(i)%text = full(values(i))
+      call add_item(key, full(values(i)), text, column)
     end do
-    text = written(key, items)
   end function of_reals
 
   pure function of_counts(key, values) result(text)
@@ -41,51 +38,47 @@ contains
     integer(long), allocatable, intent(in) :: values(:)
     character(len=:), allocatable :: text
     character(len=24) :: buffer
-    type(line_t), allocatable :: items(:)
-    integer :: i
+    integer :: column, i
 
     text = ''
     if (.not. allocated(values)) return
-    allocate (items(size(values)))
     do i = 1, size(values)
       write (buffer, '(i0)') values(i)
-      items(i)%text = trim(buffer)
+      call add_item(key, trim(buffer), text, column)
     end do
-    text = written(key, items)
   end function of_counts
 
   pure function of_logical(key, value) result(text)
     character(len=*), intent(in) :: key
     logical, allocatable, intent(in) :: value
     character(len=:), allocatable :: text
+    integer :: column
 
     text = ''
-    if (allocated(value)) text = single(key, trim(merge('.true. ', '.false.', value)))
+    if (allocated(value)) call add_item(key, trim(merge('.true. ', '.false.', value)), text, column)
   end function of_logical
 
   pure function of_text(key, value) result(text)
     character(len=*), intent(in) :: key
     character(len=:), allocatable, intent(in) :: value
     character(len=:), allocatable :: text
+    integer :: column
 
     text = ''
-    if (allocated(value)) text = single(key, literal(value))
+    if (allocated(value)) call add_item(key, literal(value), text, column)
   end function of_text
 
   pure function of_lines(key, values) result(text)
     character(len=*), intent(in) :: key
     type(line_t), allocatable, intent(in) :: values(:)
     character(len=:), allocatable :: text
-    type(line_t), allocatable :: items(:)
-    integer :: i
+    integer :: column, i
 
     text = ''
     if (.not. allocated(values)) return
-    allocate (items(size(values)))
     do i = 1, size(values)
-      items(i)%text = literal(values(i)%text)
+      call add_item(key, literal(values(i)%text), text, column)
     end do
-    text = written(key, items)
   end function of_lines
 
   !> `text` as a string that all namelist readers accept: nothing in it looks like the beginning of
@@ -104,37 +97,27 @@ contains
     literal = quoted(trim(clean))
   end function literal
 
-  !> The assignment of one item to the key.
-  pure function single(key, item) result(text)
+  !> Adds an item to the assignment to the key, on a new line if the line is full; `column` is the
+  !> last column of the line.
+  pure subroutine add_item(key, item, text, column)
     character(len=*), intent(in) :: key, item
-    character(len=:), allocatable :: text
-
-    text = '  ' // key // ' = ' // item // new_line('a')
-  end function single
-
-  !> The assignment of the items to the key, broken into lines; '' without items.
-  pure function written(key, items) result(text)
-    character(len=*), intent(in) :: key
-    type(line_t), intent(in) :: items(:)
-    character(len=:), allocatable :: text
+    character(len=:), allocatable, intent(inout) :: text
+    integer, intent(inout) :: column
     !> Last column of a line, unless a single item is longer.
     integer, parameter :: last_column = 80
-    integer :: i, column
 
-    text = ''
-    if (size(items) == 0) return
-    text = '  ' // key // ' ='
-    column = len(text)
-    do i = 1, size(items)
-      if (i > 1) text = text // ','
-      if (i > 1 .and. column + len(items(i)%text) > last_column) then
+    if (text == '') then
+      text = '  ' // key // ' ='
+      column = len(text)
+    else
+      text = text(:len(text) - 1) // ','
+      if (column + len(item) > last_column) then
         text = text // new_line('a') // '   '
         column = 3
       end if
-      text = text // ' ' // items(i)%text
-      column = column + len(items(i)%text) + 2
-    end do
-    text = text // new_line('a')
-  end function written
+    end if
+    text = text // ' ' // item // new_line('a')
+    column = column + len(item) + 2
+  end subroutine add_item
 
 end module namelist_writer

@@ -40,21 +40,25 @@ contains
     type(failure_t), allocatable :: error
     type(number_t), allocatable :: numbers(:)
     character(len=:), allocatable :: suffix
-    integer :: i, k, row, term
+    integer :: i, k, place, term
 
     numbers = chosen_numbers(scene)
     associate (keys => size(scene%sweep%words))
       allocate (columns(keys + size(numbers) + 1))
       ! Filled item by item: compiler note 2.
       do k = 1, keys
-        call find_number(scene%deck, word_of(scene%sweep%names, k), row, term, error, words=.true.)
+        call find_number(scene%deck, word_of(scene%sweep%names, k), place, term, error, &
+          words=.true.)
         columns(k) = word_of(scene%sweep%names, k) // ' [' // &
-          trim(scene%deck%specs(row)%unit) // '] a key of the deck'
+          trim(scene%deck%specs(place)%unit) // '] a key of the deck'
       end do
       do i = 1, size(numbers)
         suffix = ''
         if (rows(numbers(i)%row)%list) suffix = '_' // brief(numbers(i)%element)
-        columns(keys + i) = described(rows(numbers(i)%row), suffix)
+        associate (row => rows(numbers(i)%row))
+          columns(keys + i) = trim(row%key) // suffix // ' [' // trim(row%unit) // '] ' // &
+            row%meaning
+        end associate
       end do
     end associate
     columns(size(columns)) = failure_column
@@ -177,13 +181,5 @@ contains
     end function count_of
 
   end function elements
-
-  pure function described(row, suffix) result(text)
-    type(row_t), intent(in) :: row
-    character(len=*), intent(in) :: suffix
-    character(len=column_width) :: text
-
-    text = trim(row%key) // suffix // ' [' // trim(row%unit) // '] ' // row%meaning
-  end function described
 
 end module case_columns

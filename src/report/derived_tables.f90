@@ -10,9 +10,8 @@ module derived_tables
   use summary, only: summary_t
   use classical_rows, only: write_classical
   use approximation_tables, only: write_approximations
-  use device_rows, only: write_device, write_jumps
+  use device_rows, only: write_device, write_jumps, write_contact_table
   use fixed_load_rows, only: write_fixed_loads
-  use table_rows, only: write_contact_table
   use sensitivity_rows, only: write_sensitivity, write_curve_sensitivity
   implicit none
   private

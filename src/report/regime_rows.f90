@@ -71,7 +71,7 @@ contains
         abs(all_errors(load, solved + [uncertain(pull_off), 0.0_wp, 0.0_wp]) - errors) + &
         abs(all_errors(load, solved + [0.0_wp, uncertain(radius), 0.0_wp]) - errors)
       do i = 1, size(theories)
-        if (is_of_layers(i) .and. .not. has_layers(problem)) cycle
+        if (i >= of_layers_from .and. i < fits_from .and. .not. has_layers(problem)) cycle
         call summary%set('regime_error_' // trim(theories(i)), errors(:, i), spread(:, i))
       end do
     end associate
@@ -83,29 +83,16 @@ contains
     function all_errors(at_load, numbers) result(errors)
       real(wp), intent(in) :: at_load
       real(wp), intent(in) :: numbers(3)
-      real(wp) :: errors(3, size(theories)), says(3)
+      real(wp) :: errors(3, size(theories))
       integer :: k
 
-      errors = nan
+      errors = of_theories(problem, cohesive, layered, at_load)
       do k = 1, size(theories)
-        if (.not. is_of_layers(k)) then
-          says = of_theory(trim(theories(k)), at_load, problem%radius, problem%stiffness, gamma, &
-            cohesive)
-        else if (has_layers(problem)) then
-          says = of_layers(problem, layered, trim(theories(k)), at_load)
-        else
-          cycle
-        end if
-        errors(:, k) = errors_of(says, numbers, problem%radius)
+        errors(:, k) = errors_of(errors(:, k), numbers, problem%radius)
       end do
     end function all_errors
+
   end subroutine summarise_regime
-
-  pure logical function is_of_layers(theory)
-    integer, intent(in) :: theory
-
-    is_of_layers = theory >= of_layers_from .and. theory < fits_from
-  end function is_of_layers
 
   !> The numbers of the path, with errors. there = .false. if it has no pull-off, or no contact at
   !> its end.
@@ -130,57 +117,43 @@ contains
     end associate
   end subroutine measure
 
-  !> The numbers of a theory at a load [N]; NaN if it has none. cohesive: Maugis-Dugdale theory.
-  function of_theory(name, load, r, y, gamma, cohesive) result(says)
-    character(len=*), intent(in) :: name
-    real(wp), intent(in) :: load, r, y, gamma
-    type(maugis_t), intent(in) :: cohesive
-    real(wp) :: says(3)
-    type(fit_t) :: fit
-
-    says = 0
-    select case (name)
-    case ('hertz')
-      says(radius) = hertz_radius_at_load(load, r, y)
-      says(indentation) = hertz_displacement(says(radius), r)
-    case ('jkr')
-      says(pull_off) = jkr_pull_off(r, gamma)
-      says(radius) = jkr_radius_at_load(load, r, y, gamma)
-      says(indentation) = jkr_displacement(says(radius), r, y, gamma)
-    case ('dmt')
-      says(pull_off) = dmt_pull_off(r, gamma)
-      says(radius) = dmt_radius_at_load(load, r, y, gamma)
-      says(indentation) = hertz_displacement(says(radius), r)
-    case ('maugis')
-      says = [cohesive%pull_off(), cohesive%radius_at_load(load), nan]
-      if (says(radius) > 0) says(indentation) = cohesive%displacement(says(radius))
-    case ('carpick')
-      fit = carpick_fit(cohesive)
-      ! The formula gives no displacement.
-      says = [fit%pull_off, fit%radius_at_load(load), nan]
-    case ('pietrement')
-      fit = pietrement_fit(cohesive)
-      says = [fit%pull_off, fit%radius_at_load(load), fit%displacement_at_load(load)]
-    end select
-  end function of_theory
-
-  !> The same for theories of layers.
-  function of_layers(problem, contact, name, load) result(says)
+  !> The numbers of all theories at a load [N]; NaN if a theory has none.
+  function of_theories(problem, cohesive, layered, load) result(says)
     type(problem_t), intent(in) :: problem
-    type(layered_contact_t), intent(in) :: contact
-    character(len=*), intent(in) :: name
+    type(maugis_t), intent(in) :: cohesive
+    type(layered_contact_t), intent(in) :: layered
     real(wp), intent(in) :: load
-    real(wp) :: says(3), a
-    integer :: theory
+    real(wp) :: says(3, size(theories)), a
+    type(fit_t) :: fit
+    integer :: i
 
-    says = 0
-    theory = merge(jkr, hertz, name == 'jkr_layered')
-    if (theory == jkr) says(pull_off) = contact%pull_off()*problem%load
-    a = contact%radius_at(theory, load=load/problem%load)
-    says(radius) = a*problem%lateral
-    says(indentation) = a
-    if (.not. ieee_is_nan(a)) says(indentation) = contact%displacement(theory, a)*problem%length
-  end function of_layers
+    says = nan
+    associate (r => problem%radius, y => problem%stiffness, gamma => surface_energy(problem))
+      a = hertz_radius_at_load(load, r, y)
+      says(:, 1) = [0.0_wp, a, hertz_displacement(a, r)]
+      a = jkr_radius_at_load(load, r, y, gamma)
+      says(:, 2) = [jkr_pull_off(r, gamma), a, jkr_displacement(a, r, y, gamma)]
+      a = dmt_radius_at_load(load, r, y, gamma)
+      says(:, 3) = [dmt_pull_off(r, gamma), a, hertz_displacement(a, r)]
+    end associate
+    says(:radius, 4) = [cohesive%pull_off(), cohesive%radius_at_load(load)]
+    if (says(radius, 4) > 0) says(indentation, 4) = cohesive%displacement(says(radius, 4))
+    ! Carpick's formula gives no displacement.
+    fit = carpick_fit(cohesive)
+    says(:radius, 7) = [fit%pull_off, fit%radius_at_load(load)]
+    fit = pietrement_fit(cohesive)
+    says(:, 8) = [fit%pull_off, fit%radius_at_load(load), fit%displacement_at_load(load)]
+    if (.not. has_layers(problem)) return
+    do i = of_layers_from, fits_from - 1
+      associate (theory => merge(hertz, jkr, i == of_layers_from))
+        a = layered%radius_at(theory, load=load/problem%load)
+        says(:radius, i) = [0.0_wp, a*problem%lateral]
+        if (theory == jkr) says(pull_off, i) = layered%pull_off()*problem%load
+        if (.not. ieee_is_nan(a)) &
+          says(indentation, i) = layered%displacement(theory, a)*problem%length
+      end associate
+    end do
+  end function of_theories
 
   pure function errors_of(theory, solved, r) result(errors)
     real(wp), intent(in) :: theory(3), solved(3), r

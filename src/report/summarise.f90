@@ -171,37 +171,27 @@ contains
     if (path%ending%early()) call summary%fail_with('path: '//trim(text_of(path%ending)))
     if (path%fallen) call summary%warn('path: the bodies fall onto each other ' // &
       'under this law; the path ends there and has no state in contact')
-    if (ends_before_contact(problem, path)) call summary%note('path: it ends at h0 = ' // &
-      rounded(problem%law%separation_of(path%finish%at(of_h0))) // ' m, before contact, ' // &
-      'with the largest tension in its last row; lower h0_end')
-    if (begins_under_largest_tension(problem, path)) call summary%note('path: it begins at h0 = ' &
-      //rounded(problem%law%separation_of(path%start%at(of_h0)))// &
-      ' m with the largest tension; raise h0_start')
+    if (problem%law%rest_gap > 0) then
+      if (.not. path%fallen .and. .not. path%quality%contact_radius > 0 .and. &
+        is_lowest(path, path%finish)) call summary%note('path: it ends at h0 = ' // &
+        rounded(problem%law%separation_of(path%finish%at(of_h0))) // ' m, before contact, ' // &
+        'with the largest tension in its last row; lower h0_end')
+      if (path%states > 1 .and. is_lowest(path, path%start)) call summary%note( &
+        'path: it begins at h0 = ' // rounded(problem%law%separation_of(path%start%at(of_h0))) // &
+        ' m with the largest tension; raise h0_start')
+    end if
     call summary%set('folds_stable', merge(1, 0, path%unstable_after == 0))
   end subroutine tell_path
 
-  !> Whether the path ends before contact, under a law with contact, while the tension still grows.
-  pure logical function ends_before_contact(problem, path)
-    type(problem_t), intent(in) :: problem
+  !> Whether a path's largest tension is at this place, one of its ends, if the path has both.
+  pure logical function is_lowest(path, place)
     type(path_t), intent(in) :: path
+    type(place_t), intent(in), optional :: place
 
-    ends_before_contact = problem%law%rest_gap > 0 .and. .not. path%fallen .and. &
-      .not. path%quality%contact_radius > 0 .and. allocated(path%lowest) .and. &
-      allocated(path%finish)
-    if (ends_before_contact) ends_before_contact = path%lowest%at(of_load) < 0 .and. &
-      abs(path%lowest%at(of_h0) - path%finish%at(of_h0)) <= 0
-  end function ends_before_contact
-
-  !> Whether the tension falls from the first row on.
-  pure logical function begins_under_largest_tension(problem, path) result(begins)
-    type(problem_t), intent(in) :: problem
-    type(path_t), intent(in) :: path
-
-    begins = problem%law%rest_gap > 0 .and. path%states > 1 .and. allocated(path%start) .and. &
-      allocated(path%lowest)
-    if (begins) begins = path%lowest%at(of_load) < 0 .and. &
-      abs(path%lowest%at(of_h0) - path%start%at(of_h0)) <= 0
-  end function begins_under_largest_tension
+    is_lowest = allocated(path%lowest) .and. present(place)
+    if (is_lowest) is_lowest = path%lowest%at(of_load) < 0 .and. &
+      abs(path%lowest%at(of_h0) - place%at(of_h0)) <= 0
+  end function is_lowest
 
   !> Adds numbers that are read from the path.
   subroutine take_readings(scene, problem, readings, places, summary)

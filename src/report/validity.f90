@@ -2,6 +2,7 @@
 !> and bodies touch, small strains, and the caveats of force laws.
 module validity
   use kinds, only: wp, pi
+  use force_law, only: of_pressure, of_energy
   use dimensionless_problem, only: problem_t, surface_energy, largest_tension
   use text, only: brief, rounded
   use layered_body, only: layered_body_t
@@ -44,19 +45,18 @@ contains
   subroutine take_table_error(problem, summary)
     type(problem_t), intent(in) :: problem
     type(summary_t), intent(inout) :: summary
-    real(wp) :: of_well(2, 1), of_edge(2, 1), depth(1), tension(1), error
+    real(wp) :: of_well(2, 1), of_edge(2, 1), error
     !> Error above which the table, not the mesh, decides the accuracy.
     real(wp), parameter :: coarse = 1.0e-3_wp
 
     associate (law => problem%law)
       of_well = law%table_error([law%rest_gap])
       if (.not. of_well(2, 1) > 0) return
-      depth = abs(law%energy([law%rest_gap]))
-      error = of_well(2, 1)/max(depth(1), tiny(1.0_wp))
+      error = of_well(2, 1)/max(abs(law%at(of_energy, law%rest_gap)), tiny(1.0_wp))
       if (law%edge_gap > 0) then
         of_edge = law%table_error([law%edge_gap])
-        tension = abs(law%pressure([law%edge_gap]))
-        error = max(error, of_edge(1, 1)/max(tension(1), tiny(1.0_wp)))
+        error = max(error, &
+          of_edge(1, 1)/max(abs(law%at(of_pressure, law%edge_gap)), tiny(1.0_wp)))
       end if
     end associate
     call summary%set('table_error', error)

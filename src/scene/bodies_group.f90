@@ -2,7 +2,7 @@
 module bodies_group
   use kinds, only: wp
   use failure, only: failure_t
-  use deck_keys, only: key_spec, group, real_key, list_key, logical_key
+  use deck_keys, only: key_spec, real_value, real_list, logical_value
   use scene_groups, only: scene_t
   use layer_group, only: layer_bears_all
   implicit none
@@ -12,27 +12,22 @@ module bodies_group
   character(len=*), parameter :: one_way = 'give one of: stiffness; young and poisson; ' // &
     'rigid = .true.'
 
-contains
-
   !> The rows of &bodies.
-  pure function bodies_keys() result(specs)
-    type(key_spec), allocatable :: specs(:)
+  type(key_spec), parameter :: bodies_keys(*) = [ &
+    key_spec('bodies', meaning='The two bodies. Exactly one of: stiffness; young and poisson; ' // &
+      'rigid = .true.', required=.true.), &
+    key_spec('bodies', 'radius', real_value, 'Radius R of the gap h0 + r^2/(2R), or of ' // &
+      '&shape; a sphere on a plane has its own radius.', 'm', above=0.0_wp, otherwise='none'), &
+    key_spec('bodies', 'stiffness', real_value, 'E/(1-nu^2) of two identical bodies: the ' // &
+      'compliance (1-nu^2)/E is the mean over the two.', 'Pa', above=0.0_wp), &
+    key_spec('bodies', 'young', real_list, 'Young''s moduli of the two bodies; one value: the ' // &
+      'same.', 'Pa', most=2, above=0.0_wp), &
+    key_spec('bodies', 'poisson', real_list, 'Poisson''s ratios of the two bodies; one value: ' // &
+      'the same.', most=2, above=-1.0_wp, high=0.5_wp), &
+    key_spec('bodies', 'rigid', logical_value, 'Whether the bodies do not deform at all.', &
+      default='.false.')]
 
-    specs = [ &
-      group('bodies', 'The two bodies. Exactly one of: stiffness; young and poisson; ' // &
-            'rigid = .true.', required=.true.), &
-      real_key('bodies', 'radius', 'm', 'Radius R of the gap h0 + r^2/(2R), or of &shape; ' // &
-               'a sphere on a plane has its own radius.', above=0.0_wp, &
-               otherwise='none'), &
-      real_key('bodies', 'stiffness', 'Pa', 'E/(1-nu^2) of two identical bodies: the compliance ' &
-               // '(1-nu^2)/E is the mean over the two.', above=0.0_wp), &
-      list_key('bodies', 'young', 'Pa', 'Young''s moduli of the two bodies; one value: the same.', &
-               most=2, above=0.0_wp), &
-      list_key('bodies', 'poisson', '', 'Poisson''s ratios of the two bodies; one value: the ' // &
-               'same.', most=2, above=-1.0_wp, high=0.5_wp), &
-      logical_key('bodies', 'rigid', 'Whether the bodies do not deform at all.', &
-                  default='.false.')]
-  end function bodies_keys
+contains
 
   !> Reads &bodies, which must say in exactly one way how the bodies deform.
   subroutine take_bodies(scene, error)

@@ -4,7 +4,7 @@ module cycle_groups
   use failure, only: failure_t
   use text, only: brief
   use deck, only: deck_t
-  use deck_keys, only: key_spec, group, real_key, list_key
+  use deck_keys, only: key_spec, real_value, real_list
   use scene_groups, only: scene_t
   use path_groups, only: check_order
   implicit none
@@ -14,28 +14,24 @@ module cycle_groups
   !> Largest number of steps. A deck with more probably has a number in a wrong unit.
   integer, parameter :: most_steps = 10000000
 
-contains
-
   !> The rows of &loading and &unloading.
-  pure function cycle_keys() result(specs)
-    type(key_spec), allocatable :: specs(:)
+  type(key_spec), parameter :: cycle_keys(*) = [ &
+    key_spec('loading', meaning='Approach in steps of h0, the separation that undeformed ' // &
+      'bodies would have at the centre.'), &
+    key_spec('loading', 'h0_start', real_value, 'First h0.', 'm', required=.true.), &
+    key_spec('loading', 'h0_end', real_value, 'Last h0, below h0_start.', 'm', required=.true.), &
+    key_spec('loading', 'h0_step', real_value, 'Step, positive.', 'm', above=0.0_wp, &
+      required=.true.), &
+    key_spec('unloading', meaning='Retreat in steps of h0, one cycle for each turning point; ' // &
+      'needs &loading.'), &
+    key_spec('unloading', 'from', real_list, 'Turning points, inside the range of &loading.', 'm', &
+      most=100, otherwise='h0_end of &loading'), &
+    key_spec('unloading', 'h0_end', real_value, 'Where each retreat ends, above every turning ' // &
+      'point.', 'm', otherwise='h0_start of &loading'), &
+    key_spec('unloading', 'h0_step', real_value, 'Step, positive.', 'm', above=0.0_wp, &
+      otherwise='h0_step of &loading')]
 
-    specs = [ &
-      group('loading', 'Approach in steps of h0, the separation that undeformed bodies would ' // &
-            'have at the centre.'), &
-      real_key('loading', 'h0_start', 'm', 'First h0.', required=.true.), &
-      real_key('loading', 'h0_end', 'm', 'Last h0, below h0_start.', required=.true.), &
-      real_key('loading', 'h0_step', 'm', 'Step, positive.', above=0.0_wp, required=.true.), &
-      !
-      group('unloading', 'Retreat in steps of h0, one cycle for each turning point; needs ' // &
-            '&loading.'), &
-      list_key('unloading', 'from', 'm', 'Turning points, inside the range of &loading.', &
-               most=100, otherwise='h0_end of &loading'), &
-      real_key('unloading', 'h0_end', 'm', 'Where each retreat ends, above every turning point.', &
-               otherwise='h0_start of &loading'), &
-      real_key('unloading', 'h0_step', 'm', 'Step, positive.', above=0.0_wp, &
-               otherwise='h0_step of &loading')]
-  end function cycle_keys
+contains
 
   !> Reads &loading; its range must run downwards.
   subroutine take_loading(scene, error)

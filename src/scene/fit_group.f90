@@ -5,7 +5,7 @@ module fit_group
   use text, only: lower, quoted, word_count, word_of
   use deck, only: deck_t
   use deck_numbers, only: find_number
-  use deck_keys, only: key_spec, group, real_key, list_key, names_key
+  use deck_keys, only: key_spec, real_value, real_list, names_value
   use fit_request, only: unknown_t, of_contact_point, of_sensitivity, of_spring
   use measured_curve, only: read_measured
   use measurement_group, only: take_measurement
@@ -17,29 +17,24 @@ module fit_group
 
   integer, parameter :: most_unknowns = 20
 
-contains
-
   !> The rows of &fit.
-  pure function fit_keys() result(specs)
-    type(key_spec), allocatable :: specs(:)
-    real(wp), parameter :: zero = 0
+  type(key_spec), parameter :: fit_keys(*) = [ &
+    key_spec('fit', meaning='Keys of this deck whose values are found such that the curve of ' // &
+      'the path fits &measurement.'), &
+    key_spec('fit', 'parameters', names_value, 'The unknowns, as ''group.key'': numbers of ' // &
+      'bodies, shape and forces, and measurement.contact_point, sensitivity or spring_constant.', &
+      most=most_unknowns, required=.true.), &
+    key_spec('fit', 'lower', real_list, 'Smallest value of each, in the unit of the key.', &
+      most=most_unknowns, otherwise='none'), &
+    key_spec('fit', 'upper', real_list, 'Largest value of each.', most=most_unknowns, &
+      otherwise='none'), &
+    key_spec('fit', 'prior', real_list, 'Standard deviation of each before the measurement, ' // &
+      'about the value in the deck; 0: unknown.', most=most_unknowns, low=0.0_wp, &
+      otherwise='unknown'), &
+    key_spec('fit', 'noise', real_value, 'Standard deviation of the signal, in its unit.', &
+      above=0.0_wp, otherwise='that of the baseline')]
 
-    specs = [ &
-      group('fit', 'Keys of this deck whose values are found such that the curve of the path ' // &
-            'fits &measurement.'), &
-      names_key('fit', 'parameters', most_unknowns, 'The unknowns, as ''group.key'': ' // &
-                'numbers of bodies, shape and forces, and measurement.contact_point, ' // &
-                'sensitivity or spring_constant.', required=.true.), &
-      list_key('fit', 'lower', '', 'Smallest value of each, in the unit of the key.', &
-               most=most_unknowns, otherwise='none'), &
-      list_key('fit', 'upper', '', 'Largest value of each.', most=most_unknowns, &
-               otherwise='none'), &
-      list_key('fit', 'prior', '', 'Standard deviation of each before the measurement, about ' // &
-               'the value in the deck; 0: unknown.', most=most_unknowns, low=zero, &
-               otherwise='unknown'), &
-      real_key('fit', 'noise', '', 'Standard deviation of the signal, in its unit.', above=zero, &
-               otherwise='that of the baseline')]
-  end function fit_keys
+contains
 
   !> Reads &measurement and &fit.
   subroutine take_fit(scene, error)
@@ -123,7 +118,8 @@ contains
           unknown%value = family%parameter(own)%value
           unknown%scale = family%parameter(own)%scale
           call find_number(scene%deck, unknown%name, row, term, trouble)
-          unknown%in_log = unknown%value > 0 .and. scene%deck%specs(row)%low >= 0
+          unknown%in_log = unknown%value > 0 .and. &
+            max(scene%deck%specs(row)%low, scene%deck%specs(row)%above) >= 0
           unknown%origin = unknown%value
         end if
       end associate

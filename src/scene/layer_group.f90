@@ -4,7 +4,7 @@ module layer_group
   use failure, only: failure_t
   use text, only: brief
   use deck, only: deck_t
-  use deck_keys, only: key_spec, group, list_key, word_key
+  use deck_keys, only: key_spec, real_list, word_value
   use layered_surface, only: layered_surface_t
   use scene_groups, only: scene_t, bodies_t
   implicit none
@@ -18,45 +18,34 @@ module layer_group
   !> at this limit they take gigabytes of memory, and minutes of work.
   real(wp), parameter :: thinnest = 1.0e-3_wp
 
-contains
+  !> Largest number of layers.
+  integer, parameter :: most = 20
 
   !> The rows of &layer.
-  pure function layer_keys() result(specs)
-    type(key_spec), allocatable :: specs(:)
-    integer, parameter :: most = 20
+  type(key_spec), parameter :: layer_keys(*) = [ &
+    key_spec('layer', meaning='Layers bonded to a body, from the top down, on the half-space ' // &
+      'of &bodies.'), &
+    key_spec('layer', 'thickness', real_list, 'Thickness of each layer.', 'm', most=most, &
+      above=0.0_wp, required=.true.), &
+    key_spec('layer', 'young', real_list, 'Young''s modulus of each layer.', 'Pa', most=most, &
+      above=0.0_wp, required=.true.), &
+    key_spec('layer', 'poisson', real_list, 'Poisson''s ratio of each layer; 0.5: ' // &
+      'incompressible.', most=most, above=-1.0_wp, high=0.5_wp, required=.true.), &
+    key_spec('layer', 'body', word_value, 'The body that has the layers.', choices='1 2 both', &
+      default='1'), &
+    key_spec('layer', 'base', word_value, 'The base below the layers: the half-space of ' // &
+      '&bodies, or rigid.', choices='elastic rigid', otherwise='elastic, or as &bodies rigid'), &
+    key_spec('layer', 'partner', word_value, 'The body without layers.', choices='elastic rigid', &
+      otherwise='elastic, or as &bodies rigid')]
 
-    specs = [ &
-      group('layer', 'Layers bonded to a body, from the top down, on the half-space of &bodies.'), &
-      list_key('layer', 'thickness', 'm', 'Thickness of each layer.', most=most, above=0.0_wp, &
-               required=.true.), &
-      list_key('layer', 'young', 'Pa', 'Young''s modulus of each layer.', most=most, above=0.0_wp, &
-               required=.true.), &
-      list_key('layer', 'poisson', '', 'Poisson''s ratio of each layer; 0.5: incompressible.', &
-               most=most, above=-1.0_wp, high=0.5_wp, required=.true.), &
-      word_key('layer', 'body', '1 2 both', 'The body that has the layers.', default='1'), &
-      word_key('layer', 'base', 'elastic rigid', 'The base below the layers: the half-space ' // &
-               'of &bodies, or rigid.', otherwise='elastic, or as &bodies rigid'), &
-      word_key('layer', 'partner', 'elastic rigid', 'The body without layers.', &
-               otherwise='elastic, or as &bodies rigid')]
-  end function layer_keys
+contains
 
   !> Whether only layers deform, so that &bodies need not say how the bodies do.
   logical function layer_bears_all(deck)
     type(deck_t), intent(in) :: deck
 
-    layer_bears_all = .false.
-    if (.not. deck%has_group('layer') .or. word_of('base') /= 'rigid') return
-    layer_bears_all = word_of('body') == 'both' .or. word_of('partner') == 'rigid'
-
-  contains
-
-    function word_of(key) result(word)
-      character(len=*), intent(in) :: key
-      character(len=:), allocatable :: word
-
-      call deck%get('layer', key, word)
-    end function word_of
-
+    layer_bears_all = deck%has_group('layer') .and. word_is(deck, 'base', 'rigid') .and. &
+      (word_is(deck, 'body', 'both') .or. word_is(deck, 'partner', 'rigid'))
   end function layer_bears_all
 
   !> Reads &layer, after &bodies: the surfaces, and the stiffness of the two bodies as given by
@@ -85,7 +74,7 @@ contains
       call deck%get('layer', 'poisson', coat%poisson)
       call join_alike(coat%thickness, young, coat%poisson)
       coat%shear = young/(2*(1 + coat%poisson))
-      coat%on_rigid = word_is(scene, 'base', 'rigid')
+      coat%on_rigid = word_is(deck, 'base', 'rigid')
       has_coat = [body /= '2', body /= '1']
       allocate (bodies%surface(2))
       do i = 1, 2
@@ -164,10 +153,10 @@ contains
         ' layers; give one value for each thickness, from the top down', error)
       call check_spread(scene, 'thickness', thickness, error)
       call check_spread(scene, 'young', young, error)
-      if (allocated(bodies%young) .and. word_is(scene, 'base', 'elastic')) &
+      if (allocated(bodies%young) .and. word_is(deck, 'base', 'elastic')) &
         call check_spread(scene, 'young', [young, bodies%young], error)
       if (allocated(error)) return
-      if (word_is(scene, 'base', 'elastic')) then
+      if (word_is(deck, 'base', 'elastic')) then
         if (bodies%rigid) then
           call deck%mistake('layer', 'base', 'the bodies are rigid; give base = ''rigid'', or ' // &
             'young and poisson in &bodies', error)
@@ -176,10 +165,10 @@ contains
             'known; give young and poisson here, or base = ''rigid'' in &layer', error)
         end if
       end if
-      if (word_is(scene, 'body', 'both')) then
+      if (word_is(deck, 'body', 'both')) then
         if (deck%is_set('layer', 'partner')) call deck%mistake('layer', 'partner', &
           'both bodies have layers; leave it out', error)
-      else if (bodies%rigid .and. word_is(scene, 'partner', 'elastic')) then
+      else if (bodies%rigid .and. word_is(deck, 'partner', 'elastic')) then
         call deck%mistake('layer', 'partner', 'the bodies are rigid; leave it out, or give ' // &
           'how they deform in &bodies', error)
       end if
@@ -200,12 +189,12 @@ contains
   end subroutine check_spread
 
   !> Whether a key of the group has this value.
-  pure logical function word_is(scene, key, word)
-    type(scene_t), intent(in) :: scene
+  pure logical function word_is(deck, key, word)
+    type(deck_t), intent(in) :: deck
     character(len=*), intent(in) :: key, word
     character(len=:), allocatable :: held
 
-    call scene%deck%get('layer', key, held)
+    call deck%get('layer', key, held)
     word_is = held == word
   end function word_is
 

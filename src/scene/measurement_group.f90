@@ -7,7 +7,7 @@ module measurement_group
   use deck, only: deck_t
   use deck_source, only: source_t, load_source
   use data_table, only: largest_table
-  use deck_keys, only: key_spec, group, real_key, list_key, text_key, word_key, names_key
+  use deck_keys, only: key_spec, real_value, real_list, word_value, text_value, names_value
   use scene_groups, only: scene_t
   implicit none
   private
@@ -15,36 +15,31 @@ module measurement_group
 
   integer, parameter :: most_skipped = 40
 
-contains
-
   !> The rows of &measurement.
-  pure function measurement_keys() result(specs)
-    type(key_spec), allocatable :: specs(:)
-    real(wp), parameter :: zero = 0
+  type(key_spec), parameter :: measurement_keys(*) = [ &
+    key_spec('measurement', meaning='A measured force curve, for &fit.'), &
+    key_spec('measurement', 'file', text_value, 'File of the curve: a table of numbers, # ' // &
+      'before comments, perhaps a line of names; a relative path begins at the deck''s folder.', &
+      most=1000, required=.true.), &
+    key_spec('measurement', 'columns', names_value, 'Name or number of the columns of the ' // &
+      'base''s position [m], the signal (force [N], positive: repulsion, or [V]) and, if ' // &
+      'there is one, the segment: 0 approach, 1 retreat. A minus changes the sign.', most=3, &
+      otherwise='the first two'), &
+    key_spec('measurement', 'spring_constant', real_value, 'Stiffness of the spring.', 'N/m', &
+      above=0.0_wp, required=.true.), &
+    key_spec('measurement', 'sensitivity', real_value, 'Deflection of the spring for one ' // &
+      'volt; 1 for a deflection in metres.', 'm/V', above=0.0_wp, &
+      otherwise='the signal is the force'), &
+    key_spec('measurement', 'contact_point', real_value, 'Position of the base at which ' // &
+      'undeformed bodies would touch.', 'm', otherwise='an unknown of &fit, in its parameters'), &
+    key_spec('measurement', 'units', names_value, 'Units of position (m, mm, um, nm, pm) and ' // &
+      'signal (N, mN, uN, nN, pN, V, mV) in the file.', most=2, otherwise='m and N or V'), &
+    key_spec('measurement', 'skip', real_list, 'Pairs of positions of the base, SI; samples ' // &
+      'between the two of a pair are left out.', 'm', most=most_skipped, otherwise='none'), &
+    key_spec('measurement', 'segment', word_value, 'The branches to fit.', &
+      choices='both approach retreat', default='both')]
 
-    specs = [ &
-      group('measurement', 'A measured force curve, for &fit.'), &
-      text_key('measurement', 'file', 1000, 'File of the curve: a table of numbers, # before ' // &
-               'comments, perhaps a line of names; a relative path begins at the deck''s folder.', &
-               required=.true.), &
-      names_key('measurement', 'columns', 3, 'Name or number of the columns of the base''s ' // &
-                'position [m], the signal (force [N], positive: repulsion, or [V]) and, if ' // &
-                'there is one, the segment: 0 approach, 1 retreat. A minus changes the sign.', &
-                otherwise='the first two'), &
-      real_key('measurement', 'spring_constant', 'N/m', 'Stiffness of the spring.', above=zero, &
-               required=.true.), &
-      real_key('measurement', 'sensitivity', 'm/V', 'Deflection of the spring for one volt; 1 ' &
-               // 'for a deflection in metres.', above=zero, otherwise='the signal is the force'), &
-      real_key('measurement', 'contact_point', 'm', 'Position of the base at which undeformed ' // &
-               'bodies would touch.', &
-               otherwise='an unknown of &fit, in its parameters'), &
-      names_key('measurement', 'units', 2, 'Units of position (m, mm, um, nm, pm) and signal ' // &
-                '(N, mN, uN, nN, pN, V, mV) in the file.', otherwise='m and N or V'), &
-      list_key('measurement', 'skip', 'm', 'Pairs of positions of the base, SI; samples ' // &
-               'between the two of a pair are left out.', most=most_skipped, otherwise='none'), &
-      word_key('measurement', 'segment', 'both approach retreat', 'The branches to fit.', &
-               default='both')]
-  end function measurement_keys
+contains
 
   !> Reads &measurement.
   subroutine take_measurement(scene, error)

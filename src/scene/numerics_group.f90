@@ -1,50 +1,46 @@
 !> &numerics: how the equations are solved.
 module numerics_group
   use kinds, only: wp
-  use deck_keys, only: key_spec, group, real_key, integer_key, word_key
+  use deck_keys, only: key_spec, real_value, integer_value, word_value
   use scene_groups, only: scene_t
   implicit none
   private
   public :: numerics_keys, take_numerics
 
-contains
-
   !> The rows of &numerics.
-  pure function numerics_keys() result(specs)
-    type(key_spec), allocatable :: specs(:)
+  type(key_spec), parameter :: numerics_keys(*) = [ &
+    key_spec('numerics', meaning='How the equations are solved. Most decks need only accuracy.', &
+      always=.true.), &
+    key_spec('numerics', 'method', word_value, 'Iteration to equilibrium.', &
+      choices='auto mixing anderson newton', default='auto'), &
+    key_spec('numerics', 'accuracy', real_value, 'Relative accuracy of load and displacement.', &
+      default='1e-6', low=1e-10_wp, high=1e-1_wp), &
+    key_spec('numerics', 'grid', word_value, 'Discretisation.', choices='auto uniform panels', &
+      default='auto'), &
+    key_spec('numerics', 'nodes', integer_value, 'Number of nodes of a fixed grid, which grid ' // &
+      '= ''uniform'' and method = ''mixing'' have.', low=2, high=20000, &
+      otherwise='from accuracy'), &
+    key_spec('numerics', 'r_max', real_value, 'Radius at which a fixed grid ends.', 'm', &
+      above=0.0_wp, otherwise='from accuracy'), &
+    key_spec('numerics', 'convergence', word_value, 'Quantity that must be small at ' // &
+      'convergence: the residual, or the change from one iteration to the next.', &
+      choices='residual displacement_change', default='residual'), &
+    key_spec('numerics', 'displacement_tolerance', real_value, &
+      'Largest change at convergence, for convergence = ''displacement_change''.', 'm', &
+      default='1e-13', above=0.0_wp), &
+    key_spec('numerics', 'residual_tolerance', real_value, 'Largest residual at convergence, ' // &
+      'relative to the force law''s length.', low=1e-13_wp, high=1e-2_wp, &
+      otherwise='from accuracy'), &
+    key_spec('numerics', 'max_iterations', integer_value, 'Largest number of iterations for ' // &
+      'one state.', low=1, high=1000000000, default='20000'), &
+    key_spec('numerics', 'mixing_limit', real_value, 'Largest mixing ratio.', default='0.2', &
+      above=0.0_wp, high=1.0_wp), &
+    key_spec('numerics', 'anderson_depth', integer_value, 'Number of earlier iterations that ' // &
+      'Anderson acceleration uses.', low=1, high=60, default='5'), &
+    key_spec('numerics', 'panel_order', integer_value, 'Nodes of one panel of a fixed grid.', &
+      low=4, high=24, otherwise='from accuracy')]
 
-    specs = [ &
-      group('numerics', 'How the equations are solved. Most decks need only accuracy.', &
-            always=.true.), &
-      word_key('numerics', 'method', 'auto mixing anderson newton', 'Iteration to equilibrium.', &
-               default='auto'), &
-      real_key('numerics', 'accuracy', '', 'Relative accuracy of load and displacement.', &
-               default='1e-6', low=1e-10_wp, high=1e-1_wp), &
-      word_key('numerics', 'grid', 'auto uniform panels', 'Discretisation.', default='auto'), &
-      integer_key('numerics', 'nodes', 'Number of nodes of a fixed grid, which grid = ' // &
-                  '''uniform'' and method = ''mixing'' have.', 2, 20000, &
-                  otherwise='from accuracy'), &
-      real_key('numerics', 'r_max', 'm', 'Radius at which a fixed grid ends.', above=0.0_wp, &
-               otherwise='from accuracy'), &
-      word_key('numerics', 'convergence', 'residual displacement_change', 'Quantity that must ' // &
-               'be small at convergence: the residual, or the change from one iteration to ' // &
-               'the next.', &
-               default='residual'), &
-      real_key('numerics', 'displacement_tolerance', 'm', 'Largest change at convergence, ' // &
-               'for convergence = ''displacement_change''.', default='1e-13', &
-               above=0.0_wp), &
-      real_key('numerics', 'residual_tolerance', '', 'Largest residual at convergence, ' // &
-               'relative to the force law''s length.', low=1e-13_wp, high=1e-2_wp, &
-               otherwise='from accuracy'), &
-      integer_key('numerics', 'max_iterations', 'Largest number of iterations for one state.', 1, &
-                  1000000000, default='20000'), &
-      real_key('numerics', 'mixing_limit', '', 'Largest mixing ratio.', default='0.2', &
-               above=0.0_wp, high=1.0_wp), &
-      integer_key('numerics', 'anderson_depth', 'Number of earlier iterations that Anderson ' // &
-                  'acceleration uses.', 1, 60, default='5'), &
-      integer_key('numerics', 'panel_order', 'Nodes of one panel of a fixed grid.', 4, 24, &
-                  otherwise='from accuracy')]
-  end function numerics_keys
+contains
 
   !> Reads &numerics.
   subroutine take_numerics(scene)

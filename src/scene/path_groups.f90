@@ -5,66 +5,44 @@ module path_groups
   use failure, only: failure_t
   use text, only: brief
   use deck, only: deck_t
-  use deck_keys, only: key_spec, group, list_key, real_key
+  use deck_keys, only: key_spec, real_value, real_list
   use scene_groups, only: scene_t
   implicit none
   private
-  public :: path_keys, regime_keys, profiles_keys, stability_keys
-  public :: take_path, take_readings, take_regime, take_profiles, take_stability
-  public :: check_path, check_order
-
-contains
+  public :: path_keys, profiles_keys, take_path, take_readings, take_regime, take_profiles, &
+    take_stability, check_path, check_order
 
   !> The rows of &equilibrium_path, &device, &fixed_load and &table.
-  pure function path_keys() result(specs)
-    type(key_spec), allocatable :: specs(:)
+  type(key_spec), parameter :: path_keys(*) = [ &
+    key_spec('equilibrium_path', meaning='The whole path of equilibria, stable and unstable, ' // &
+      'with exact folds.'), &
+    key_spec('equilibrium_path', 'h0_start', real_value, 'First h0, above h0_end.', 'm', &
+      otherwise='chosen by the program'), &
+    key_spec('equilibrium_path', 'h0_end', real_value, 'Last h0; needed without &loading.', 'm', &
+      otherwise='h0_end of &loading'), &
+    key_spec('device', meaning='Bodies driven through a spring, in and out, from the path; ' // &
+      'needs &equilibrium_path.'), &
+    key_spec('device', 'stiffness', real_list, 'Stiffness of each spring; 0: a dead load.', 'N/m', &
+      most=100, low=0.0_wp, otherwise='h0 is prescribed'), &
+    key_spec('device', 'z_start', real_value, 'First position of the drive.', 'm', &
+      otherwise='where the path starts'), &
+    key_spec('device', 'z_end', real_value, 'Position at which the drive turns.', 'm', &
+      otherwise='where the path ends'), &
+    key_spec('fixed_load', meaning='All equilibria under given loads, stable or not; needs ' // &
+      '&equilibrium_path.'), &
+    key_spec('fixed_load', 'load', real_list, 'The loads; negative: tension.', 'N', most=1000, &
+      required=.true.), &
+    key_spec('table', meaning='Load, contact radius and stiffness against indentation, for ' // &
+      'discrete or finite elements; needs &equilibrium_path.')]
 
-    specs = [ &
-      group('equilibrium_path', 'The whole path of equilibria, stable and unstable, with ' // &
-            'exact folds.'), &
-      real_key('equilibrium_path', 'h0_start', 'm', 'First h0, above h0_end.', &
-               otherwise='chosen by the program'), &
-      real_key('equilibrium_path', 'h0_end', 'm', 'Last h0; needed without &loading.', &
-               otherwise='h0_end of &loading'), &
-      group('device', 'Bodies driven through a spring, in and out, from the path; needs ' // &
-            '&equilibrium_path.'), &
-      list_key('device', 'stiffness', 'N/m', 'Stiffness of each spring; 0: a dead load.', &
-               most=100, low=0.0_wp, otherwise='h0 is prescribed'), &
-      real_key('device', 'z_start', 'm', 'First position of the drive.', &
-               otherwise='where the path starts'), &
-      real_key('device', 'z_end', 'm', 'Position at which the drive turns.', &
-               otherwise='where the path ends'), &
-      group('fixed_load', 'All equilibria under given loads, stable or not; needs ' // &
-            '&equilibrium_path.'), &
-      list_key('fixed_load', 'load', 'N', 'The loads; negative: tension.', most=1000, &
-               required=.true.), &
-      group('table', 'Load, contact radius and stiffness against indentation, for discrete or ' // &
-            'finite elements; needs &equilibrium_path.')]
-  end function path_keys
+  !> The rows of &profiles.
+  type(key_spec), parameter :: profiles_keys(*) = [ &
+    key_spec('profiles', meaning='Separation, deformation, pressure and energy against r; ' // &
+      'needs &loading or &equilibrium_path.'), &
+    key_spec('profiles', 'h0', real_list, 'The h0 of the profiles.', 'm', most=1000, &
+      required=.true.)]
 
-  pure function regime_keys() result(specs)
-    type(key_spec), allocatable :: specs(:)
-
-    specs = [group('regime', 'Which theory of contact describes the scene: parameters, and ' // &
-      'errors against the path; needs &equilibrium_path.')]
-  end function regime_keys
-
-  pure function profiles_keys() result(specs)
-    type(key_spec), allocatable :: specs(:)
-
-    specs = [ &
-      group('profiles', 'Separation, deformation, pressure and energy against r; needs &loading ' &
-            // 'or &equilibrium_path.'), &
-      list_key('profiles', 'h0', 'm', 'The h0 of the profiles.', most=1000, &
-               required=.true.)]
-  end function profiles_keys
-
-  pure function stability_keys() result(specs)
-    type(key_spec), allocatable :: specs(:)
-
-    specs = [group('stability', 'Stability of every equilibrium, by criterion and by smallest ' // &
-      'eigenvalue; needs &loading or &equilibrium_path.')]
-  end function stability_keys
+contains
 
   !> Reads &equilibrium_path.
   subroutine take_path(scene, error)

@@ -4,9 +4,10 @@ module rate_groups
   use kinds, only: wp
   use failure, only: failure_t
   use text, only: brief
-  use deck_keys, only: key_spec, group, real_key, list_key
+  use deck_keys, only: key_spec, real_value, real_list
   use creep, only: creep_t
   use scene_groups, only: scene_t
+  use path_groups, only: check_order
   implicit none
   private
   public :: rate_keys, take_rates
@@ -21,41 +22,40 @@ module rate_groups
   character(len=*), parameter :: at_rest(*) = [character(len=16) :: 'loading', 'unloading', &
     'equilibrium_path', 'profiles', 'stability', 'fit', 'regime']
 
-contains
-
   !> The rows of &drive, &viscoelastic and &fluid.
-  pure function rate_keys() result(specs)
-    type(key_spec), allocatable :: specs(:)
+  type(key_spec), parameter :: rate_keys(*) = [ &
+    key_spec('drive', meaning='Bodies driven together and apart in time, at constant velocity.'), &
+    key_spec('drive', 'velocity', real_value, 'Velocity of h0 or, behind a spring, of its base.', &
+      'm/s', above=0.0_wp, required=.true.), &
+    key_spec('drive', 'z_start', real_value, 'Position at which the bodies are at rest and ' // &
+      'the drive begins.', 'm', required=.true.), &
+    key_spec('drive', 'z_turn', real_value, 'Position at which the drive turns, below z_start.', &
+      'm', required=.true.), &
+    key_spec('drive', 'z_end', real_value, 'Position at which the drive ends, above z_turn.', 'm', &
+      otherwise='z_start'), &
+    key_spec('drive', 'dwell', real_value, 'Waiting time at z_turn.', 's', default='0', &
+      low=0.0_wp), &
+    key_spec('drive', 'stiffness', real_value, 'Stiffness of a spring between drive and bodies.', &
+      'N/m', above=0.0_wp, otherwise='none: h0 itself is driven'), &
+    key_spec('drive', 'time_step', real_value, 'Length of the steps.', 's', above=0.0_wp, &
+      otherwise='from accuracy, 1e-4 unless it is given'), &
+    key_spec('viscoelastic', meaning='Bodies that creep; &bodies has the instantaneous ' // &
+      'stiffness. Give stiffness_relaxed or compliance. Needs &drive.'), &
+    key_spec('viscoelastic', 'stiffness_relaxed', real_value, &
+      'Stiffness of bodies at rest, of a standard linear solid, at most the instantaneous one.', &
+      'Pa', above=0.0_wp), &
+    key_spec('viscoelastic', 'compliance', real_list, 'Final contribution of each term to the ' // &
+      'compliance (1-nu^2)/E.', '1/Pa', most=most_terms, above=0.0_wp), &
+    key_spec('viscoelastic', 'retardation_time', real_list, 'Retardation time of each term, ' // &
+      'of creep at constant load.', 's', most=most_terms, above=0.0_wp, required=.true.), &
+    key_spec('fluid', meaning='A viscous fluid that drains from between the bodies. Needs ' // &
+      '&drive.'), &
+    key_spec('fluid', 'viscosity', real_value, 'Viscosity of the fluid.', 'Pa s', above=0.0_wp, &
+      required=.true.), &
+    key_spec('fluid', 'slip_length', real_list, 'Slip length of the fluid on the walls: one ' // &
+      'value for both, or two.', 'm', most=2, low=0.0_wp, otherwise='none')]
 
-    specs = [ &
-      group('drive', 'Bodies driven together and apart in time, at constant velocity.'), &
-      real_key('drive', 'velocity', 'm/s', 'Velocity of h0 or, behind a spring, of its base.', &
-               above=0.0_wp, required=.true.), &
-      real_key('drive', 'z_start', 'm', 'Position at which the bodies are at rest and the ' // &
-               'drive begins.', required=.true.), &
-      real_key('drive', 'z_turn', 'm', 'Position at which the drive turns, below z_start.', &
-               required=.true.), &
-      real_key('drive', 'z_end', 'm', 'Position at which the drive ends, above z_turn.', &
-               otherwise='z_start'), &
-      real_key('drive', 'dwell', 's', 'Waiting time at z_turn.', default='0', low=0.0_wp), &
-      real_key('drive', 'stiffness', 'N/m', 'Stiffness of a spring between drive and bodies.', &
-               above=0.0_wp, otherwise='none: h0 itself is driven'), &
-      real_key('drive', 'time_step', 's', 'Length of the steps.', above=0.0_wp, &
-               otherwise='from accuracy, 1e-4 unless it is given'), &
-      group('viscoelastic', 'Bodies that creep; &bodies has the instantaneous stiffness. ' // &
-            'Give stiffness_relaxed or compliance. Needs &drive.'), &
-      real_key('viscoelastic', 'stiffness_relaxed', 'Pa', 'Stiffness of bodies at rest, of a ' // &
-               'standard linear solid, at most the instantaneous one.', above=0.0_wp), &
-      list_key('viscoelastic', 'compliance', '1/Pa', 'Final contribution of each term to the ' // &
-               'compliance (1-nu^2)/E.', most=most_terms, above=0.0_wp), &
-      list_key('viscoelastic', 'retardation_time', 's', 'Retardation time of each term, of creep ' &
-               // 'at constant load.', most=most_terms, above=0.0_wp, required=.true.), &
-      group('fluid', 'A viscous fluid that drains from between the bodies. Needs &drive.'), &
-      real_key('fluid', 'viscosity', 'Pa s', 'Viscosity of the fluid.', above=0.0_wp, &
-               required=.true.), &
-      list_key('fluid', 'slip_length', 'm', 'Slip length of the fluid on the walls: one value ' // &
-               'for both, or two.', most=2, low=0.0_wp, otherwise='none')]
-  end function rate_keys
+contains
 
   !> Reads &drive, &viscoelastic and &fluid.
   subroutine take_rates(scene, error)
@@ -85,11 +85,10 @@ contains
       call deck%assume('drive', 'z_end', drive%z_start)
       call deck%get('drive', 'z_end', drive%z_end)
       call deck%assume('numerics', 'accuracy', usual_accuracy)
-      if (drive%z_start <= drive%z_turn) call deck%mistake('drive', 'z_start', &
-        brief(drive%z_start) // ' is not above z_turn = ' // brief(drive%z_turn) // ' m', error)
-      if (deck%is_set('drive', 'z_end') .and. drive%z_end <= drive%z_turn) &
-        call deck%mistake('drive', 'z_end', brief(drive%z_end) // ' is not above z_turn = ' // &
-        brief(drive%z_turn) // ' m', error)
+      call check_order(deck, 'drive', 'z_start', drive%z_start, 'above', 'z_turn', drive%z_turn, &
+        error)
+      if (deck%is_set('drive', 'z_end')) call check_order(deck, 'drive', 'z_end', drive%z_end, &
+        'above', 'z_turn', drive%z_turn, error)
       if (allocated(drive%time_step)) then
         time = (drive%z_start - 2*drive%z_turn + drive%z_end)/drive%velocity + drive%dwell
         if (time > most_steps*drive%time_step) call deck%mistake('drive', 'time_step', &

@@ -1,32 +1,63 @@
-!> The content of a deck: this program's groups, with defaults, checked as a whole.
+!> The content of a deck: this program's groups, with defaults, checked as a whole. The reader,
+!> `--keys` and the resolved deck use one table of all groups and keys; the rows of a group with
+!> keys are in the module that reads it.
 module scene
   use kinds, only: wp
   use failure, only: failure_t, fail, bad_input
   use text, only: brief, quoted, listing, first_line, word_count, word_of
   use deck, only: deck_t, read_deck
   use deck_numbers, only: find_number, set_number
-  use scene_keys, only: keys_of_scene
+  use deck_keys, only: key_spec, ignored_group, text_value
   use scene_groups, only: scene_t
-  use scene_problem, only: take_model
-  use cycle_groups, only: take_loading, take_unloading
-  use path_groups, only: take_path, take_readings, take_regime, take_profiles, take_stability
-  use sensitivity_group, only: take_sensitivity
-  use rate_groups, only: take_rates
-  use theory_groups, only: take_theories
-  use sweep_group, only: take_sweep
-  use fit_group, only: take_fit
-  use numerics_group, only: take_numerics
-  use magnitudes, only: check_derived
-  use shape_checks, only: check_shape
+  use scene_problem, only: keys_of_model, take_model
+  use cycle_groups, only: cycle_keys, take_loading, take_unloading
+  use path_groups, only: path_keys, profiles_keys, take_path, take_readings, take_regime, &
+    take_profiles, take_stability
+  use sensitivity_group, only: sensitivity_keys, take_sensitivity
+  use rate_groups, only: rate_keys, take_rates
+  use theory_groups, only: theory_keys, take_theories
+  use sweep_group, only: sweep_keys, take_sweep
+  use fit_group, only: fit_keys, take_fit
+  use measurement_group, only: measurement_keys
+  use numerics_group, only: numerics_keys, take_numerics
+  use scene_checks, only: check_derived, check_shape
   implicit none
   private
-  public :: scene_t, read_scene, swept_scene
+  public :: scene_t, keys_of_scene, read_scene, swept_scene
 
   !> The groups that compute something; a deck needs at least one of them.
   character(len=*), parameter :: computing(*) = [character(len=17) :: 'loading', &
     'equilibrium_path', 'drive', 'approximations', 'classical', 'fit']
 
 contains
+
+  !> The table, one row for each group and key; the keys of a group follow the group.
+  pure function keys_of_scene() result(specs)
+    type(key_spec), allocatable :: specs(:)
+
+    specs = [ &
+      key_spec('scene', meaning='Name of the calculation.'), &
+      key_spec('scene', 'title', text_value, 'Title, repeated in all files of results.', most=200, &
+        otherwise='none'), &
+      keys_of_model(), &
+      cycle_keys, &
+      path_keys, &
+      sensitivity_keys, &
+      key_spec('regime', meaning='Which theory of contact describes the scene: parameters, ' // &
+        'and errors against the path; needs &equilibrium_path.'), &
+      rate_keys, &
+      profiles_keys, &
+      theory_keys(), &
+      key_spec('stability', meaning='Stability of every equilibrium, by criterion and by ' // &
+        'smallest eigenvalue; needs &loading or &equilibrium_path.'), &
+      measurement_keys, &
+      fit_keys, &
+      sweep_keys, &
+      numerics_keys, &
+      key_spec('summary', meaning='Results in a summary file; skipped, so that the file can ' // &
+        'be run again.', kind=ignored_group), &
+      key_spec('cost', meaning='As &summary.', kind=ignored_group)]
+  end function keys_of_scene
 
   !> Reads and checks a deck: the file, or `text`, whose name in messages is `file`. `error` lists
   !> the mistakes, each with file, line, group and key.
@@ -54,7 +85,6 @@ contains
 
     scene%deck = deck
     call deck%get('scene', 'title', scene%title)
-    if (allocated(error)) return
     call take_model(scene, error)
     call take_loading(scene, error)
     ! The groups below take defaults from &loading and are checked against it.

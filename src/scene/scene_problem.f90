@@ -1,5 +1,7 @@
 !> The dimensionless problem of a scene: bodies, forces and shape of its deck.
 module scene_problem
+  ! The module with most dependencies is first: compiler note 12.
+  use scene_groups, only: scene_t
   use failure, only: failure_t
   use dimensionless_problem, only: problem_t, new_problem
   use deck_keys, only: key_spec
@@ -9,7 +11,6 @@ module scene_problem
   use layer_group, only: layer_keys, take_layer, check_thinness
   use layered_surface, only: layered_surface_t
   use layered_body, only: new_layered_body
-  use scene_groups, only: scene_t
   implicit none
   private
   public :: keys_of_model, take_model, problem_of
@@ -20,7 +21,7 @@ contains
   pure function keys_of_model() result(specs)
     type(key_spec), allocatable :: specs(:)
 
-    specs = [bodies_keys(), layer_keys(), keys_of_shapes(), keys_of_laws()]
+    specs = [bodies_keys, layer_keys, keys_of_shapes(), keys_of_laws()]
   end function keys_of_model
 
   !> Reads bodies, layers, forces and shape of the scene's deck.

@@ -2,8 +2,10 @@
 module sensitivity_group
   use failure, only: failure_t, fail, bad_input
   use text, only: lower, quoted, word_count, word_of
+  use deck, only: deck_t
   use deck_numbers, only: find_number
-  use deck_keys, only: key_spec, group, names_key
+  use deck_keys, only: key_spec, names_value
+  use problem_family, only: parameter_t
   use variation, only: vary, to_report
   use scene_groups, only: scene_t
   use path_groups, only: check_path
@@ -12,18 +14,14 @@ module sensitivity_group
   private
   public :: sensitivity_keys, take_sensitivity
 
-contains
-
   !> The rows of &sensitivity.
-  pure function sensitivity_keys() result(specs)
-    type(key_spec), allocatable :: specs(:)
+  type(key_spec), parameter :: sensitivity_keys(*) = [ &
+    key_spec('sensitivity', meaning='Derivatives of reported numbers by numbers of bodies, ' // &
+      'shape and forces; needs &equilibrium_path, or &drive.'), &
+    key_spec('sensitivity', 'parameters', names_value, 'The numbers, as ''group.key''; an ' // &
+      'element of a list as ''group.key(2)''.', most=20, required=.true.)]
 
-    specs = [ &
-      group('sensitivity', 'Derivatives of reported numbers by numbers of bodies, shape and ' // &
-            'forces; needs &equilibrium_path, or &drive.'), &
-      names_key('sensitivity', 'parameters', 20, 'The numbers, as ''group.key''; an element ' // &
-                'of a list as ''group.key(2)''.', required=.true.)]
-  end function sensitivity_keys
+contains
 
   !> Reads &sensitivity.
   subroutine take_sensitivity(scene, error)
@@ -31,70 +29,60 @@ contains
     type(failure_t), allocatable, intent(inout) :: error
     type(deck_family_t) :: family
     type(failure_t), allocatable :: trouble
-    character(len=:), allocatable :: keys
+    character(len=:), allocatable :: keys, why
+    logical :: driven
     integer :: i
 
     if (.not. scene%deck%has_group('sensitivity')) return
     scene%deck%varied = .true.
-    if (scene%deck%has_group('drive')) then
-      call take_for_drive(scene, error)
-      return
+    driven = scene%deck%has_group('drive')
+    why = ''
+    if (.not. driven) then
+      call check_path(scene, 'sensitivity', error)
+      why = ', whose cases show no curve'
     end if
-    call check_path(scene, 'sensitivity', error)
     if (scene%deck%has_group('sweep')) call scene%deck%mistake('sensitivity', '', &
-      'not together with &sweep, whose cases show no curve', error)
-    if (allocated(error)) return
+      'not together with &sweep' // why, error)
+    if (allocated(error) .and. .not. driven) return
     call scene%deck%get('sensitivity', 'parameters', keys)
     allocate (scene%sensitivity)
     allocate (scene%sensitivity%varied(word_count(keys)))
     do i = 1, word_count(keys)
-      ! Each alone: where a default follows the number, it follows whatever else is named.
-      call new_deck_family(scene%deck, word_of(keys, i), family, trouble)
-      if (.not. allocated(trouble)) &
-        call vary(family, 1, to_report, scene%sensitivity%varied(i), trouble)
+      associate (varied => scene%sensitivity%varied(i))
+        if (driven) then
+          call take_number(scene%deck, lower(word_of(keys, i)), varied%parameter, trouble)
+        else
+          ! Each alone: where a default follows the number, it follows whatever else is named.
+          call new_deck_family(scene%deck, word_of(keys, i), family, trouble)
+          if (.not. allocated(trouble)) call vary(family, 1, to_report, varied, trouble)
+        end if
+      end associate
       if (.not. allocated(trouble)) cycle
       call scene%deck%mistake('sensitivity', 'parameters', trouble%message, error)
       return
     end do
   end subroutine take_sensitivity
 
-  !> The same for a drive in time, which is differentiated by whole runs: any numbers of its deck
+  !> A parameter of a drive in time, which is differentiated by whole runs: any number of the deck
   !> except those of &numerics.
-  subroutine take_for_drive(scene, error)
-    type(scene_t), intent(inout) :: scene
-    type(failure_t), allocatable, intent(inout) :: error
-    type(failure_t), allocatable :: trouble
-    character(len=:), allocatable :: keys, name
-    integer :: i, row, term
+  subroutine take_number(deck, name, parameter, error)
+    type(deck_t), intent(in) :: deck
+    character(len=*), intent(in) :: name
+    type(parameter_t), intent(inout) :: parameter
+    type(failure_t), allocatable, intent(out) :: error
+    integer :: row, term
 
-    associate (deck => scene%deck)
-      if (deck%has_group('sweep')) call deck%mistake('sensitivity', '', &
-        'not together with &sweep', error)
-      call deck%get('sensitivity', 'parameters', keys)
-      allocate (scene%sensitivity)
-      allocate (scene%sensitivity%varied(word_count(keys)))
-      do i = 1, word_count(keys)
-        name = lower(word_of(keys, i))
-        call find_number(deck, name, row, term, trouble)
-        if (.not. allocated(trouble)) then
-          scene%sensitivity%varied(i)%parameter%name = name
-          if (.not. allocated(deck%values(row)%reals) .or. index(name, 'numerics.') == 1) then
-            call fail(trouble, bad_input, quoted(name) // ' is not a number on which results ' // &
-              'depend smoothly')
-          else
-            associate (value => deck%values(row)%reals(max(1, term)))
-              scene%sensitivity%varied(i)%parameter%value = value
-              if (.not. abs(value) > 0) call fail(trouble, bad_input, quoted(name) // &
-                ' is 0, so that no relative change of it can be made')
-            end associate
-          end if
-        end if
-        if (allocated(trouble)) then
-          call deck%mistake('sensitivity', 'parameters', trouble%message, error)
-          return
-        end if
-      end do
-    end associate
-  end subroutine take_for_drive
+    call find_number(deck, name, row, term, error)
+    if (allocated(error)) return
+    parameter%name = name
+    if (.not. allocated(deck%values(row)%reals) .or. index(name, 'numerics.') == 1) then
+      call fail(error, bad_input, quoted(name) // ' is not a number on which results depend ' // &
+        'smoothly')
+      return
+    end if
+    parameter%value = deck%values(row)%reals(max(1, term))
+    if (.not. abs(parameter%value) > 0) call fail(error, bad_input, quoted(name) // &
+      ' is 0, so that no relative change of it can be made')
+  end subroutine take_number
 
 end module sensitivity_group

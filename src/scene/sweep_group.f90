@@ -7,7 +7,7 @@ module sweep_group
   use deck, only: deck_t
   use deck_numbers, only: words_of, number_of_word
   use case_rows, only: case_rows_t
-  use deck_keys, only: key_spec, group, list_key, text_key, names_key
+  use deck_keys, only: key_spec, real_list, text_value, names_value
   use scene_groups, only: scene_t, sweep_t, axis_t, case_file_t
   implicit none
   private
@@ -18,30 +18,29 @@ module sweep_group
   real(wp), parameter :: most_cases = 1.0e7_wp
   character(len=*), parameter :: of_range(4) = ['from ', 'to   ', 'count', 'scale']
 
-contains
-
   !> The rows of &sweep.
-  pure function sweep_keys() result(specs)
-    type(key_spec), allocatable :: specs(:)
+  type(key_spec), parameter :: sweep_keys(*) = [ &
+    key_spec('sweep', meaning='The same deck for several values of keys. Either key with ' // &
+      'from, to and count, one of each for each key, and then every combination is a case; or ' // &
+      'one key with values; or a file.'), &
+    key_spec('sweep', 'key', names_value, 'The keys to vary, as ''group.key''. The last one ' // &
+      'varies fastest.', most=most_keys, otherwise='those of file'), &
+    key_spec('sweep', 'from', real_list, 'First value of each, in the unit of the key.', &
+      most=most_keys), &
+    key_spec('sweep', 'to', real_list, 'Last value of each.', most=most_keys), &
+    key_spec('sweep', 'count', real_list, 'Number of values of each.', most=most_keys, low=2.0_wp, &
+      high=real(most_values, wp)), &
+    key_spec('sweep', 'scale', names_value, 'Spacing of the values, linear or log: one for ' // &
+      'each, or one for all.', most=most_keys, otherwise='linear'), &
+    key_spec('sweep', 'values', real_list, 'The values of one key, one by one.', &
+      most=most_values), &
+    key_spec('sweep', 'words', names_value, 'The words of one key that holds a word.', &
+      most=most_words, otherwise='none'), &
+    key_spec('sweep', 'file', text_value, 'A table of cases: a line of names as ' // &
+      '''group.key'', then one case a row; a relative path begins at the deck''s folder.', &
+      most=1000)]
 
-    specs = [ &
-      group('sweep', 'The same deck for several values of keys. Either key with from, to and ' // &
-            'count, one of each for each key, and then every combination is a case; or one ' // &
-            'key with values; or a file.'), &
-      names_key('sweep', 'key', most_keys, 'The keys to vary, as ''group.key''. The last one ' // &
-                'varies fastest.', otherwise='those of file'), &
-      list_key('sweep', 'from', '', 'First value of each, in the unit of the key.', most_keys), &
-      list_key('sweep', 'to', '', 'Last value of each.', most_keys), &
-      list_key('sweep', 'count', '', 'Number of values of each.', most_keys, low=2.0_wp, &
-               high=real(most_values, wp)), &
-      names_key('sweep', 'scale', most_keys, 'Spacing of the values, linear or log: one for ' // &
-                'each, or one for all.', otherwise='linear'), &
-      list_key('sweep', 'values', '', 'The values of one key, one by one.', most_values), &
-      names_key('sweep', 'words', most_words, 'The words of one key that holds a word.', &
-                otherwise='none'), &
-      text_key('sweep', 'file', 1000, 'A table of cases: a line of names as ''group.key'', ' // &
-               'then one case a row; a relative path begins at the deck''s folder.')]
-  end function sweep_keys
+contains
 
   !> Reads &sweep: a file, or keys with values or ranges.
   subroutine take_sweep(scene, error)

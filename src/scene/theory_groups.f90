@@ -2,7 +2,7 @@
 module theory_groups
   use failure, only: failure_t
   use text, only: clip, guess, listing, lower, quoted, word_count, word_of
-  use deck_keys, only: key_spec, group, names_key, real_key, integer_key
+  use deck_keys, only: key_spec, real_value, integer_value, names_value
   use theory_names, only: convex, theories
   use scene_groups, only: scene_t, range_t
   use path_groups, only: check_order
@@ -19,11 +19,12 @@ contains
   pure function theory_keys() result(specs)
     type(key_spec), allocatable :: specs(:)
 
-    specs = [range_keys('approximations', 'Closed-form approximations for slow deformation.'), &
-      range_keys('classical', 'Hertz, JKR, DMT and Maugis-Dugdale beside the curve; ' // &
-      'Hertz and JKR for the shape that &shape gives.'), &
-      names_key('classical', 'theories', size(theories), 'The theories to show, of ' // &
-        all_names() // '.', otherwise='hertz, jkr, dmt and maugis_dugdale')]
+    specs = [ &
+      range_keys('approximations', 'Closed-form approximations for slow deformation.'), &
+      range_keys('classical', 'Hertz, JKR, DMT and Maugis-Dugdale beside the curve; Hertz ' // &
+        'and JKR for the shape that &shape gives.'), &
+      key_spec('classical', 'theories', names_value, 'The theories to show, of ' // all_names() // &
+        '.', most=size(theories), otherwise='hertz, jkr, dmt and maugis_dugdale')]
   end function theory_keys
 
   !> The rows of one of these groups.
@@ -32,12 +33,13 @@ contains
     type(key_spec) :: specs(4)
 
     specs = [ &
-      group(name, meaning), &
-      real_key(name, 'h0_start', 'm', 'Upper end of the range of h0.', &
-               otherwise='as in &loading or &equilibrium_path'), &
-      real_key(name, 'h0_end', 'm', 'Lower end of the range of h0.', &
-               otherwise='as in &loading or &equilibrium_path'), &
-      integer_key(name, 'count', 'Number of points.', 2, 1000000, default='200')]
+      key_spec(name, meaning=meaning), &
+      key_spec(name, 'h0_start', real_value, 'Upper end of the range of h0.', 'm', &
+        otherwise='as in &loading or &equilibrium_path'), &
+      key_spec(name, 'h0_end', real_value, 'Lower end of the range of h0.', 'm', &
+        otherwise='as in &loading or &equilibrium_path'), &
+      key_spec(name, 'count', integer_value, 'Number of points.', low=2, high=1000000, &
+        default='200')]
   end function range_keys
 
   !> Reads &approximations and &classical.

@@ -1,5 +1,5 @@
 !> The system calls for files, terminal and process, by way of `posix.c`, and their error messages.
-!> A negative status is a failure, for `system_failure`. Paths and names end with `nul`.
+!> A negative status is a failure, for `check_status`. Paths and names end with `nul`.
 module c_library
   use, intrinsic :: iso_c_binding, only: c_char, c_double, c_int, c_long, nul => c_null_char
   use failure, only: failure_t, fail, file_trouble
@@ -9,7 +9,7 @@ module c_library
     c_make_folder, c_current_folder, c_own_path, c_lock, c_kind, c_same_file, c_rename, c_remove, &
     c_free_disk, c_is_terminal, c_prepare, c_end_with_parent, c_pause, &
     c_openblas_threads, c_openblas_end_threads, c_openblas_config, c_build_id
-  public :: explain, system_failure, nul
+  public :: explain, check_status, nul
   public :: as_input, as_output, as_kept_output, as_folder
   public :: too_large, not_there, locked_elsewhere
 
@@ -197,14 +197,15 @@ contains
     reason = trim(text)
   end subroutine explain
 
-  !> Adds to `what` the system's message and advice.
-  subroutine system_failure(what, status, error)
+  !> Fails with `what`, the system's message and advice if the status is a failure.
+  subroutine check_status(what, status, error)
     character(len=*), intent(in) :: what
     integer(c_int), intent(in) :: status
     type(failure_t), allocatable, intent(inout) :: error
     character(len=:), allocatable :: advice, reason
     integer(c_int) :: sort
 
+    if (status >= 0) return
     call explain(status, sort, reason)
     select case (sort)
     case (too_large)
@@ -217,6 +218,6 @@ contains
       advice = 'choose a folder with --out that you may write to'
     end select
     call fail(error, file_trouble, what // ': ' // reason // '; ' // advice)
-  end subroutine system_failure
+  end subroutine check_status
 
 end module c_library

@@ -6,7 +6,7 @@ module files
   use failure, only: failure_t
   use c_library, only: c_make_folder, c_current_folder, c_own_path, c_same_file, c_free_disk, &
     c_is_terminal, c_write, c_open, c_read, c_sync, c_sync_above, c_close, as_folder, &
-    system_failure, nul
+    check_status, nul
   implicit none
   private
   public :: make_folder, sync_names, file_exists, same_file, free_disk, whole_path, own_path, &
@@ -36,7 +36,7 @@ contains
       if (status == 0) cycle
       ! Another process may have created it meanwhile.
       if (file_exists(path(:i) // '/.')) cycle
-      call system_failure('cannot make the folder ' // path(:i), status, error)
+      call check_status('cannot make the folder ' // path(:i), status, error)
       return
     end do
   end subroutine make_folder

@@ -5,7 +5,7 @@ module folder_lock
   use, intrinsic :: iso_c_binding, only: c_int
   use failure, only: failure_t, fail, file_trouble
   use c_library, only: c_open, c_lock, c_kind, c_rename, c_remove, c_sync, c_sync_above, c_close, &
-    explain, system_failure, as_folder, locked_elsewhere, nul
+    explain, check_status, as_folder, locked_elsewhere, nul
   implicit none
   private
   public :: folder_lock_t
@@ -44,10 +44,8 @@ contains
     call self%release()
     self%path = path
     self%folder = c_open(path // nul, as_folder)
-    if (self%folder < 0) then
-      call system_failure('cannot open the folder ' // path, self%folder, error)
-      return
-    end if
+    call check_status('cannot open the folder ' // path, self%folder, error)
+    if (allocated(error)) return
     status = c_lock(self%folder)
     self%held = status == 0
     if (self%held) return
@@ -98,11 +96,9 @@ contains
     class(folder_lock_t), intent(in) :: self
     character(len=*), intent(in) :: from, to
     type(failure_t), allocatable, intent(out) :: error
-    integer(c_int) :: status
 
-    status = c_rename(self%folder, from // nul, to // nul)
-    if (status < 0) call system_failure('cannot rename ' // self%path_of(from) // ' to ' // &
-      self%path_of(to), status, error)
+    call check_status('cannot rename ' // self%path_of(from) // ' to ' // self%path_of(to), &
+      c_rename(self%folder, from // nul, to // nul), error)
   end subroutine rename_file
 
   !> Removes the file `name`; a missing file is not an error.
@@ -110,30 +106,25 @@ contains
     class(folder_lock_t), intent(in) :: self
     character(len=*), intent(in) :: name
     type(failure_t), allocatable, intent(out) :: error
-    integer(c_int) :: status
 
-    status = c_remove(self%folder, name // nul)
-    if (status < 0) call system_failure('cannot remove ' // self%path_of(name), status, error)
+    call check_status('cannot remove ' // self%path_of(name), c_remove(self%folder, name // nul), &
+      error)
   end subroutine remove_file
 
   !> Waits until files created, renamed and removed in the folder are so on the disk.
   subroutine sync(self, error)
     class(folder_lock_t), intent(in) :: self
     type(failure_t), allocatable, intent(out) :: error
-    integer(c_int) :: status
 
-    status = c_sync(self%folder)
-    if (status < 0) call system_failure('cannot write the folder ' // self%path, status, error)
+    call check_status('cannot write the folder ' // self%path, c_sync(self%folder), error)
   end subroutine sync
 
   !> Waits until the folder's own name is on the disk.
   subroutine sync_above(self, error)
     class(folder_lock_t), intent(in) :: self
     type(failure_t), allocatable, intent(out) :: error
-    integer(c_int) :: status
 
-    status = c_sync_above(self%folder)
-    if (status < 0) call system_failure('cannot write the folder above ' // self%path, status, &
+    call check_status('cannot write the folder above ' // self%path, c_sync_above(self%folder), &
       error)
   end subroutine sync_above
 

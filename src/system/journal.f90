@@ -11,7 +11,7 @@ module journal
   use, intrinsic :: iso_c_binding, only: c_char, c_int, c_long, c_loc, c_f_pointer
   use kinds, only: wp, long
   use failure, only: failure_t, fail, file_trouble
-  use c_library, only: c_open, c_read, c_write, c_sync, c_close, c_size, c_cut, system_failure, &
+  use c_library, only: c_open, c_read, c_write, c_sync, c_close, c_size, c_cut, check_status, &
     as_output, as_kept_output, nul
   use byte_record, only: byte_record_t
   use checksums, only: checksum
@@ -98,7 +98,6 @@ contains
     type(failure_t), allocatable, intent(out) :: error
     type(byte_record_t) :: record
     integer(c_long) :: whole, first
-    integer(c_int) :: status
     logical :: found
 
     call start(self, path, as_kept_output, error)
@@ -123,10 +122,8 @@ contains
       self%inherited = self%inherited + 1
     end do
     self%waiting = self%inherited
-    status = c_cut(self%descriptor, whole, first)
-    if (status == 0) return
-    call system_failure('cannot write ' // path, status, error)
-    call self%close()
+    call check_status('cannot write ' // path, c_cut(self%descriptor, whole, first), error)
+    if (allocated(error)) call self%close()
   end subroutine go_on
 
   !> Opens the file and resets the journal.
@@ -149,11 +146,8 @@ contains
     if (.not. allocated(self%gathered)) allocate (self%gathered(most_gathered))
     self%path = path
     self%descriptor = c_open(path // nul, how)
-    if (.not. self%is_open()) then
-      call system_failure('cannot write ' // path, self%descriptor, error)
-      return
-    end if
-    self%room = c_size(self%descriptor)/word
+    call check_status('cannot write ' // path, self%descriptor, error)
+    if (self%is_open()) self%room = c_size(self%descriptor)/word
   end subroutine start
 
   !> Whether records can be read or added.
@@ -259,7 +253,7 @@ contains
     status = c_write(self%descriptor, bytes, size(bytes, kind=c_long))
     if (status == 0 .and. now - self%synced > sync_interval) call self%put_on_disk(status)
     if (status == 0) return
-    call system_failure('cannot write ' // self%path, status, self%trouble)
+    call check_status('cannot write ' // self%path, status, self%trouble)
     call let_go(self)
   end subroutine hand_over
 

@@ -7,7 +7,7 @@ module text_file
   use clock, only: seconds
   use text, only: brief
   use failure, only: failure_t
-  use c_library, only: c_open, c_write, c_sync, c_close, system_failure, as_output, nul
+  use c_library, only: c_open, c_write, c_sync, c_close, check_status, as_output, nul
   implicit none
   private
   public :: output_t, partial, plain
@@ -64,7 +64,7 @@ contains
       return
     end if
     self%descriptor = c_open(path // nul, as_output)
-    if (.not. self%is_open()) call system_failure('cannot write ' // path, self%descriptor, error)
+    call check_status('cannot write ' // path, self%descriptor, error)
   end subroutine open_output
 
   !> Whether the file is open.
@@ -138,7 +138,7 @@ contains
     closed = c_close(self%descriptor)
     self%descriptor = -1
     if (synced == 0) synced = closed
-    if (synced < 0) call system_failure('cannot write ' // self%path, synced, error)
+    call check_status('cannot write ' // self%path, synced, error)
   end subroutine close_output
 
   !> Writes `text`. A failure closes the file.
@@ -156,7 +156,7 @@ contains
     end if
     if (status == 0) status = c_write(self%descriptor, text, int(len(text), c_long))
     if (status == 0) return
-    call system_failure('cannot write ' // self%path, status, error)
+    call check_status('cannot write ' // self%path, status, error)
     if (.not. self%streamed) status = c_close(self%descriptor)
     self%descriptor = -1
   end subroutine hand_over

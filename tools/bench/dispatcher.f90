@@ -98,9 +98,8 @@ program dispatcher
   use ranks, only: crew_t
   use empty_cases, only: counter_t, sleeper_t
   use dispatch, only: hand_out, work_through, dismiss
-  use sweep_case, only: run_case
+  use sweep_case, only: run_case, sweep_tally_t
   use sweeps, only: run_sweep
-  use sweep_tally, only: sweep_tally_t
   implicit none
 
   !> A million cases at most, of which the requested number is handed out.

@@ -4,28 +4,25 @@ module born
   use kinds, only: wp, pi
   use failure, only: failure_t
   use deck, only: deck_t
-  use deck_keys, only: key_spec, group, real_key
+  use deck_keys, only: key_spec, real_value
   use force_law, only: force_law_t
-  use law_reading, only: check_decades
+  use law_reading, only: accept_law
   use power_pair, only: power_pair_t
   implicit none
   private
   public :: keys, read_law
 
-contains
-
   !> The rows of &born.
-  pure function keys() result(rows)
-    type(key_spec), allocatable :: rows(:)
+  type(key_spec), parameter :: keys(*) = [ &
+    key_spec('born', meaning='Born repulsion, A/(6 pi z0^3) (z0/h)^n.'), &
+    key_spec('born', 'hamaker', real_value, 'Hamaker constant A for the strength.', 'J', &
+      above=0.0_wp, otherwise='as in &van_der_waals'), &
+    key_spec('born', 'z0', real_value, 'Separation at which the repulsion balances the ' // &
+      'attraction.', 'm', above=0.0_wp, required=.true.), &
+    key_spec('born', 'exponent', real_value, 'Exponent n.', above=1.0_wp, high=30.0_wp, &
+      default='9')]
 
-    rows = [ &
-      group('born', 'Born repulsion, A/(6 pi z0^3) (z0/h)^n.'), &
-      real_key('born', 'hamaker', 'J', 'Hamaker constant A for the strength.', above=0.0_wp, &
-               otherwise='as in &van_der_waals'), &
-      real_key('born', 'z0', 'm', 'Separation at which the repulsion balances the attraction.', &
-               above=0.0_wp, required=.true.), &
-      real_key('born', 'exponent', '', 'Exponent n.', above=1.0_wp, high=30.0_wp, default='9')]
-  end function keys
+contains
 
   !> The law, if the deck has its group.
   subroutine read_law(deck, law, error)
@@ -47,17 +44,11 @@ contains
     call deck%get('born', 'hamaker', hamaker)
     call deck%get('born', 'z0', this%length)
     call deck%get('born', 'exponent', this%n)
-    call check_decades(deck, 'born', 'hamaker', &
-      log10(hamaker) - log10(6*pi) - 3*log10(this%length), 'a pressure', ' Pa', error)
-    if (allocated(error)) return
     this%pressure_unit = hamaker/(6*pi*this%length**3)
     this%repulsive = 1
     this%tail_power = this%n
     call this%set_scales()
-    this%group = 'born'
-    this%strength_key = 'hamaker'
-    this%length_key = 'z0'
-    allocate (law, source=this)
+    call accept_law(deck, 'born', 'hamaker', 'z0', this, law, error)
   end subroutine read_law
 
 end module born

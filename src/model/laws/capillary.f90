@@ -6,35 +6,33 @@ module capillary
   use kinds, only: wp
   use failure, only: failure_t
   use deck, only: deck_t
-  use deck_keys, only: key_spec, group, real_key, list_key
+  use deck_keys, only: key_spec, real_value, real_list
   use force_law, only: force_law_t
-  use step_attraction, only: new_step, smoothing_key
+  use step_attraction, only: new_step
   implicit none
   private
   public :: keys, read_law
 
-contains
-
   !> The rows of &capillary.
-  pure function keys() result(rows)
-    type(key_spec), allocatable :: rows(:)
-    real(wp), parameter :: zero = 0
+  type(key_spec), parameter :: keys(*) = [ &
+    key_spec('capillary', meaning='Capillary bridge at equilibrium. Give kelvin_radius or ' // &
+      'humidity.'), &
+    key_spec('capillary', 'surface_tension', real_value, 'Surface tension of the liquid.', 'N/m', &
+      above=0.0_wp, default='0.0728'), &
+    key_spec('capillary', 'contact_angle', real_list, 'Contact angles of the two surfaces, or ' // &
+      'one for both.', 'rad', most=2, low=0.0_wp, below=1.5707963_wp, otherwise='0'), &
+    key_spec('capillary', 'kelvin_radius', real_value, 'Radius of curvature of the bridge.', 'm', &
+      above=0.0_wp), &
+    key_spec('capillary', 'humidity', real_value, 'Vapour pressure over that of saturation.', &
+      above=0.0_wp, below=1.0_wp), &
+    key_spec('capillary', 'molar_volume', real_value, 'Molar volume of the liquid.', 'm^3/mol', &
+      above=0.0_wp, default='1.807e-5'), &
+    key_spec('capillary', 'temperature', real_value, 'Temperature.', 'K', above=0.0_wp, &
+      default='293.15'), &
+    key_spec('capillary', 'smoothing', real_value, 'Length over which the attraction ends.', 'm', &
+      above=0.0_wp, otherwise='0.02 of its range')]
 
-    rows = [ &
-      group('capillary', 'Capillary bridge at equilibrium. Give kelvin_radius or humidity.'), &
-      real_key('capillary', 'surface_tension', 'N/m', 'Surface tension of the liquid.', &
-               above=zero, default='0.0728'), &
-      list_key('capillary', 'contact_angle', 'rad', 'Contact angles of the two surfaces, or one ' &
-               // 'for both.', most=2, low=zero, below=1.5707963_wp, otherwise='0'), &
-      real_key('capillary', 'kelvin_radius', 'm', 'Radius of curvature of the bridge.', &
-               above=zero), &
-      real_key('capillary', 'humidity', '', 'Vapour pressure over that of saturation.', &
-               above=zero, below=1.0_wp), &
-      real_key('capillary', 'molar_volume', 'm^3/mol', 'Molar volume of the liquid.', above=zero, &
-               default='1.807e-5'), &
-      real_key('capillary', 'temperature', 'K', 'Temperature.', above=zero, default='293.15'), &
-      smoothing_key('capillary')]
-  end function keys
+contains
 
   !> The law, if the deck has its group.
   subroutine read_law(deck, law, error)

@@ -5,27 +5,24 @@ module depletion
   use kinds, only: wp
   use failure, only: failure_t
   use deck, only: deck_t
-  use deck_keys, only: key_spec, group, real_key
+  use deck_keys, only: key_spec, real_value
   use force_law, only: force_law_t
-  use step_attraction, only: read_step, smoothing_key
+  use step_attraction, only: read_step
   implicit none
   private
   public :: keys, read_law
 
-contains
-
   !> The rows of &depletion.
-  pure function keys() result(rows)
-    type(key_spec), allocatable :: rows(:)
+  type(key_spec), parameter :: keys(*) = [ &
+    key_spec('depletion', meaning='Depletion attraction in a solution of particles.'), &
+    key_spec('depletion', 'osmotic_pressure', real_value, 'Osmotic pressure of the particles.', &
+      'Pa', above=0.0_wp, required=.true.), &
+    key_spec('depletion', 'diameter', real_value, 'Diameter of the particles.', 'm', above=0.0_wp, &
+      required=.true.), &
+    key_spec('depletion', 'smoothing', real_value, 'Length over which the attraction ends.', 'm', &
+      above=0.0_wp, otherwise='0.02 of its range')]
 
-    rows = [ &
-      group('depletion', 'Depletion attraction in a solution of particles.'), &
-      real_key('depletion', 'osmotic_pressure', 'Pa', 'Osmotic pressure of the particles.', &
-               above=0.0_wp, required=.true.), &
-      real_key('depletion', 'diameter', 'm', 'Diameter of the particles.', above=0.0_wp, &
-               required=.true.), &
-      smoothing_key('depletion')]
-  end function keys
+contains
 
   !> The law, if the deck has its group.
   subroutine read_law(deck, law, error)

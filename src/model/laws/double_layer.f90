@@ -12,13 +12,12 @@ module double_layer
   use kinds, only: wp
   use failure, only: failure_t
   use deck, only: deck_t
-  use deck_keys, only: key_spec, group, real_key, integer_key, list_key, word_key
-  use force_law, only: force_law_t
+  use deck_keys, only: key_spec, real_value, real_list, integer_value, word_value
+  use force_law, only: force_law_t, of_slope
   use law_reading, only: check_decades
   use poisson_boltzmann, only: surface_t
   use linear_layers, only: linear_values
-  use layer_table, only: layer_table_t, new_layer_table, nearest_gap, of_pressure, &
-    of_slope, of_energy
+  use layer_table, only: layer_table_t, new_layer_table, nearest_gap
   implicit none
   private
   public :: keys, read_law
@@ -33,10 +32,7 @@ module double_layer
     real(wp) :: scale = 1
     type(layer_table_t) :: table
   contains
-    procedure :: pressure
-    procedure :: slope
-    procedure :: energy
-    procedure, private :: values
+    procedure :: evaluate
   end type double_layer_t
 
   !> CODATA 2018: elementary charge [C], Boltzmann's constant [J/K], vacuum permittivity [F/m],
@@ -50,32 +46,29 @@ module double_layer
   !> Largest reduced potential, 0.5 V for single charges: above it the finite size of ions matters.
   real(wp), parameter :: largest_potential = 20
 
-contains
-
   !> The rows of &double_layer.
-  pure function keys() result(rows)
-    type(key_spec), allocatable :: rows(:)
+  type(key_spec), parameter :: keys(*) = [ &
+    key_spec('double_layer', meaning='Electric double layers in an electrolyte with ions of ' // &
+      'one valence. Give salt or debye_length.'), &
+    key_spec('double_layer', 'potential', real_list, 'Potentials of the two isolated ' // &
+      'surfaces, or one for both.', 'V', most=2, required=.true.), &
+    key_spec('double_layer', 'regulation', real_list, 'Regulation of the two surfaces, or one ' // &
+      'value for both: 0 constant potential, 1 constant charge, or between them.', most=2, &
+      low=0.0_wp, high=1.0_wp, otherwise='1'), &
+    key_spec('double_layer', 'salt', real_value, 'Concentration of the salt.', 'mol/m^3', &
+      above=0.0_wp, otherwise='from debye_length'), &
+    key_spec('double_layer', 'valence', integer_value, 'Charge number of the ions.', low=1, &
+      high=6, default='1'), &
+    key_spec('double_layer', 'debye_length', real_value, 'Debye length 1/kappa.', 'm', &
+      above=0.0_wp, otherwise='from salt'), &
+    key_spec('double_layer', 'permittivity', real_value, 'Relative permittivity of the liquid.', &
+      above=0.0_wp, default='78.4'), &
+    key_spec('double_layer', 'temperature', real_value, 'Temperature.', 'K', above=0.0_wp, &
+      default='298.15'), &
+    key_spec('double_layer', 'model', word_value, 'For small potentials; for large gaps; or ' // &
+      'the whole Poisson-Boltzmann equation.', choices=models, default='nonlinear')]
 
-    rows = [ &
-      group('double_layer', 'Electric double layers in an electrolyte with ions of one valence. ' &
-            // 'Give salt or debye_length.'), &
-      list_key('double_layer', 'potential', 'V', 'Potentials of the two isolated surfaces, or ' // &
-               'one for both.', most=2, required=.true.), &
-      list_key('double_layer', 'regulation', '', 'Regulation of the two surfaces, or one ' // &
-               'value for both: 0 constant potential, 1 constant charge, or between them.', &
-               most=2, low=0.0_wp, high=1.0_wp, otherwise='1'), &
-      real_key('double_layer', 'salt', 'mol/m^3', 'Concentration of the salt.', above=0.0_wp, &
-               otherwise='from debye_length'), &
-      integer_key('double_layer', 'valence', 'Charge number of the ions.', 1, 6, default='1'), &
-      real_key('double_layer', 'debye_length', 'm', 'Debye length 1/kappa.', above=0.0_wp, &
-               otherwise='from salt'), &
-      real_key('double_layer', 'permittivity', '', 'Relative permittivity of the liquid.', &
-               above=0.0_wp, default='78.4'), &
-      real_key('double_layer', 'temperature', 'K', 'Temperature.', above=0.0_wp, &
-               default='298.15'), &
-      word_key('double_layer', 'model', models, 'For small potentials; for large gaps; or the ' // &
-               'whole Poisson-Boltzmann equation.', default='nonlinear')]
-  end function keys
+contains
 
   !> The law, if the deck has its group.
   subroutine read_law(deck, law, error)
@@ -186,12 +179,12 @@ contains
     end if
   end subroutine take_surfaces
 
-  !> Pressure, slope or energy (`quantity`) in the law's units.
-  pure function values(self, quantity, gap) result(value)
+  pure subroutine evaluate(self, quantity, gap, value)
     class(double_layer_t), intent(in) :: self
     integer, intent(in) :: quantity
     real(wp), intent(in) :: gap(:)
-    real(wp) :: value(size(gap)), h(size(gap)), all_values(3)
+    real(wp), intent(out) :: value(size(gap))
+    real(wp) :: h(size(gap)), all_values(3)
     integer :: i
 
     h = max(self%smallest_gap, min(gap, largest_gap))
@@ -207,30 +200,6 @@ contains
     case default
       value = self%scale*self%table%value(quantity, h)
     end select
-  end function values
-
-  pure function pressure(self, gap) result(value)
-    class(double_layer_t), intent(in) :: self
-    real(wp), intent(in) :: gap(:)
-    real(wp) :: value(size(gap))
-
-    value = self%values(of_pressure, gap)
-  end function pressure
-
-  pure function slope(self, gap) result(value)
-    class(double_layer_t), intent(in) :: self
-    real(wp), intent(in) :: gap(:)
-    real(wp) :: value(size(gap))
-
-    value = self%values(of_slope, gap)
-  end function slope
-
-  pure function energy(self, gap) result(value)
-    class(double_layer_t), intent(in) :: self
-    real(wp), intent(in) :: gap(:)
-    real(wp) :: value(size(gap))
-
-    value = self%values(of_energy, gap)
-  end function energy
+  end subroutine evaluate
 
 end module double_layer

@@ -4,26 +4,24 @@ module dugdale
   use kinds, only: wp
   use failure, only: failure_t
   use deck, only: deck_t
-  use deck_keys, only: key_spec, group, real_key
+  use deck_keys, only: key_spec, real_value
   use force_law, only: force_law_t
-  use step_attraction, only: read_step, smoothing_key
+  use step_attraction, only: read_step
   implicit none
   private
   public :: keys, read_law
 
-contains
-
   !> The rows of &dugdale.
-  pure function keys() result(rows)
-    type(key_spec), allocatable :: rows(:)
+  type(key_spec), parameter :: keys(*) = [ &
+    key_spec('dugdale', meaning='Constant attraction up to a separation; needs a repulsion ' // &
+      'beside it.'), &
+    key_spec('dugdale', 'stress', real_value, 'Attraction.', 'Pa', above=0.0_wp, required=.true.), &
+    key_spec('dugdale', 'range', real_value, 'Separation at which the attraction ends.', 'm', &
+      above=0.0_wp, required=.true.), &
+    key_spec('dugdale', 'smoothing', real_value, 'Length over which the attraction ends.', 'm', &
+      above=0.0_wp, otherwise='0.02 of its range')]
 
-    rows = [ &
-      group('dugdale', 'Constant attraction up to a separation; needs a repulsion beside it.'), &
-      real_key('dugdale', 'stress', 'Pa', 'Attraction.', above=0.0_wp, required=.true.), &
-      real_key('dugdale', 'range', 'm', 'Separation at which the attraction ends.', above=0.0_wp, &
-               required=.true.), &
-      smoothing_key('dugdale')]
-  end function keys
+contains
 
   !> The law, if the deck has its group.
   subroutine read_law(deck, law, error)

@@ -4,10 +4,10 @@ module exponential
   use kinds, only: wp
   use failure, only: failure_t
   use deck, only: deck_t
-  use deck_keys, only: key_spec, real_key
-  use force_law, only: force_law_t
+  use deck_keys, only: key_spec, real_value
+  use force_law, only: force_law_t, of_pressure, of_slope
   use force_sum, only: add_term
-  use law_reading, only: is_law, check_parameter, check_decades
+  use law_reading, only: is_law, require, refuse_foreign, accept_law
   implicit none
   private
   public :: exponential_t, keys, read_law, read_exponentials
@@ -16,41 +16,39 @@ module exponential
     !> 1, or -1 for an attraction.
     real(wp) :: sense = 1
   contains
-    procedure :: pressure
-    procedure :: slope
-    procedure :: energy
+    procedure :: evaluate
   end type exponential_t
 
   !> Exponent above which the pressure would underflow or overflow.
   real(wp), parameter :: largest_exponent = 700
 
-contains
-
   !> The keys of the law in &force.
-  pure function keys() result(rows)
-    type(key_spec), allocatable :: rows(:)
+  type(key_spec), parameter :: keys(*) = [ &
+    key_spec('force', 'p0', real_value, 'exponential: pressure at zero separation.', 'Pa', &
+      above=0.0_wp, otherwise='none; exponential needs it'), &
+    key_spec('force', 'decay_length', real_value, 'exponential: decay length.', 'm', above=0.0_wp, &
+      otherwise='none; exponential needs it')]
 
-    rows = [ &
-      real_key('force', 'p0', 'Pa', 'exponential: pressure at zero separation.', above=0.0_wp, &
-               otherwise='none; exponential needs it'), &
-      real_key('force', 'decay_length', 'm', 'exponential: decay length.', above=0.0_wp, &
-               otherwise='none; exponential needs it')]
-  end function keys
+contains
 
   !> The law, if the deck has its group.
   subroutine read_law(deck, law, error)
     type(deck_t), intent(inout) :: deck
     class(force_law_t), allocatable, intent(out) :: law
     type(failure_t), allocatable, intent(inout) :: error
+    type(exponential_t) :: this
     real(wp) :: p0, decay_length
 
-    call check_parameter(deck, 'exponential', 'p0', .true., error)
-    call check_parameter(deck, 'exponential', 'decay_length', .true., error)
-    if (allocated(error) .or. .not. is_law(deck, 'exponential')) return
+    call refuse_foreign(deck, 'force', 'law', 'exponential', keys, error)
+    if (.not. is_law(deck, 'exponential')) return
+    call require(deck, 'force', 'law', 'exponential', 'p0', error)
+    call require(deck, 'force', 'law', 'exponential', 'decay_length', error)
+    if (allocated(error)) return
     call deck%get('force', 'p0', p0)
     call deck%get('force', 'decay_length', decay_length)
-    call check_decades(deck, 'force', 'p0', log10(p0), 'a pressure', ' Pa', error)
-    if (.not. allocated(error)) allocate (law, source=new_exponential(p0, decay_length))
+    this = new_exponential(p0, decay_length)
+    this%coupling_name = 'big_lambda'
+    call accept_law(deck, 'force', 'p0', 'decay_length', this, law, error)
   end subroutine read_law
 
   !> The terms of a group with the lists `decay_length` and `energy` or `pressure`. sense: 1 for
@@ -86,18 +84,12 @@ contains
     if (size(lengths) < n) lengths = spread(lengths(1), 1, n)
     if (size(strengths) < n) strengths = spread(strengths(1), 1, n)
     do i = 1, n
-      call check_decades(deck, group, key, &
-        log10(strengths(i)) - merge(log10(lengths(i)), 0.0_wp, of_energy), 'a pressure', ' Pa', &
-        error)
-      if (allocated(error)) return
       this = new_exponential(strengths(i)/merge(lengths(i), 1.0_wp, of_energy), lengths(i))
       this%sense = sense
       ! The scan of a law finds the scales of an attraction.
       if (sense < 0) this%range = 0
-      this%coupling_name = ''
-      this%group = group
-      this%strength_key = key
-      allocate (term, source=this)
+      call accept_law(deck, group, key, 'decay_length', this, term, error)
+      if (allocated(error)) return
       call add_term(law, term)
     end do
   end subroutine read_exponentials
@@ -109,19 +101,16 @@ contains
     law%length = decay_length
     law%pressure_unit = p0
     law%range = 45
-    law%coupling_name = 'big_lambda'
-    law%group = 'force'
-    law%strength_key = 'p0'
-    law%length_key = 'decay_length'
     ! The pressure may grow by a factor of seven in an iteration.
     law%closure_length = 2
   end function new_exponential
 
   !> sense*exp(-gap); 0 without underflow at large gaps, and finite at any gap.
-  pure function pressure(self, gap) result(value)
+  pure subroutine evaluate(self, quantity, gap, value)
     class(exponential_t), intent(in) :: self
+    integer, intent(in) :: quantity
     real(wp), intent(in) :: gap(:)
-    real(wp) :: value(size(gap))
+    real(wp), intent(out) :: value(size(gap))
 
     ! Both branches of a mask may be evaluated for all elements, hence the bounds on both sides.
     where (gap < largest_exponent)
@@ -129,22 +118,7 @@ contains
     elsewhere
       value = 0
     end where
-  end function pressure
-
-  pure function slope(self, gap) result(value)
-    class(exponential_t), intent(in) :: self
-    real(wp), intent(in) :: gap(:)
-    real(wp) :: value(size(gap))
-
-    value = -self%pressure(gap)
-  end function slope
-
-  pure function energy(self, gap) result(value)
-    class(exponential_t), intent(in) :: self
-    real(wp), intent(in) :: gap(:)
-    real(wp) :: value(size(gap))
-
-    value = self%pressure(gap)
-  end function energy
+    if (quantity == of_slope) value = -value
+  end subroutine evaluate
 
 end module exponential

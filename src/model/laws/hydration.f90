@@ -3,28 +3,25 @@ module hydration
   use kinds, only: wp
   use failure, only: failure_t
   use deck, only: deck_t
-  use deck_keys, only: key_spec, group, list_key
+  use deck_keys, only: key_spec, real_list
   use exponential, only: read_exponentials
   use force_law, only: force_law_t
   implicit none
   private
   public :: keys, read_law
 
-contains
-
   !> The rows of &hydration.
-  pure function keys() result(rows)
-    type(key_spec), allocatable :: rows(:)
+  type(key_spec), parameter :: keys(*) = [ &
+    key_spec('hydration', meaning='Hydration repulsion. Give energy or pressure; each value ' // &
+      'of a list is one term.'), &
+    key_spec('hydration', 'energy', real_list, 'Energy W at h = 0.', 'J/m^2', most=8, &
+      above=0.0_wp), &
+    key_spec('hydration', 'pressure', real_list, 'Pressure at h = 0, W over the decay length.', &
+      'Pa', most=8, above=0.0_wp), &
+    key_spec('hydration', 'decay_length', real_list, 'Decay length l.', 'm', most=8, above=0.0_wp, &
+      required=.true.)]
 
-    rows = [ &
-      group('hydration', 'Hydration repulsion. Give energy or pressure; each value of a list ' // &
-            'is one term.'), &
-      list_key('hydration', 'energy', 'J/m^2', 'Energy W at h = 0.', most=8, above=0.0_wp), &
-      list_key('hydration', 'pressure', 'Pa', 'Pressure at h = 0, W over the decay length.', &
-               most=8, above=0.0_wp), &
-      list_key('hydration', 'decay_length', 'm', 'Decay length l.', most=8, above=0.0_wp, &
-               required=.true.)]
-  end function keys
+contains
 
   !> The law, if the deck has its group.
   subroutine read_law(deck, law, error)

@@ -3,27 +3,23 @@ module hydrophobic
   use kinds, only: wp
   use failure, only: failure_t
   use deck, only: deck_t
-  use deck_keys, only: key_spec, group, list_key
+  use deck_keys, only: key_spec, real_list
   use exponential, only: read_exponentials
   use force_law, only: force_law_t
   implicit none
   private
   public :: keys, read_law
 
-contains
-
   !> The rows of &hydrophobic.
-  pure function keys() result(rows)
-    type(key_spec), allocatable :: rows(:)
+  type(key_spec), parameter :: keys(*) = [ &
+    key_spec('hydrophobic', meaning='Hydrophobic attraction; each value of a list is one ' // &
+      'term. Needs a repulsion beside it.'), &
+    key_spec('hydrophobic', 'energy', real_list, 'Energy W at h = 0, twice the interfacial ' // &
+      'energy times the hydrophobic fraction.', 'J/m^2', most=8, above=0.0_wp, required=.true.), &
+    key_spec('hydrophobic', 'decay_length', real_list, 'Decay length l.', 'm', most=8, &
+      above=0.0_wp, required=.true.)]
 
-    rows = [ &
-      group('hydrophobic', 'Hydrophobic attraction; each value of a list is one term. Needs a ' // &
-            'repulsion beside it.'), &
-      list_key('hydrophobic', 'energy', 'J/m^2', 'Energy W at h = 0, twice the interfacial ' // &
-               'energy times the hydrophobic fraction.', most=8, above=0.0_wp, required=.true.), &
-      list_key('hydrophobic', 'decay_length', 'm', 'Decay length l.', most=8, above=0.0_wp, &
-               required=.true.)]
-  end function keys
+contains
 
   !> The law, if the deck has its group.
   subroutine read_law(deck, law, error)

@@ -5,10 +5,10 @@ module lennard_jones
   use kinds, only: wp, pi
   use failure, only: failure_t
   use deck, only: deck_t
-  use deck_keys, only: key_spec, real_key, list_key, word_key
-  use force_law, only: force_law_t
+  use deck_keys, only: key_spec, real_value, real_list, word_value
+  use force_law, only: force_law_t, of_pressure, of_slope
   use power_pair, only: power_pair_t, new_power_pair, pair_factor
-  use law_reading, only: is_law, check_parameter, check_decades
+  use law_reading, only: is_law, require, refuse_foreign, check_decades
   implicit none
   private
   public :: lennard_jones_t, keys, read_law
@@ -16,30 +16,24 @@ module lennard_jones
   !> The pair of the powers 9 and 3, by products, which are faster.
   type, extends(power_pair_t) :: lennard_jones_t
   contains
-    procedure :: pressure
-    procedure :: slope
-    procedure :: energy
+    procedure :: evaluate
   end type lennard_jones_t
 
-contains
-
   !> The keys of the law in &force.
-  pure function keys() result(rows)
-    type(key_spec), allocatable :: rows(:)
+  type(key_spec), parameter :: keys(*) = [ &
+    key_spec('force', 'hamaker', real_value, 'lennard_jones: Hamaker constant.', 'J', &
+      above=0.0_wp, otherwise='none; lennard_jones needs it'), &
+    key_spec('force', 'z0', real_value, 'lennard_jones: separation of zero force.', 'm', &
+      above=0.0_wp, otherwise='none; lennard_jones needs it'), &
+    key_spec('force', 'surface_energy', real_value, 'lennard_jones: energy needed to separate ' // &
+      'unit area, instead of hamaker.', 'J/m^2', above=0.0_wp), &
+    key_spec('force', 'exponents', real_list, 'lennard_jones: exponents n, m of the pressure: ' // &
+      '9, 3 half-spaces; 10, 4 half-space and sheet; 11, 5 sheets.', most=2, above=1.0_wp, &
+      high=30.0_wp, otherwise='9, 3'), &
+    key_spec('force', 'part', word_value, 'lennard_jones: the part of the law that acts.', &
+      choices='full repulsive attractive', otherwise='full')]
 
-    rows = [ &
-      real_key('force', 'hamaker', 'J', 'lennard_jones: Hamaker constant.', above=0.0_wp, &
-               otherwise='none; lennard_jones needs it'), &
-      real_key('force', 'z0', 'm', 'lennard_jones: separation of zero force.', above=0.0_wp, &
-               otherwise='none; lennard_jones needs it'), &
-      real_key('force', 'surface_energy', 'J/m^2', 'lennard_jones: energy needed to separate ' // &
-               'unit area, instead of hamaker.', above=0.0_wp), &
-      list_key('force', 'exponents', '', 'lennard_jones: exponents n, m of the pressure: 9, 3 ' // &
-               'half-spaces; 10, 4 half-space and sheet; 11, 5 sheets.', most=2, above=1.0_wp, &
-               high=30.0_wp, otherwise='9, 3'), &
-      word_key('force', 'part', 'full repulsive attractive', 'lennard_jones: the part of the ' // &
-               'law that acts.', otherwise='full')]
-  end function keys
+contains
 
   !> The law, if the deck has its group.
   subroutine read_law(deck, law, error)
@@ -50,13 +44,12 @@ contains
     real(wp), allocatable :: exponents(:)
     real(wp) :: hamaker, z0, surface_energy
 
-    call check_parameter(deck, 'lennard_jones', 'hamaker', &
-      .not. deck%is_set('force', 'surface_energy'), error)
-    call check_parameter(deck, 'lennard_jones', 'z0', .true., error)
-    call check_parameter(deck, 'lennard_jones', 'surface_energy', .false., error)
-    call check_parameter(deck, 'lennard_jones', 'exponents', .false., error)
-    call check_parameter(deck, 'lennard_jones', 'part', .false., error)
-    if (allocated(error) .or. .not. is_law(deck, 'lennard_jones')) return
+    call refuse_foreign(deck, 'force', 'law', 'lennard_jones', keys, error)
+    if (.not. is_law(deck, 'lennard_jones')) return
+    if (.not. deck%is_set('force', 'surface_energy')) &
+      call require(deck, 'force', 'law', 'lennard_jones', 'hamaker', error)
+    call require(deck, 'force', 'law', 'lennard_jones', 'z0', error)
+    if (allocated(error)) return
     call deck%assume('force', 'part', 'full')
     if (deck%is_set('force', 'surface_energy') .and. deck%is_set('force', 'hamaker')) &
       call deck%mistake('force', 'surface_energy', 'follows from hamaker; give one of the two', &
@@ -112,32 +105,24 @@ contains
     law%strength_key = 'hamaker'
   end function new_lennard_jones
 
-  pure function pressure(self, gap) result(value)
+  pure subroutine evaluate(self, quantity, gap, value)
     class(lennard_jones_t), intent(in) :: self
+    integer, intent(in) :: quantity
     real(wp), intent(in) :: gap(:)
-    real(wp) :: value(size(gap))
+    real(wp), intent(out) :: value(size(gap))
 
-    ! `value` first holds the inverse cube, which saves an array.
-    value = 1/gap**3
-    value = value*(self%repulsive*value*value - self%attractive)
-  end function pressure
-
-  pure function slope(self, gap) result(value)
-    class(lennard_jones_t), intent(in) :: self
-    real(wp), intent(in) :: gap(:)
-    real(wp) :: value(size(gap)), cube(size(gap))
-
-    cube = 1/gap**3
-    value = 3*cube/gap*(self%attractive - 3*self%repulsive*cube*cube)
-  end function slope
-
-  pure function energy(self, gap) result(value)
-    class(lennard_jones_t), intent(in) :: self
-    real(wp), intent(in) :: gap(:)
-    real(wp) :: value(size(gap)), square(size(gap))
-
-    square = 1/gap**2
-    value = square/8*(self%repulsive*square**3 - 4*self%attractive)
-  end function energy
+    select case (quantity)
+    case (of_pressure)
+      ! `value` first holds the inverse cube, which saves an array.
+      value = 1/gap**3
+      value = value*(self%repulsive*value*value - self%attractive)
+    case (of_slope)
+      value = 1/gap**3
+      value = 3*value/gap*(self%attractive - 3*self%repulsive*value*value)
+    case default
+      value = 1/gap**2
+      value = value/8*(self%repulsive*value**3 - 4*self%attractive)
+    end select
+  end subroutine evaluate
 
 end module lennard_jones

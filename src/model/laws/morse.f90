@@ -6,38 +6,32 @@ module morse
   use kinds, only: wp
   use failure, only: failure_t
   use deck, only: deck_t
-  use deck_keys, only: key_spec, group, real_key
-  use force_law, only: force_law_t
-  use law_reading, only: check_decades
+  use deck_keys, only: key_spec, real_value
+  use force_law, only: force_law_t, of_pressure, of_slope
+  use law_reading, only: accept_law
   implicit none
   private
   public :: keys, read_law
 
   type, extends(force_law_t) :: morse_t
   contains
-    procedure :: pressure
-    procedure :: slope
-    procedure :: energy
+    procedure :: evaluate
   end type morse_t
 
   !> Exponent above which exponentials would underflow or overflow.
   real(wp), parameter :: largest_exponent = 340
 
-contains
-
   !> The rows of &morse.
-  pure function keys() result(rows)
-    type(key_spec), allocatable :: rows(:)
+  type(key_spec), parameter :: keys(*) = [ &
+    key_spec('morse', meaning='Morse law: an exponential repulsion within an exponential ' // &
+      'attraction of twice its range.'), &
+    key_spec('morse', 'surface_energy', real_value, 'Energy needed to separate unit area.', &
+      'J/m^2', above=0.0_wp, required=.true.), &
+    key_spec('morse', 'z0', real_value, 'Separation of zero force.', 'm', required=.true.), &
+    key_spec('morse', 'decay_length', real_value, 'Length over which the attraction falls by ' // &
+      'a factor of e.', 'm', above=0.0_wp, required=.true.)]
 
-    rows = [ &
-      group('morse', 'Morse law: an exponential repulsion within an exponential attraction of ' // &
-            'twice its range.'), &
-      real_key('morse', 'surface_energy', 'J/m^2', 'Energy needed to separate unit area.', &
-               above=0.0_wp, required=.true.), &
-      real_key('morse', 'z0', 'm', 'Separation of zero force.', required=.true.), &
-      real_key('morse', 'decay_length', 'm', 'Length over which the attraction falls by a ' // &
-               'factor of e.', above=0.0_wp, required=.true.)]
-  end function keys
+contains
 
   !> The law, if the deck has its group.
   subroutine read_law(deck, law, error)
@@ -51,18 +45,12 @@ contains
     call deck%get('morse', 'surface_energy', surface_energy)
     call deck%get('morse', 'z0', z0)
     call deck%get('morse', 'decay_length', decay_length)
-    call check_decades(deck, 'morse', 'surface_energy', &
-      log10(surface_energy) - log10(decay_length), 'a pressure', ' Pa', error)
-    if (allocated(error)) return
     this%length = 2*decay_length
     this%pressure_unit = surface_energy/this%length
     this%origin = z0 - this%length
     this%repulsion_length = 0.25_wp
     this%closure_length = 0.5_wp
-    this%group = 'morse'
-    this%strength_key = 'surface_energy'
-    this%length_key = 'decay_length'
-    allocate (law, source=this)
+    call accept_law(deck, 'morse', 'surface_energy', 'decay_length', this, law, error)
   end subroutine read_law
 
   !> exp(-2 (gap - 1)), finite at any gap and constant where it would underflow.
@@ -80,28 +68,20 @@ contains
     if (2*(gap - 1) < largest_exponent) falling = decay(gap)
   end function falling
 
-  pure function pressure(self, gap) result(value)
+  pure subroutine evaluate(self, quantity, gap, value)
     class(morse_t), intent(in) :: self
+    integer, intent(in) :: quantity
     real(wp), intent(in) :: gap(:)
-    real(wp) :: value(size(gap))
+    real(wp), intent(out) :: value(size(gap))
 
-    value = 4*falling(gap)*(falling(gap) - 1)
-  end function pressure
-
-  pure function slope(self, gap) result(value)
-    class(morse_t), intent(in) :: self
-    real(wp), intent(in) :: gap(:)
-    real(wp) :: value(size(gap))
-
-    value = 8*falling(gap)*(1 - 2*falling(gap))
-  end function slope
-
-  pure function energy(self, gap) result(value)
-    class(morse_t), intent(in) :: self
-    real(wp), intent(in) :: gap(:)
-    real(wp) :: value(size(gap))
-
-    value = decay(gap)*(decay(gap) - 2)
-  end function energy
+    select case (quantity)
+    case (of_pressure)
+      value = 4*falling(gap)*(falling(gap) - 1)
+    case (of_slope)
+      value = 8*falling(gap)*(1 - 2*falling(gap))
+    case default
+      value = decay(gap)*(decay(gap) - 2)
+    end select
+  end subroutine evaluate
 
 end module morse

@@ -5,9 +5,9 @@ module steric
   use kinds, only: wp
   use failure, only: failure_t
   use deck, only: deck_t
-  use deck_keys, only: key_spec, group, real_key, integer_key, word_key
-  use force_law, only: force_law_t
-  use law_reading, only: check_decades
+  use deck_keys, only: key_spec, real_value, integer_value, word_value
+  use force_law, only: force_law_t, of_pressure, of_slope
+  use law_reading, only: accept_law
   implicit none
   private
   public :: keys, read_law
@@ -16,32 +16,28 @@ module steric
     !> Whether the model is that of Milner, Witten and Cates.
     logical :: parabolic = .false.
   contains
-    procedure :: pressure
-    procedure :: slope
-    procedure :: energy
+    procedure :: evaluate
   end type steric_t
 
   !> Boltzmann's constant [J/K].
   real(wp), parameter :: boltzmann = 1.380649e-23_wp
 
-contains
-
   !> The rows of &steric.
-  pure function keys() result(rows)
-    type(key_spec), allocatable :: rows(:)
+  type(key_spec), parameter :: keys(*) = [ &
+    key_spec('steric', meaning='Repulsion of polymer brushes.'), &
+    key_spec('steric', 'model', word_value, 'Profile of the brush: a step, whose force begins ' // &
+      'with a kink, or a parabola.', choices='alexander_de_gennes milner_witten_cates', &
+      default='alexander_de_gennes'), &
+    key_spec('steric', 'brush_thickness', real_value, 'Thickness L of a brush.', 'm', &
+      above=0.0_wp, required=.true.), &
+    key_spec('steric', 'grafting_density', real_value, 'Number of chains on unit area.', '1/m^2', &
+      above=0.0_wp, required=.true.), &
+    key_spec('steric', 'sides', integer_value, 'Number of surfaces with a brush.', low=1, high=2, &
+      default='2'), &
+    key_spec('steric', 'temperature', real_value, 'Temperature.', 'K', above=0.0_wp, &
+      default='298.15')]
 
-    rows = [ &
-      group('steric', 'Repulsion of polymer brushes.'), &
-      word_key('steric', 'model', 'alexander_de_gennes milner_witten_cates', 'Profile of the ' &
-               // 'brush: a step, whose force begins with a kink, or a parabola.', &
-               default='alexander_de_gennes'), &
-      real_key('steric', 'brush_thickness', 'm', 'Thickness L of a brush.', above=0.0_wp, &
-               required=.true.), &
-      real_key('steric', 'grafting_density', '1/m^2', 'Number of chains on unit area.', &
-               above=0.0_wp, required=.true.), &
-      integer_key('steric', 'sides', 'Number of surfaces with a brush.', 1, 2, default='2'), &
-      real_key('steric', 'temperature', 'K', 'Temperature.', above=0.0_wp, default='298.15')]
-  end function keys
+contains
 
   !> The law, if the deck has its group.
   subroutine read_law(deck, law, error)
@@ -59,9 +55,6 @@ contains
     call deck%get('steric', 'grafting_density', density)
     call deck%get('steric', 'sides', sides)
     call deck%get('steric', 'temperature', temperature)
-    call check_decades(deck, 'steric', 'grafting_density', &
-      log10(boltzmann) + log10(temperature) + 1.5_wp*log10(density), 'a pressure', ' Pa', error)
-    if (allocated(error)) return
     this%parabolic = model == 'milner_witten_cates'
     this%length = sides*thickness
     this%pressure_unit = boltzmann*temperature*density**1.5_wp
@@ -69,51 +62,37 @@ contains
     this%kinks = this%breaks
     this%smallest_gap = 1.0e-12_wp
     this%closure_fraction = 0.3_wp
-    this%group = 'steric'
-    this%strength_key = 'grafting_density'
-    this%length_key = 'brush_thickness'
-    allocate (law, source=this)
+    call accept_law(deck, 'steric', 'grafting_density', 'brush_thickness', this, law, error)
   end subroutine read_law
 
-  pure function pressure(self, gap) result(value)
+  pure subroutine evaluate(self, quantity, gap, value)
     class(steric_t), intent(in) :: self
+    integer, intent(in) :: quantity
     real(wp), intent(in) :: gap(:)
-    real(wp) :: value(size(gap)), u(size(gap))
+    real(wp), intent(out) :: value(size(gap))
+    real(wp) :: u(size(gap))
 
     u = min(gap, 1.0_wp)
     if (self%parabolic) then
-      value = 0.5_wp/u**2 - u + 0.5_wp*u**4
+      select case (quantity)
+      case (of_pressure)
+        value = 0.5_wp/u**2 - u + 0.5_wp*u**4
+      case (of_slope)
+        value = -1/u**3 - 1 + 2*u**3
+      case default
+        value = 0.5_wp/u + 0.5_wp*u**2 - 0.1_wp*u**5 - 0.9_wp
+      end select
     else
-      value = u**(-2.25_wp) - u**0.75_wp
-    end if
-  end function pressure
-
-  pure function slope(self, gap) result(value)
-    class(steric_t), intent(in) :: self
-    real(wp), intent(in) :: gap(:)
-    real(wp) :: value(size(gap)), u(size(gap))
-
-    u = min(gap, 1.0_wp)
-    if (self%parabolic) then
-      value = -1/u**3 - 1 + 2*u**3
-    else
-      value = -2.25_wp*u**(-3.25_wp) - 0.75_wp*u**(-0.25_wp)
-    end if
-    where (gap >= 1) value = 0
-  end function slope
-
-  pure function energy(self, gap) result(value)
-    class(steric_t), intent(in) :: self
-    real(wp), intent(in) :: gap(:)
-    real(wp) :: value(size(gap)), u(size(gap))
-
-    u = min(gap, 1.0_wp)
-    if (self%parabolic) then
-      value = 0.5_wp/u + 0.5_wp*u**2 - 0.1_wp*u**5 - 0.9_wp
-    else
-      value = 0.8_wp*u**(-1.25_wp) + 4*u**1.75_wp/7 - 48.0_wp/35
+      select case (quantity)
+      case (of_pressure)
+        value = u**(-2.25_wp) - u**0.75_wp
+      case (of_slope)
+        value = -2.25_wp*u**(-3.25_wp) - 0.75_wp*u**(-0.25_wp)
+      case default
+        value = 0.8_wp*u**(-1.25_wp) + 4*u**1.75_wp/7 - 48.0_wp/35
+      end select
     end if
     where (gap >= 1) value = 0
-  end function energy
+  end subroutine evaluate
 
 end module steric

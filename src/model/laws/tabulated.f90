@@ -3,9 +3,9 @@ module tabulated
   use kinds, only: wp
   use failure, only: failure_t
   use deck, only: deck_t
-  use deck_keys, only: key_spec, group, real_key, text_key, word_key
+  use deck_keys, only: key_spec, real_value, word_value, text_value
   use data_table, only: data_table_t, read_columns
-  use force_law, only: force_law_t
+  use force_law, only: force_law_t, of_pressure, of_energy
   use force_table, only: force_table_t, new_force_table, largest_step
   use law_reading, only: check_decades
   implicit none
@@ -20,9 +20,7 @@ module tabulated
     !> Change of the energy of the tail if it fell as the last points do.
     real(wp) :: tail_error = 0
   contains
-    procedure :: pressure
-    procedure :: slope
-    procedure :: energy
+    procedure :: evaluate
     procedure :: table_error
   end type tabulated_t
 
@@ -37,26 +35,23 @@ module tabulated
   !> that are monotone as the second power at an extremum.
   real(wp), parameter :: share_of_spline = 1.0_wp/15, share_of_monotone = 1.0_wp/3
 
-contains
-
   !> The rows of &tabulated.
-  pure function keys() result(rows)
-    type(key_spec), allocatable :: rows(:)
+  type(key_spec), parameter :: keys(*) = [ &
+    key_spec('tabulated', meaning='A law from a file. Give tail_exponent or tail_decay_length.'), &
+    key_spec('tabulated', 'file', text_value, 'File of two columns, gap and quantity in SI, # ' // &
+      'before comments; a relative path begins at the deck''s folder.', most=1000, &
+      required=.true.), &
+    key_spec('tabulated', 'quantity', word_value, 'The second column: pressure [Pa] or energy ' // &
+      'per area [J/m^2].', choices='pressure energy', default='pressure'), &
+    key_spec('tabulated', 'interpolation', word_value, 'Smooth curvature, or no extremum ' // &
+      'between points.', choices='spline monotone', default='spline'), &
+    key_spec('tabulated', 'tail_exponent', real_value, 'Beyond the last point the pressure ' // &
+      'falls as this power of the gap: 3 for van der Waals attraction.', above=1.0_wp, &
+      high=30.0_wp, otherwise='none'), &
+    key_spec('tabulated', 'tail_decay_length', real_value, 'Beyond the last point the ' // &
+      'pressure falls by a factor of e over this length.', 'm', above=0.0_wp, otherwise='none')]
 
-    rows = [ &
-      group('tabulated', 'A law from a file. Give tail_exponent or tail_decay_length.'), &
-      text_key('tabulated', 'file', 1000, 'File of two columns, gap and quantity in SI, # before ' &
-               // 'comments; a relative path begins at the deck''s folder.', required=.true.), &
-      word_key('tabulated', 'quantity', 'pressure energy', 'The second column: pressure [Pa] or ' &
-               // 'energy per area [J/m^2].', default='pressure'), &
-      word_key('tabulated', 'interpolation', 'spline monotone', 'Smooth curvature, or no ' // &
-               'extremum between points.', default='spline'), &
-      real_key('tabulated', 'tail_exponent', '', 'Beyond the last point the pressure falls as ' // &
-               'this power of the gap: 3 for van der Waals attraction.', above=1.0_wp, &
-               high=30.0_wp, otherwise='none'), &
-      real_key('tabulated', 'tail_decay_length', 'm', 'Beyond the last point the pressure falls ' &
-               // 'by a factor of e over this length.', above=0.0_wp, otherwise='none')]
-  end function keys
+contains
 
   !> The law, if the deck has its group.
   subroutine read_law(deck, law, error)
@@ -74,7 +69,7 @@ contains
         'tail_decay_length, one of the two, for gaps beyond the table', error)
       return
     end if
-    call read_columns(deck, 'tabulated', 'file', table, trouble)
+    call read_columns(deck, 'tabulated', 'file', fewest, table, trouble)
     if (.not. allocated(trouble)) call put_in_order(table, trouble)
     if (allocated(trouble)) then
       call deck%mistake('tabulated', 'file', 'the table cannot be used: ' // trouble%message, error)
@@ -84,28 +79,22 @@ contains
     if (.not. allocated(error)) allocate (law, source=this)
   end subroutine read_law
 
-  !> Puts gaps in ascending order; fails if they neither ascend nor descend, are not positive, or
-  !> are too few.
+  !> Puts gaps in ascending order; fails if they neither ascend nor descend, or are not positive.
   subroutine put_in_order(table, error)
     type(data_table_t), intent(inout) :: table
     type(failure_t), allocatable, intent(inout) :: error
     integer :: i
 
     associate (gap => table%value(:, 1), n => size(table%place))
-      if (n < fewest) then
-        call table%source%complain(len(table%source%text) + 1, '', '', &
-          'fewer than 8 points', error)
-        return
-      end if
       do i = 1, n
         if (.not. gap(i) > 0) then
-          call table%source%complain(table%place(i), '', '', 'a gap that is not positive', error)
+          call table%source%complain(table%place(i), 'a gap that is not positive', error)
           return
         end if
         if (i == 1) cycle
         if ((gap(i) - gap(i - 1))*(gap(2) - gap(1)) > 0) cycle
-        call table%source%complain(table%place(i), '', '', &
-          'gaps neither increase all the way nor decrease', error)
+        call table%source%complain(table%place(i), 'gaps neither increase all the way nor ' // &
+          'decrease', error)
         return
       end do
       if (gap(1) < gap(n)) return
@@ -235,29 +224,14 @@ contains
     this%has_units = .false.
   end subroutine take_scales
 
-  pure function pressure(self, gap) result(value)
+  pure subroutine evaluate(self, quantity, gap, value)
     class(tabulated_t), intent(in) :: self
+    integer, intent(in) :: quantity
     real(wp), intent(in) :: gap(:)
-    real(wp) :: value(size(gap))
+    real(wp), intent(out) :: value(size(gap))
 
-    value = column_of(self%fine, gap, self%smallest_gap, 1)
-  end function pressure
-
-  pure function slope(self, gap) result(value)
-    class(tabulated_t), intent(in) :: self
-    real(wp), intent(in) :: gap(:)
-    real(wp) :: value(size(gap))
-
-    value = column_of(self%fine, gap, self%smallest_gap, 2)
-  end function slope
-
-  pure function energy(self, gap) result(value)
-    class(tabulated_t), intent(in) :: self
-    real(wp), intent(in) :: gap(:)
-    real(wp) :: value(size(gap))
-
-    value = column_of(self%fine, gap, self%smallest_gap, 3)
-  end function energy
+    value = quantity_of(self%fine, quantity, max(gap, self%smallest_gap))
+  end subroutine evaluate
 
   !> From the table of every second point: for smooth laws its additional error is a known multiple
   !> of the error of the whole table. The energy also has the error of the tail.
@@ -266,24 +240,23 @@ contains
     real(wp), intent(in) :: gap(:)
     real(wp) :: value(2, size(gap))
 
-    value(1, :) = column_of(self%coarse, gap, self%smallest_gap, 1) - self%pressure(gap)
-    value(2, :) = column_of(self%coarse, gap, self%smallest_gap, 3) - self%energy(gap)
+    associate (at => max(gap, self%smallest_gap))
+      value(1, :) = quantity_of(self%coarse, of_pressure, at) - self%pressure(gap)
+      value(2, :) = quantity_of(self%coarse, of_energy, at) - self%energy(gap)
+    end associate
     value = self%share*abs(value)
     value(2, :) = value(2, :) + self%tail_error
   end function table_error
 
-  !> Pressure (1), slope (2) or energy (3) of a table at gaps.
-  pure function column_of(table, gap, smallest, column) result(value)
+  !> A quantity of a table at a gap.
+  elemental real(wp) function quantity_of(table, quantity, gap) result(value)
     type(force_table_t), intent(in) :: table
-    real(wp), intent(in) :: gap(:), smallest
-    integer, intent(in) :: column
-    real(wp) :: value(size(gap)), at(3)
-    integer :: i
+    integer, intent(in) :: quantity
+    real(wp), intent(in) :: gap
+    real(wp) :: at(3)
 
-    do i = 1, size(gap)
-      at = table%values(max(gap(i), smallest), with_energy=column == 3)
-      value(i) = at(column)
-    end do
-  end function column_of
+    at = table%values(gap, with_energy=quantity == of_energy)
+    value = at(quantity)
+  end function quantity_of
 
 end module tabulated

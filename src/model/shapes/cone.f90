@@ -3,23 +3,21 @@ module cone
   use kinds, only: wp, pi
   use failure, only: failure_t
   use deck, only: deck_t
-  use deck_keys, only: key_spec, real_key
+  use deck_keys, only: key_spec, real_value
   use shape, only: shape_t
-  use shape_reading, only: require, refuse_radius
+  use law_reading, only: require
+  use shape_reading, only: refuse_radius
   use power, only: take_power
   implicit none
   private
   public :: keys, read_shape
 
-contains
-
   !> The row of a cone in &shape.
-  pure function keys() result(rows)
-    type(key_spec), allocatable :: rows(:)
+  type(key_spec), parameter :: keys(*) = [ &
+    key_spec('shape', 'half_angle', real_value, 'Angle of a cone between axis and surface; ' // &
+      'the gap is r/tan(half_angle).', 'rad', above=0.0_wp, below=0.5_wp*pi)]
 
-    rows = [real_key('shape', 'half_angle', 'rad', 'Angle of a cone between axis and surface; ' // &
-      'the gap is r/tan(half_angle).', above=0.0_wp, below=0.5_wp*pi)]
-  end function keys
+contains
 
   !> Reads kind = 'cone'. length: the law's [m].
   subroutine read_shape(deck, length, shape, error)
@@ -29,7 +27,7 @@ contains
     type(failure_t), allocatable, intent(inout) :: error
     real(wp) :: half_angle
 
-    call require(deck, 'cone', 'half_angle', error)
+    call require(deck, 'shape', 'kind', 'cone', 'half_angle', error)
     call refuse_radius(deck, 'a cone has none', error)
     if (allocated(error)) return
     call deck%get('shape', 'half_angle', half_angle)

@@ -25,14 +25,10 @@ module parabola
     procedure :: hertz_gap
   end type parabola_t
 
-contains
-
   !> A parabola has no rows of its own in &shape.
-  pure function keys() result(rows)
-    type(key_spec), allocatable :: rows(:)
+  type(key_spec), parameter :: keys(*) = [key_spec ::]
 
-    allocate (rows(0))
-  end function keys
+contains
 
   !> Reads kind = 'parabola', or no &shape. length: the law's [m], which does not matter.
   subroutine read_shape(deck, length, shape, error)

@@ -4,10 +4,10 @@ module power
   use kinds, only: wp, pi
   use failure, only: failure_t
   use deck, only: deck_t
-  use deck_keys, only: key_spec, real_key
-  use law_reading, only: check_decades
+  use deck_keys, only: key_spec, real_value
+  use law_reading, only: require, check_decades
   use shape, only: shape_t
-  use shape_reading, only: require, read_radius, refuse_radius
+  use shape_reading, only: read_radius, refuse_radius
   use parabola, only: new_parabola
   implicit none
   private
@@ -26,17 +26,13 @@ module power
     procedure :: contact_radius
   end type power_t
 
-contains
-
   !> The rows of a power in &shape.
-  pure function keys() result(rows)
-    type(key_spec), allocatable :: rows(:)
+  type(key_spec), parameter :: keys(*) = [ &
+    key_spec('shape', 'exponent', real_value, 'n of the gap B r^n.', low=1.0_wp, high=10.0_wp), &
+    key_spec('shape', 'coefficient', real_value, 'B of the gap B r^n.', 'm^(1-n)', above=0.0_wp, &
+      otherwise='1/(2 R^(n-1))')]
 
-    rows = [ &
-      real_key('shape', 'exponent', '', 'n of the gap B r^n.', low=1.0_wp, high=10.0_wp), &
-      real_key('shape', 'coefficient', 'm^(1-n)', 'B of the gap B r^n.', above=0.0_wp, &
-               otherwise='1/(2 R^(n-1))')]
-  end function keys
+contains
 
   !> Reads kind = 'power': B from coefficient or radius. length: the law's [m].
   subroutine read_shape(deck, length, shape, error)
@@ -46,7 +42,7 @@ contains
     type(failure_t), allocatable, intent(inout) :: error
     real(wp) :: n, coefficient, radius
 
-    call require(deck, 'power', 'exponent', error)
+    call require(deck, 'shape', 'kind', 'power', 'exponent', error)
     if (allocated(error)) return
     call deck%get('shape', 'exponent', n)
     if (deck%is_set('shape', 'coefficient')) then

@@ -4,14 +4,14 @@ module profile
   use kinds, only: wp, pi
   use failure, only: failure_t
   use deck, only: deck_t
-  use deck_keys, only: key_spec, text_key
+  use deck_keys, only: key_spec, text_value
   use data_table, only: data_table_t, read_columns
   use cubic, only: spline
   use interpolation, only: interval_of
   use quadrature, only: gauss_legendre
-  use law_reading, only: check_decades
+  use law_reading, only: require, check_decades
   use shape, only: shape_t
-  use shape_reading, only: require, refuse_radius
+  use shape_reading, only: refuse_radius
   implicit none
   private
   public :: keys, read_shape
@@ -32,15 +32,13 @@ module profile
   !> of a table, or from a spline through a body that is flat at its tip.
   real(wp), parameter :: straight = 0.02_wp
 
-contains
-
   !> The row of a profile in &shape.
-  pure function keys() result(rows)
-    type(key_spec), allocatable :: rows(:)
+  type(key_spec), parameter :: keys(*) = [ &
+    key_spec('shape', 'file', text_value, 'File of two columns, r from 0 on and height f in ' // &
+      'm, # before comments; a relative path begins at the deck''s folder.', most=1000, &
+      otherwise='none')]
 
-    rows = [text_key('shape', 'file', 1000, 'File of two columns, r from 0 on and height f in m, ' &
-      // '# before comments; a relative path begins at the deck''s folder.', otherwise='none')]
-  end function keys
+contains
 
   !> Reads kind = 'profile'. length: the law's [m].
   subroutine read_shape(deck, length, shape, error)
@@ -52,10 +50,10 @@ contains
     type(profile_t) :: this
     type(data_table_t) :: table
 
-    call require(deck, 'profile', 'file', error)
+    call require(deck, 'shape', 'kind', 'profile', 'file', error)
     call refuse_radius(deck, 'the profile has its own', error)
     if (allocated(error)) return
-    call read_columns(deck, 'shape', 'file', table, trouble)
+    call read_columns(deck, 'shape', 'file', fewest, table, trouble)
     if (.not. allocated(trouble)) call check_points(table, trouble)
     if (.not. allocated(trouble)) call take_points(table, length, this, trouble)
     if (allocated(trouble)) then
@@ -73,19 +71,13 @@ contains
     integer :: i
 
     associate (r => table%value(:, 1), f => table%value(:, 2), n => size(table%place))
-      if (n < fewest) then
-        call table%source%complain(len(table%source%text) + 1, '', '', &
-          'fewer than 5 points', error)
-        return
-      end if
       if (abs(r(1)) > 0) then
-        call table%source%complain(table%place(1), '', '', &
-          'the first position is not 0, the axis', error)
+        call table%source%complain(table%place(1), 'the first position is not 0, the axis', error)
         return
       end if
       do i = 2, n
         if (r(i) > r(i - 1) .and. f(i) > f(i - 1)) cycle
-        call table%source%complain(table%place(i), '', '', &
+        call table%source%complain(table%place(i), &
           'position and height do not both grow from the line before', error)
         return
       end do
@@ -116,7 +108,7 @@ contains
       do i = 1, n
         if (curvature(i) >= -straight*maxval(curvature) .and. &
           (i == 1 .or. this%taylor(1, i) > 0)) cycle
-        call table%source%complain(table%place(i), '', '', 'the profile is not convex ' // &
+        call table%source%complain(table%place(i), 'the profile is not convex ' // &
           'here; contacts with several edges are not computed', error)
         return
       end do

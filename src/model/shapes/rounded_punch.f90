@@ -3,9 +3,10 @@ module rounded_punch
   use kinds, only: wp
   use failure, only: failure_t
   use deck, only: deck_t
-  use deck_keys, only: key_spec, real_key
+  use deck_keys, only: key_spec, real_value
   use shape, only: shape_t
-  use shape_reading, only: require, read_radius
+  use law_reading, only: require
+  use shape_reading, only: read_radius
   implicit none
   private
   public :: keys, read_shape
@@ -21,15 +22,12 @@ module rounded_punch
     procedure :: indentation
   end type rounded_punch_t
 
-contains
-
   !> The row of a rounded punch in &shape.
-  pure function keys() result(rows)
-    type(key_spec), allocatable :: rows(:)
+  type(key_spec), parameter :: keys(*) = [ &
+    key_spec('shape', 'flat_radius', real_value, 'Radius b of the flat face of a punch, whose ' // &
+      'rim has the radius R.', 'm', above=0.0_wp)]
 
-    rows = [real_key('shape', 'flat_radius', 'm', 'Radius b of the flat face of a punch, ' // &
-      'whose rim has the radius R.', above=0.0_wp)]
-  end function keys
+contains
 
   !> Reads kind = 'rounded_punch'. length: the law's [m].
   subroutine read_shape(deck, length, shape, error)
@@ -40,7 +38,7 @@ contains
     type(rounded_punch_t) :: this
     real(wp) :: flat_radius
 
-    call require(deck, 'rounded_punch', 'flat_radius', error)
+    call require(deck, 'shape', 'kind', 'rounded_punch', 'flat_radius', error)
     call read_radius(deck, this%radius, error)
     if (allocated(error)) return
     call deck%get('shape', 'flat_radius', flat_radius)

@@ -11,14 +11,10 @@ module sphere
   private
   public :: keys, read_shape
 
-contains
-
   !> A sphere has no rows of its own in &shape.
-  pure function keys() result(rows)
-    type(key_spec), allocatable :: rows(:)
+  type(key_spec), parameter :: keys(*) = [key_spec ::]
 
-    allocate (rows(0))
-  end function keys
+contains
 
   !> Reads kind = 'sphere'. length: the law's [m].
   subroutine read_shape(deck, length, shape, error)

@@ -6,9 +6,10 @@ module spheroid
   use failure, only: failure_t
   use text, only: brief
   use deck, only: deck_t
-  use deck_keys, only: key_spec, real_key
+  use deck_keys, only: key_spec, real_value
   use shape, only: shape_t
-  use shape_reading, only: require, read_radius
+  use law_reading, only: require
+  use shape_reading, only: read_radius
   implicit none
   private
   public :: keys, read_shape, take_spheroid
@@ -27,15 +28,12 @@ module spheroid
   !> Smallest half-axis in lengths of the law.
   real(wp), parameter :: smallest = 5
 
-contains
-
   !> The row of a spheroid in &shape.
-  pure function keys() result(rows)
-    type(key_spec), allocatable :: rows(:)
+  type(key_spec), parameter :: keys(*) = [ &
+    key_spec('shape', 'semi_axis', real_value, 'Half the axis b of a spheroid along the line ' // &
+      'through the bodies; across it is sqrt(R b).', 'm', above=0.0_wp)]
 
-    rows = [real_key('shape', 'semi_axis', 'm', 'Half the axis b of a spheroid along the line ' // &
-      'through the bodies; across it is sqrt(R b).', above=0.0_wp)]
-  end function keys
+contains
 
   !> Reads kind = 'spheroid'. length: the law's [m].
   subroutine read_shape(deck, length, shape, error)
@@ -45,7 +43,7 @@ contains
     type(failure_t), allocatable, intent(inout) :: error
     real(wp) :: radius, semi_axis
 
-    call require(deck, 'spheroid', 'semi_axis', error)
+    call require(deck, 'shape', 'kind', 'spheroid', 'semi_axis', error)
     call read_radius(deck, radius, error)
     if (allocated(error)) return
     call deck%get('shape', 'semi_axis', semi_axis)

@@ -1,0 +1,116 @@
+!> Checks of a scene as a whole: that its numbers, and the units that follow from them, stay within
+!> the range of numbers, that a body is large enough, and that its load is finite. The calculation
+!> is dimensionless, but the units are products of powers of the numbers in the deck.
+module scene_checks
+  use kinds, only: wp, pi
+  use failure, only: failure_t
+  use text, only: brief
+  use force_law, only: of_pressure, of_energy
+  use dimensionless_problem, only: problem_t
+  use contact_scales, only: largest_radius, contact_level
+  use h0_range, only: range_of
+  use law_reading, only: check_decades
+  use scene_groups, only: scene_t
+  use scene_problem, only: problem_of
+  implicit none
+  private
+  public :: check_derived, check_shape
+
+  !> Decimal order of the largest h0 in the law's lengths; beyond, rounding exceeds this length.
+  integer, parameter :: most_lengths = 15
+  !> The groups, and their keys, that have the h0 or the positions of a drive.
+  character(len=*), parameter :: groups(*) = [character(len=16) :: 'loading', 'unloading', &
+    'equilibrium_path', 'device', 'classical', 'approximations'], &
+    keys(*) = [character(len=8) :: 'h0_start', 'h0_end', 'z_start', 'z_end']
+
+contains
+
+  !> Refuses a scene whose units, coupling or h0 are out of range. It adds logarithms, which cannot
+  !> overflow.
+  subroutine check_derived(scene, error)
+    type(scene_t), intent(in) :: scene
+    type(failure_t), allocatable, intent(inout) :: error
+    real(wp) :: length, pressure, radius, farthest, position
+    integer :: i, k
+
+    radius = log10(scene%shape%radius)
+    length = log10(scene%law%length)
+    pressure = log10(scene%law%pressure_unit)
+    call check(pressure + radius + length, 'loads', ' N')
+    if (.not. scene%bodies%rigid) call check(pressure - log10(scene%bodies%stiffness) + &
+      0.5_wp*(radius - length), 'a coupling of law and bodies (sigma or Lambda)', '')
+    farthest = 0
+    do i = 1, size(groups)
+      if (.not. scene%deck%has_group(trim(groups(i)))) cycle
+      do k = 1, size(keys)
+        position = 0
+        call scene%deck%get(trim(groups(i)), trim(keys(k)), position)
+        farthest = max(farthest, abs(position))
+      end do
+    end do
+    if (.not. farthest <= 10.0_wp**most_lengths*scene%law%length) &
+      call scene%deck%mistake(trim(scene%law%group), trim(scene%law%length_key), 'h0 reaches '// &
+      brief(farthest)//' m, more than 1e15 of these lengths, so that the law is lost in rounding', &
+      error)
+
+  contains
+
+    subroutine check(decades, what, unit)
+      real(wp), intent(in) :: decades
+      character(len=*), intent(in) :: what, unit
+
+      call check_decades(scene%deck, trim(scene%law%group), trim(scene%law%strength_key), decades, &
+        what, unit, error)
+    end subroutine check
+
+  end subroutine check_derived
+
+  !> Refuses a scene whose load cannot be computed.
+  subroutine check_shape(scene, error)
+    type(scene_t), intent(in) :: scene
+    type(failure_t), allocatable, intent(inout) :: error
+
+    if (.not. scene%finds_states()) return
+    if (scene%shape%ends < huge(1.0_wp)) then
+      call check_end(scene, error)
+    else if (scene%law%tail_power <= 2/scene%shape%growth) then
+      call scene%deck%mistake('shape', 'kind', &
+        'the load has no limit: far out the gap grows as r^' // brief(scene%shape%growth) // &
+        ' and the pressure falls as its power -' // brief(scene%law%tail_power) // &
+        ', too slowly for the area there', error)
+    end if
+  end subroutine check_shape
+
+  !> Refuses a body that ends within the contact, or where the force still acts, since Derjaguin's
+  !> approximation does not hold at an end. The pressure at the end times an area of the body's size
+  !> must be below the accuracy, as a part of the load of bodies without an end.
+  subroutine check_end(scene, error)
+    type(scene_t), intent(in) :: scene
+    type(failure_t), allocatable, intent(inout) :: error
+    type(problem_t) :: problem
+    real(wp) :: low, high, gap, part, widest
+    character(len=7) :: share
+
+    problem = problem_of(scene)
+    call range_of(scene, problem, low, high)
+    associate (law => problem%law, shape => problem%shape)
+      widest = 0
+      if (.not. problem%rigid) widest = largest_radius(problem, low, contact_level(problem))
+      gap = shape%height(shape%ends) + min(low, 0.0_wp)
+      if (.not. widest < shape%ends .or. .not. gap > max(law%rest_gap, law%edge_gap)) then
+        write (share, '(es7.1)') shape%ends*problem%lateral
+        call scene%deck%mistake('shape', 'kind', 'the contact would reach the end of the ' // &
+          'body, ' // share // ' m from the axis', error)
+        return
+      end if
+      part = abs(law%at(of_pressure, gap))*shape%ends**2
+      if (part > 0) part = part/(2*pi*max(law%adhesion, tiny(1.0_wp), &
+        abs(law%at(of_energy, max(low, 1.0_wp)))))
+    end associate
+    write (share, '(es7.1)') min(part, 1.0_wp)
+    if (.not. part <= scene%numerics%accuracy) call scene%deck%mistake('shape', 'kind', &
+      'the body ends where the force still acts: at its end it makes ' // share // &
+      ' of the load, above the accuracy; give &numerics a larger accuracy', error)
+  end subroutine check_end
+
+end module scene_checks
