@@ -9,19 +9,17 @@ module experiment
   use mesh_store, only: mesh_store_t
   use ending, only: turn_not_reached
   use stepper, only: stepper_t, keeping_stepper_t, branch_point_t
-  use locked_stepper, only: locked_stepper_t
+  use locked_stepper, only: locked_stepper_t, unique_stepper_t
   use path_stepper, only: path_stepper_t
-  use unique_stepper, only: unique_stepper_t
   use fixed_stepper, only: fixed_stepper_t
   use rigid_bodies, only: run_rigid
   use stepped_branch, only: h0_schedule_t, run_branch
-  use h0_range, only: path_start, range_of
+  use path_demand, only: path_start, range_of
   use h0_schedule, only: path_plan, loading_plan, unloading_plan
   use experiment_result, only: experiment_result_t
   use exact_path, only: trace_exactly
   use finer_solver, only: finer_t
-  use outcome_places, only: enter_all, enter_cycle, enter_energy
-  use table_places, only: enter_table
+  use outcome_places, only: enter_all, enter_cycle, enter_energy, enter_table
   use place_errors, only: judge_places, conclude
   use place_rates, only: rate_places
   use path, only: follow_path

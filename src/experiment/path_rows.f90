@@ -47,9 +47,12 @@ contains
     class(path_stepper_t), intent(inout) :: steps
     integer, intent(in) :: i
     real(wp), intent(in) :: h0
+    type(path_span_t) :: span
 
+    span = new_path_span(steps%known%path, i)
+    row%mesh = span%mesh
     row%modes = steps%known%path%point(i)%modes
-    call steps%state_at_h0(i, h0, row%mesh, row%state, row%converged)
+    call span%solve_at_h0(steps%solver_t, h0, row%state, row%converged)
   end function row_at_h0
 
   !> The rows between point i and the next, within a range of h0, in order: requested profiles, and

@@ -16,10 +16,9 @@ module path_model
   use driven_pieces, only: driven_piece_t, through_spring
   use device, only: driven_t, drive_bodies
   use experiment_request, only: request_t, numerics_t
-  use h0_range, only: range_of
   use experiment, only: prepare
   use numerics_choice, only: choice_t, choose
-  use path_demand, only: demand_of
+  use path_demand, only: demand_of, range_of
   use path_stepper, only: path_stepper_t
   use force_branch, only: branch_t
   use force_model, only: force_model_t, response_t, inward, outward

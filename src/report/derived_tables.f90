@@ -5,7 +5,7 @@ module derived_tables
   use scene_groups, only: scene_t
   use dimensionless_problem, only: problem_t, calm_gap
   use experiment_request, only: sensitivity_t
-  use h0_range, only: path_start
+  use path_demand, only: path_start
   use experiment_result, only: experiment_result_t
   use summary, only: summary_t
   use classical_rows, only: write_classical

@@ -5,7 +5,7 @@ module shape_checks
   use text, only: brief
   use dimensionless_problem, only: problem_t
   use contact_scales, only: largest_radius, contact_level
-  use h0_range, only: range_of
+  use path_demand, only: range_of
   use scene_groups, only: scene_t
   use scene_problem, only: problem_of
   implicit none
