@@ -20,8 +20,7 @@ module path_model
   use numerics_choice, only: choice_t, choose
   use path_demand, only: demand_of, range_of
   use path_stepper, only: path_stepper_t
-  use force_branch, only: branch_t
-  use force_model, only: force_model_t, response_t, inward, outward
+  use force_model, only: force_model_t, response_t, branch_t, inward, outward
   implicit none
   private
   public :: path_model_t

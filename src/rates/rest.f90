@@ -98,7 +98,7 @@ contains
     type(instant_t), intent(inout) :: at
     logical, intent(out) :: found
 
-    call steps%prepare_memory(at, at%time)
+    call steps%prepare(at, at%time)
     call steps%place_rise(at%mesh, at%state%scale)
     call steps%frozen%forget()
     call steps%solve(steps%control_at(at%position, at%mesh, at%state), at%state, found)

@@ -13,13 +13,13 @@ module time_stepper
   use anderson, only: solve_anderson
   use solver_options, only: rescue_of
   use time_instant, only: instant_t, extrapolate
-  use draining, only: draining_t
+  use remembering, only: remembering_t
   implicit none
   private
   public :: time_stepper_t
 
   !> Computes one instant after the other.
-  type, extends(draining_t) :: time_stepper_t
+  type, extends(remembering_t) :: time_stepper_t
     !> The largest change of the path's coordinate in a step. A state that changes by more has
     !> jumped, or needs shorter steps.
     real(wp) :: farthest = 0.3_wp

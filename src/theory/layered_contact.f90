@@ -15,12 +15,13 @@ module layered_contact
   use root_finding, only: bracket_t
   use dimensionless_problem, only: problem_t
   use layered_body, only: layered_body_t
-  use maugis_scaled, only: of_load, of_displacement
   use theory_names, only: hertz, jkr
   implicit none
   private
   public :: layered_contact_t, new_layered_contact, has_layers
 
+  !> Quantities at a contact radius.
+  integer, parameter :: of_load = 1, of_displacement = 2
   !> Degree of the series; ratio of the radius without displacement to the smallest radius.
   integer, parameter :: degree = 80
   real(wp), parameter :: span = 100
