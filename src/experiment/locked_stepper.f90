@@ -1,7 +1,7 @@
 !> The common parts of quasi-static experiments in edge-locked coordinates: nothing is pinned
 !> between nodes, and the equations are not stiff at any adhesion strength. `path_stepper` follows
-!> the traced path of a law that attracts; `unique_stepper_t` is for other laws, under which there is
-!> one state for every h0.
+!> the traced path of a law that attracts; `unique_stepper_t` is for other laws, under which there
+!> is one state for every h0.
 module locked_stepper
   use kinds, only: wp
   use dimensionless_problem, only: calm_gap

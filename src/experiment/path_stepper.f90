@@ -13,7 +13,7 @@ module path_stepper
   use path_coordinate, only: coordinate_of
   use ending, only: fallen_before, beyond_path
   use path_span, only: path_span_t, new_path_span
-  use path_prediction, only: missed_t, expect
+  use prediction, only: missed_t, expect
   use path_end, only: demand_t
   use tracing, only: trace, trace_again
   use mending, only: left_on_path
@@ -194,8 +194,8 @@ contains
     position%held = 0
   end subroutine step_over
 
-  !> Replaces the largest tension by the largest one among the load extrema and folds of a piece with
-  !> h0 between two values if that is larger.
+  !> Replaces the largest tension by the largest one among the load extrema and folds of a piece
+  !> with h0 between two values if that is larger.
   pure subroutine lower_over(known, piece, from, to, lowest)
     type(known_path_t), intent(in) :: known
     integer, intent(in) :: piece

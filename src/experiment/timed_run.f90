@@ -15,7 +15,7 @@ module timed_run
   use path_stepper, only: path_stepper_t
   use stepper, only: branch_point_t, step_result_t
   use tracing, only: trace, tracing_t
-  use numerics_choice, only: choice_t, fixed_choice, fixed_mesh, panels
+  use numerics_choice, only: choice_t, size_grid, fixed_mesh, panels
   use experiment_request, only: request_t, numerics_t
   use path_demand, only: h0_in_contact
   use creep, only: elastic_bodies
@@ -199,7 +199,8 @@ contains
       numerics = request%numerics
       if (relaxed%film_gap > 0) numerics%r_max = far_out*relaxed%lateral* &
         relaxed%shape%position_of(relaxed%film_gap)
-      of_memory = fixed_choice(numerics, relaxed, low, panels)
+      of_memory%grid = panels
+      call size_grid(of_memory, numerics, relaxed, low)
       of_memory%panel_over_feature = over_neck
       of_memory%panel_order = of_memory%panel_order + over_order + pass
       of_memory%nodes = most_nodes

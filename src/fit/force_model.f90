@@ -1,9 +1,9 @@
 !> The prediction of a model for bodies that a spring drives towards each other and back: the load
-!> along each stable piece as a function of the drive's position, with derivatives by the unknowns of
-!> the model. SI units.
+!> along each stable piece as a function of the drive's position, with derivatives by the unknowns
+!> of the model. SI units.
 !>
-!> On each panel of a branch h0 and load are cubics of a parameter t. Newton's method finds the t of a
-!> given position h0 - load/stiffness.
+!> On each panel of a branch h0 and load are cubics of a parameter t. Newton's method finds the t of
+!> a given position h0 - load/stiffness.
 module force_model
   use kinds, only: wp
   use interpolation, only: interval_of

@@ -1,5 +1,5 @@
-!> What the equations of a step in time take from earlier instants: the memory of viscoelastic bodies
-!> and the rate of the gaps, for the fluid between the bodies (`drainage`).
+!> What the equations of a step in time take from earlier instants: the memory of viscoelastic
+!> bodies and the rate of the gaps, for the fluid between the bodies (`drainage`).
 !>
 !> A step in time is an elastic problem (`creep`): pressures
 !> change linearly during the step, the present pressures act on half-spaces that are softer than
