@@ -100,7 +100,7 @@ contains
       before = huge(before)
       do round = 1, most_rounds
         began = seconds()
-        call keep_extrema(steps%known%path, renewed, places)
+        call keep_extrema(steps%known%path, places)
         found = .false.
         if (allocated(request%path)) call find_finish(steps, &
           steps%problem%law%gap_of(request%path%h0_end), finish, found)
@@ -151,30 +151,16 @@ contains
     end do
   end subroutine doubt_close_turns
 
-  !> Makes the extrema of a path the places of a table. Known extrema keep their errors, except
-  !> those on renewed meshes.
-  subroutine keep_extrema(path, renewed, places)
+  !> Makes the extrema of a path the places of a table.
+  subroutine keep_extrema(path, places)
     type(traced_path_t), intent(in) :: path
-    logical, intent(in) :: renewed(:)
-    type(places_t), intent(inout) :: places
-    type(places_t) :: extrema
-    integer :: i, j, kept
+    type(places_t), intent(out) :: places
+    integer :: i, kept
 
     do i = 1, path%held
-      associate (point => path%point(i))
-        if (.not. (point%fold .or. point%load_extremum)) cycle
-        call extrema%keep(point_of_path(i), kept)
-        if (renewed(point%mesh) .or. .not. allocated(places%place)) cycle
-        do j = 1, size(places%place)
-          associate (known => places%place(j))
-            if (known%mesh /= point%mesh .or. abs(known%s - point%coordinate) > 0) cycle
-            extrema%place(kept) = known
-            extrema%place(kept)%point = i
-          end associate
-        end do
-      end associate
+      if (path%point(i)%fold .or. path%point(i)%load_extremum) &
+        call places%keep(point_of_path(i), kept)
     end do
-    places = extrema
   end subroutine keep_extrema
 
 end module exact_path
