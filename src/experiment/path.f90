@@ -5,6 +5,8 @@ module path
   use kinds, only: wp
   use traced_path, only: traced_path_t
   use ending, only: ending_t, state_lost
+  use path_tangent, only: of_h0
+  use driven_pieces, only: drive_t, piece_with
   use known_path, only: known_path_t, interval_at
   use path_stepper, only: path_stepper_t
   use path_rows, only: row_t, row_of_point, row_at_h0, rows_between
@@ -112,14 +114,9 @@ contains
     integer :: k
 
     last = known%path%held
-    ends_between = .false.
-    if (known%ending%early()) return
-    do k = size(known%piece), 1, -1
-      ends_between = h0_end >= known%piece(k)%last%h0 .and. h0_end <= known%piece(k)%first%h0
-      if (.not. ends_between) cycle
-      last = interval_at(known, k, h0_end)
-      return
-    end do
+    k = piece_with(known%piece, drive_t(of_h0), h0_end, size(known%piece) + 1, .false.)
+    ends_between = k > 0 .and. .not. known%ending%early()
+    if (ends_between) last = interval_at(known, k, h0_end)
   end subroutine find_end
 
   !> The innermost stable equilibrium at h0_end as a place; found: it is on the path.

@@ -18,7 +18,7 @@ module timed_run
   use numerics_choice, only: choice_t, size_grid, fixed_mesh, panels
   use experiment_request, only: request_t, numerics_t
   use path_demand, only: h0_in_contact
-  use creep, only: elastic_bodies
+  use creep, only: creep_t
   use motion, only: motion_t, new_motion, names_of_ways
   use time_stepper, only: time_stepper_t
   use material, only: new_material
@@ -125,7 +125,7 @@ contains
     associate (asked => request%drive, law => problem%law)
       steps%problem = problem
       steps%instant = problem%coupling
-      steps%creep = elastic_bodies()
+      steps%creep = creep_t([real(wp) ::], [real(wp) ::])
       if (allocated(request%creep)) steps%creep = request%creep
       steps%options = chosen%options
       steps%options%mixing = .false.

@@ -1,5 +1,5 @@
-!> Checks whether a measured curve can be fitted; if not, with the reason and advice. In a wrong unit
-!> its loads are off by orders of magnitude.
+!> Checks whether a measured curve can be fitted; if not, with the reason and advice. In a wrong
+!> unit its loads are off by orders of magnitude.
 module measured_checks
   use kinds, only: wp
   use text, only: rounded
