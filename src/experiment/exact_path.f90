@@ -10,7 +10,6 @@ module exact_path
   use edge_locked, only: new_mesh_family
   use ending, only: path_lost
   use mesh_store, only: mesh_store_t
-  use traced_path, only: traced_path_t
   use mending, only: too_much
   use path_stepper, only: path_stepper_t
   use path_end, only: demand_t
@@ -90,6 +89,7 @@ contains
     type(places_t), intent(out) :: places
     real(wp), allocatable :: errors(:)
     logical, allocatable :: poor(:), renewed(:)
+    type(places_t) :: nothing
     type(place_t) :: finish
     real(wp) :: before, began
     integer :: round, mesh, i, kept
@@ -100,7 +100,13 @@ contains
       before = huge(before)
       do round = 1, most_rounds
         began = seconds()
-        call keep_extrema(steps%known%path, places)
+        places = nothing
+        associate (path => steps%known%path)
+          do i = 1, path%held
+            if (path%point(i)%fold .or. path%point(i)%load_extremum) &
+              call places%keep(point_of_path(i), kept)
+          end do
+        end associate
         found = .false.
         if (allocated(request%path)) call find_finish(steps, &
           steps%problem%law%gap_of(request%path%h0_end), finish, found)
@@ -150,17 +156,5 @@ contains
       end associate
     end do
   end subroutine doubt_close_turns
-
-  !> Makes the extrema of a path the places of a table.
-  subroutine keep_extrema(path, places)
-    type(traced_path_t), intent(in) :: path
-    type(places_t), intent(out) :: places
-    integer :: i, kept
-
-    do i = 1, path%held
-      if (path%point(i)%fold .or. path%point(i)%load_extremum) &
-        call places%keep(point_of_path(i), kept)
-    end do
-  end subroutine keep_extrema
 
 end module exact_path

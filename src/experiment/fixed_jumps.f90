@@ -6,29 +6,17 @@ module fixed_jumps
   use solver_options, only: rescue_of
   use anderson, only: solve_anderson
   use relaxation, only: relax
-  use contact_scales, only: largest_radius, lost_in_rounding
   use ending, only: no_equilibrium
   use fixed_branch, only: follow, change, jump
   use stepper, only: stepper_t, branch_point_t, step_result_t, remember
   implicit none
   private
-  public :: is_lost, follow_to_end, slip_to, jump_to, land, stays, locate_jump
+  public :: follow_to_end, slip_to, jump_to, land, stays, locate_jump
 
   !> Largest number of times that Newton's method helps the iteration in one step.
   integer, parameter :: most_rescues = 5
 
 contains
-
-  !> Whether rounding hides the contact at h0. No contact is larger than the mesh.
-  pure logical function is_lost(self, h0)
-    class(stepper_t), intent(in) :: self
-    real(wp), intent(in) :: h0
-
-    associate (mesh => self%meshes%grid(1))
-      is_lost = self%problem%law%adhesion > 0 .and. lost_in_rounding(self%problem, &
-        min(largest_radius(self%problem, h0, 0.0_wp), mesh%end))
-    end associate
-  end function is_lost
 
   !> Follows the branch towards h0. arrived: the branch reaches h0. stalled: the branch continues,
   !> but the iteration does not converge. Otherwise the branch ends before `beyond`.

@@ -5,9 +5,10 @@ module fixed_stepper
   use kinds, only: wp
   use dimensionless_problem, only: calm_gap, over_neck => spacing_over_neck
   use contact_state, only: state_t, undeformed_state
+  use contact_scales, only: largest_radius, lost_in_rounding
   use equilibrium, only: control_t
   use fixed_branch, only: continue_to, expected_at, change
-  use fixed_jumps, only: is_lost, follow_to_end, slip_to, jump_to, land, stays, locate_jump
+  use fixed_jumps, only: follow_to_end, slip_to, jump_to, land, stays, locate_jump
   use ending, only: beyond_rounding
   use stepper, only: stepper_t, branch_point_t, step_result_t, remember
   implicit none
@@ -105,11 +106,17 @@ contains
       call remember(position, state, 1, .false.)
       return
     end if
-    if (is_lost(self, h0)) then
-      event%ending%cause = beyond_rounding
-      return
-    end if
-    has_landed = passes_many(self, h0, position%state)
+    associate (before => position%state, mesh => self%meshes%grid(1), law => self%problem%law)
+      ! No contact is larger than the mesh.
+      if (law%adhesion > 0 .and. lost_in_rounding(self%problem, &
+        min(largest_radius(self%problem, h0, 0.0_wp), mesh%end))) then
+        event%ending%cause = beyond_rounding
+        return
+      end if
+      ! Many jumps of the edge in one step are not located individually.
+      has_landed = .not. self%options%mixing .and. abs(h0 - before%h0) > short_step .and. &
+        before%axis_gap < law%edge_gap .and. over_neck(self%problem, mesh%spacing) < fine_enough
+    end associate
     if (has_landed) then
       call land(self, h0, position%state, landed, event)
       if (stays(self, position%state, landed, event)) then
@@ -132,17 +139,6 @@ contains
     if (.not. has_landed) call slip_to(self, beyond, h0, position, event, slipped)
     if (.not. slipped) call jump_to(self, h0, beyond, has_landed, landed, position, event)
   end subroutine step_until_slip
-
-  !> Whether a step to h0 contains many jumps of the edge, which are not located individually.
-  pure logical function passes_many(self, h0, before)
-    class(fixed_stepper_t), intent(in) :: self
-    real(wp), intent(in) :: h0
-    type(state_t), intent(in) :: before
-
-    passes_many = .not. self%options%mixing .and. abs(h0 - before%h0) > short_step .and. &
-      before%axis_gap < self%problem%law%edge_gap .and. &
-      over_neck(self%problem, self%meshes%grid(1)%spacing) < fine_enough
-  end function passes_many
 
   !> A step of the paper: h0 changes at constant separation, and the iteration continues until the
   !> paper's rule is met. A change of deformation many times that of h0 counts as a jump, which is

@@ -37,11 +37,13 @@ contains
     end if
   end function path_start
 
-  !> The range of H0 of a scene, in the law's lengths.
+  !> The range of H0 of a scene that must be traced, in the law's lengths.
   subroutine range_of(request, problem, low, high)
     class(request_t), intent(in) :: request
     type(problem_t), intent(in) :: problem
     real(wp), intent(out) :: low, high
+    type(demand_t) :: demand
+    integer :: i
 
     low = huge(1.0_wp)
     high = -huge(1.0_wp)
@@ -63,24 +65,13 @@ contains
     end if
     low = problem%law%gap_of(low)
     high = problem%law%gap_of(high)
-    if (request%reads_path()) call widen_path(request, problem, low, high)
-  end subroutine range_of
-
-  !> Extends a range of h0 (law's lengths) to the range that must be traced.
-  subroutine widen_path(request, problem, low, high)
-    class(request_t), intent(in) :: request
-    type(problem_t), intent(in) :: problem
-    real(wp), intent(inout) :: low, high
-    type(demand_t) :: demand
-    integer :: i
-
-    if (.not. problem%law%adhesion > 0) return
+    if (.not. request%reads_path() .or. .not. problem%law%adhesion > 0) return
     demand = demand_of(request, problem)
     high = max(high, min(demand%farthest, yielding_gap(problem, no_yielding)))
     do i = 1, size(demand%until)
       low = min(low, h0_in_contact(problem, demand%by_h0(i), demand%by_load(i), demand%until(i)))
     end do
-  end subroutine widen_path
+  end subroutine range_of
 
   !> What the request reads from the path: states at the position of a drive, and at fixed loads.
   type(demand_t) function demand_of(request, problem) result(demand)

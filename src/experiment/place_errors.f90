@@ -22,7 +22,8 @@ module place_errors
   use reported_place, only: place_t, place_of_state, of_h0, of_load, of_displacement, &
     of_energy, of_radius, of_edge, nowhere, read_of_states
   use places, only: places_t
-  use path_expansion, only: expansion_t, expansion_about
+  use arc, only: arc_t
+  use path_expansion, only: expansion_t
   use finer_solver, only: finer_t, rounding, worst_residual, what_residual_leaves
   use represented_pressure, only: pressure_at_nodes
   implicit none
@@ -153,12 +154,16 @@ contains
     real(wp), intent(in) :: wanted
     type(place_t), intent(inout) :: place
     type(expansion_t) :: near
+    type(arc_t) :: about
     type(state_t) :: right
     real(wp) :: distance, left, moved(read_of_states)
     logical :: found
 
     call fine%prepare(place%mesh)
-    near = expansion_about(path%arc_about(place%mesh, place%s), place%s, guess_of(own, fine, place))
+    about = path%arc_about(place%mesh, place%s)
+    near%s = place%s
+    near%state = guess_of(own, fine, place)
+    near%curvature(:2) = [about%curvature(h0_alone, near%s), about%curvature(load_alone, near%s)]
     call near%move_to(fine, place%mesh, merge(place%turn_of, place%drive, place%turns()), &
       place%turns(), wanted, distance, place%known)
     if (.not. place%known) return

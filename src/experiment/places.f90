@@ -36,7 +36,6 @@ module places
     procedure :: largest_error
     procedure :: largest_of
     procedure :: read_numbers
-    procedure, private :: parameters
   end type places_t
 
   !> The values of a number, element by element, SI units; NaN if it does not exist. rate:
@@ -236,11 +235,15 @@ contains
     real(wp), dimension(quantities) :: units, values, misses, leftovers
     real(wp) :: none
     logical, allocatable :: known(:)
-    integer :: i, n
+    integer :: i, n, parameters
 
     n = self%elements(name)
     allocate (found%value(n), found%error(n), difference(n), source=0.0_wp)
-    allocate (found%rate(self%parameters(), n), source=0.0_wp)
+    parameters = 0
+    do i = 1, merge(size(self%place), 0, n > 0)
+      if (allocated(self%place(i)%rate)) parameters = size(self%place(i)%rate, 2)
+    end do
+    allocate (found%rate(parameters, n), source=0.0_wp)
     allocate (known(n), source=.true.)
     units = units_of(problem)
     none = nan
@@ -272,17 +275,5 @@ contains
     found%error = (abs(difference) + found%error)*units(quantity)
     where (.not. known) found%error = max(abs(found%value), least(quantity)*units(quantity))
   end function read_numbers
-
-  !> The number of parameters by which places are differentiated.
-  pure integer function parameters(self)
-    class(places_t), intent(in) :: self
-    integer :: i
-
-    parameters = 0
-    if (.not. allocated(self%place)) return
-    do i = 1, size(self%place)
-      if (allocated(self%place(i)%rate)) parameters = size(self%place(i)%rate, 2)
-    end do
-  end function parameters
 
 end module places

@@ -75,7 +75,10 @@ contains
 
     call prepare(request, problem, chosen, steps, drive)
     began = seconds()
-    low = deepest(request, drive, steps)
+    ! With a spring the lowest h0 is that of the contact with the spring's load.
+    low = minval(drive%position)
+    if (allocated(request%drive%stiffness)) low = &
+      h0_in_contact(relaxed_problem(steps), 1.0_wp, steps%compliance, low)
     whole = 0
     do pass = 1, most_passes
       before = none
@@ -151,18 +154,6 @@ contains
     relaxed = steps%problem
     relaxed%coupling = steps%instant*steps%creep%relaxed()
   end function relaxed_problem
-
-  !> The lowest h0 of the bodies: that of the drive or, with a spring, that of the contact with the
-  !> spring's load.
-  real(wp) function deepest(request, drive, steps) result(low)
-    class(request_t), intent(in) :: request
-    type(motion_t), intent(in) :: drive
-    type(time_stepper_t), intent(in) :: steps
-
-    low = minval(drive%position)
-    if (allocated(request%drive%stiffness)) low = &
-      h0_in_contact(relaxed_problem(steps), 1.0_wp, steps%compliance, low)
-  end function deepest
 
   !> Lays out meshes for relaxed bodies, whose neck is the narrowest, with more digits in each pass;
   !> and for the memory panels fixed in space, with one more node each.

@@ -56,7 +56,7 @@ contains
     real(wp), allocatable :: jacobian(:, :), residual(:), all_values(:)
     real(wp) :: whole
     logical :: found
-    integer :: i, n
+    integer :: i, n, pass
 
     allocate (held(0))
     n = size(value)
@@ -73,7 +73,12 @@ contains
     if (.not. found) return
     do i = 1, size(all_values)
       whole = norm2(jacobian(:, i))
-      call take_off(jacobian(:, :min(i - 1, n)), jacobian(:, i))
+      ! The columns of the unknowns are orthonormal already; two passes against rounding.
+      associate (basis => jacobian(:, :min(i - 1, n)), vector => jacobian(:, i))
+        do pass = 1, 2
+          vector = vector - matmul(basis, matmul(vector, basis))
+        end do
+      end associate
       if (.not. norm2(jacobian(:, i)) > rounding*whole) then
         jacobian(:, i) = 0
         cycle
@@ -85,17 +90,6 @@ contains
       held = [held, new]
     end do
   end subroutine test_held
-
-  !> Makes a vector orthogonal to orthonormal ones, in two passes against rounding.
-  pure subroutine take_off(basis, vector)
-    real(wp), intent(in) :: basis(:, :)
-    real(wp), intent(inout) :: vector(:)
-    integer :: pass
-
-    do pass = 1, 2
-      vector = vector - matmul(basis, matmul(vector, basis))
-    end do
-  end subroutine take_off
 
   !> Removes the further parameters that cannot be varied. value: those of the fit's own parameters.
   subroutine keep_variable(value, family)

@@ -220,9 +220,9 @@ contains
   end function zone_width
 
   !> A at given t and lambda, the inverse of `zone_width`: the root of a quadratic.
-  elemental function radius_at_zone_width(t, lambda) result(a)
+  elemental real(wp) function radius_at_zone_width(t, lambda) result(a)
     real(wp), intent(in) :: t, lambda
-    real(wp) :: a, linear, quadratic
+    real(wp) :: linear, quadratic
 
     quadratic = lambda/2*profile_term(t)
     linear = 4*lambda**2/3*tension_term(t)
@@ -258,9 +258,9 @@ contains
   end function tension_slope
 
   !> t - atan(t), for small t from the continued fraction of the arctangent.
-  elemental function tangent_excess(t) result(excess)
+  elemental real(wp) function tangent_excess(t) result(excess)
     real(wp), intent(in) :: t
-    real(wp) :: excess, w
+    real(wp) :: w
     ! Above, the difference is accurate to a dozen units in the last place; below, eight terms are.
     real(wp), parameter :: small = 0.25_wp
     integer, parameter :: terms = 8
