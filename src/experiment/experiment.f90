@@ -150,7 +150,7 @@ contains
       if (allocated(request%path)) then
         allocate (outcome%stepped_path)
         call run_branch(steps, path_plan(request, steps%problem%law, steps%far_away()), .true., &
-          position, observer, outcome%stepped_path)
+          position, observer, outcome%stepped_path, outcome%places)
       end if
     end select
     outcome%nodes = outcome%nodes + sum(steps%meshes%grid%nodes)
@@ -235,7 +235,7 @@ contains
       end if
       ! A start that is not allocated counts as absent.
       call follow_path(steps, law%gap_of(request%path%h0_end), profiles, observer, outcome%path, &
-        start)
+        outcome%places, start)
     end associate
   end subroutine run_path
 
@@ -263,7 +263,8 @@ contains
     allocate (turning(size(from)))
     allocate (outcome%loading)
     plan = loading_plan(request, steps%problem%law, from)
-    call run_branch(steps, plan, .true., position, observer, outcome%loading, from, turning)
+    call run_branch(steps, plan, .true., position, observer, outcome%loading, outcome%places, &
+      from, turning)
     if (allocated(request%unloading)) then
       allocate (outcome%unloading(size(from)))
       do k = 1, size(from)
@@ -273,7 +274,8 @@ contains
         end if
         position = turning(k)
         plan = unloading_plan(request, steps%problem%law, k)
-        call run_branch(steps, plan, .false., position, observer, outcome%unloading(k))
+        call run_branch(steps, plan, .false., position, observer, outcome%unloading(k), &
+          outcome%places)
       end do
     end if
     if (.not. present(keeper)) return

@@ -38,22 +38,12 @@ contains
     if (allocated(outcome%readings)) call enter_readings(outcome%readings, places)
   end subroutine enter_all
 
-  !> Enters the places of a path; its folds are exact.
+  !> Enters the largest tension and the end of a path.
   subroutine enter_path(path, places)
     type(path_t), intent(in) :: path
     type(places_t), intent(inout) :: places
     type(place_t) :: fall
-    integer :: n
 
-    call places%enter_list('folds', path%fold)
-    call places%enter_list('load_folds', path%extremum)
-    call places%enter_list('profiles', path%profile)
-    n = size(path%fold)
-    if (n > 0) then
-      ! A part of the path may begin with another fold.
-      if (path%first_piece == 1) call places%enter('jump_in', 1, path%fold(1))
-      if (path%unstable_after(n) == 0) call places%enter('jump_out', 1, path%fold(n))
-    end if
     if (allocated(path%lowest)) then
       call places%enter('path_tension', 1, path%lowest)
       call enter_tension(path%lowest, places)
@@ -102,10 +92,8 @@ contains
     if (allocated(branch%lowest)) call enter_tension(branch%lowest, places)
     if (allocated(branch%finish)) then
       if (finish == 'end') call places%forget(finish)
-      call places%enter(finish, places%elements(finish) + 1, branch%finish)
+      call places%add(finish, branch%finish)
     end if
-    if (allocated(branch%profile)) call places%enter_list('profiles', branch%profile)
-    if (allocated(branch%sample)) call places%enter_list('samples', branch%sample)
   end subroutine enter_branch
 
   !> Enters a place of largest tension if its tension exceeds that of the entered one.
@@ -163,8 +151,8 @@ contains
           call places%enter('device_energy', i)
         end if
         ! If `after` is not allocated, it counts as absent.
-        call places%enter('jump_before', places%elements('jump_before') + 1, before)
-        call places%enter('jump_after', places%elements('jump_after') + 1, after)
+        call places%add('jump_before', before)
+        call places%add('jump_after', after)
         way = merge('in ', 'out', jump%inward)
         if (places%has('device_jump_' // way, i)) cycle
         call places%enter('device_jump_' // way, i, before)
@@ -225,8 +213,7 @@ contains
         row = 1 + (k - 1)*(size(nodes) - 2)/(judged_rows - 1)
         if (row == last) cycle
         last = row
-        call places%enter('table', places%elements('table') + 1, &
-          place_on_curve(nodes(row), h0_alone))
+        call places%add('table', place_on_curve(nodes(row), h0_alone))
         call hold(readings%prescribed%leg(i), nodes(row), nodes(row + 1))
       end do
     end do

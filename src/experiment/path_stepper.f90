@@ -222,7 +222,7 @@ contains
     type(state_t) :: state
     real(wp) :: s
     integer :: i, mesh
-    logical :: jumped
+    logical :: jumped, beside(2)
 
     jumped = event%jumped
     i = interval_at(self%known, position%piece, h0)
@@ -231,9 +231,12 @@ contains
       call self%missed%clear()
     end if
     mesh = self%span%mesh
-    associate (ends => self%span%ends)
+    associate (ends => self%span%ends, piece => self%known%piece(position%piece))
       s = self%span%at_h0(h0)
-      if (.not. is_beside_fold(self, i, position%piece, s, ends)) then
+      beside = abs(s - ends) < beside_fold*abs(ends(2) - ends(1)) .and. &
+        [piece%first_turns .and. i == piece%first%interval, &
+        piece%last_turns .and. i == piece%last%interval]
+      if (.not. any(beside)) then
         call expect(self%solver_t, self%span, self%missed, h0, s, position, state)
         call self%attempt(h0, state, mesh, event)
         if (event%converged) then
@@ -246,23 +249,5 @@ contains
       call self%span%solve_at_h0(self%solver_t, h0, state, event%converged)
     call remember(position, state, mesh, jumped, foretold=state%iterations == 1)
   end subroutine solve_on_piece
-
-  !> Whether the coordinate s in the interval after point i, between `ends`, is so near a fold that
-  !> h0 is nearly stationary.
-  pure logical function is_beside_fold(self, i, piece, s, ends) result(beside)
-    class(path_stepper_t), intent(in) :: self
-    integer, intent(in) :: i, piece
-    real(wp), intent(in) :: s, ends(2)
-
-    associate (width => abs(ends(2) - ends(1)))
-      beside = .false.
-      associate (on => self%known%piece(piece))
-        if (on%first_turns .and. i == on%first%interval) &
-          beside = abs(s - ends(1)) < beside_fold*width
-        if (on%last_turns .and. i == on%last%interval) &
-          beside = beside .or. abs(s - ends(2)) < beside_fold*width
-      end associate
-    end associate
-  end function is_beside_fold
 
 end module path_stepper

@@ -28,7 +28,7 @@ module places
   contains
     procedure :: keep
     procedure :: enter
-    procedure :: enter_list
+    procedure :: add
     procedure :: forget
     procedure :: has
     procedure :: elements
@@ -126,17 +126,14 @@ contains
 
   end subroutine enter
 
-  !> Adds elements for the places of a list.
-  subroutine enter_list(self, name, list)
+  !> Adds an element at a place to a number.
+  subroutine add(self, name, place)
     class(places_t), intent(inout) :: self
     character(len=*), intent(in) :: name
-    type(place_t), intent(in) :: list(:)
-    integer :: i
+    type(place_t), intent(in), optional :: place
 
-    do i = 1, size(list)
-      call self%enter(name, self%elements(name) + 1, list(i))
-    end do
-  end subroutine enter_list
+    call self%enter(name, self%elements(name) + 1, place)
+  end subroutine add
 
   !> Removes a number.
   subroutine forget(self, name)

@@ -2,7 +2,7 @@
 !> load that is an integral over the gap (`undeformed`). No equations are solved, and there are no
 !> meshes.
 module rigid_bodies
-  use kinds, only: wp
+  use kinds, only: wp, long
   use root_finding, only: root_search_t, new_root_search
   use force_law, only: force_law_t
   use dimensionless_problem, only: problem_t, calm_gap, contact_level_of
@@ -11,7 +11,8 @@ module rigid_bodies
   use discretisation, only: discretisation_t
   use contact_state, only: state_t, undeformed_state
   use ending, only: touching, turn_not_reached
-  use reported_place, only: place_t, add_place, of_h0, of_load, of_radius
+  use reported_place, only: place_t, of_h0, of_load, of_radius
+  use places, only: places_t
   use finer_solver, only: rounding
   use records, only: observer_t, record_t, stable_yes, stable_unasked
   use experiment_request, only: request_t
@@ -47,12 +48,12 @@ contains
     if (allocated(request%path)) then
       allocate (outcome%stepped_path)
       call run_branch(problem, path_plan(request, problem%law, calm_gap(problem)), observer, &
-        outcome, outcome%stepped_path)
+        outcome%places, outcome%cost%states, outcome%stepped_path)
     end if
     if (allocated(request%loading)) then
       allocate (outcome%loading)
-      call run_branch(problem, loading_plan(request, problem%law), observer, outcome, &
-        outcome%loading)
+      call run_branch(problem, loading_plan(request, problem%law), observer, &
+        outcome%places, outcome%cost%states, outcome%loading)
     end if
     if (allocated(request%unloading)) then
       allocate (outcome%unloading(size(request%unloading%from)))
@@ -61,19 +62,20 @@ contains
           outcome%unloading(k)%ending%cause = turn_not_reached
           cycle
         end if
-        call run_branch(problem, unloading_plan(request, problem%law, k), observer, outcome, &
-          outcome%unloading(k))
+        call run_branch(problem, unloading_plan(request, problem%law, k), observer, &
+          outcome%places, outcome%cost%states, outcome%unloading(k))
       end do
     end if
     outcome%cost%solve_seconds = seconds() - began
   end subroutine run_rigid
 
   !> Runs one branch through plan%h0, as far as the law has a pressure.
-  subroutine run_branch(problem, plan, observer, outcome, branch)
+  subroutine run_branch(problem, plan, observer, places, states, branch)
     type(problem_t), intent(in) :: problem
     type(h0_schedule_t), intent(in) :: plan
     class(observer_t), intent(inout) :: observer
-    type(experiment_result_t), intent(inout) :: outcome
+    type(places_t), intent(inout) :: places
+    integer(long), intent(inout) :: states
     type(branch_t), intent(out) :: branch
     real(wp), allocatable :: load(:)
     integer :: i
@@ -86,10 +88,10 @@ contains
       end if
       load(i) = load_undeformed(problem, plan%h0(i))
       call show(problem, plan, i, load(i), observer)
-      if (plan%profile(i)) call add_place(branch%profile, place_at(problem, plan%h0(i)))
+      if (plan%profile(i)) call places%add('profiles', place_at(problem, plan%h0(i)))
       branch%states = i
     end do
-    outcome%cost%states = outcome%cost%states + branch%states
+    states = states + branch%states
     if (branch%states == 0) return
     associate (n => branch%states)
       branch%finish = place_at(problem, plan%h0(n))

@@ -14,7 +14,6 @@ module held_numbers
   use modelled_curve, only: modelled_curve_t
   use curve_residuals, only: curve_residuals_t
   use path_model, only: path_model_t
-  use lack_of_fit, only: hardly_ever
   implicit none
   private
   public :: held_t, test_held
@@ -24,21 +23,12 @@ module held_numbers
   type :: held_t
     character(len=:), allocatable :: name
     real(wp) :: asked = 0
-  contains
-    procedure :: is_right
   end type held_t
 
   !> Smallest part of a direction that must remain; rounding of the derivatives leaves less.
   real(wp), parameter :: rounding = 1.0e-4_wp
 
 contains
-
-  !> Whether the value agrees with the data.
-  pure logical function is_right(self)
-    class(held_t), intent(in) :: self
-
-    is_right = abs(self%asked) <= hardly_ever
-  end function is_right
 
   !> Tests all numbers that are held. curve, value: the fit. wider: the family of the fit with the
   !> deck's other positive numbers as further parameters. Numbers that the unknowns compensate

@@ -9,7 +9,7 @@ module reported_place
   use curve_states, only: path_state_t
   implicit none
   private
-  public :: place_t, place_of_state, place_without_state, point_of_path, place_on_curve, add_place
+  public :: place_t, place_of_state, place_without_state, point_of_path, place_on_curve
   public :: drive_weights, values_of, units_of, rates_of
   public :: of_h0, of_load, of_displacement, of_energy, of_radius, of_edge, of_position, &
     of_tension, of_profile
@@ -129,15 +129,6 @@ contains
       state%state%scale]
     self%left(of_energy) = state%uncertainty
   end subroutine take
-
-  !> Adds a place to a list. The argument may be a function's result: compiler note 1.
-  subroutine add_place(list, place)
-    type(place_t), allocatable, intent(inout) :: list(:)
-    type(place_t), intent(in) :: place
-
-    if (.not. allocated(list)) allocate (list(0))
-    list = [list, place]
-  end subroutine add_place
 
   !> Whether the place has an equilibrium on a mesh.
   pure logical function has_state(self)
