@@ -19,7 +19,7 @@ module experiment
   use experiment_result, only: experiment_result_t
   use exact_path, only: trace_exactly
   use finer_solver, only: finer_t
-  use outcome_places, only: enter_all, enter_cycle, enter_energy, enter_table
+  use outcome_places, only: enter_readings, enter_energy, enter_table
   use place_errors, only: judge_places, conclude
   use place_rates, only: rate_places
   use path, only: follow_path
@@ -70,7 +70,6 @@ contains
     outcome%chosen = choose(numerics, problem, low, allocated(request%profiles))
     if (problem%rigid) then
       call run_rigid(request, problem, observer, outcome)
-      call enter_all(outcome, outcome%places)
       call conclude(outcome%places, outcome%error_estimate)
       return
     end if
@@ -143,7 +142,10 @@ contains
       call trace_exactly(request, steps, high, low, observer, fine, outcome%places, store)
       outcome%left_out = steps%known%left_out
       if (allocated(request%path)) call run_path(request, steps, observer, outcome)
-      if (request%reads_path()) call read_path(request, steps, observer, outcome%readings)
+      if (request%reads_path()) then
+        call read_path(request, steps, observer, outcome%readings)
+        call enter_readings(outcome%readings, outcome%places)
+      end if
     class is (unique_stepper_t)
       call fine%lay_out(steps, high, low, store)
       ! There is one state for every h0, so h0 is stepped.
@@ -163,13 +165,9 @@ contains
     call observer%hear('estimating errors')
     select type (steps)
     class is (path_stepper_t)
-      call enter_all(outcome, outcome%places)
       call enter_energy(steps%known, outcome, outcome%places)
       if (request%table) call enter_table(steps, outcome%readings, outcome%places)
-    class is (unique_stepper_t)
-      call enter_all(outcome, outcome%places)
-    class default
-      call enter_cycle(outcome, outcome%places)
+    class is (fixed_stepper_t)
       call fine%lay_out_fixed(steps, outcome%chosen, low)
     end select
     call judge_places(fine, steps, outcome%places, .false.)
@@ -265,19 +263,26 @@ contains
     plan = loading_plan(request, steps%problem%law, from)
     call run_branch(steps, plan, .true., position, observer, outcome%loading, outcome%places, &
       from, turning)
-    if (allocated(request%unloading)) then
-      allocate (outcome%unloading(size(from)))
-      do k = 1, size(from)
-        if (.not. allocated(turning(k)%state%gap)) then
-          outcome%unloading(k)%ending%cause = turn_not_reached
-          cycle
+    ! If the path has the jumps, they are exact.
+    if (allocated(outcome%loading%jump) .and. .not. outcome%places%has('jump_in')) &
+      call outcome%places%enter('jump_in', 1, outcome%loading%jump)
+    if (allocated(request%unloading)) allocate (outcome%unloading(size(from)))
+    do k = 1, size(from)
+      associate (branch => outcome%unloading(k), places => outcome%places)
+        if (allocated(turning(k)%state%gap)) then
+          position = turning(k)
+          plan = unloading_plan(request, steps%problem%law, k)
+          call run_branch(steps, plan, .false., position, observer, branch, places)
+        else
+          branch%ending%cause = turn_not_reached
         end if
-        position = turning(k)
-        plan = unloading_plan(request, steps%problem%law, k)
-        call run_branch(steps, plan, .false., position, observer, outcome%unloading(k), &
-          outcome%places)
-      end do
-    end if
+        ! An argument that is not allocated counts as absent.
+        call places%enter('unload_max_tension', k, branch%lowest)
+        call places%enter('unload_jump_out', k, branch%jump)
+        if (allocated(branch%jump) .and. .not. places%has('jump_out')) &
+          call places%enter('jump_out', 1, branch%jump)
+      end associate
+    end do
     if (.not. present(keeper)) return
     solving%cost%states = solving%cost%states + keeper%cost%states
     solving%cost%solve_seconds = solving%cost%solve_seconds + keeper%earlier_seconds

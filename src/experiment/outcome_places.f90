@@ -1,6 +1,5 @@
-!> Collects the places at which numbers are reported: it goes once through the results of the
-!> experiments and enters the places into the table, under the names in `result_rows`. A table of
-!> stable states is judged at some of its rows.
+!> Enters the places of the path's readings into the table, under the names in `result_rows`: of
+!> drives, given loads, energies, and a table of stable states, which is judged at some of its rows.
 module outcome_places
   use kinds, only: wp
   use path_tangent, only: h0_alone => of_h0, load_alone => of_load
@@ -10,14 +9,12 @@ module outcome_places
   use device, only: driven_t, leg_t, states_on
   use path_stepper, only: path_stepper_t
   use path_readings, only: path_readings_t
-  use reported_place, only: place_t, point_of_path, place_on_curve, of_h0, of_load
+  use reported_place, only: place_t, point_of_path, place_on_curve, of_h0
   use places, only: places_t
-  use stepped_branch, only: branch_t
-  use path, only: path_t
   use experiment_result, only: experiment_result_t
   implicit none
   private
-  public :: enter_all, enter_cycle, enter_energy, enter_table
+  public :: enter_readings, enter_energy, enter_table
 
   !> Numbers of each drive that may not exist.
   character(len=*), parameter :: of_each_way(*) = [character(len=18) :: 'device_jump_in', &
@@ -26,87 +23,6 @@ module outcome_places
   integer, parameter :: judged_rows = 16
 
 contains
-
-  !> Enters all places except those of energies and tables.
-  subroutine enter_all(outcome, places)
-    type(experiment_result_t), intent(in) :: outcome
-    type(places_t), intent(inout) :: places
-
-    if (allocated(outcome%path)) call enter_path(outcome%path, places)
-    if (allocated(outcome%stepped_path)) call enter_branch(outcome%stepped_path, 'end', places)
-    call enter_cycle(outcome, places)
-    if (allocated(outcome%readings)) call enter_readings(outcome%readings, places)
-  end subroutine enter_all
-
-  !> Enters the largest tension and the end of a path.
-  subroutine enter_path(path, places)
-    type(path_t), intent(in) :: path
-    type(places_t), intent(inout) :: places
-    type(place_t) :: fall
-
-    if (allocated(path%lowest)) then
-      call places%enter('path_tension', 1, path%lowest)
-      call enter_tension(path%lowest, places)
-    end if
-    if (.not. allocated(path%finish)) return
-    if (path%fallen) then
-      ! The end of a collapse has no error, since it is on no mesh.
-      fall%at = path%finish%at
-      call places%enter('end', 1, fall)
-    else
-      call places%enter('path_end', 1, path%finish)
-      call places%enter('end', 1, path%finish)
-    end if
-  end subroutine enter_path
-
-  !> Enters the places of a cycle; if the path has the jumps, they are exact.
-  subroutine enter_cycle(outcome, places)
-    type(experiment_result_t), intent(in) :: outcome
-    type(places_t), intent(inout) :: places
-    integer :: k
-
-    if (allocated(outcome%loading)) then
-      call enter_branch(outcome%loading, 'end', places)
-      if (allocated(outcome%loading%jump) .and. .not. places%has('jump_in')) &
-        call places%enter('jump_in', 1, outcome%loading%jump)
-    end if
-    if (.not. allocated(outcome%unloading)) return
-    do k = 1, size(outcome%unloading)
-      associate (branch => outcome%unloading(k))
-        call enter_branch(branch, 'samples', places)
-        ! An argument that is not allocated counts as absent.
-        call places%enter('unload_max_tension', k, branch%lowest)
-        call places%enter('unload_jump_out', k, branch%jump)
-        if (allocated(branch%jump) .and. .not. places%has('jump_out')) &
-          call places%enter('jump_out', 1, branch%jump)
-      end associate
-    end do
-  end subroutine enter_cycle
-
-  !> Enters the places of a branch; finish: the name of the place of its last state.
-  subroutine enter_branch(branch, finish, places)
-    type(branch_t), intent(in) :: branch
-    character(len=*), intent(in) :: finish
-    type(places_t), intent(inout) :: places
-
-    if (allocated(branch%lowest)) call enter_tension(branch%lowest, places)
-    if (allocated(branch%finish)) then
-      if (finish == 'end') call places%forget(finish)
-      call places%add(finish, branch%finish)
-    end if
-  end subroutine enter_branch
-
-  !> Enters a place of largest tension if its tension exceeds that of the entered one.
-  subroutine enter_tension(lowest, places)
-    type(place_t), intent(in) :: lowest
-    type(places_t), intent(inout) :: places
-    type(place_t) :: before
-
-    before = places%place_of('max_tension')
-    if (.not. lowest%at(of_load) < before%at(of_load)) return
-    call places%forget('max_tension')
-    call places%enter('max_tension', 1, lowest)
-  end subroutine enter_tension
 
   !> Enters the readings of the path: jumps and energies of drives, states under given loads.
   subroutine enter_readings(readings, places)

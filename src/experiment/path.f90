@@ -89,9 +89,31 @@ contains
       call lower(path, reported)
       if (row%modes == 0) path%finish = reported
     end if
+    call enter_ends(path, places)
     path%last_piece = piece_of(steps%known, last)
     steps%cost%states = steps%cost%states + path%states
   end subroutine follow_path
+
+  !> Enters the largest tension and the end of a path.
+  subroutine enter_ends(path, places)
+    type(path_t), intent(in) :: path
+    type(places_t), intent(inout) :: places
+    type(place_t) :: fall
+
+    if (allocated(path%lowest)) then
+      call places%enter('path_tension', 1, path%lowest)
+      call places%enter_tension(path%lowest)
+    end if
+    if (.not. allocated(path%finish)) return
+    if (path%fallen) then
+      ! The end of a collapse has no error, since it is on no mesh.
+      fall%at = path%finish%at
+      call places%enter('end', 1, fall)
+    else
+      call places%enter('path_end', 1, path%finish)
+      call places%enter('end', 1, path%finish)
+    end if
+  end subroutine enter_ends
 
   !> The first point after which the path reaches h0; the number after the last point if it never
   !> does.

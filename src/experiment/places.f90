@@ -29,6 +29,7 @@ module places
     procedure :: keep
     procedure :: enter
     procedure :: add
+    procedure :: enter_tension
     procedure :: forget
     procedure :: has
     procedure :: elements
@@ -134,6 +135,18 @@ contains
 
     call self%enter(name, self%elements(name) + 1, place)
   end subroutine add
+
+  !> Enters a place of largest tension if its tension exceeds that of the entered one.
+  subroutine enter_tension(self, lowest)
+    class(places_t), intent(inout) :: self
+    type(place_t), intent(in) :: lowest
+    type(place_t) :: before
+
+    before = self%place_of('max_tension')
+    if (.not. lowest%at(of_load) < before%at(of_load)) return
+    call self%forget('max_tension')
+    call self%enter('max_tension', 1, lowest)
+  end subroutine enter_tension
 
   !> Removes a number.
   subroutine forget(self, name)

@@ -17,7 +17,7 @@ module rigid_bodies
   use records, only: observer_t, record_t, stable_yes, stable_unasked
   use experiment_request, only: request_t
   use experiment_result, only: experiment_result_t
-  use stepped_branch, only: branch_t, h0_schedule_t
+  use stepped_branch, only: branch_t, h0_schedule_t, enter_ends
   use h0_schedule, only: path_plan, loading_plan, unloading_plan
   use clock, only: seconds
   implicit none
@@ -47,32 +47,37 @@ contains
     began = seconds()
     if (allocated(request%path)) then
       allocate (outcome%stepped_path)
-      call run_branch(problem, path_plan(request, problem%law, calm_gap(problem)), observer, &
-        outcome%places, outcome%cost%states, outcome%stepped_path)
+      call run_branch(problem, path_plan(request, problem%law, calm_gap(problem)), .true., &
+        observer, outcome%places, outcome%cost%states, outcome%stepped_path)
     end if
     if (allocated(request%loading)) then
       allocate (outcome%loading)
-      call run_branch(problem, loading_plan(request, problem%law), observer, &
+      call run_branch(problem, loading_plan(request, problem%law), .true., observer, &
         outcome%places, outcome%cost%states, outcome%loading)
     end if
     if (allocated(request%unloading)) then
       allocate (outcome%unloading(size(request%unloading%from)))
       do k = 1, size(outcome%unloading)
-        if (problem%law%gap_of(request%unloading%from(k)) < problem%law%smallest_gap) then
-          outcome%unloading(k)%ending%cause = turn_not_reached
-          cycle
-        end if
-        call run_branch(problem, unloading_plan(request, problem%law, k), observer, &
-          outcome%places, outcome%cost%states, outcome%unloading(k))
+        associate (branch => outcome%unloading(k))
+          if (problem%law%gap_of(request%unloading%from(k)) < problem%law%smallest_gap) then
+            branch%ending%cause = turn_not_reached
+          else
+            call run_branch(problem, unloading_plan(request, problem%law, k), .false., observer, &
+              outcome%places, outcome%cost%states, branch)
+          end if
+          call outcome%places%enter('unload_max_tension', k, branch%lowest)
+          call outcome%places%enter('unload_jump_out', k)
+        end associate
       end do
     end if
     outcome%cost%solve_seconds = seconds() - began
   end subroutine run_rigid
 
   !> Runs one branch through plan%h0, as far as the law has a pressure.
-  subroutine run_branch(problem, plan, observer, places, states, branch)
+  subroutine run_branch(problem, plan, fresh, observer, places, states, branch)
     type(problem_t), intent(in) :: problem
     type(h0_schedule_t), intent(in) :: plan
+    logical, intent(in) :: fresh
     class(observer_t), intent(inout) :: observer
     type(places_t), intent(inout) :: places
     integer(long), intent(inout) :: states
@@ -97,6 +102,7 @@ contains
       branch%finish = place_at(problem, plan%h0(n))
       call find_largest_tension(problem, plan%h0(:n), load(:n), branch)
     end associate
+    call enter_ends(branch, fresh, places)
   end subroutine run_branch
 
   !> Gives step i of a branch to the observer, with positions if its profile is requested.

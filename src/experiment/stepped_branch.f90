@@ -12,7 +12,7 @@ module stepped_branch
   use records, only: observer_t, record_t, quality_t, record_of, stable_yes, stable_unasked
   implicit none
   private
-  public :: h0_schedule_t, branch_t, run_branch
+  public :: h0_schedule_t, branch_t, run_branch, enter_ends
 
   !> The values of h0 of a branch, and those with a profile; in the law's lengths.
   type :: h0_schedule_t
@@ -114,10 +114,24 @@ contains
     end do
     if (allocated(last%state%gap)) branch%finish = place_of_state(last%mesh, last%state)
     call search%finish(steps, last_h0)
-    if (allocated(branch%lowest) .or. .not. allocated(search%lowest)) return
-    branch%lowest = search%lowest
-    branch%lowest%searched = .not. steps%problem%rigid
+    if (.not. allocated(branch%lowest) .and. allocated(search%lowest)) then
+      branch%lowest = search%lowest
+      branch%lowest%searched = .true.
+    end if
+    call enter_ends(branch, fresh, places)
   end subroutine run_branch
+
+  !> Enters the largest tension and the last state of a branch; fresh: of a new experiment.
+  subroutine enter_ends(branch, fresh, places)
+    type(branch_t), intent(in) :: branch
+    logical, intent(in) :: fresh
+    type(places_t), intent(inout) :: places
+
+    if (allocated(branch%lowest)) call places%enter_tension(branch%lowest)
+    if (.not. allocated(branch%finish)) return
+    if (fresh) call places%forget('end')
+    call places%add(merge('end    ', 'samples', fresh), branch%finish)
+  end subroutine enter_ends
 
   !> Records the first jump, the largest tension and what did not converge.
   subroutine note(branch, position, event, h0)
