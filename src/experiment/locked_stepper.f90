@@ -26,7 +26,6 @@ module locked_stepper
   contains
     procedure :: approach_to
     procedure :: step_to
-    procedure, private :: guess
     procedure, private :: step_in_pieces
   end type unique_stepper_t
 
@@ -93,7 +92,7 @@ contains
     type(step_result_t), intent(out) :: event
     type(state_t) :: state
 
-    state = self%guess(h0, position)
+    state = between(position%h0(:position%held), position%past(:position%held), h0)
     call self%attempt(h0, state, position%mesh, event)
     if (event%converged) then
       call remember(position, state, position%mesh, .false.)
@@ -101,15 +100,6 @@ contains
       call self%step_in_pieces(h0, position, event)
     end if
   end subroutine step_to
-
-  !> The extrapolated state at h0.
-  pure type(state_t) function guess(self, h0, position)
-    class(unique_stepper_t), intent(in) :: self
-    real(wp), intent(in) :: h0
-    type(branch_point_t), intent(in) :: position
-
-    guess = between(position%h0(:position%held), position%past(:position%held), h0)
-  end function guess
 
   !> Reaches h0 in shorter steps: a step fails only if it is too long.
   subroutine step_in_pieces(self, h0, position, event)
@@ -124,7 +114,7 @@ contains
     do
       next = position%state%h0 + step
       if (abs(h0 - position%state%h0) <= 1.5_wp*abs(step)) next = h0
-      state = self%guess(next, position)
+      state = between(position%h0(:position%held), position%past(:position%held), next)
       call self%frozen%forget()
       call self%attempt(next, state, position%mesh, event)
       if (event%converged) then
