@@ -48,6 +48,7 @@ contains
     type(experiment_result_t), intent(out) :: outcome
     class(keeping_stepper_t), intent(inout), optional :: keeper
     type(mesh_store_t), intent(inout), optional :: store
+    ! Not one allocatable stepper: compiler note 3.
     type(path_stepper_t), target :: along_path
     type(unique_stepper_t), target :: one_by_one
     type(fixed_stepper_t), target :: at_nodes

@@ -250,9 +250,11 @@ contains
     n = self%elements(name)
     allocate (found%value(n), found%error(n), difference(n), source=0.0_wp)
     parameters = 0
-    do i = 1, merge(size(self%place), 0, n > 0)
-      if (allocated(self%place(i)%rate)) parameters = size(self%place(i)%rate, 2)
-    end do
+    if (allocated(self%place)) then
+      do i = 1, size(self%place)
+        if (allocated(self%place(i)%rate)) parameters = size(self%place(i)%rate, 2)
+      end do
+    end if
     allocate (found%rate(parameters, n), source=0.0_wp)
     allocate (known(n), source=.true.)
     units = units_of(problem)

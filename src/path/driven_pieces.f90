@@ -50,8 +50,8 @@ module driven_pieces
 
 contains
 
-  !> The drive through a spring of stiffness k in units of load over length. k = 0 is a dead load; if
-  !> k is infinite, h0 is prescribed.
+  !> The drive through a spring of stiffness k in units of load over length. k = 0 is a dead load;
+  !> if k is infinite, h0 is prescribed.
   pure type(drive_t) function through_spring(k) result(drive)
     real(wp), intent(in) :: k
 
