@@ -10,6 +10,7 @@ module exact_path
   use edge_locked, only: new_mesh_family
   use ending, only: path_lost
   use mesh_store, only: mesh_store_t
+  use traced_path, only: traced_path_t
   use mending, only: too_much
   use path_stepper, only: path_stepper_t
   use path_end, only: demand_t
@@ -89,7 +90,6 @@ contains
     type(places_t), intent(out) :: places
     real(wp), allocatable :: errors(:)
     logical, allocatable :: poor(:), renewed(:)
-    type(places_t) :: nothing
     type(place_t) :: finish
     real(wp) :: before, began
     integer :: round, mesh, i, kept
@@ -100,13 +100,7 @@ contains
       before = huge(before)
       do round = 1, most_rounds
         began = seconds()
-        places = nothing
-        associate (path => steps%known%path)
-          do i = 1, path%held
-            if (path%point(i)%fold .or. path%point(i)%load_extremum) &
-              call places%keep(point_of_path(i), kept)
-          end do
-        end associate
+        call keep_extrema(steps%known%path, renewed, places)
         found = .false.
         if (allocated(request%path)) call find_finish(steps, &
           steps%problem%law%gap_of(request%path%h0_end), finish, found)
@@ -156,5 +150,31 @@ contains
       end associate
     end do
   end subroutine doubt_close_turns
+
+  !> Makes the extrema of a path the places of a table. Known extrema keep their errors, except
+  !> those on renewed meshes.
+  subroutine keep_extrema(path, renewed, places)
+    type(traced_path_t), intent(in) :: path
+    logical, intent(in) :: renewed(:)
+    type(places_t), intent(inout) :: places
+    type(places_t) :: extrema
+    integer :: i, j, kept
+
+    do i = 1, path%held
+      associate (point => path%point(i))
+        if (.not. (point%fold .or. point%load_extremum)) cycle
+        call extrema%keep(point_of_path(i), kept)
+        if (renewed(point%mesh) .or. .not. allocated(places%place)) cycle
+        do j = 1, size(places%place)
+          associate (known => places%place(j))
+            if (known%mesh /= point%mesh .or. abs(known%s - point%coordinate) > 0) cycle
+            extrema%place(kept) = known
+            extrema%place(kept)%point = i
+          end associate
+        end do
+      end associate
+    end do
+    places = extrema
+  end subroutine keep_extrema
 
 end module exact_path
