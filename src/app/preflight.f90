@@ -8,7 +8,7 @@ module preflight
   use dimensionless_problem, only: problem_t
   use numerics_choice, only: choice_t, choose, companion
   use edge_locked, only: mesh_family_t, new_mesh_family
-  use h0_range, only: range_of
+  use path_demand, only: range_of
   use scene_problem, only: problem_of
   use scene, only: swept_scene
   use h0_schedule, only: states_planned

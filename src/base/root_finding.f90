@@ -4,7 +4,7 @@ module root_finding
   use kinds, only: wp
   implicit none
   private
-  public :: bracket_t, root_search_t, new_root_search, golden, resolution
+  public :: bracket_t, root_search_t, new_root_search, resolution
 
   !> An interval that contains a root or a maximum, its ends in any order. `narrow` finds a root
   !> while the bracket `is_open`, `keep_larger` a maximum.

@@ -5,6 +5,7 @@ module drained_way
   use mesh_plan, only: approach
   use next_mesh, only: radius_for
   use motion, only: motion_t
+  use experiment_request, only: request_t
   use time_instant, only: instant_t
   use time_stepper, only: time_stepper_t
   use timed_record, only: pass_t, accept, lose
@@ -20,7 +21,9 @@ module drained_way
   real(wp), parameter :: bend = 2.0e-3_wp, bend_of_gap = 1.0e-2_wp, edge_moves = 1, rejected = 4, &
     no_less = 0.5_wp
   !> Largest and smallest ratio of a step to the previous step.
-  real(wp), parameter :: longer = 2, shorter = 0.2_wp
+  real(wp), parameter :: longer = 2, least_ratio = 0.2_wp
+  !> The first step over the duration of a way: the fluid's pressure jumps where the drive turns.
+  real(wp), parameter :: first_drained = 1.0e-7_wp
   !> The shortest step in roundings of the time; largest change of the path's coordinate in such a
   !> step.
   real(wp), parameter :: roundings = 64, unfollowed = 3
@@ -30,20 +33,28 @@ module drained_way
 
 contains
 
-  !> Takes a step from an instant, or chooses a shorter one for the next attempt. Steps follow the
-  !> motion and are `part` of their usual length. If `part` is 0, steps have the length `longest`,
-  !> and a step is shortened only if it does not converge.
-  subroutine step_drained(drive, way, longest, part, steps, at, now)
+  !> Takes a step from an instant, or chooses a shorter one for the next attempt. Where bodies jump
+  !> together, the gap closes at a time that differs slightly from pass to pass, with ever shorter
+  !> steps. Therefore each pass chooses its own steps, half as long as those of the previous pass.
+  !> Steps follow the motion and are at most `longest_part` of a way. If the deck gives the step, it
+  !> is shortened only if it does not converge.
+  subroutine step_drained(request, drive, way, pass, longest_part, steps, at, now)
+    class(request_t), intent(in) :: request
     type(motion_t), intent(in) :: drive
-    integer, intent(in) :: way
-    real(wp), intent(in) :: longest, part
+    integer, intent(in) :: way, pass
+    real(wp), intent(in) :: longest_part
     type(time_stepper_t), intent(inout) :: steps
     type(instant_t), intent(inout) :: at
     type(pass_t), intent(inout) :: now
     type(instant_t) :: next
-    real(wp) :: when, off, taken, least, farthest
-    logical :: done, jumped
+    real(wp) :: shorter, longest, when, off, taken, least, farthest
+    logical :: follows, done, jumped
 
+    shorter = 0.5_wp**(pass - 2)
+    follows = .not. allocated(request%drive%time_step)
+    longest = shorter*longest_part*drive%lasts(way)
+    if (.not. follows) longest = shorter*request%drive%time_step
+    if (.not. now%step > 0) now%step = shorter*first_drained*drive%lasts(way)
     least = roundings*spacing(max(at%time, now%step))
     when = at%time + now%step
     if (when + 0.01_wp*now%step > drive%lasts(way)) when = drive%lasts(way)
@@ -54,7 +65,7 @@ contains
     call steps%step(at, when, drive%at(way, when), next, done)
     steps%farthest = farthest
     off = 1/longer**2
-    if (done .and. part > 0) off = max(off, missed(steps, at, next, now)/part**2)
+    if (done .and. follows) off = max(off, missed(steps, at, next, now)/shorter**2)
     ! The deviation from a line is not known yet.
     if (done .and. at%since_turn < 2) off = 1
     ! If shorter steps do not reduce the deviation, the load jumps, as where the drive turns.
@@ -66,12 +77,12 @@ contains
     now%missed = 0
     if (done .and. (off < rejected .or. taken <= 2*least)) then
       call accept(steps, next, taken > 2*least .and. .not. jumped, at, now)
-      now%step = min(longest, taken*min(longer, max(shorter, 0.9_wp/sqrt(off))))
+      now%step = min(longest, taken*min(longer, max(least_ratio, 0.9_wp/sqrt(off))))
       if (now%held > now%most) call lose(at, now)
     else
       steps%cost%rejected_steps = steps%cost%rejected_steps + 1
       if (done) now%missed = off
-      now%step = taken*merge(max(shorter, 0.7_wp/sqrt(off)), 0.3_wp, done)
+      now%step = taken*merge(max(least_ratio, 0.7_wp/sqrt(off)), 0.3_wp, done)
       if (.not. done .and. taken <= least) call lose(at, now)
     end if
     now%step = max(now%step, least)

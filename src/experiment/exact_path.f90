@@ -111,7 +111,14 @@ contains
         call doubt_close_turns(places%place)
         errors = [(places%place(i)%relative_error(.false.), i=1, size(places%place))]
         if (.not. maxval(errors) > accuracy .or. maxval(errors) > helped*before) return
-        if (round == most_rounds .or. .not. finer_helps(steps, accuracy)) return
+        if (round == most_rounds) return
+        associate (known => steps%known)
+          ! Finer meshes do not help if the path was lost, since the finer path may end earlier; or
+          ! if nodes miss too much of the load, since this needs other panels. A collapse of bodies
+          ! without repulsion is not an early end.
+          if (known%ending%early() .and. .not. known%fallen .or. &
+            known%left_out > too_much*accuracy) return
+        end associate
         before = maxval(errors)
         poor = [(any(places%place%mesh == mesh .and. errors > accuracy), mesh=1, size(renewed))]
         call steps%know_path_on(fine%meshes, poor, renewed)
@@ -143,20 +150,6 @@ contains
       end associate
     end do
   end subroutine doubt_close_turns
-
-  !> Whether finer meshes may make a path more accurate. They do not help if the path was lost,
-  !> since the finer path may end earlier; or if nodes miss too much of the load, since this needs
-  !> other panels.
-  pure logical function finer_helps(steps, accuracy)
-    class(path_stepper_t), intent(in) :: steps
-    real(wp), intent(in) :: accuracy
-
-    associate (known => steps%known)
-      ! A collapse of bodies without repulsion is not an early end.
-      finer_helps = .not. (known%ending%early() .and. .not. known%fallen .or. &
-        known%left_out > too_much*accuracy)
-    end associate
-  end function finer_helps
 
   !> Makes the extrema of a path the places of a table. Known extrema keep their errors, except
   !> those on renewed meshes.

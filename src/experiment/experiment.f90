@@ -9,19 +9,17 @@ module experiment
   use mesh_store, only: mesh_store_t
   use ending, only: turn_not_reached
   use stepper, only: stepper_t, keeping_stepper_t, branch_point_t
-  use locked_stepper, only: locked_stepper_t
+  use locked_stepper, only: locked_stepper_t, unique_stepper_t
   use path_stepper, only: path_stepper_t
-  use unique_stepper, only: unique_stepper_t
   use fixed_stepper, only: fixed_stepper_t
   use rigid_bodies, only: run_rigid
   use stepped_branch, only: h0_schedule_t, run_branch
-  use h0_range, only: path_start, range_of
+  use path_demand, only: path_start, range_of
   use h0_schedule, only: path_plan, loading_plan, unloading_plan
   use experiment_result, only: experiment_result_t
   use exact_path, only: trace_exactly
   use finer_solver, only: finer_t
-  use outcome_places, only: enter_all, enter_cycle, enter_energy
-  use table_places, only: enter_table
+  use outcome_places, only: enter_readings, enter_energy, enter_table
   use place_errors, only: judge_places, conclude
   use place_rates, only: rate_places
   use path, only: follow_path
@@ -50,6 +48,10 @@ contains
     type(experiment_result_t), intent(out) :: outcome
     class(keeping_stepper_t), intent(inout), optional :: keeper
     type(mesh_store_t), intent(inout), optional :: store
+    ! Not one allocatable stepper: compiler note 3.
+    type(path_stepper_t), target :: along_path
+    type(unique_stepper_t), target :: one_by_one
+    type(fixed_stepper_t), target :: at_nodes
     type(numerics_t) :: numerics
     real(wp) :: low, high
     logical :: fixed
@@ -69,15 +71,24 @@ contains
     outcome%chosen = choose(numerics, problem, low, allocated(request%profiles))
     if (problem%rigid) then
       call run_rigid(request, problem, observer, outcome)
-      call enter_all(outcome, outcome%places)
       call conclude(outcome%places, outcome%error_estimate)
       return
     end if
     fixed = outcome%chosen%is_fixed()
-    if (allocated(request%path) .or. .not. fixed) &
-      call run_locked(request, problem, high, low, .not. fixed, observer, outcome, keeper, store)
-    if (allocated(request%loading) .and. fixed) &
-      call run_fixed(request, problem, low, observer, outcome, keeper)
+    if (allocated(request%path) .or. .not. fixed) then
+      if (problem%law%adhesion > 0) then
+        call run_with(along_path, request, problem, high, low, .not. fixed, observer, outcome, &
+          keeper, store)
+        if (allocated(request%sensitivity)) &
+          call rate_places(request%sensitivity, along_path, observer, outcome)
+        outcome%cost = along_path%cost
+      else
+        call run_with(one_by_one, request, problem, high, low, .not. fixed, observer, outcome, &
+          keeper, store)
+      end if
+    end if
+    if (allocated(request%loading) .and. fixed) call run_with(at_nodes, request, problem, high, &
+      low, .true., observer, outcome, keeper)
   end subroutine run_experiment
 
   !> Runs the drive in time. Rigid bodies are replaced by bodies that are too stiff for a noticeable
@@ -105,10 +116,11 @@ contains
     outcome%error_estimate = outcome%timed%estimate
   end subroutine run_driven
 
-  !> Runs the path, and the cycle if `with_cycle` and the scene has one, in edge-locked coordinates,
-  !> for H0 from high to low (law's lengths).
-  subroutine run_locked(request, problem, high, low, with_cycle, observer, outcome, &
-    keeper, store)
+  !> Runs the path, and the cycle if `with_cycle` and the scene has one, with a stepper, for H0 from
+  !> high to low (law's lengths). A stepper on a mesh fixed in space runs the cycle only.
+  subroutine run_with(steps, request, problem, high, low, with_cycle, observer, outcome, keeper, &
+    store)
+    class(stepper_t), intent(inout), target :: steps
     class(request_t), intent(in) :: request
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: high, low
@@ -117,100 +129,79 @@ contains
     type(experiment_result_t), intent(inout) :: outcome
     class(keeping_stepper_t), intent(inout), optional :: keeper
     type(mesh_store_t), intent(inout), target, optional :: store
-    type(path_stepper_t), target :: along_path
-    type(unique_stepper_t), target :: one_by_one
-    class(locked_stepper_t), pointer :: steps
     type(finer_t) :: fine
-    real(wp) :: began
+    type(branch_point_t) :: position
+    real(wp) :: began, judged
 
-    ! Not allocatable: compiler note 3.
-    if (problem%law%adhesion > 0) then
-      steps => along_path
-    else
-      steps => one_by_one
-    end if
     call prepare(steps, problem, outcome%chosen, request%numerics%accuracy)
-    ! The path is not solved by mixing.
-    steps%options%mixing = .false.
-    ! Kernels are made by small products, and cases of a sweep make them at the same time.
-    call use_threads_for(1)
+    steps%cost = outcome%cost
+    call lay_out(steps, outcome%chosen, high, low, store)
     began = seconds()
-    steps%meshes = new_mesh_family(problem, high, low, outcome%chosen%digits, store=store)
-    steps%cost%kernel_seconds = seconds() - began
-    steps%cost%kernel_entries = sum(steps%meshes%grid%kernel_entries())
-    call use_threads_for(maxval(steps%meshes%grid%nodes))
-    began = seconds()
+    judged = steps%cost%estimate_seconds
     select type (steps)
     class is (path_stepper_t)
       call trace_exactly(request, steps, high, low, observer, fine, outcome%places, store)
       outcome%left_out = steps%known%left_out
       if (allocated(request%path)) call run_path(request, steps, observer, outcome)
-      if (request%reads_path()) call read_path(request, steps, observer, outcome%readings)
+      if (request%reads_path()) then
+        call read_path(request, steps, observer, outcome%readings)
+        call enter_readings(outcome%readings, outcome%places)
+      end if
     class is (unique_stepper_t)
       call fine%lay_out(steps, high, low, store)
-      if (allocated(request%path)) call run_stepped_path(request, steps, observer, outcome)
+      ! There is one state for every h0, so h0 is stepped.
+      if (allocated(request%path)) then
+        allocate (outcome%stepped_path)
+        call run_branch(steps, path_plan(request, steps%problem%law, steps%far_away()), .true., &
+          position, observer, outcome%stepped_path, outcome%places)
+      end if
     end select
-    outcome%nodes = sum(steps%meshes%grid%nodes)
+    outcome%nodes = outcome%nodes + sum(steps%meshes%grid%nodes)
     if (allocated(request%loading) .and. with_cycle) &
-      call run_kept_cycle(request, steps, observer, outcome, keeper)
+      call run_cycle(request, steps, observer, outcome, keeper)
     ! The time for judging folds and extrema is counted separately.
     steps%cost%solve_seconds = steps%cost%solve_seconds + seconds() - began - &
-      steps%cost%estimate_seconds
+      (steps%cost%estimate_seconds - judged)
     began = seconds()
     call observer%hear('estimating errors')
-    call enter_all(outcome, outcome%places)
     select type (steps)
     class is (path_stepper_t)
       call enter_energy(steps%known, outcome, outcome%places)
       if (request%table) call enter_table(steps, outcome%readings, outcome%places)
+    class is (fixed_stepper_t)
+      call fine%lay_out_fixed(steps, outcome%chosen, low)
     end select
     call judge_places(fine, steps, outcome%places, .false.)
     call conclude(outcome%places, outcome%error_estimate)
     steps%cost%estimate_seconds = steps%cost%estimate_seconds + seconds() - began
-    if (allocated(request%sensitivity)) then
-      select type (steps)
-      class is (path_stepper_t)
-        call rate_places(request%sensitivity, steps, observer, outcome)
-      end select
-    end if
     outcome%cost = steps%cost
-  end subroutine run_locked
+  end subroutine run_with
 
-  !> Runs the cycle on a mesh fixed in space, for H0 down to low.
-  subroutine run_fixed(request, problem, low, observer, outcome, keeper)
-    class(request_t), intent(in) :: request
-    type(problem_t), intent(in) :: problem
-    real(wp), intent(in) :: low
-    class(observer_t), intent(inout) :: observer
-    type(experiment_result_t), intent(inout) :: outcome
-    class(keeping_stepper_t), intent(inout), optional :: keeper
-    type(fixed_stepper_t) :: steps
-    type(finer_t) :: fine
+  !> Lays out the meshes of a stepper for H0 from high to low.
+  subroutine lay_out(steps, chosen, high, low, store)
+    class(stepper_t), intent(inout) :: steps
+    type(choice_t), intent(in) :: chosen
+    real(wp), intent(in) :: high, low
+    type(mesh_store_t), intent(inout), target, optional :: store
     real(wp) :: began
 
-    call prepare(steps, problem, outcome%chosen, request%numerics%accuracy)
-    steps%cost = outcome%cost
     began = seconds()
-    allocate (steps%meshes%grid(1))
-    steps%meshes%grid(1) = fixed_mesh(outcome%chosen, problem, low)
+    select type (steps)
+    class is (locked_stepper_t)
+      ! The path is not solved by mixing.
+      steps%options%mixing = .false.
+      ! Kernels are made by small products, and cases of a sweep make them at the same time.
+      call use_threads_for(1)
+      steps%meshes = new_mesh_family(steps%problem, high, low, chosen%digits, store=store)
+    class default
+      allocate (steps%meshes%grid(1))
+      steps%meshes%grid(1) = fixed_mesh(chosen, steps%problem, low)
+    end select
     steps%cost%kernel_seconds = steps%cost%kernel_seconds + seconds() - began
-    associate (mesh => steps%meshes%grid(1))
-      steps%cost%kernel_entries = steps%cost%kernel_entries + mesh%kernel_entries()
-      outcome%nodes = outcome%nodes + mesh%nodes
-      call use_threads_for(mesh%nodes)
-    end associate
-    began = seconds()
-    call run_kept_cycle(request, steps, observer, outcome, keeper)
-    steps%cost%solve_seconds = steps%cost%solve_seconds + seconds() - began
-    began = seconds()
-    call observer%hear('estimating errors')
-    call enter_cycle(outcome, outcome%places)
-    call fine%lay_out_fixed(steps, outcome%chosen, low)
-    call judge_places(fine, steps, outcome%places, .false.)
-    call conclude(outcome%places, outcome%error_estimate)
-    steps%cost%estimate_seconds = steps%cost%estimate_seconds + seconds() - began
-    outcome%cost = steps%cost
-  end subroutine run_fixed
+    steps%cost%kernel_entries = steps%cost%kernel_entries + &
+      sum(steps%meshes%grid%kernel_entries())
+    call use_threads_for(maxval(steps%meshes%grid%nodes))
+  end subroutine lay_out
 
   !> Sets the parts that both kinds of steppers have.
   subroutine prepare(steps, problem, chosen, accuracy)
@@ -230,86 +221,72 @@ contains
     class(path_stepper_t), intent(inout) :: steps
     class(observer_t), intent(inout) :: observer
     type(experiment_result_t), intent(inout) :: outcome
-    real(wp), allocatable :: profiles(:)
-    real(wp) :: start
+    real(wp), allocatable :: profiles(:), start
 
     associate (law => steps%problem%law)
       allocate (profiles(0))
       if (allocated(request%profiles)) profiles = law%gap_of(request%profiles%h0)
       allocate (outcome%path)
-      start = law%gap_of(path_start(request, steps%problem))
       if (allocated(request%path%h0_start) .or. request%reads_path()) then
+        start = law%gap_of(path_start(request, steps%problem))
         ! The path may have been traced farther than the part that is shown.
         if (.not. allocated(request%path%h0_start)) start = max(start, steps%far_away())
-        call follow_path(steps, law%gap_of(request%path%h0_end), profiles, observer, &
-          outcome%path, start)
-      else
-        call follow_path(steps, law%gap_of(request%path%h0_end), profiles, observer, outcome%path)
       end if
+      ! A start that is not allocated counts as absent.
+      call follow_path(steps, law%gap_of(request%path%h0_end), profiles, observer, outcome%path, &
+        outcome%places, start)
     end associate
   end subroutine run_path
 
-  !> The path of a law that does not attract: there is one state for every h0, so h0 is stepped.
-  subroutine run_stepped_path(request, steps, observer, outcome)
+  !> Runs the loading, then an unloading from each turning point; a keeper stores the steps.
+  subroutine run_cycle(request, solving, observer, outcome, keeper)
     class(request_t), intent(in) :: request
-    class(unique_stepper_t), intent(inout) :: steps
+    class(stepper_t), intent(inout), target :: solving
     class(observer_t), intent(inout) :: observer
     type(experiment_result_t), intent(inout) :: outcome
-    type(branch_point_t) :: position
-
-    allocate (outcome%stepped_path)
-    call run_branch(steps, path_plan(request, steps%problem%law, steps%far_away()), .true., &
-      position, observer, outcome%stepped_path)
-  end subroutine run_stepped_path
-
-  !> Runs the cycle, with a keeper of its steps if present.
-  subroutine run_kept_cycle(request, steps, observer, outcome, keeper)
-    class(request_t), intent(in) :: request
-    class(stepper_t), intent(inout), target :: steps
-    class(observer_t), intent(inout) :: observer
-    type(experiment_result_t), intent(inout) :: outcome
-    class(keeping_stepper_t), intent(inout), optional :: keeper
-
-    if (.not. present(keeper)) then
-      call run_cycle(request, steps, observer, outcome)
-      return
-    end if
-    call keeper%keep_steps_of(steps)
-    call run_cycle(request, keeper, observer, outcome)
-    steps%cost%states = steps%cost%states + keeper%cost%states
-    steps%cost%solve_seconds = steps%cost%solve_seconds + keeper%earlier_seconds
-  end subroutine run_kept_cycle
-
-  !> Runs the loading, then an unloading from each turning point.
-  subroutine run_cycle(request, steps, observer, outcome)
-    class(request_t), intent(in) :: request
-    class(stepper_t), intent(inout) :: steps
-    class(observer_t), intent(inout) :: observer
-    type(experiment_result_t), intent(inout) :: outcome
+    class(keeping_stepper_t), intent(inout), target, optional :: keeper
+    class(stepper_t), pointer :: steps
     type(h0_schedule_t) :: plan
     type(branch_point_t) :: position
     type(branch_point_t), allocatable :: turning(:)
     real(wp), allocatable :: from(:)
     integer :: k
 
+    steps => solving
+    if (present(keeper)) then
+      call keeper%keep_steps_of(solving)
+      steps => keeper
+    end if
     allocate (from(0))
     if (allocated(request%unloading)) from = steps%problem%law%gap_of(request%unloading%from)
     allocate (turning(size(from)))
     allocate (outcome%loading)
     plan = loading_plan(request, steps%problem%law, from)
-    call run_branch(steps, plan, .true., position, observer, outcome%loading, from, turning)
-    if (allocated(request%unloading)) then
-      allocate (outcome%unloading(size(from)))
-      do k = 1, size(from)
-        if (.not. allocated(turning(k)%state%gap)) then
-          outcome%unloading(k)%ending%cause = turn_not_reached
-          cycle
+    call run_branch(steps, plan, .true., position, observer, outcome%loading, outcome%places, &
+      from, turning)
+    ! If the path has the jumps, they are exact.
+    if (allocated(outcome%loading%jump) .and. .not. outcome%places%has('jump_in')) &
+      call outcome%places%enter('jump_in', 1, outcome%loading%jump)
+    if (allocated(request%unloading)) allocate (outcome%unloading(size(from)))
+    do k = 1, size(from)
+      associate (branch => outcome%unloading(k), places => outcome%places)
+        if (allocated(turning(k)%state%gap)) then
+          position = turning(k)
+          plan = unloading_plan(request, steps%problem%law, k)
+          call run_branch(steps, plan, .false., position, observer, branch, places)
+        else
+          branch%ending%cause = turn_not_reached
         end if
-        position = turning(k)
-        plan = unloading_plan(request, steps%problem%law, k)
-        call run_branch(steps, plan, .false., position, observer, outcome%unloading(k))
-      end do
-    end if
+        ! An argument that is not allocated counts as absent.
+        call places%enter('unload_max_tension', k, branch%lowest)
+        call places%enter('unload_jump_out', k, branch%jump)
+        if (allocated(branch%jump) .and. .not. places%has('jump_out')) &
+          call places%enter('jump_out', 1, branch%jump)
+      end associate
+    end do
+    if (.not. present(keeper)) return
+    solving%cost%states = solving%cost%states + keeper%cost%states
+    solving%cost%solve_seconds = solving%cost%solve_seconds + keeper%earlier_seconds
   end subroutine run_cycle
 
 end module experiment

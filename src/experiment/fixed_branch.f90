@@ -11,16 +11,7 @@ module fixed_branch
   use stepper, only: stepper_t, branch_point_t, step_result_t, remember
   implicit none
   private
-  public :: fixed_branch_t, change, jump
-
-  type, abstract, extends(stepper_t) :: fixed_branch_t
-  contains
-    procedure :: continue_to
-    procedure :: expected_at
-    procedure :: follow
-    procedure, private :: try_step
-    procedure, private :: linearise
-  end type fixed_branch_t
+  public :: continue_to, expected_at, follow, change, jump
 
   !> Prediction of the end of a branch: dH/dH0 and the logarithm of the Jacobian's determinant, if
   !> the Jacobian is regular, and the logarithm before the last step; distance to a fold, huge if
@@ -60,7 +51,7 @@ contains
   !> Solves the state at h0 from the expected one (for mixing, as in the paper, from the last state
   !> at constant separation). continues: the state is on the branch of the position.
   subroutine continue_to(self, h0, position, expected, state, event, continues)
-    class(fixed_branch_t), intent(inout) :: self
+    class(stepper_t), intent(inout) :: self
     real(wp), intent(in) :: h0
     type(branch_point_t), intent(in) :: position
     type(state_t), intent(in) :: expected
@@ -79,7 +70,7 @@ contains
 
   !> The predicted state of a step to h0.
   type(state_t) function expected_at(self, h0, position) result(expected)
-    class(fixed_branch_t), intent(inout) :: self
+    class(stepper_t), intent(inout) :: self
     real(wp), intent(in) :: h0
     type(branch_point_t), intent(in) :: position
 
@@ -102,7 +93,7 @@ contains
   !> the position of the fold accurately enough for one step nearly to the fold and one step just
   !> beyond it. If the prediction is not confirmed, the steps are reduced to a third, or increased.
   subroutine follow(self, h0, position, event, beyond, arrived, at_fold)
-    class(fixed_branch_t), intent(inout) :: self
+    class(stepper_t), intent(inout) :: self
     real(wp), intent(in) :: h0
     type(branch_point_t), intent(inout) :: position
     type(step_result_t), intent(inout) :: event
@@ -119,13 +110,13 @@ contains
     beyond = h0
     arrived = .false.
     at_fold = .false.
-    call self%linearise(position%state, ahead)
+    call linearise(self, position%state, ahead)
     allowed = max(few_states, int(min(most_cubes/real(self%meshes%grid(1)%nodes, wp)**3, 1.0e3_wp)))
     do states = 1, allowed
       if (.not. step > self%jump_tolerance) return
       next = position%state%h0 + sense*step
       if (abs(h0 - position%state%h0) <= 1.1_wp*step) next = h0
-      call self%try_step(next, position, ahead, state, event, continues)
+      call try_step(self, next, position, ahead, state, event, continues)
       if (.not. continues) then
         beyond = next
         step = step/3
@@ -146,7 +137,7 @@ contains
 
   !> Takes a step to h0 from a position, predicted from the fold or by extrapolation.
   subroutine try_step(self, h0, position, ahead, state, event, continues)
-    class(fixed_branch_t), intent(inout) :: self
+    class(stepper_t), intent(inout) :: self
     real(wp), intent(in) :: h0
     type(branch_point_t), intent(in) :: position
     type(outlook_t), intent(inout) :: ahead
@@ -158,13 +149,13 @@ contains
     if (ahead%foreseen) then
       expected = towards_fold(position%state, ahead%rate, h0, ahead%distance)
     else
-      expected = self%expected_at(h0, position)
+      expected = expected_at(self, h0, position)
     end if
-    call self%continue_to(h0, position, expected, state, event, continues)
+    call continue_to(self, h0, position, expected, state, event, continues)
     ahead%before = ahead%determinant
     if (.not. continues .or. self%options%mixing) return
     ahead%foreseen = ahead%regular
-    call self%linearise(state, ahead)
+    call linearise(self, state, ahead)
     ahead%foreseen = ahead%foreseen .and. ahead%regular
     ! A state beyond the fold would be on the unstable branch.
     if (ahead%regular) continues = determinant_sign(self%frozen%factors) > 0
@@ -209,7 +200,7 @@ contains
   !> Jacobian is regular; not for mixing, which has no derivatives. The factorisation is kept for
   !> the next solution.
   subroutine linearise(self, state, ahead)
-    class(fixed_branch_t), intent(inout) :: self
+    class(stepper_t), intent(inout) :: self
     type(state_t), intent(in) :: state
     type(outlook_t), intent(inout) :: ahead
     type(control_t) :: control

@@ -6,45 +6,22 @@ module fixed_jumps
   use solver_options, only: rescue_of
   use anderson, only: solve_anderson
   use relaxation, only: relax
-  use contact_scales, only: largest_radius, lost_in_rounding
   use ending, only: no_equilibrium
-  use fixed_branch, only: fixed_branch_t, change, jump
-  use stepper, only: branch_point_t, step_result_t, remember
+  use fixed_branch, only: follow, change, jump
+  use stepper, only: stepper_t, branch_point_t, step_result_t, remember
   implicit none
   private
-  public :: fixed_jumps_t, locate_jump
-
-  type, abstract, extends(fixed_branch_t) :: fixed_jumps_t
-  contains
-    procedure :: is_lost
-    procedure :: follow_to_end
-    procedure :: slip_to
-    procedure :: jump_to
-    procedure :: land
-    procedure :: stays
-    procedure, private :: goes_on
-  end type fixed_jumps_t
+  public :: follow_to_end, slip_to, jump_to, land, stays, locate_jump
 
   !> Largest number of times that Newton's method helps the iteration in one step.
   integer, parameter :: most_rescues = 5
 
 contains
 
-  !> Whether rounding hides the contact at h0. No contact is larger than the mesh.
-  pure logical function is_lost(self, h0)
-    class(fixed_jumps_t), intent(in) :: self
-    real(wp), intent(in) :: h0
-
-    associate (mesh => self%meshes%grid(1))
-      is_lost = self%problem%law%adhesion > 0 .and. lost_in_rounding(self%problem, &
-        min(largest_radius(self%problem, h0, 0.0_wp), mesh%end))
-    end associate
-  end function is_lost
-
   !> Follows the branch towards h0. arrived: the branch reaches h0. stalled: the branch continues,
   !> but the iteration does not converge. Otherwise the branch ends before `beyond`.
   subroutine follow_to_end(self, h0, position, event, beyond, arrived, stalled)
-    class(fixed_jumps_t), intent(inout) :: self
+    class(stepper_t), intent(inout) :: self
     real(wp), intent(in) :: h0
     type(branch_point_t), intent(inout) :: position
     type(step_result_t), intent(inout) :: event
@@ -55,9 +32,9 @@ contains
     integer :: rescues
 
     do rescues = 0, most_rescues
-      call self%follow(h0, position, event, beyond, arrived, at_fold)
+      call follow(self, h0, position, event, beyond, arrived, at_fold)
       stalled = .false.
-      if (.not. (arrived .or. at_fold)) stalled = self%goes_on(beyond, position%state, state)
+      if (.not. (arrived .or. at_fold)) stalled = goes_on(self, beyond, position%state, state)
       if (.not. stalled) return
       ! Near its end a branch turns sharply, and another attempt may succeed.
       call remember(position, state, 1, .false.)
@@ -70,7 +47,7 @@ contains
   !> Relaxes from the end of a branch to a state in which the edge, pinned at the next nodes, may
   !> rest before h0, after which the tension can increase again.
   subroutine slip_to(self, beyond, h0, position, event, slipped)
-    class(fixed_jumps_t), intent(inout) :: self
+    class(stepper_t), intent(inout) :: self
     real(wp), intent(in) :: beyond, h0
     type(branch_point_t), intent(inout) :: position
     type(step_result_t), intent(inout) :: event
@@ -80,8 +57,8 @@ contains
     slipped = .false.
     if (.not. position%state%axis_gap < self%problem%law%edge_gap .or. &
       self%options%mixing) return
-    call self%land(beyond, position%state, landed, event)
-    slipped = self%stays(position%state, landed, event) .and. abs(beyond - h0) > 0.0_wp
+    call land(self, beyond, position%state, landed, event)
+    slipped = stays(self, position%state, landed, event) .and. abs(beyond - h0) > 0.0_wp
     if (.not. slipped) return
     event%jumped = .true.
     call locate_jump(event, position%state, beyond)
@@ -91,7 +68,7 @@ contains
   !> From the end of a branch, which is before `beyond`, the bodies jump to the state at h0: to
   !> `landed` if has_landed, otherwise to the result of a relaxation.
   subroutine jump_to(self, h0, beyond, has_landed, landed, position, event)
-    class(fixed_jumps_t), intent(inout) :: self
+    class(stepper_t), intent(inout) :: self
     real(wp), intent(in) :: h0, beyond
     logical, intent(in) :: has_landed
     type(state_t), intent(inout) :: landed
@@ -99,7 +76,7 @@ contains
     type(step_result_t), intent(inout) :: event
 
     event%converged = has_landed
-    if (.not. has_landed) call self%land(h0, position%state, landed, event)
+    if (.not. has_landed) call land(self, h0, position%state, landed, event)
     associate (before => position%state, law => self%problem%law)
       ! A jump must start from an equilibrium.
       event%jumped = event%converged .and. change(before, landed) > jump .and. &
@@ -130,7 +107,7 @@ contains
   !> converge: by Newton's method, for all choices of the deck. If it does, to `state`, the
   !> iteration has failed; if not, the bodies jump.
   logical function goes_on(self, h0, before, state)
-    class(fixed_jumps_t), intent(inout) :: self
+    class(stepper_t), intent(inout) :: self
     real(wp), intent(in) :: h0
     type(state_t), intent(in) :: before
     type(state_t), intent(out) :: state
@@ -147,7 +124,7 @@ contains
   !> The state to which the bodies relax from `before` at an h0 beyond the end of its branch. Mixing
   !> is itself a relaxation.
   subroutine land(self, h0, before, state, event)
-    class(fixed_jumps_t), intent(inout) :: self
+    class(stepper_t), intent(inout) :: self
     real(wp), intent(in) :: h0
     type(state_t), intent(in) :: before
     type(state_t), intent(inout) :: state
@@ -165,7 +142,7 @@ contains
   !> Whether bodies stayed in contact during a relaxation from one state to another; then any jump
   !> was one of the edge from node to node.
   logical function stays(self, before, after, event)
-    class(fixed_jumps_t), intent(in) :: self
+    class(stepper_t), intent(in) :: self
     type(state_t), intent(in) :: before, after
     type(step_result_t), intent(in) :: event
     real(wp) :: from, to

@@ -5,22 +5,20 @@ module fixed_stepper
   use kinds, only: wp
   use dimensionless_problem, only: calm_gap, over_neck => spacing_over_neck
   use contact_state, only: state_t, undeformed_state
+  use contact_scales, only: largest_radius, lost_in_rounding
   use equilibrium, only: control_t
-  use fixed_branch, only: change
-  use fixed_jumps, only: fixed_jumps_t, locate_jump
+  use fixed_branch, only: continue_to, expected_at, change
+  use fixed_jumps, only: follow_to_end, slip_to, jump_to, land, stays, locate_jump
   use ending, only: beyond_rounding
-  use stepper, only: branch_point_t, step_result_t, remember
+  use stepper, only: stepper_t, branch_point_t, step_result_t, remember
   implicit none
   private
   public :: fixed_stepper_t
 
-  type, extends(fixed_jumps_t) :: fixed_stepper_t
+  type, extends(stepper_t) :: fixed_stepper_t
   contains
     procedure :: approach_to
     procedure :: step_to
-    procedure, private :: step_until_slip
-    procedure, private :: passes_many
-    procedure, private :: paper_step
   end type fixed_stepper_t
 
   !> Steps of the approach from large separation, in the law's lengths, and their largest number;
@@ -75,7 +73,7 @@ contains
     logical :: slipped
 
     do
-      call self%step_until_slip(h0, position, event, slipped)
+      call step_until_slip(self, h0, position, event, slipped)
       if (.not. slipped) exit
       if (.not. slip%jumped .or. event%jump_load < slip%jump_load) slip = event
     end do
@@ -100,52 +98,47 @@ contains
 
     slipped = .false.
     if (self%options%stop_on_change) then
-      call self%paper_step(h0, position, event)
+      call paper_step(self, h0, position, event)
       return
     end if
-    call self%continue_to(h0, position, self%expected_at(h0, position), state, event, continues)
+    call continue_to(self, h0, position, expected_at(self, h0, position), state, event, continues)
     if (continues) then
       call remember(position, state, 1, .false.)
       return
     end if
-    if (self%is_lost(h0)) then
-      event%ending%cause = beyond_rounding
-      return
-    end if
-    has_landed = self%passes_many(h0, position%state)
+    associate (before => position%state, mesh => self%meshes%grid(1), law => self%problem%law)
+      ! No contact is larger than the mesh.
+      if (law%adhesion > 0 .and. lost_in_rounding(self%problem, &
+        min(largest_radius(self%problem, h0, 0.0_wp), mesh%end))) then
+        event%ending%cause = beyond_rounding
+        return
+      end if
+      ! Many jumps of the edge in one step are not located individually.
+      has_landed = .not. self%options%mixing .and. abs(h0 - before%h0) > short_step .and. &
+        before%axis_gap < law%edge_gap .and. over_neck(self%problem, mesh%spacing) < fine_enough
+    end associate
     if (has_landed) then
-      call self%land(h0, position%state, landed, event)
-      if (self%stays(position%state, landed, event)) then
+      call land(self, h0, position%state, landed, event)
+      if (stays(self, position%state, landed, event)) then
         call locate_jump(event, position%state, h0)
         call remember(position, landed, 1, .false.)
         return
       end if
       has_landed = event%converged
     end if
-    call self%follow_to_end(h0, position, event, beyond, arrived, stalled)
+    call follow_to_end(self, h0, position, event, beyond, arrived, stalled)
     if (arrived) return
     if (stalled) then
       ! The iteration does not follow the branch, and no jump was found: it is not known whether a
       ! state at h0 is on this branch.
-      call self%land(h0, position%state, landed, event)
+      call land(self, h0, position%state, landed, event)
       event%converged = .false.
       call remember(position, landed, 1, .true.)
       return
     end if
-    if (.not. has_landed) call self%slip_to(beyond, h0, position, event, slipped)
-    if (.not. slipped) call self%jump_to(h0, beyond, has_landed, landed, position, event)
+    if (.not. has_landed) call slip_to(self, beyond, h0, position, event, slipped)
+    if (.not. slipped) call jump_to(self, h0, beyond, has_landed, landed, position, event)
   end subroutine step_until_slip
-
-  !> Whether a step to h0 contains many jumps of the edge, which are not located individually.
-  pure logical function passes_many(self, h0, before)
-    class(fixed_stepper_t), intent(in) :: self
-    real(wp), intent(in) :: h0
-    type(state_t), intent(in) :: before
-
-    passes_many = .not. self%options%mixing .and. abs(h0 - before%h0) > short_step .and. &
-      before%axis_gap < self%problem%law%edge_gap .and. &
-      over_neck(self%problem, self%meshes%grid(1)%spacing) < fine_enough
-  end function passes_many
 
   !> A step of the paper: h0 changes at constant separation, and the iteration continues until the
   !> paper's rule is met. A change of deformation many times that of h0 counts as a jump, which is

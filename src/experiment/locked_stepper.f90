@@ -1,18 +1,19 @@
 !> The common parts of quasi-static experiments in edge-locked coordinates: nothing is pinned
 !> between nodes, and the equations are not stiff at any adhesion strength. `path_stepper` follows
-!> the traced path of a law that attracts; `unique_stepper` is for other laws, under which there is
-!> one state for every h0.
+!> the traced path of a law that attracts; `unique_stepper_t` is for other laws, under which there
+!> is one state for every h0.
 module locked_stepper
   use kinds, only: wp
   use dimensionless_problem, only: calm_gap
   use contact_state, only: state_t, undeformed_state
+  use arc, only: between
   use mesh_plan, only: approach, contact
   use locked_meshes, only: h0_control, scale_at
-  use ending, only: ending_t, nothing_afar
-  use stepper, only: stepper_t, branch_point_t, step_result_t, remember
+  use ending, only: ending_t, nothing_afar, steps_lost
+  use stepper, only: stepper_t, branch_point_t, step_result_t, remember, move_to
   implicit none
   private
-  public :: locked_stepper_t
+  public :: locked_stepper_t, unique_stepper_t
 
   type, abstract, extends(stepper_t) :: locked_stepper_t
   contains
@@ -20,6 +21,17 @@ module locked_stepper
     procedure :: far_away
     procedure :: attempt
   end type locked_stepper_t
+
+  type, extends(locked_stepper_t) :: unique_stepper_t
+  contains
+    procedure :: approach_to
+    procedure :: step_to
+    procedure, private :: step_in_pieces
+  end type unique_stepper_t
+
+  !> Smallest step in h0, in the law's lengths and relative to h0: deep in contact the state is
+  !> nearly constant over smaller steps, and rounding makes some of them fail.
+  real(wp), parameter :: smallest_creep = 1.0e-6_wp, smallest_part = 1.0e-4_wp
 
 contains
 
@@ -61,5 +73,63 @@ contains
 
     call self%solve(h0_control(self%problem%shape, self%meshes, mesh, h0), state, event%converged)
   end subroutine attempt
+
+  subroutine approach_to(self, h0, position, event)
+    class(unique_stepper_t), intent(inout) :: self
+    real(wp), intent(in) :: h0
+    type(branch_point_t), intent(out) :: position
+    type(step_result_t), intent(out) :: event
+
+    call self%begin_afar(h0, position, event)
+    if (event%ending%early()) return
+    if (position%state%h0 > h0) call self%step_to(h0, position, event)
+  end subroutine approach_to
+
+  subroutine step_to(self, h0, position, event)
+    class(unique_stepper_t), intent(inout) :: self
+    real(wp), intent(in) :: h0
+    type(branch_point_t), intent(inout) :: position
+    type(step_result_t), intent(out) :: event
+    type(state_t) :: state
+
+    state = between(position%h0(:position%held), position%past(:position%held), h0)
+    call self%attempt(h0, state, position%mesh, event)
+    if (event%converged) then
+      call remember(position, state, position%mesh, .false.)
+    else
+      call self%step_in_pieces(h0, position, event)
+    end if
+  end subroutine step_to
+
+  !> Reaches h0 in shorter steps: a step fails only if it is too long.
+  subroutine step_in_pieces(self, h0, position, event)
+    class(unique_stepper_t), intent(inout) :: self
+    real(wp), intent(in) :: h0
+    type(branch_point_t), intent(inout) :: position
+    type(step_result_t), intent(inout) :: event
+    type(state_t) :: state
+    real(wp) :: next, step
+
+    step = 0.25_wp*(h0 - position%state%h0)
+    do
+      next = position%state%h0 + step
+      if (abs(h0 - position%state%h0) <= 1.5_wp*abs(step)) next = h0
+      state = between(position%h0(:position%held), position%past(:position%held), next)
+      call self%frozen%forget()
+      call self%attempt(next, state, position%mesh, event)
+      if (event%converged) then
+        call remember(position, state, position%mesh, .false.)
+        if (abs(next - h0) <= 0.0_wp) return
+        step = 2*step
+      else
+        step = 0.3_wp*step
+        if (abs(step) < max(smallest_creep, smallest_part*abs(position%state%h0))) then
+          event%ending%cause = steps_lost
+          call move_to(position, state)
+          return
+        end if
+      end if
+    end do
+  end subroutine step_in_pieces
 
 end module locked_stepper

@@ -10,7 +10,7 @@ module numerics_choice
   use solver_options, only: solver_options_t, newton_of
   implicit none
   private
-  public :: choice_t, choose, fixed_choice, fixed_mesh, companion
+  public :: choice_t, choose, size_grid, fixed_mesh, companion
   public :: grid_names, unchosen, edge_locked, uniform, panels
 
   !> The grids are none, for rigid bodies; panels locked to the contact edge; two that are fixed in
@@ -106,17 +106,6 @@ contains
     if (chosen%is_fixed()) call size_grid(chosen, numerics, problem, h0_low)
   end function choose
 
-  !> The choice of a grid that is fixed in space, for any iteration.
-  type(choice_t) function fixed_choice(numerics, problem, h0_low, grid) result(chosen)
-    type(numerics_t), intent(in) :: numerics
-    type(problem_t), intent(in) :: problem
-    real(wp), intent(in) :: h0_low
-    integer, intent(in) :: grid
-
-    chosen%grid = grid
-    call size_grid(chosen, numerics, problem, h0_low)
-  end function fixed_choice
-
   !> Chooses nodes and extent of a grid that is fixed in space.
   subroutine size_grid(chosen, numerics, problem, h0_low)
     type(choice_t), intent(inout) :: chosen
@@ -125,7 +114,8 @@ contains
     real(wp), intent(in) :: h0_low
     real(wp) :: widest, feature
 
-    chosen%panel_order = panel_order_for(numerics%accuracy)
+    ! For a relative accuracy of load and displacement.
+    chosen%panel_order = min(16, max(6, nint(4.6_wp - 0.8_wp*log10(numerics%accuracy))))
     if (allocated(numerics%panel_order)) chosen%panel_order = numerics%panel_order
     widest = largest_radius(problem, h0_low, contact_level(problem))
     feature = smallest_feature(problem, widest)
@@ -144,13 +134,6 @@ contains
 
     is_fixed = self%grid >= uniform
   end function is_fixed
-
-  !> Nodes of panels fixed in space, for a relative accuracy of load and displacement.
-  pure integer function panel_order_for(accuracy) result(order)
-    real(wp), intent(in) :: accuracy
-
-    order = min(16, max(6, nint(4.6_wp - 0.8_wp*log10(accuracy))))
-  end function panel_order_for
 
   !> The mesh of a fixed grid: equal spacing, or equal panels up to the largest contact radius and
   !> panels of doubling size beyond.

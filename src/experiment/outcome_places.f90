@@ -1,119 +1,28 @@
-!> Collects the places at which numbers are reported: it goes once through the results of the
-!> experiments and enters the places into the table, under the names in `result_rows`.
+!> Enters the places of the path's readings into the table, under the names in `result_rows`: of
+!> drives, given loads, energies, and a table of stable states, which is judged at some of its rows.
 module outcome_places
   use kinds, only: wp
   use path_tangent, only: h0_alone => of_h0, load_alone => of_load
   use known_path, only: known_path_t, folds_of_cycle
   use curve_states, only: path_state_t
-  use device, only: driven_t
+  use driven_pieces, only: state_driven
+  use device, only: driven_t, leg_t, states_on
+  use path_stepper, only: path_stepper_t
   use path_readings, only: path_readings_t
-  use reported_place, only: place_t, point_of_path, of_h0, of_load, of_energy
+  use reported_place, only: place_t, point_of_path, place_on_curve, of_h0
   use places, only: places_t
-  use stepped_branch, only: branch_t
-  use path, only: path_t
   use experiment_result, only: experiment_result_t
   implicit none
   private
-  public :: enter_all, enter_cycle, enter_energy
+  public :: enter_readings, enter_energy, enter_table
 
   !> Numbers of each drive that may not exist.
   character(len=*), parameter :: of_each_way(*) = [character(len=18) :: 'device_jump_in', &
     'device_landing_in', 'device_jump_out', 'device_landing_out']
+  !> Number of rows of a leg of a table that are judged.
+  integer, parameter :: judged_rows = 16
 
 contains
-
-  !> Enters all places except those of energies and tables.
-  subroutine enter_all(outcome, places)
-    type(experiment_result_t), intent(in) :: outcome
-    type(places_t), intent(inout) :: places
-
-    if (allocated(outcome%path)) call enter_path(outcome%path, places)
-    if (allocated(outcome%stepped_path)) call enter_branch(outcome%stepped_path, 'end', places)
-    call enter_cycle(outcome, places)
-    if (allocated(outcome%readings)) call enter_readings(outcome%readings, places)
-  end subroutine enter_all
-
-  !> Enters the places of a path; its folds are exact.
-  subroutine enter_path(path, places)
-    type(path_t), intent(in) :: path
-    type(places_t), intent(inout) :: places
-    type(place_t) :: fall
-    integer :: n
-
-    call places%enter_list('folds', path%fold)
-    call places%enter_list('load_folds', path%extremum)
-    call places%enter_list('profiles', path%profile)
-    n = size(path%fold)
-    if (n > 0) then
-      ! A part of the path may begin with another fold.
-      if (path%first_piece == 1) call places%enter('jump_in', 1, path%fold(1))
-      if (path%unstable_after(n) == 0) call places%enter('jump_out', 1, path%fold(n))
-    end if
-    if (allocated(path%lowest)) then
-      call places%enter('path_tension', 1, path%lowest)
-      call enter_tension(path%lowest, places)
-    end if
-    if (.not. allocated(path%finish)) return
-    if (path%fallen) then
-      ! The end of a collapse has no error, since it is on no mesh.
-      fall%at = path%finish%at
-      call places%enter('end', 1, fall)
-    else
-      call places%enter('path_end', 1, path%finish)
-      call places%enter('end', 1, path%finish)
-    end if
-  end subroutine enter_path
-
-  !> Enters the places of a cycle; if the path has the jumps, they are exact.
-  subroutine enter_cycle(outcome, places)
-    type(experiment_result_t), intent(in) :: outcome
-    type(places_t), intent(inout) :: places
-    integer :: k
-
-    if (allocated(outcome%loading)) then
-      call enter_branch(outcome%loading, 'end', places)
-      if (allocated(outcome%loading%jump) .and. .not. places%has('jump_in')) &
-        call places%enter('jump_in', 1, outcome%loading%jump)
-    end if
-    if (.not. allocated(outcome%unloading)) return
-    do k = 1, size(outcome%unloading)
-      associate (branch => outcome%unloading(k))
-        call enter_branch(branch, 'samples', places)
-        ! An argument that is not allocated counts as absent.
-        call places%enter('unload_max_tension', k, branch%lowest)
-        call places%enter('unload_jump_out', k, branch%jump)
-        if (allocated(branch%jump) .and. .not. places%has('jump_out')) &
-          call places%enter('jump_out', 1, branch%jump)
-      end associate
-    end do
-  end subroutine enter_cycle
-
-  !> Enters the places of a branch; finish: the name of the place of its last state.
-  subroutine enter_branch(branch, finish, places)
-    type(branch_t), intent(in) :: branch
-    character(len=*), intent(in) :: finish
-    type(places_t), intent(inout) :: places
-
-    if (allocated(branch%lowest)) call enter_tension(branch%lowest, places)
-    if (allocated(branch%finish)) then
-      if (finish == 'end') call places%forget(finish)
-      call places%enter(finish, places%elements(finish) + 1, branch%finish)
-    end if
-    if (allocated(branch%profile)) call places%enter_list('profiles', branch%profile)
-    if (allocated(branch%sample)) call places%enter_list('samples', branch%sample)
-  end subroutine enter_branch
-
-  !> Enters a place of largest tension if its tension exceeds that of the entered one.
-  subroutine enter_tension(lowest, places)
-    type(place_t), intent(in) :: lowest
-    type(places_t), intent(inout) :: places
-    type(place_t) :: before
-
-    before = places%place_of('max_tension')
-    if (.not. lowest%at(of_load) < before%at(of_load)) return
-    call places%forget('max_tension')
-    call places%enter('max_tension', 1, lowest)
-  end subroutine enter_tension
 
   !> Enters the readings of the path: jumps and energies of drives, states under given loads.
   subroutine enter_readings(readings, places)
@@ -128,7 +37,7 @@ contains
     end if
     if (.not. allocated(readings%loaded)) return
     do i = 1, size(readings%loaded)
-      call places%enter('fixed_load', i, of_curve(readings%loaded(i)%state, load_alone))
+      call places%enter('fixed_load', i, place_on_curve(readings%loaded(i)%state, load_alone))
     end do
   end subroutine enter_readings
 
@@ -144,13 +53,13 @@ contains
     call places%enter('device_energy', i, factor=0.0_wp)
     do k = 1, size(driven%jump)
       associate (jump => driven%jump(k), drive => driven%drive%weights)
-        before = of_curve(jump%before, drive)
+        before = place_on_curve(jump%before, drive)
         ! The turn of the drive, or the fold of h0 before it.
         before%turn_of = merge(drive, h0_alone, abs(dot_product(drive, jump%before%slopes)) <= &
           abs(dot_product(h0_alone, jump%before%slopes)))
         if (allocated(after)) deallocate (after)
         if (jump%landed) then
-          after = of_curve(jump%after, drive)
+          after = place_on_curve(jump%after, drive)
           call places%keep(before, after%after)
           call places%enter('device_energy', i, before)
           call places%enter('device_energy', i, after, -1.0_wp)
@@ -158,8 +67,8 @@ contains
           call places%enter('device_energy', i)
         end if
         ! If `after` is not allocated, it counts as absent.
-        call places%enter('jump_before', places%elements('jump_before') + 1, before)
-        call places%enter('jump_after', places%elements('jump_after') + 1, after)
+        call places%add('jump_before', before)
+        call places%add('jump_after', after)
         way = merge('in ', 'out', jump%inward)
         if (places%has('device_jump_' // way, i)) cycle
         call places%enter('device_jump_' // way, i, before)
@@ -170,20 +79,6 @@ contains
       if (.not. places%has(of_each_way(k), i)) call places%enter(of_each_way(k), i)
     end do
   end subroutine enter_driven
-
-  !> A state of the curve as a place whose D has the given weights.
-  type(place_t) function of_curve(state, weights) result(place)
-    type(path_state_t), intent(in) :: state
-    real(wp), intent(in) :: weights(2)
-
-    place%mesh = state%mesh
-    place%s = state%x
-    place%state = state%state
-    place%drive = weights
-    place%at = [state%h0, state%load, state%axis_gap - state%h0, state%energy, state%radius, &
-      state%state%scale]
-    place%left(of_energy) = state%uncertainty
-  end function of_curve
 
   !> Enters the energy that a cycle dissipates: for a path from large separation through all its
   !> jumps, or for a loading and the first unloading that end on the outermost piece, where they
@@ -215,5 +110,48 @@ contains
       call places%enter('energy_lost', 1, point_of_path(fold(i), landing=.true.), -1.0_wp)
     end do
   end subroutine enter_energy
+
+  !> Enters rows of the table as places.
+  subroutine enter_table(steps, readings, places)
+    class(path_stepper_t), intent(inout) :: steps
+    type(path_readings_t), intent(inout) :: readings
+    type(places_t), intent(inout) :: places
+    type(path_state_t), allocatable :: nodes(:)
+    integer :: i, k, row, last
+
+    if (.not. allocated(readings%prescribed)) return
+    do i = 1, size(readings%prescribed%leg)
+      nodes = states_on(readings%node, readings%prescribed%leg(i))
+      nodes = nodes(2:size(nodes) - 1)
+      if (size(nodes) < 2) cycle
+      last = 0
+      do k = 1, judged_rows
+        row = 1 + (k - 1)*(size(nodes) - 2)/(judged_rows - 1)
+        if (row == last) cycle
+        last = row
+        call places%add('table', place_on_curve(nodes(row), h0_alone))
+        call hold(readings%prescribed%leg(i), nodes(row), nodes(row + 1))
+      end do
+    end do
+
+  contains
+
+    !> Compares the interpolation with the state in the middle between a row and the next.
+    subroutine hold(leg, row, next)
+      type(leg_t), intent(in) :: leg
+      type(path_state_t), intent(in) :: row, next
+      type(path_state_t) :: state
+
+      associate (driven => readings%prescribed, width => next%h0 - row%h0)
+        if (.not. abs(width) > 0) return
+        call state_driven(steps%solver_t, steps%known%path, driven%drive, &
+          driven%piece(leg%piece), 0.5_wp*(row%h0 + next%h0), state)
+        if (state%converged) readings%table_interpolation_error = &
+          max(readings%table_interpolation_error, abs(state%load - 0.5_wp*(row%load + next%load) - &
+          width/8*(row%slopes(2)/row%slopes(1) - next%slopes(2)/next%slopes(1))))
+      end associate
+    end subroutine hold
+
+  end subroutine enter_table
 
 end module outcome_places

@@ -5,10 +5,13 @@ module path
   use kinds, only: wp
   use traced_path, only: traced_path_t
   use ending, only: ending_t, state_lost
+  use path_tangent, only: of_h0
+  use driven_pieces, only: drive_t, piece_with
   use known_path, only: known_path_t, interval_at
   use path_stepper, only: path_stepper_t
   use path_rows, only: row_t, row_of_point, row_at_h0, rows_between
-  use reported_place, only: place_t, place_of_state, add_place, of_load
+  use reported_place, only: place_t, place_of_state, of_load
+  use places, only: places_t
   use records, only: observer_t, record_t, quality_t, record_of, stable_yes, stable_no
   implicit none
   private
@@ -17,12 +20,11 @@ module path
   !> The path in the units of `dimensionless_problem`, in the order from large separations inward.
   type :: path_t
     integer :: states = 0
-    !> Folds in h0, and the number of unstable modes after each; extrema of the load.
-    type(place_t), allocatable :: fold(:), extremum(:)
+    !> Number of unstable modes after each fold in h0.
     integer, allocatable :: unstable_after(:)
     !> Largest tension, which is the pull-off at controlled load; the first state; the last state,
-    !> if it is stable; the states of requested profiles, in the order of the path.
-    type(place_t), allocatable :: lowest, start, finish, profile(:)
+    !> if it is stable.
+    type(place_t), allocatable :: lowest, start, finish
     !> The stable pieces on which the path begins and ends; 0 if it is unstable there.
     integer :: first_piece = 0, last_piece = 0
     type(quality_t) :: quality
@@ -35,12 +37,14 @@ contains
 
   !> The part of the known path from h0_start, or from its beginning if h0_start is absent, to the
   !> contact at h0_end. The observer receives the states, and profiles where the path crosses the
-  !> values `profiles`.
-  subroutine follow_path(steps, h0_end, profiles, observer, path, h0_start)
+  !> values `profiles`. Folds, extrema of the load and states with profiles become places of the
+  !> table, in the order of the path.
+  subroutine follow_path(steps, h0_end, profiles, observer, path, places, h0_start)
     class(path_stepper_t), intent(inout) :: steps
     real(wp), intent(in) :: h0_end, profiles(:)
     class(observer_t), intent(inout) :: observer
     type(path_t), intent(out) :: path
+    type(places_t), intent(inout) :: places
     real(wp), intent(in), optional :: h0_start
     type(row_t) :: row
     type(row_t), allocatable :: between(:)
@@ -49,7 +53,7 @@ contains
     integer :: i, k, first, last
     logical :: ends_between
 
-    allocate (path%fold(0), path%extremum(0), path%unstable_after(0), path%profile(0))
+    allocate (path%unstable_after(0))
     path%fallen = steps%known%fallen
     if (.not. path%fallen) path%ending = steps%known%ending
     first = steps%known%path%undeformed + 1
@@ -64,19 +68,19 @@ contains
       row%profile = any(abs(profiles - row%state%h0) <= 0)
       ! Where the path passes to another mesh, two points exist on both.
       if (i == first .or. steps%known%path%comes_from_before(i)) &
-        call take(steps, row, observer, path)
+        call take(steps, row, observer, path, places)
       if (i == last .and. .not. ends_between) exit
       if (.not. steps%known%path%point(i)%leads_on) cycle
       until = h0_end
       if (i < last) until = steps%known%path%point(i + 1)%state%h0
       call rows_between(steps, i, row%state%h0, until, widest, profiles, between)
       do k = 1, size(between)
-        call take(steps, between(k), observer, path)
+        call take(steps, between(k), observer, path, places)
       end do
       if (i < last) cycle
       row = row_at_h0(steps, i, h0_end)
       row%profile = any(abs(profiles - h0_end) <= 0)
-      call take(steps, row, observer, path)
+      call take(steps, row, observer, path, places)
     end do
     ! The tension is largest at an extremum or an end. States with which the path passes to another
     ! mesh do not count: their errors would decide.
@@ -85,9 +89,31 @@ contains
       call lower(path, reported)
       if (row%modes == 0) path%finish = reported
     end if
+    call enter_ends(path, places)
     path%last_piece = piece_of(steps%known, last)
     steps%cost%states = steps%cost%states + path%states
   end subroutine follow_path
+
+  !> Enters the largest tension and the end of a path.
+  subroutine enter_ends(path, places)
+    type(path_t), intent(in) :: path
+    type(places_t), intent(inout) :: places
+    type(place_t) :: fall
+
+    if (allocated(path%lowest)) then
+      call places%enter('path_tension', 1, path%lowest)
+      call places%enter_tension(path%lowest)
+    end if
+    if (.not. allocated(path%finish)) return
+    if (path%fallen) then
+      ! The end of a collapse has no error, since it is on no mesh.
+      fall%at = path%finish%at
+      call places%enter('end', 1, fall)
+    else
+      call places%enter('path_end', 1, path%finish)
+      call places%enter('end', 1, path%finish)
+    end if
+  end subroutine enter_ends
 
   !> The first point after which the path reaches h0; the number after the last point if it never
   !> does.
@@ -112,14 +138,9 @@ contains
     integer :: k
 
     last = known%path%held
-    ends_between = .false.
-    if (known%ending%early()) return
-    do k = size(known%piece), 1, -1
-      ends_between = h0_end >= known%piece(k)%last%h0 .and. h0_end <= known%piece(k)%first%h0
-      if (.not. ends_between) cycle
-      last = interval_at(known, k, h0_end)
-      return
-    end do
+    k = piece_with(known%piece, drive_t(of_h0), h0_end, size(known%piece) + 1, .false.)
+    ends_between = k > 0 .and. .not. known%ending%early()
+    if (ends_between) last = interval_at(known, k, h0_end)
   end subroutine find_end
 
   !> The innermost stable equilibrium at h0_end as a place; found: it is on the path.
@@ -172,12 +193,13 @@ contains
     end if
   end subroutine lower
 
-  !> Gives a row to the observer and stores its reported places.
-  subroutine take(steps, row, observer, path)
+  !> Gives a row to the observer and stores its reported places. Folds are exact.
+  subroutine take(steps, row, observer, path, places)
     type(path_stepper_t), intent(in) :: steps
     type(row_t), intent(in) :: row
     class(observer_t), intent(inout) :: observer
     type(path_t), intent(inout) :: path
+    type(places_t), intent(inout) :: places
     type(place_t) :: reported
     type(record_t) :: record
 
@@ -195,7 +217,7 @@ contains
     end if
     if (row%for_curve) return
     reported = place_of_row(steps, row)
-    if (row%profile) call add_place(path%profile, reported)
+    if (row%profile) call places%add('profiles', reported)
     if (path%states == 1) then
       path%lowest = reported
       path%start = reported
@@ -203,11 +225,16 @@ contains
     if (row%point == 0) return
     associate (point => steps%known%path%point(row%point))
       if (point%load_extremum) then
-        call add_place(path%extremum, reported)
+        call places%add('load_folds', reported)
         call lower(path, reported)
       end if
       if (.not. point%fold) return
-      call add_place(path%fold, reported)
+      ! A part of the path may begin with another fold.
+      if (path%first_piece == 1 .and. .not. places%has('folds')) &
+        call places%enter('jump_in', 1, reported)
+      call places%add('folds', reported)
+      call places%forget('jump_out')
+      if (point%modes == 0) call places%enter('jump_out', 1, reported)
       path%unstable_after = [path%unstable_after, point%modes]
     end associate
   end subroutine take

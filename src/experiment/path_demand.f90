@@ -1,5 +1,5 @@
-!> The range of the path that is needed for its readings: with a soft spring bodies land far apart,
-!> and are pulled far into contact.
+!> The range of h0 of an experiment, and of the path that is needed for its readings: with a soft
+!> spring bodies land far apart, and are pulled far into contact.
 module path_demand
   use kinds, only: wp, pi
   use dimensionless_problem, only: problem_t, coupling_over, yielding_gap
@@ -10,7 +10,7 @@ module path_demand
   use experiment_request, only: request_t
   implicit none
   private
-  public :: widen_path, demand_of, h0_in_contact
+  public :: path_start, range_of, demand_of, h0_in_contact
 
   !> Deformation of the bodies, as a fraction of that at the jump, that no longer affects the load;
   !> at larger separations closed forms replace the path.
@@ -23,21 +23,55 @@ module path_demand
 
 contains
 
-  !> Extends a range of h0 (law's lengths) to the range that must be traced.
-  subroutine widen_path(request, problem, low, high)
+  !> The h0 [m] at which the shown path starts: beyond any contact, or the deck's value.
+  real(wp) function path_start(request, problem) result(start)
     class(request_t), intent(in) :: request
     type(problem_t), intent(in) :: problem
-    real(wp), intent(inout) :: low, high
+
+    start = problem%law%separation_of(beyond_contact(problem))
+    if (.not. allocated(request%path)) return
+    if (allocated(request%path%h0_start)) then
+      start = request%path%h0_start
+    else if (allocated(request%profiles)) then
+      start = max(start, maxval(request%profiles%h0))
+    end if
+  end function path_start
+
+  !> The range of H0 of a scene that must be traced, in the law's lengths.
+  subroutine range_of(request, problem, low, high)
+    class(request_t), intent(in) :: request
+    type(problem_t), intent(in) :: problem
+    real(wp), intent(out) :: low, high
     type(demand_t) :: demand
     integer :: i
 
-    if (.not. problem%law%adhesion > 0) return
+    low = huge(1.0_wp)
+    high = -huge(1.0_wp)
+    if (allocated(request%loading)) then
+      low = request%loading%h0_end
+      high = request%loading%h0_start
+    end if
+    if (allocated(request%unloading)) high = max(high, request%unloading%h0_end)
+    if (allocated(request%drive)) then
+      low = min(low, request%drive%z_turn)
+      high = max(high, request%drive%z_start, request%drive%z_end)
+    end if
+    if (allocated(request%path)) then
+      low = min(low, request%path%h0_end)
+      high = max(high, request%path%h0_end)
+      ! The state after the last jump out of contact also belongs to the path.
+      high = max(high, path_start(request, problem), &
+        problem%law%separation_of(beyond_contact(problem)))
+    end if
+    low = problem%law%gap_of(low)
+    high = problem%law%gap_of(high)
+    if (.not. request%reads_path() .or. .not. problem%law%adhesion > 0) return
     demand = demand_of(request, problem)
     high = max(high, min(demand%farthest, yielding_gap(problem, no_yielding)))
     do i = 1, size(demand%until)
       low = min(low, h0_in_contact(problem, demand%by_h0(i), demand%by_load(i), demand%until(i)))
     end do
-  end subroutine widen_path
+  end subroutine range_of
 
   !> What the request reads from the path: states at the position of a drive, and at fixed loads.
   type(demand_t) function demand_of(request, problem) result(demand)

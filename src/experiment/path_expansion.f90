@@ -6,15 +6,14 @@ module path_expansion
   use kinds, only: wp
   use contact_state, only: state_t, contact_radius_of
   use path_coordinate, only: path_control
-  use path_tangent, only: tangent_t, tangent_along, h0_alone => of_h0, load_alone => of_load
-  use arc, only: arc_t
+  use path_tangent, only: tangent_t, tangent_along
   use potential_energy, only: energy_of
   use reported_place, only: read_of_states, of_h0, of_load, of_displacement, of_energy, &
     of_radius, of_edge
   use finer_solver, only: finer_t
   implicit none
   private
-  public :: expansion_t, expansion_about
+  public :: expansion_t
 
   !> The path near the coordinate s on a finer mesh, and the state there.
   type :: expansion_t
@@ -39,20 +38,9 @@ module path_expansion
 
 contains
 
-  !> An expansion at the coordinate s before its state is solved, with the guess `state` on the
-  !> finer mesh and the second derivatives of the path about it.
-  pure type(expansion_t) function expansion_about(about, s, state) result(near)
-    type(arc_t), intent(in) :: about
-    real(wp), intent(in) :: s
-    type(state_t), intent(in) :: state
-
-    near%s = s
-    near%state = state
-    near%curvature = [about%curvature(h0_alone, s), about%curvature(load_alone, s), 0.0_wp]
-  end function expansion_about
-
   !> Moves an expansion along the path until the place at which D turns, or is `wanted`, is near,
-  !> and returns the distance to this place. found = .false.: the finer mesh has no such place.
+  !> and returns the distance to this place. At first the expansion has a coordinate, a guess of the
+  !> state and the second derivatives. found = .false.: the finer mesh has no such place.
   subroutine move_to(near, fine, mesh, weights, turns, wanted, distance, found)
     class(expansion_t), intent(inout) :: near
     type(finer_t), intent(inout) :: fine

@@ -68,7 +68,7 @@ contains
         steps%problem%load, steps, readings)
       if (request%table) then
         allocate (readings%prescribed)
-        call drive_between(request, steps, through_spring(), readings%prescribed)
+        call drive_between(request, steps, drive_t(), readings%prescribed)
         readings%solved = readings%solved .and. readings%prescribed%solved
       end if
     end associate
@@ -117,21 +117,19 @@ contains
     class(request_t), intent(in) :: request
     class(path_stepper_t), intent(inout) :: steps
     type(path_readings_t), intent(inout) :: readings
+    real(wp), allocatable :: stiffness(:)
     integer :: i, k
 
     associate (device => request%device, problem => steps%problem)
-      allocate (readings%device(max(1, size(device%stiffness))))
-      do i = 1, size(readings%device)
-        if (size(device%stiffness) == 0) then
-          call drive_between(request, steps, through_spring(), readings%device(i), &
-            device%z_start, device%z_end)
-          readings%device(i)%stiffness = ieee_value(1.0_wp, ieee_positive_inf)
-        else
-          call drive_between(request, steps, &
-            through_spring(device%stiffness(i)*problem%length/problem%load), readings%device(i), &
-            device%z_start, device%z_end)
-          readings%device(i)%stiffness = device%stiffness(i)
-        end if
+      stiffness = device%stiffness
+      ! Without springs h0 is prescribed, as by a spring that does not yield.
+      if (size(stiffness) == 0) stiffness = [ieee_value(1.0_wp, ieee_positive_inf)]
+      allocate (readings%device(size(stiffness)))
+      do i = 1, size(stiffness)
+        call drive_between(request, steps, &
+          through_spring(stiffness(i)*problem%length/problem%load), readings%device(i), &
+          device%z_start, device%z_end)
+        readings%device(i)%stiffness = stiffness(i)
         readings%solved = readings%solved .and. readings%device(i)%solved
         ! The path goes on beyond the states of the drive, as far as its last step happened to go.
         do k = 1, size(readings%device(i)%leg)

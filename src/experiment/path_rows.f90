@@ -47,9 +47,12 @@ contains
     class(path_stepper_t), intent(inout) :: steps
     integer, intent(in) :: i
     real(wp), intent(in) :: h0
+    type(path_span_t) :: span
 
+    span = new_path_span(steps%known%path, i)
+    row%mesh = span%mesh
     row%modes = steps%known%path%point(i)%modes
-    call steps%state_at_h0(i, h0, row%mesh, row%state, row%converged)
+    call span%solve_at_h0(steps%solver_t, h0, row%state, row%converged)
   end function row_at_h0
 
   !> The rows between point i and the next, within a range of h0, in order: requested profiles, and
@@ -62,15 +65,19 @@ contains
     type(row_t), allocatable, intent(out) :: rows(:)
     type(path_span_t) :: span
     real(wp), allocatable :: stops(:), stop_at(:), places(:)
-    real(wp) :: begin
+    real(wp) :: begin, end
     integer :: k, stop
 
     span = new_path_span(steps%known%path, i)
     stops = pack(profiles, (profiles - from)*(profiles - until) < 0)
     stop_at = [(span%at_h0(stops(k)), k=1, size(stops))]
     begin = span%at_h0(from)
-    places = places_between(steps%solver_t, span, begin, span%at_h0(until), widest)
-    places = along([stop_at, places], begin)
+    end = span%at_h0(until)
+    places = places_between(steps%solver_t, span, begin, end, widest)
+    do k = 1, size(stops)
+      stop = count((places - stop_at(k))*(end - begin) < 0)
+      places = [places(:stop), stop_at(k), places(stop + 1:)]
+    end do
     allocate (rows(size(places)))
     do k = 1, size(places)
       stop = findloc(stop_at, places(k), 1)
@@ -149,23 +156,5 @@ contains
     end function seen_at
 
   end function places_between
-
-  !> Values on one side of `start`, sorted by their distance from it.
-  pure function along(values, start) result(sorted)
-    real(wp), intent(in) :: values(:), start
-    real(wp), allocatable :: sorted(:)
-    real(wp) :: value
-    integer :: i, j
-
-    sorted = values
-    do i = 2, size(sorted)
-      value = sorted(i)
-      do j = i - 1, 1, -1
-        if (abs(sorted(j) - start) <= abs(value - start)) exit
-        sorted(j + 1) = sorted(j)
-      end do
-      sorted(j + 1) = value
-    end do
-  end function along
 
 end module path_rows

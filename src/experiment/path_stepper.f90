@@ -12,16 +12,15 @@ module path_stepper
   use locked_stepper, only: locked_stepper_t
   use path_coordinate, only: coordinate_of
   use ending, only: fallen_before, beyond_path
-  use traced_path, only: traced_path_t
   use path_span, only: path_span_t, new_path_span
-  use path_prediction, only: missed_t, expect
+  use prediction, only: missed_t, expect
   use path_end, only: demand_t
   use tracing, only: trace, trace_again
   use mending, only: left_on_path
   use edge_locked, only: mesh_family_t
   use discretisation, only: discretisation_t
   use mapped_mesh, only: mapped_shape_t
-  use known_path, only: known_path_t, landing_t, know_pieces, interval_at, lowest_point
+  use known_path, only: known_path_t, landing_t, know_pieces, interval_at
   use stepper, only: branch_point_t, step_result_t, extreme_t, remember
   implicit none
   private
@@ -38,7 +37,6 @@ module path_stepper
     procedure :: step_to
     procedure :: know_path
     procedure :: know_path_on
-    procedure :: state_at_h0
     procedure, private :: step_over
     procedure, private :: solve_on_piece
   end type path_stepper_t
@@ -150,8 +148,7 @@ contains
       if (event%jumped) event%lowest = lowest
       return
     end do
-    call lower_to_point(self%known%path, lowest_point(self%known, position%piece, from, h0), &
-      lowest)
+    call lower_over(self%known, position%piece, from, h0, lowest)
     call self%solve_on_piece(h0, position, event)
     if (event%converged .and. position%state%load < lowest%load) &
       lowest = extreme_t(position%state%load, h0)
@@ -176,8 +173,7 @@ contains
     end if
     if (landing%fold > 0) then
       associate (fold => self%known%path%point(landing%fold)%state)
-        call lower_to_point(self%known%path, lowest_point(self%known, position%piece, from, &
-          fold%h0), lowest)
+        call lower_over(self%known, position%piece, from, fold%h0, lowest)
         if (.not. event%jumped) then
           event%jumped = .true.
           event%jump_h0 = fold%h0
@@ -198,18 +194,23 @@ contains
     position%held = 0
   end subroutine step_over
 
-  !> Replaces the largest tension by that of a point of the path if it is larger; 0: there is no
-  !> point.
-  pure subroutine lower_to_point(path, point, lowest)
-    type(traced_path_t), intent(in) :: path
-    integer, intent(in) :: point
+  !> Replaces the largest tension by the largest one among the load extrema and folds of a piece
+  !> with h0 between two values if that is larger.
+  pure subroutine lower_over(known, piece, from, to, lowest)
+    type(known_path_t), intent(in) :: known
+    integer, intent(in) :: piece
+    real(wp), intent(in) :: from, to
     type(extreme_t), intent(inout) :: lowest
+    integer :: i
 
-    if (point == 0) return
-    associate (state => path%point(point)%state)
-      if (state%load < lowest%load) lowest = extreme_t(state%load, state%h0, point)
-    end associate
-  end subroutine lower_to_point
+    do i = known%piece(piece)%first%interval, known%piece(piece)%last%interval + 1
+      associate (point => known%path%point(i), state => known%path%point(i)%state)
+        if (.not. (point%load_extremum .or. point%fold)) cycle
+        if ((state%h0 - from)*(state%h0 - to) > 0) cycle
+        if (state%load < lowest%load) lowest = extreme_t(state%load, state%h0, i)
+      end associate
+    end do
+  end subroutine lower_over
 
   !> Solves the state at h0 on the position's piece: by iteration at fixed h0 or, if this does not
   !> converge to the state on the path, or near a fold, by a search along the path.
@@ -221,7 +222,7 @@ contains
     type(state_t) :: state
     real(wp) :: s
     integer :: i, mesh
-    logical :: jumped
+    logical :: jumped, beside(2)
 
     jumped = event%jumped
     i = interval_at(self%known, position%piece, h0)
@@ -230,9 +231,12 @@ contains
       call self%missed%clear()
     end if
     mesh = self%span%mesh
-    associate (ends => self%span%ends)
+    associate (ends => self%span%ends, piece => self%known%piece(position%piece))
       s = self%span%at_h0(h0)
-      if (.not. is_beside_fold(self, i, position%piece, s, ends)) then
+      beside = abs(s - ends) < beside_fold*abs(ends(2) - ends(1)) .and. &
+        [piece%first_turns .and. i == piece%first%interval, &
+        piece%last_turns .and. i == piece%last%interval]
+      if (.not. any(beside)) then
         call expect(self%solver_t, self%span, self%missed, h0, s, position, state)
         call self%attempt(h0, state, mesh, event)
         if (event%converged) then
@@ -241,42 +245,9 @@ contains
         end if
       end if
     end associate
-    if (.not. event%converged) call self%state_at_h0(i, h0, mesh, state, event%converged)
+    if (.not. event%converged) &
+      call self%span%solve_at_h0(self%solver_t, h0, state, event%converged)
     call remember(position, state, mesh, jumped, foretold=state%iterations == 1)
   end subroutine solve_on_piece
-
-  !> Whether the coordinate s in the interval after point i, between `ends`, is so near a fold that
-  !> h0 is nearly stationary.
-  pure logical function is_beside_fold(self, i, piece, s, ends) result(beside)
-    class(path_stepper_t), intent(in) :: self
-    integer, intent(in) :: i, piece
-    real(wp), intent(in) :: s, ends(2)
-
-    associate (width => abs(ends(2) - ends(1)))
-      beside = .false.
-      associate (on => self%known%piece(piece))
-        if (on%first_turns .and. i == on%first%interval) &
-          beside = abs(s - ends(1)) < beside_fold*width
-        if (on%last_turns .and. i == on%last%interval) &
-          beside = beside .or. abs(s - ends(2)) < beside_fold*width
-      end associate
-    end associate
-  end function is_beside_fold
-
-  !> The state at h0 in the interval of the path after point i, even near a fold.
-  subroutine state_at_h0(self, i, h0, mesh, state, converged)
-    class(path_stepper_t), intent(inout) :: self
-    integer, intent(in) :: i
-    real(wp), intent(in) :: h0
-    integer, intent(out) :: mesh
-    type(state_t), intent(out) :: state
-    logical, intent(out) :: converged
-    type(path_span_t) :: span
-    real(wp) :: s
-
-    span = new_path_span(self%known%path, i)
-    mesh = span%mesh
-    call span%solve_at_h0(self%solver_t, h0, s, state, converged)
-  end subroutine state_at_h0
 
 end module path_stepper

@@ -13,6 +13,7 @@ module place_errors
   use path_coordinate, only: path_control, coordinate_of
   use path_tangent, only: h0_alone => of_h0, load_alone => of_load
   use potential_energy, only: energy_of
+  use curve_states, only: path_state_t, path_place_t, state_of
   use known_path, only: landing_t, landing_over
   use locked_meshes, only: h0_control
   use traced_path, only: traced_path_t, no_mesh
@@ -21,7 +22,8 @@ module place_errors
   use reported_place, only: place_t, place_of_state, of_h0, of_load, of_displacement, &
     of_energy, of_radius, of_edge, nowhere, read_of_states
   use places, only: places_t
-  use path_expansion, only: expansion_t, expansion_about
+  use arc, only: arc_t
+  use path_expansion, only: expansion_t
   use finer_solver, only: finer_t, rounding, worst_residual, what_residual_leaves
   use represented_pressure, only: pressure_at_nodes
   implicit none
@@ -113,52 +115,36 @@ contains
 
   !> Finds the equilibria of the places on the path.
   subroutine locate(steps, places)
-    class(path_stepper_t), intent(in) :: steps
+    class(path_stepper_t), intent(inout) :: steps
     type(places_t), intent(inout) :: places
+    type(landing_t) :: landing
+    type(path_state_t) :: state
     integer :: i
 
     do i = 1, size(places%place)
       associate (place => places%place(i), known => steps%known)
         if (place%judged .or. place%mesh == no_mesh) cycle
         if (place%landing) then
-          call take_landing(landing_over(known, place%point), place)
+          landing = landing_over(known, place%point)
+          if (landing%landed) call place%take(landing%after)
+          place%judged = .not. landing%landed
+          place%known = landing%landed
         else if (place%point > 0) then
           associate (point => known%path%point(place%point))
-            call take(place, point%mesh, point%coordinate, point%state)
+            call state_of(steps%solver_t, known%path, path_place_t(place%point, point%coordinate), &
+              state)
+            call place%take(state)
             place%drive = merge(h0_alone, load_alone, point%fold)
             place%turn_of = place%drive
           end associate
         else if (place%has_state() .and. place%mesh /= nowhere) then
           place%s = coordinate_of(steps%problem, steps%meshes, place%mesh, place%state)
+          call energy_of(steps%equations_t, place%mesh, place%state, place%at(of_energy), &
+            place%left(of_energy))
         end if
-        if (place%has_state()) call energy_of(steps%equations_t, place%mesh, place%state, &
-          place%at(of_energy), place%left(of_energy))
       end associate
     end do
   end subroutine locate
-
-  subroutine take_landing(landing, place)
-    type(landing_t), intent(in) :: landing
-    type(place_t), intent(inout) :: place
-
-    if (landing%landed) call take(place, landing%after%mesh, landing%after%x, landing%after%state)
-    place%judged = .not. landing%landed
-    place%known = landing%landed
-  end subroutine take_landing
-
-  subroutine take(place, mesh, s, state)
-    type(place_t), intent(inout) :: place
-    integer, intent(in) :: mesh
-    real(wp), intent(in) :: s
-    type(state_t), intent(in) :: state
-    type(place_t) :: here
-
-    here = place_of_state(mesh, state)
-    place%mesh = mesh
-    place%s = s
-    place%state = state
-    place%at = here%at
-  end subroutine take
 
   !> Judges a place of a path; wanted: the value of D on the finer mesh, unless D turns.
   subroutine judge_on_path(own, fine, path, wanted, place)
@@ -168,12 +154,16 @@ contains
     real(wp), intent(in) :: wanted
     type(place_t), intent(inout) :: place
     type(expansion_t) :: near
+    type(arc_t) :: about
     type(state_t) :: right
     real(wp) :: distance, left, moved(read_of_states)
     logical :: found
 
     call fine%prepare(place%mesh)
-    near = expansion_about(path%arc_about(place%mesh, place%s), place%s, guess_of(own, fine, place))
+    about = path%arc_about(place%mesh, place%s)
+    near%s = place%s
+    near%state = guess_of(own, fine, place)
+    near%curvature(:2) = [about%curvature(h0_alone, near%s), about%curvature(load_alone, near%s)]
     call near%move_to(fine, place%mesh, merge(place%turn_of, place%drive, place%turns()), &
       place%turns(), wanted, distance, place%known)
     if (.not. place%known) return

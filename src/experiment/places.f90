@@ -28,7 +28,8 @@ module places
   contains
     procedure :: keep
     procedure :: enter
-    procedure :: enter_list
+    procedure :: add
+    procedure :: enter_tension
     procedure :: forget
     procedure :: has
     procedure :: elements
@@ -36,7 +37,6 @@ module places
     procedure :: largest_error
     procedure :: largest_of
     procedure :: read_numbers
-    procedure, private :: parameters
   end type places_t
 
   !> The values of a number, element by element, SI units; NaN if it does not exist. rate:
@@ -127,17 +127,26 @@ contains
 
   end subroutine enter
 
-  !> Adds elements for the places of a list.
-  subroutine enter_list(self, name, list)
+  !> Adds an element at a place to a number.
+  subroutine add(self, name, place)
     class(places_t), intent(inout) :: self
     character(len=*), intent(in) :: name
-    type(place_t), intent(in) :: list(:)
-    integer :: i
+    type(place_t), intent(in), optional :: place
 
-    do i = 1, size(list)
-      call self%enter(name, self%elements(name) + 1, list(i))
-    end do
-  end subroutine enter_list
+    call self%enter(name, self%elements(name) + 1, place)
+  end subroutine add
+
+  !> Enters a place of largest tension if its tension exceeds that of the entered one.
+  subroutine enter_tension(self, lowest)
+    class(places_t), intent(inout) :: self
+    type(place_t), intent(in) :: lowest
+    type(place_t) :: before
+
+    before = self%place_of('max_tension')
+    if (.not. lowest%at(of_load) < before%at(of_load)) return
+    call self%forget('max_tension')
+    call self%enter('max_tension', 1, lowest)
+  end subroutine enter_tension
 
   !> Removes a number.
   subroutine forget(self, name)
@@ -236,11 +245,17 @@ contains
     real(wp), dimension(quantities) :: units, values, misses, leftovers
     real(wp) :: none
     logical, allocatable :: known(:)
-    integer :: i, n
+    integer :: i, n, parameters
 
     n = self%elements(name)
     allocate (found%value(n), found%error(n), difference(n), source=0.0_wp)
-    allocate (found%rate(self%parameters(), n), source=0.0_wp)
+    parameters = 0
+    if (allocated(self%place)) then
+      do i = 1, size(self%place)
+        if (allocated(self%place(i)%rate)) parameters = size(self%place(i)%rate, 2)
+      end do
+    end if
+    allocate (found%rate(parameters, n), source=0.0_wp)
     allocate (known(n), source=.true.)
     units = units_of(problem)
     none = nan
@@ -272,17 +287,5 @@ contains
     found%error = (abs(difference) + found%error)*units(quantity)
     where (.not. known) found%error = max(abs(found%value), least(quantity)*units(quantity))
   end function read_numbers
-
-  !> The number of parameters by which places are differentiated.
-  pure integer function parameters(self)
-    class(places_t), intent(in) :: self
-    integer :: i
-
-    parameters = 0
-    if (.not. allocated(self%place)) return
-    do i = 1, size(self%place)
-      if (allocated(self%place(i)%rate)) parameters = size(self%place(i)%rate, 2)
-    end do
-  end function parameters
 
 end module places

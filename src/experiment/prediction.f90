@@ -1,15 +1,38 @@
-!> The prediction of the next state on a mesh fixed in space.
+!> The prediction of the next state: on a mesh fixed in space extrapolated from earlier states;
+!> along the path the state of the span, plus the extrapolated errors of the span at earlier states.
 module prediction
   use kinds, only: wp
   use dimensionless_problem, only: problem_t
   use discretisation, only: discretisation_t
   use interpolation, only: polynomial_weights
   use contact_state, only: state_t, radius_of_gap
-  use stepper, only: branch_point_t
+  use solver, only: solver_t
   use arc, only: between
+  use path_coordinate, only: coordinate_of
+  use path_span, only: path_span_t
+  use stepper, only: branch_point_t, memory
   implicit none
   private
-  public :: extrapolated, moved_with_edge, towards_fold
+  public :: extrapolated, moved_with_edge, towards_fold, missed_t, expect
+
+  !> The errors of a span at the past states of an experiment: number and h0 of each state, which
+  !> identify it (numbers alone repeat from branch to branch), its coordinate, and the corrections
+  !> of H0, scale and gaps (one column for each state). The errors depend on the span and the past
+  !> only, and are computed when these change.
+  type :: missed_t
+    private
+    integer :: held = 0, number(memory) = 0
+    real(wp), dimension(memory) :: state_h0 = 0, at = 0, h0 = 0, scale = 0
+    real(wp), allocatable :: gap(:, :)
+  contains
+    procedure :: clear
+    procedure, private :: follow
+    procedure, private :: first_of_use
+  end type missed_t
+
+  !> The largest sum of absolute weights in the extrapolation of a span's errors: an extrapolation
+  !> far beyond the past states is useless.
+  real(wp), parameter :: most_weight = 100
 
 contains
 
@@ -71,5 +94,114 @@ contains
     if (minval(expected%gap) < 0.5_wp*minval(state%gap) .and. minval(state%gap) > 0) &
       expected%gap = state%gap
   end function towards_fold
+
+  !> Removes the errors of another span.
+  pure subroutine clear(self)
+    class(missed_t), intent(inout) :: self
+
+    self%held = 0
+  end subroutine clear
+
+  !> The predicted state at h0, where the span has the coordinate s: the state of the span,
+  !> corrected by the extrapolated errors of the last states.
+  subroutine expect(solver, span, missed, h0, s, position, state)
+    class(solver_t), intent(in) :: solver
+    type(path_span_t), intent(in) :: span
+    type(missed_t), intent(inout) :: missed
+    real(wp), intent(in) :: h0, s
+    type(branch_point_t), intent(in) :: position
+    type(state_t), intent(inout) :: state
+    real(wp) :: weight(memory), place
+    integer :: k, first, round
+
+    call missed%follow(solver, span, position)
+    first = missed%first_of_use(span, s)
+    place = s
+    ! The correction and the coordinate depend on each other; two rounds are enough for both.
+    if (first <= missed%held) then
+      do round = 1, 2
+        weight(first:missed%held) = polynomial_weights(missed%at(first:missed%held), place)
+        place = span%at_h0(h0 - dot_product(weight(first:missed%held), &
+          missed%h0(first:missed%held)))
+      end do
+    end if
+    call span%expected(solver, place, state)
+    do k = first, missed%held
+      state%gap = state%gap + weight(k)*missed%gap(:, k)
+      state%scale = state%scale + weight(k)*missed%scale(k)
+    end do
+  end subroutine expect
+
+  !> Computes the errors for the position's past; those of known states are kept.
+  subroutine follow(self, solver, span, position)
+    class(missed_t), intent(inout) :: self
+    class(solver_t), intent(in) :: solver
+    type(path_span_t), intent(in) :: span
+    type(branch_point_t), intent(in) :: position
+    type(state_t) :: guessed
+    integer :: j, k, n
+
+    if (position%mesh /= span%mesh .or. position%held == 0) then
+      ! A resumed run would not have the errors from another branch.
+      self%held = 0
+      return
+    end if
+    n = size(position%past(1)%gap)
+    if (self%held == position%held) then
+      associate (last => self%held)
+        if (all(self%number(:last) == position%past_number(:last) .and. &
+          abs(self%state_h0(:last) - position%h0(:last)) <= 0)) return
+      end associate
+    end if
+    if (allocated(self%gap)) then
+      if (size(self%gap, 1) /= n) deallocate (self%gap)
+    end if
+    if (.not. allocated(self%gap)) then
+      allocate (self%gap(n, memory))
+      self%held = 0
+    end if
+    ! States leave and enter the past in order, so no state moves to a later index.
+    do k = 1, position%held
+      j = findloc(self%number(:self%held), position%past_number(k), 1)
+      if (j > 0) then
+        if (abs(self%state_h0(j) - position%h0(k)) > 0) j = 0
+      end if
+      if (j == 0) then
+        associate (past => position%past(k))
+          self%at(k) = coordinate_of(solver%problem, solver%meshes, span%mesh, past)
+          call span%expected(solver, self%at(k), guessed)
+          self%h0(k) = past%h0 - guessed%h0
+          self%scale(k) = past%scale - guessed%scale
+          self%gap(:, k) = past%gap - guessed%gap
+        end associate
+      else if (j /= k) then
+        self%at(k) = self%at(j)
+        self%h0(k) = self%h0(j)
+        self%scale(k) = self%scale(j)
+        self%gap(:, k) = self%gap(:, j)
+      end if
+      self%number(k) = position%past_number(k)
+      self%state_h0(k) = position%h0(k)
+    end do
+    self%held = position%held
+  end subroutine follow
+
+  !> The first past state from which the span's errors can be extrapolated to the coordinate s; one
+  !> more than their number: there is none.
+  pure integer function first_of_use(self, span, s) result(first)
+    class(missed_t), intent(in) :: self
+    type(path_span_t), intent(in) :: span
+    real(wp), intent(in) :: s
+
+    associate (at => self%at(:self%held), last => self%held)
+      do first = 1, last
+        ! A span's polynomial is accurate within its own length only; and states whose coordinates
+        ! differ only by rounding are useless for an extrapolation.
+        if (abs(at(first) - s) > abs(span%ends(2) - span%ends(1))) cycle
+        if (any(abs(at(first + 1:) - at(first:last - 1)) <= 0)) cycle
+        if (sum(abs(polynomial_weights(at(first:), s))) <= most_weight) exit
+      end do
+    end associate
+  end function first_of_use
 
 end module prediction

@@ -2,7 +2,7 @@
 !> load that is an integral over the gap (`undeformed`). No equations are solved, and there are no
 !> meshes.
 module rigid_bodies
-  use kinds, only: wp
+  use kinds, only: wp, long
   use root_finding, only: root_search_t, new_root_search
   use force_law, only: force_law_t
   use dimensionless_problem, only: problem_t, calm_gap, contact_level_of
@@ -11,12 +11,13 @@ module rigid_bodies
   use discretisation, only: discretisation_t
   use contact_state, only: state_t, undeformed_state
   use ending, only: touching, turn_not_reached
-  use reported_place, only: place_t, add_place, of_h0, of_load, of_radius
+  use reported_place, only: place_t, of_h0, of_load, of_radius
+  use places, only: places_t
   use finer_solver, only: rounding
   use records, only: observer_t, record_t, stable_yes, stable_unasked
   use experiment_request, only: request_t
   use experiment_result, only: experiment_result_t
-  use stepped_branch, only: branch_t, h0_schedule_t
+  use stepped_branch, only: branch_t, h0_schedule_t, enter_ends
   use h0_schedule, only: path_plan, loading_plan, unloading_plan
   use clock, only: seconds
   implicit none
@@ -46,34 +47,40 @@ contains
     began = seconds()
     if (allocated(request%path)) then
       allocate (outcome%stepped_path)
-      call run_branch(problem, path_plan(request, problem%law, calm_gap(problem)), observer, &
-        outcome, outcome%stepped_path)
+      call run_branch(problem, path_plan(request, problem%law, calm_gap(problem)), .true., &
+        observer, outcome%places, outcome%cost%states, outcome%stepped_path)
     end if
     if (allocated(request%loading)) then
       allocate (outcome%loading)
-      call run_branch(problem, loading_plan(request, problem%law), observer, outcome, &
-        outcome%loading)
+      call run_branch(problem, loading_plan(request, problem%law), .true., observer, &
+        outcome%places, outcome%cost%states, outcome%loading)
     end if
     if (allocated(request%unloading)) then
       allocate (outcome%unloading(size(request%unloading%from)))
       do k = 1, size(outcome%unloading)
-        if (problem%law%gap_of(request%unloading%from(k)) < problem%law%smallest_gap) then
-          outcome%unloading(k)%ending%cause = turn_not_reached
-          cycle
-        end if
-        call run_branch(problem, unloading_plan(request, problem%law, k), observer, outcome, &
-          outcome%unloading(k))
+        associate (branch => outcome%unloading(k))
+          if (problem%law%gap_of(request%unloading%from(k)) < problem%law%smallest_gap) then
+            branch%ending%cause = turn_not_reached
+          else
+            call run_branch(problem, unloading_plan(request, problem%law, k), .false., observer, &
+              outcome%places, outcome%cost%states, branch)
+          end if
+          call outcome%places%enter('unload_max_tension', k, branch%lowest)
+          call outcome%places%enter('unload_jump_out', k)
+        end associate
       end do
     end if
     outcome%cost%solve_seconds = seconds() - began
   end subroutine run_rigid
 
   !> Runs one branch through plan%h0, as far as the law has a pressure.
-  subroutine run_branch(problem, plan, observer, outcome, branch)
+  subroutine run_branch(problem, plan, fresh, observer, places, states, branch)
     type(problem_t), intent(in) :: problem
     type(h0_schedule_t), intent(in) :: plan
+    logical, intent(in) :: fresh
     class(observer_t), intent(inout) :: observer
-    type(experiment_result_t), intent(inout) :: outcome
+    type(places_t), intent(inout) :: places
+    integer(long), intent(inout) :: states
     type(branch_t), intent(out) :: branch
     real(wp), allocatable :: load(:)
     integer :: i
@@ -86,15 +93,16 @@ contains
       end if
       load(i) = load_undeformed(problem, plan%h0(i))
       call show(problem, plan, i, load(i), observer)
-      if (plan%profile(i)) call add_place(branch%profile, place_at(problem, plan%h0(i)))
+      if (plan%profile(i)) call places%add('profiles', place_at(problem, plan%h0(i)))
       branch%states = i
     end do
-    outcome%cost%states = outcome%cost%states + branch%states
+    states = states + branch%states
     if (branch%states == 0) return
     associate (n => branch%states)
       branch%finish = place_at(problem, plan%h0(n))
       call find_largest_tension(problem, plan%h0(:n), load(:n), branch)
     end associate
+    call enter_ends(branch, fresh, places)
   end subroutine run_branch
 
   !> Gives step i of a branch to the observer, with positions if its profile is requested.

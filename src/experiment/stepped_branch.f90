@@ -7,11 +7,12 @@ module stepped_branch
   use ending, only: ending_t
   use tension_search, only: tension_search_t
   use reported_place, only: place_t, place_of_state, place_without_state, &
-    point_of_path, add_place, of_load
+    point_of_path, of_load
+  use places, only: places_t
   use records, only: observer_t, record_t, quality_t, record_of, stable_yes, stable_unasked
   implicit none
   private
-  public :: h0_schedule_t, branch_t, run_branch
+  public :: h0_schedule_t, branch_t, run_branch, enter_ends
 
   !> The values of h0 of a branch, and those with a profile; in the law's lengths.
   type :: h0_schedule_t
@@ -33,9 +34,6 @@ module stepped_branch
     real(wp) :: jump_uncertainty = 0
     !> The last equilibrium, which is a converged state.
     type(place_t), allocatable :: finish
-    !> States with a requested profile; if the path is not known, the first and the middle state,
-    !> whose errors represent those of all states.
-    type(place_t), allocatable :: profile(:), sample(:)
     !> The stable pieces of the path on which the branch begins and ends; 0 if they are not known.
     integer :: first_piece = 0, last_piece = 0
     type(quality_t) :: quality
@@ -50,14 +48,16 @@ contains
   !> Steps through plan%h0. A new experiment (fresh) begins with an approach from large separation
   !> to the first value; otherwise the branch begins at `position`. `kept` returns the positions at
   !> the steps nearest to the values `keep`: a plan merges values that differ by less than a rounded
-  !> step.
-  subroutine run_branch(steps, plan, fresh, position, observer, branch, keep, kept)
+  !> step. The states with a requested profile become places of the table; if the path is not known,
+  !> also the first and the middle state, whose errors represent those of all states.
+  subroutine run_branch(steps, plan, fresh, position, observer, branch, places, keep, kept)
     class(stepper_t), intent(inout), target :: steps
     type(h0_schedule_t), intent(in) :: plan
     logical, intent(in) :: fresh
     type(branch_point_t), intent(inout) :: position
     class(observer_t), intent(inout) :: observer
     type(branch_t), intent(out) :: branch
+    type(places_t), intent(inout) :: places
     real(wp), intent(in), optional :: keep(:)
     type(branch_point_t), intent(out), optional :: kept(:)
     type(tension_search_t) :: search
@@ -101,9 +101,9 @@ contains
         last%mesh = position%mesh
         branch%last_piece = position%piece
         if (plan%profile(i)) &
-          call add_place(branch%profile, place_of_state(last%mesh, last%state))
+          call places%add('profiles', place_of_state(last%mesh, last%state))
         if (position%piece == 0 .and. any(i == [1, (1 + size(plan%h0))/2])) &
-          call add_place(branch%sample, place_of_state(last%mesh, last%state))
+          call places%add('samples', place_of_state(last%mesh, last%state))
       end if
       do k = 1, size(place)
         if (place(k) == i) kept(k) = position
@@ -114,10 +114,24 @@ contains
     end do
     if (allocated(last%state%gap)) branch%finish = place_of_state(last%mesh, last%state)
     call search%finish(steps, last_h0)
-    if (allocated(branch%lowest) .or. .not. allocated(search%lowest)) return
-    branch%lowest = search%lowest
-    branch%lowest%searched = .not. steps%problem%rigid
+    if (.not. allocated(branch%lowest) .and. allocated(search%lowest)) then
+      branch%lowest = search%lowest
+      branch%lowest%searched = .true.
+    end if
+    call enter_ends(branch, fresh, places)
   end subroutine run_branch
+
+  !> Enters the largest tension and the last state of a branch; fresh: of a new experiment.
+  subroutine enter_ends(branch, fresh, places)
+    type(branch_t), intent(in) :: branch
+    logical, intent(in) :: fresh
+    type(places_t), intent(inout) :: places
+
+    if (allocated(branch%lowest)) call places%enter_tension(branch%lowest)
+    if (.not. allocated(branch%finish)) return
+    if (fresh) call places%forget('end')
+    call places%add(merge('end    ', 'samples', fresh), branch%finish)
+  end subroutine enter_ends
 
   !> Records the first jump, the largest tension and what did not converge.
   subroutine note(branch, position, event, h0)

@@ -52,21 +52,16 @@ module tension_search
 
 contains
 
-  !> Replaces the largest tension by a load at h0 if its tension is larger; position: of its state.
-  subroutine lower(self, load, h0, position)
+  !> Replaces the place of largest tension by another if its tension is larger.
+  subroutine lower(self, place)
     class(tension_search_t), intent(inout) :: self
-    real(wp), intent(in) :: load, h0
-    type(branch_point_t), intent(in), optional :: position
+    type(place_t), intent(in) :: place
 
-    if (.not. load < 0) return
+    if (.not. place%at(of_load) < 0) return
     if (allocated(self%lowest)) then
-      if (load >= self%lowest%at(of_load)) return
+      if (place%at(of_load) >= self%lowest%at(of_load)) return
     end if
-    if (present(position)) then
-      self%lowest = place_of_state(position%mesh, position%state)
-    else
-      self%lowest = place_without_state(h0, load)
-    end if
+    self%lowest = place
   end subroutine lower
 
   !> Considers the last state before a jump, which may have the largest tension.
@@ -74,7 +69,7 @@ contains
     class(tension_search_t), intent(inout) :: self
     type(step_result_t), intent(in) :: event
 
-    if (event%jumped) call self%lower(event%jump_load, event%jump_h0)
+    if (event%jumped) call self%lower(place_without_state(event%jump_h0, event%jump_load))
   end subroutine note_jump
 
   !> Considers the step from `previous` at last_h0 to `position` at h0.
@@ -131,7 +126,7 @@ contains
     self%stretch%open = .false.
     stretch = self%stretch
     if (stretch%lowest%state%load < 0) then
-      call self%lower(stretch%lowest%state%load, stretch%lowest%state%h0, stretch%lowest)
+      call self%lower(place_of_state(stretch%lowest%mesh, stretch%lowest%state))
     else if (.not. steps%problem%law%adhesion > 0) then
       return
     end if
@@ -207,7 +202,7 @@ contains
       if (size(h0) > 3 .and. abs(gained) <= load_tolerance*abs(best%state%load)) exit
       call keep_nearest(h0, load)
     end do
-    call self%lower(best%state%load, best%state%h0, best)
+    call self%lower(place_of_state(best%mesh, best%state))
   end subroutine refine
 
   !> Steps again from stretch%before to stretch%after, or from the lowest state if a jump came
@@ -235,7 +230,7 @@ contains
       call self%note_jump(event)
       if (position%state%load < best%state%load) best = position
     end do
-    call self%lower(best%state%load, best%state%h0, best)
+    call self%lower(place_of_state(best%mesh, best%state))
   end subroutine search_jump_by_jump
 
   !> Removes values until the five nearest to the lowest load remain.

@@ -27,8 +27,6 @@ module timed_pass
     first_part = 1.0e-3_wp
   !> Number of steps after a rejected one before longer steps are tried again.
   integer, parameter :: patience = 3
-  !> The first step with a fluid, whose pressure jumps where the drive turns.
-  real(wp), parameter :: first_drained = 1.0e-7_wp
   !> The shortest step over the shortest time of retardation, and its motion over the law's length.
   real(wp), parameter :: shortest_part = 1.0e-3_wp, shortest_way = 1.0e-6_wp
 
@@ -84,7 +82,7 @@ contains
       end if
       do while (at%time < drive%lasts(way) .and. .not. now%result%lost)
         if (allocated(steps%drainage)) then
-          call drain(request, drive, way, pass, steps, at, now)
+          call step_drained(request, drive, way, pass, longest_part, steps, at, now)
         else if (before%held == 0) then
           call choose_step(request, drive, way, steps, at, now)
         else
@@ -135,27 +133,6 @@ contains
     now%step = min(max(now%step, shortest), longest_part*whole)
     if (now%held > most_steps) call lose(at, now)
   end subroutine choose_step
-
-  !> A step with a fluid. Where bodies jump together, the gap closes at a time that differs slightly
-  !> from pass to pass, with ever shorter steps. Therefore each pass chooses its own steps, half as
-  !> long as those of the previous pass.
-  subroutine drain(request, drive, way, pass, steps, at, now)
-    class(request_t), intent(in) :: request
-    type(motion_t), intent(in) :: drive
-    integer, intent(in) :: way, pass
-    type(time_stepper_t), intent(inout) :: steps
-    type(instant_t), intent(inout) :: at
-    type(pass_t), intent(inout) :: now
-    real(wp) :: whole, shorter, longest
-
-    shorter = 0.5_wp**(pass - 2)
-    whole = drive%lasts(way)
-    if (.not. now%step > 0) now%step = shorter*first_drained*whole
-    longest = longest_part*whole
-    if (allocated(request%drive%time_step)) longest = request%drive%time_step
-    call step_drained(drive, way, shorter*longest, merge(0.0_wp, shorter, &
-      allocated(request%drive%time_step)), steps, at, now)
-  end subroutine drain
 
   !> Deviation of a step over the allowed deviation: below 1 the step may be longer, above 1 it must
   !> be shorter.

@@ -92,17 +92,6 @@ contains
     now%result%lost_at = now%began + at%time
   end subroutine lose
 
-  !> Records whether the bodies approach each other, if they move by more than rounding.
-  subroutine note_sense(from, to, inwards)
-    type(instant_t), intent(in) :: from, to
-    logical, intent(inout) :: inwards
-    real(wp) :: nearer
-
-    nearer = (from%state%axis_gap - to%state%axis_gap)/abs(from%state%axis_gap)
-    if (min(from%mesh, to%mesh) > approach) nearer = to%state%scale/from%state%scale - 1
-    if (abs(nearer) > moves) inwards = nearer > 0
-  end subroutine note_sense
-
   !> Makes the next instant the present one. smooth: there was no jump; otherwise the change of the
   !> bodies' energy that dashpots have not dissipated is dissipated in the jump.
   subroutine accept(steps, next, smooth, at, now)
@@ -111,7 +100,7 @@ contains
     logical, intent(in) :: smooth
     type(instant_t), intent(inout) :: at
     type(pass_t), intent(inout) :: now
-    real(wp) :: work
+    real(wp) :: work, nearer
 
     work = -0.5_wp*(at%state%load + next%state%load)*(next%position - at%position)
     ! Where a drive turns, the load of a fluid jumps.
@@ -123,7 +112,9 @@ contains
     else
       now%inside = now%inside + work + steps%energy(at) - steps%energy(next)
     end if
-    call note_sense(at, next, now%inwards)
+    nearer = (at%state%axis_gap - next%state%axis_gap)/abs(at%state%axis_gap)
+    if (min(at%mesh, next%mesh) > approach) nearer = next%state%scale/at%state%scale - 1
+    if (abs(nearer) > moves) now%inwards = nearer > 0
     steps%before = at
     at = next
     call take_row(at, now)

@@ -15,10 +15,10 @@ module timed_run
   use path_stepper, only: path_stepper_t
   use stepper, only: branch_point_t, step_result_t
   use tracing, only: trace, tracing_t
-  use numerics_choice, only: choice_t, fixed_choice, fixed_mesh, panels
+  use numerics_choice, only: choice_t, size_grid, fixed_mesh, panels
   use experiment_request, only: request_t, numerics_t
   use path_demand, only: h0_in_contact
-  use creep, only: elastic_bodies
+  use creep, only: creep_t
   use motion, only: motion_t, new_motion, names_of_ways
   use time_stepper, only: time_stepper_t
   use material, only: new_material
@@ -75,7 +75,10 @@ contains
 
     call prepare(request, problem, chosen, steps, drive)
     began = seconds()
-    low = deepest(request, drive, steps)
+    ! With a spring the lowest h0 is that of the contact with the spring's load.
+    low = minval(drive%position)
+    if (allocated(request%drive%stiffness)) low = &
+      h0_in_contact(relaxed_problem(steps), 1.0_wp, steps%compliance, low)
     whole = 0
     do pass = 1, most_passes
       before = none
@@ -125,7 +128,7 @@ contains
     associate (asked => request%drive, law => problem%law)
       steps%problem = problem
       steps%instant = problem%coupling
-      steps%creep = elastic_bodies()
+      steps%creep = creep_t([real(wp) ::], [real(wp) ::])
       if (allocated(request%creep)) steps%creep = request%creep
       steps%options = chosen%options
       steps%options%mixing = .false.
@@ -151,18 +154,6 @@ contains
     relaxed = steps%problem
     relaxed%coupling = steps%instant*steps%creep%relaxed()
   end function relaxed_problem
-
-  !> The lowest h0 of the bodies: that of the drive or, with a spring, that of the contact with the
-  !> spring's load.
-  real(wp) function deepest(request, drive, steps) result(low)
-    class(request_t), intent(in) :: request
-    type(motion_t), intent(in) :: drive
-    type(time_stepper_t), intent(in) :: steps
-
-    low = minval(drive%position)
-    if (allocated(request%drive%stiffness)) low = &
-      h0_in_contact(relaxed_problem(steps), 1.0_wp, steps%compliance, low)
-  end function deepest
 
   !> Lays out meshes for relaxed bodies, whose neck is the narrowest, with more digits in each pass;
   !> and for the memory panels fixed in space, with one more node each.
@@ -199,7 +190,8 @@ contains
       numerics = request%numerics
       if (relaxed%film_gap > 0) numerics%r_max = far_out*relaxed%lateral* &
         relaxed%shape%position_of(relaxed%film_gap)
-      of_memory = fixed_choice(numerics, relaxed, low, panels)
+      of_memory%grid = panels
+      call size_grid(of_memory, numerics, relaxed, low)
       of_memory%panel_over_feature = over_neck
       of_memory%panel_order = of_memory%panel_order + over_order + pass
       of_memory%nodes = most_nodes

@@ -6,8 +6,7 @@ module classical_model
   use root_finding, only: bracket_t
   use classical, only: jkr_load, jkr_displacement, dmt_load, hertz_displacement
   use maugis, only: maugis_t, new_maugis
-  use force_branch, only: branch_t
-  use force_model, only: force_model_t, response_t, way_t, inward, outward
+  use force_model, only: force_model_t, response_t, way_t, branch_t, inward, outward
   implicit none
   private
   public :: classical_model_t, theories

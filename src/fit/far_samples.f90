@@ -3,8 +3,7 @@ module far_samples
   use kinds, only: wp
   use measured_curve, only: measured_t
   use measured_jumps, only: find_jump
-  use noise, only: noise_t, noise_of, white_noise, rough_deviation
-  use outliers, only: stand_apart
+  use noise, only: noise_t, noise_of, white_noise, rough_deviation, stand_apart
   implicit none
   private
   public :: find_far, off_baseline

@@ -5,7 +5,7 @@ module fit_doubts
   use text, only: brief, rounded, rounded_to
   use namelist_writer, only: line_t
   use fit_request, only: unknown_t, fitted_of, farthest_off
-  use lack_of_fit, only: lack_t
+  use lack_of_fit, only: lack_t, hardly_ever
   use fit_errors, only: fitted_t
   use held_numbers, only: held_t
   use fit_run, only: fit_outcome_t
@@ -80,7 +80,7 @@ contains
 
     if (size(held) == 0) return
     i = maxloc(abs(held%asked), 1)
-    if (held(i)%is_right()) return
+    if (abs(held(i)%asked) <= hardly_ever) return
     call add(lines, 'the data ask for a ' // trim(merge('larger ', 'smaller', &
       held(i)%asked > 0)) // ' ' // held(i)%name // ' than the deck has (' // &
       rounded(abs(held(i)%asked)) // ' standard deviations)' // not_described)

@@ -14,7 +14,6 @@ module held_numbers
   use modelled_curve, only: modelled_curve_t
   use curve_residuals, only: curve_residuals_t
   use path_model, only: path_model_t
-  use lack_of_fit, only: hardly_ever
   implicit none
   private
   public :: held_t, test_held
@@ -24,21 +23,12 @@ module held_numbers
   type :: held_t
     character(len=:), allocatable :: name
     real(wp) :: asked = 0
-  contains
-    procedure :: is_right
   end type held_t
 
   !> Smallest part of a direction that must remain; rounding of the derivatives leaves less.
   real(wp), parameter :: rounding = 1.0e-4_wp
 
 contains
-
-  !> Whether the value agrees with the data.
-  pure logical function is_right(self)
-    class(held_t), intent(in) :: self
-
-    is_right = abs(self%asked) <= hardly_ever
-  end function is_right
 
   !> Tests all numbers that are held. curve, value: the fit. wider: the family of the fit with the
   !> deck's other positive numbers as further parameters. Numbers that the unknowns compensate
@@ -56,7 +46,7 @@ contains
     real(wp), allocatable :: jacobian(:, :), residual(:), all_values(:)
     real(wp) :: whole
     logical :: found
-    integer :: i, n
+    integer :: i, n, pass
 
     allocate (held(0))
     n = size(value)
@@ -73,7 +63,12 @@ contains
     if (.not. found) return
     do i = 1, size(all_values)
       whole = norm2(jacobian(:, i))
-      call take_off(jacobian(:, :min(i - 1, n)), jacobian(:, i))
+      ! The columns of the unknowns are orthonormal already; two passes against rounding.
+      associate (basis => jacobian(:, :min(i - 1, n)), vector => jacobian(:, i))
+        do pass = 1, 2
+          vector = vector - matmul(basis, matmul(vector, basis))
+        end do
+      end associate
       if (.not. norm2(jacobian(:, i)) > rounding*whole) then
         jacobian(:, i) = 0
         cycle
@@ -85,17 +80,6 @@ contains
       held = [held, new]
     end do
   end subroutine test_held
-
-  !> Makes a vector orthogonal to orthonormal ones, in two passes against rounding.
-  pure subroutine take_off(basis, vector)
-    real(wp), intent(in) :: basis(:, :)
-    real(wp), intent(inout) :: vector(:)
-    integer :: pass
-
-    do pass = 1, 2
-      vector = vector - matmul(basis, matmul(vector, basis))
-    end do
-  end subroutine take_off
 
   !> Removes the further parameters that cannot be varied. value: those of the fit's own parameters.
   subroutine keep_variable(value, family)

@@ -1,4 +1,5 @@
-!> Checks whether a measured curve can be fitted; if not, with the reason and advice.
+!> Checks whether a measured curve can be fitted; if not, with the reason and advice. In a wrong
+!> unit its loads are off by orders of magnitude.
 module measured_checks
   use kinds, only: wp
   use text, only: rounded
@@ -6,15 +7,21 @@ module measured_checks
   use measured_jumps, only: measured_jump_t, find_jump
   use noise, only: noise_t
   use far_samples, only: off_baseline
+  use fit_request, only: of_sensitivity, farthest_off
+  use path_model, only: path_model_t
+  use modelled_curve, only: modelled_curve_t
   implicit none
   private
-  public :: check_measured, open_end, find_saturated, stands_out
+  public :: check_measured, check_loads, other_order, open_end, find_saturated
 
   !> Limits: a signal in standard deviations of the noise; the part of the travel that counts as an
   !> end; the slope of an end in contact, over that of the spring; standard errors of a certain
   !> statement.
   real(wp), parameter :: stands_out = 8, nearest_part = 0.05_wp, steep = 0.2_wp, surely = 5
   integer, parameter :: parts = nint(1/nearest_part)
+  !> Factor by which a sensitivity that is not fitted may be wrong; factor between loads of another
+  !> order; part of the change of a signal that is most of it.
+  real(wp), parameter :: wrong = 3, order = 10, most_part = 0.5_wp
 
 contains
 
@@ -217,5 +224,66 @@ contains
     before = sum(left, mask)/max(1, count(mask))
     travel = width
   end subroutine nearest
+
+  !> Sets `trouble` if the load falls more than the spring permits. As h0 grows with the position of
+  !> the base, the load falls by the stiffness of the spring times the travel at most, for any
+  !> bodies.
+  subroutine check_loads(curve, trouble)
+    type(modelled_curve_t), intent(in) :: curve
+    character(len=:), allocatable, intent(inout) :: trouble
+    real(wp), dimension(size(curve%data%measured%z)) :: left, travel, excess
+    logical :: mine(size(left))
+    real(wp) :: most, newtons
+    integer :: way, near, far
+
+    most = merge(exp(farthest_off), wrong, any(curve%unknown%role == of_sensitivity))/ &
+      curve%sensitivity
+    newtons = curve%spring*curve%sensitivity
+    associate (data => curve%data%measured)
+      left = off_baseline(data)
+      do way = 1, 2
+        mine = data%usable .and. (data%inward .eqv. way == 1)
+        if (.not. any(mine)) cycle
+        travel = data%facing*data%z
+        near = minloc(travel, 1, mine)
+        travel = travel - travel(near)
+        excess = left(near) - left - most*travel
+        far = maxloc(excess, 1, mine)
+        if (excess(far) < max(stands_out*curve%data%noise%deviation, &
+          most_part*(maxval(left, mine) - minval(left, mine)))) cycle
+        trouble = 'the largest load of the data is ' // rounded(maxval(abs(left), mine)*newtons) &
+          // ' N, and from contact the load falls by ' // &
+          rounded((left(near) - left(far))*newtons) // ' N, where the spring permits ' // &
+          rounded(curve%spring*travel(far)) // ' N at most: check the unit of the signal ' // &
+          '(units), sensitivity if it is in volts, and spring_constant'
+      end do
+    end associate
+  end subroutine check_loads
+
+  !> Says that the tension of the data is of another order than that of the model with the deck's
+  !> values; otherwise ''.
+  function other_order(curve, model) result(words)
+    type(modelled_curve_t), intent(in) :: curve
+    type(path_model_t), intent(inout), target :: model
+    character(len=:), allocatable :: words
+    type(modelled_curve_t) :: start
+    real(wp) :: tension, own
+    logical :: found
+    integer :: i
+
+    words = ''
+    start = curve
+    call start%use_model(model)
+    call start%ask(start%unknown%value, .false., found)
+    if (.not. found) return
+    associate (branch => start%response%branch, data => curve%data%measured)
+      own = -minval([(minval(branch(i)%load(:2, :)), i=1, size(branch))])
+      tension = -minval(off_baseline(data), data%usable)*curve%spring*curve%sensitivity
+    end associate
+    if (own < order*tension .and. tension < order*own) return
+    words = 'the largest tension of the data is ' // rounded(tension) // ' N, and that of the ' // &
+      'model with the values of the deck ' // rounded(own) // ' N: check the unit of the ' // &
+      'signal (units), sensitivity and spring_constant, or start nearer'
+  end function other_order
 
 end module measured_checks

@@ -1,12 +1,15 @@
 !> The noise of a signal, from samples that would lie on a straight line without it. An instrument's
 !> filter correlates neighbours: a linear prediction from some previous samples then leaves white
 !> noise (autoregression; Levinson, 1947, and Durbin, 1960).
+!>
+!> Outliers are samples that differ from their neighbours on both sides. A jump, a bend or a lasting
+!> change is not an outlier.
 module noise
   use kinds, only: wp
   implicit none
   private
   public :: noise_t, white_noise, noise_of, noise_of_steps, rough_deviation, rounding_of, &
-    median_of, normal_median, whiten
+    median_of, normal_median, whiten, stand_apart
 
   !> Largest number of samples that a prediction uses.
   integer, parameter :: longest = 8
@@ -15,6 +18,9 @@ module noise
   real(wp), parameter :: by_chance = 10
   !> The median of the magnitude of a standard normal number.
   real(wp), parameter :: normal_median = 0.6745_wp
+
+  !> Number of neighbours on each side, whose median is compared: one of three may be an outlier.
+  integer, parameter :: neighbours = 3
 
   !> deviation: standard deviation. correlation(k): of samples k apart. order: previous samples that
   !> predict one. weight(:k, k): weights of the prediction from k samples, the nearest first.
@@ -204,5 +210,57 @@ contains
       column(i, :) = column(i, :)/noise%left(known)
     end do
   end subroutine whiten
+
+  !> Marks samples that are outside the range between the medians of their neighbours in the run by
+  !> more than their `tolerance`. Samples that are not `usable` are ignored.
+  pure function stand_apart(signal, run, usable, tolerance) result(apart)
+    real(wp), intent(in) :: signal(:), tolerance(:)
+    integer, intent(in) :: run(:)
+    logical, intent(in) :: usable(:)
+    logical :: apart(size(signal)), good(size(signal))
+    real(wp) :: middle(2)
+    logical :: known(2)
+    integer :: i, pass
+
+    good = usable
+    ! The second pass leaves out the outliers of the first, which may have hidden others.
+    do pass = 1, 2
+      apart = .false.
+      do i = 1, size(signal)
+        call beside(signal, run, good, i, -1, middle(1), known(1))
+        call beside(signal, run, good, i, 1, middle(2), known(2))
+        if (.not. any(known)) cycle
+        apart(i) = usable(i) .and. (signal(i) < minval(middle, known) - tolerance(i) .or. &
+          signal(i) > maxval(middle, known) + tolerance(i))
+      end do
+      good = usable .and. .not. apart
+    end do
+  end function stand_apart
+
+  !> The median of the nearest good samples of the run on one side of sample i.
+  pure subroutine beside(signal, run, good, i, step, middle, known)
+    real(wp), intent(in) :: signal(:)
+    integer, intent(in) :: run(:), i, step
+    logical, intent(in) :: good(:)
+    real(wp), intent(out) :: middle
+    logical, intent(out) :: known
+    real(wp) :: near(neighbours)
+    integer :: k, n
+
+    n = 0
+    k = i + step
+    do while (n < neighbours .and. k >= 1 .and. k <= size(signal))
+      if (run(k) /= run(i)) exit
+      if (good(k)) then
+        n = n + 1
+        near(n) = signal(k)
+      end if
+      k = k + step
+    end do
+    known = n > 0
+    middle = 0
+    if (n == 3) middle = sum(near) - maxval(near) - minval(near)
+    if (n == 1 .or. n == 2) middle = sum(near(:n))/n
+  end subroutine beside
 
 end module noise

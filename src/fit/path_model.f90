@@ -16,13 +16,11 @@ module path_model
   use driven_pieces, only: driven_piece_t, through_spring
   use device, only: driven_t, drive_bodies
   use experiment_request, only: request_t, numerics_t
-  use h0_range, only: range_of
   use experiment, only: prepare
   use numerics_choice, only: choice_t, choose
-  use path_demand, only: demand_of
+  use path_demand, only: demand_of, range_of
   use path_stepper, only: path_stepper_t
-  use force_branch, only: branch_t
-  use force_model, only: force_model_t, response_t, inward, outward
+  use force_model, only: force_model_t, response_t, branch_t, inward, outward
   implicit none
   private
   public :: path_model_t
@@ -61,8 +59,9 @@ contains
     type(rate_t), allocatable :: rate(:, :)
     integer :: i
 
-    if (.not. is_known(self, value, stiffness, farthest, largest)) &
-      call self%solve_trial(value, stiffness, farthest, largest)
+    found = allocated(self%value) .and. largest <= self%largest .and. farthest <= self%farthest
+    if (found) found = all(abs(value - self%value) <= 0) .and. abs(stiffness - self%stiffness) <= 0
+    if (.not. found) call self%solve_trial(value, stiffness, farthest, largest)
     found = self%solved
     if (.not. found) return
     allocate (rate(merge(size(value), 0, with_rates), self%steps%known%path%last))
@@ -76,16 +75,6 @@ contains
     end do
     call find_ways(self%steps%problem, self%driven, response)
   end subroutine respond
-
-  !> Whether the trial solved last has these values, and reaches far enough.
-  pure logical function is_known(self, value, stiffness, farthest, largest)
-    class(path_model_t), intent(in) :: self
-    real(wp), intent(in) :: value(:), stiffness, farthest, largest
-
-    is_known = allocated(self%value) .and. largest <= self%largest .and. farthest <= self%farthest
-    if (is_known) is_known = all(abs(value - self%value) <= 0) .and. &
-      abs(stiffness - self%stiffness) <= 0
-  end function is_known
 
   !> Traces the path of a trial and drives the bodies along it.
   subroutine solve_trial(self, value, stiffness, farthest, largest)

@@ -2,8 +2,8 @@
 !> better than the curve itself.
 module second_look
   use kinds, only: wp
-  use noise, only: noise_t, noise_of, white_noise, noise_of_steps, median_of, normal_median
-  use outliers, only: stand_apart
+  use noise, only: noise_t, noise_of, white_noise, noise_of_steps, median_of, normal_median, &
+    stand_apart
   use measured_jumps, only: measured_jump_t, likely_jump
   use modelled_curve, only: modelled_curve_t
   implicit none

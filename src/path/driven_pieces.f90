@@ -50,12 +50,11 @@ module driven_pieces
 
 contains
 
-  !> The drive through a spring of stiffness k in units of load over length; k = 0 is a dead load.
-  !> If k is absent, h0 is prescribed.
+  !> The drive through a spring of stiffness k in units of load over length. k = 0 is a dead load;
+  !> if k is infinite, h0 is prescribed.
   pure type(drive_t) function through_spring(k) result(drive)
-    real(wp), intent(in), optional :: k
+    real(wp), intent(in) :: k
 
-    if (.not. present(k)) return
     if (k > 0) then
       drive%weights = [1.0_wp, -1/k]
     else

@@ -9,8 +9,7 @@ module known_path
   use tracing, only: tracing_t
   implicit none
   private
-  public :: known_path_t, landing_t, know_pieces, interval_at, lowest_point, landing_over, &
-    folds_of_cycle
+  public :: known_path_t, landing_t, know_pieces, interval_at, landing_over, folds_of_cycle
 
   !> A jump at prescribed h0; fold: the point of the path from which the jump starts (0: there is no
   !> jump).
@@ -118,26 +117,5 @@ contains
     if (k > 0) landing = known%inward(k)
     if (k == 0) landing = known%outward(findloc(known%outward%fold, fold, 1))
   end function landing_over
-
-  !> The point of largest tension among the load extrema and folds of a piece with h0 between two
-  !> values; 0 if there is none.
-  pure integer function lowest_point(known, piece, from, to) result(lowest)
-    type(known_path_t), intent(in) :: known
-    integer, intent(in) :: piece
-    real(wp), intent(in) :: from, to
-    integer :: i
-
-    lowest = 0
-    do i = known%piece(piece)%first%interval, known%piece(piece)%last%interval + 1
-      associate (point => known%path%point(i))
-        if (.not. (point%load_extremum .or. point%fold)) cycle
-        if ((point%state%h0 - from)*(point%state%h0 - to) > 0) cycle
-        if (lowest > 0) then
-          if (point%state%load >= known%path%point(lowest)%state%load) cycle
-        end if
-        lowest = i
-      end associate
-    end do
-  end function lowest_point
 
 end module known_path

@@ -80,21 +80,19 @@ contains
     values = [self%h0_curve%value(s), self%load_curve%value(s)]
   end function h0_and_load
 
-  !> The state at h0, even near a fold, and its coordinate s.
-  subroutine solve_at_h0(self, solver, h0, s, state, converged)
+  !> The state at h0, even near a fold.
+  subroutine solve_at_h0(self, solver, h0, state, converged)
     class(path_span_t), intent(in) :: self
     class(solver_t), intent(inout) :: solver
     real(wp), intent(in) :: h0
-    real(wp), intent(out) :: s
     type(state_t), intent(out) :: state
     logical, intent(out) :: converged
     type(found_t) :: found
 
     call find_place(solver, self%arc_t, self%ends, of_h0, found, converged, h0)
-    s = found%coordinate
     state = found%state
     if (abs(state%h0 - h0) > max(solver%options%tolerance, residual_floor(solver%problem, state))) &
-      call finish_at_h0(solver, self%mesh, h0, s, state)
+      call finish_at_h0(solver, self%mesh, h0, found%coordinate, state)
     ! The remaining difference of h0 is rounding; it is also the residual of the equations at h0.
     state%residual = max(state%residual, abs(state%h0 - h0))
     converged = holds(solver%problem, solver%options%tolerance, state)

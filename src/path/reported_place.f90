@@ -6,9 +6,10 @@ module reported_place
   use kinds, only: wp, nan
   use dimensionless_problem, only: problem_t
   use contact_state, only: state_t
+  use curve_states, only: path_state_t
   implicit none
   private
-  public :: place_t, place_of_state, place_without_state, point_of_path, add_place
+  public :: place_t, place_of_state, place_without_state, point_of_path, place_on_curve
   public :: drive_weights, values_of, units_of, rates_of
   public :: of_h0, of_load, of_displacement, of_energy, of_radius, of_edge, of_position, &
     of_tension, of_profile
@@ -57,6 +58,7 @@ module reported_place
     !> Derivatives of the quantities by each parameter of &sensitivity, SI units.
     real(wp), allocatable :: rate(:, :)
   contains
+    procedure :: take
     procedure :: has_state
     procedure :: turns
     procedure :: is_fold
@@ -106,14 +108,27 @@ contains
     if (present(landing)) place%landing = landing
   end function point_of_path
 
-  !> Adds a place to a list. The argument may be a function's result: compiler note 1.
-  subroutine add_place(list, place)
-    type(place_t), allocatable, intent(inout) :: list(:)
-    type(place_t), intent(in) :: place
+  !> A state of the path as a place whose D has the given weights.
+  pure type(place_t) function place_on_curve(state, weights) result(place)
+    type(path_state_t), intent(in) :: state
+    real(wp), intent(in) :: weights(2)
 
-    if (.not. allocated(list)) allocate (list(0))
-    list = [list, place]
-  end subroutine add_place
+    call place%take(state)
+    place%drive = weights
+  end function place_on_curve
+
+  !> Makes a state of the path the equilibrium of the place.
+  pure subroutine take(self, state)
+    class(place_t), intent(inout) :: self
+    type(path_state_t), intent(in) :: state
+
+    self%mesh = state%mesh
+    self%s = state%x
+    self%state = state%state
+    self%at = [state%h0, state%load, state%axis_gap - state%h0, state%energy, state%radius, &
+      state%state%scale]
+    self%left(of_energy) = state%uncertainty
+  end subroutine take
 
   !> Whether the place has an equilibrium on a mesh.
   pure logical function has_state(self)

@@ -15,7 +15,7 @@ module creep
   use kinds, only: wp
   implicit none
   private
-  public :: creep_t, elastic_bodies
+  public :: creep_t
 
   !> Compliances over the instantaneous compliance, and times of retardation [s].
   type :: creep_t
@@ -30,11 +30,6 @@ module creep
   real(wp), parameter :: short = 0.02_wp
 
 contains
-
-  !> Bodies without memory.
-  pure type(creep_t) function elastic_bodies() result(creep)
-    allocate (creep%share(0), creep%time(0))
-  end function elastic_bodies
 
   !> The compliance of relaxed bodies over the instantaneous compliance.
   pure real(wp) function relaxed(self)

@@ -1,10 +1,15 @@
-!> The memory of viscoelastic bodies. A step in time is an elastic problem (`creep`): pressures
+!> What the equations of a step in time take from earlier instants: the memory of viscoelastic
+!> bodies and the rate of the gaps, for the fluid between the bodies (`drainage`).
+!>
+!> A step in time is an elastic problem (`creep`): pressures
 !> change linearly during the step, the present pressures act on half-spaces that are softer than
 !> instantaneously, and earlier pressures have left a deformation. The memory belongs to the
 !> material and is stored on a mesh fixed in space. Pressures are interpolated to this mesh; the
 !> deformation due to the memory, which is smoother, is interpolated from it.
 module remembering
   use kinds, only: wp, pi
+  use besides, only: rise_at
+  use drainage, only: earlier_t, rate_weights
   use discretisation, only: first_node
   use potential_energy, only: energy_of_surface
   use creep, only: creep_t
@@ -25,18 +30,30 @@ module remembering
     !> Of a step: the memories without the part of the present pressure, and the rise due to each;
     !> the coefficients of the present pressure in the memories; the rise of the gap due to `left`.
     real(wp), allocatable :: left(:, :), left_rise(:, :), present(:), risen(:)
+    !> The instant before the present instant.
+    type(instant_t) :: before
+    !> The weight of the present gaps in the rate, 1/s, for which the Jacobian was computed.
+    real(wp) :: made_for = 1
   contains
-    procedure :: prepare_memory
-    procedure :: remember_pressure
+    procedure :: prepare
+    procedure :: place_rise
+    procedure :: remember
     procedure :: set_memory
     procedure :: energy
+    procedure, private :: prepare_fluid
+    procedure, private :: remember_fluid
     procedure, private :: note_pressure
   end type remembering_t
+
+  !> Number of steps after a turn in which gaps change linearly with time.
+  integer, parameter :: calming = 4
+  !> Logarithm of the ratio of two steps above which they need different Jacobians.
+  real(wp), parameter :: other_length = 0.5_wp
 
 contains
 
   !> Makes the equations of a step from an instant to a time.
-  subroutine prepare_memory(self, from, time)
+  subroutine prepare(self, from, time)
     class(remembering_t), intent(inout) :: self
     type(instant_t), intent(in) :: from
     real(wp), intent(in) :: time
@@ -44,6 +61,7 @@ contains
     real(wp) :: softer
     integer :: k
 
+    if (allocated(self%drainage)) call self%prepare_fluid(from, time)
     if (.not. allocated(self%present)) allocate (self%present(size(kept)))
     call self%creep%over_step(time - from%time, kept, past, self%present)
     softer = 1 + dot_product(self%creep%share, self%present)
@@ -56,10 +74,11 @@ contains
       self%left_rise(:, k) = kept(k)*from%memory_rise(:, k) + past(k)*from%pressure_rise
     end do
     self%risen = 2*self%instant*matmul(self%left_rise, self%creep%share)
-  end subroutine prepare_memory
+  end subroutine prepare
 
-  !> Computes the memories of the instant at the end of a step, and the energy dissipated in it.
-  subroutine remember_pressure(self, from, to)
+  !> Computes the memories, and the data of the fluid, of the instant at the end of a step, and the
+  !> energy dissipated in it.
+  subroutine remember(self, from, to)
     class(remembering_t), intent(inout) :: self
     type(instant_t), intent(in) :: from
     type(instant_t), intent(inout) :: to
@@ -69,18 +88,84 @@ contains
     to%memory = from%memory
     to%memory_rise = from%memory_rise
     to%dissipated = 0
-    if (size(to%memory, 2) == 0) return
-    associate (weight => 4*pi*self%instant*self%material%weight)
-      do k = 1, size(to%memory, 2)
-        to%memory(:, k) = self%left(:, k) + self%present(k)*to%pressure
-        to%memory_rise(:, k) = self%left_rise(:, k) + self%present(k)*to%pressure_rise
-        if (to%time > from%time) to%dissipated = to%dissipated + self%creep%share(k)* &
-          self%creep%time(k)/(to%time - from%time)* &
-          sum(weight*(to%memory(:, k) - from%memory(:, k))* &
-          (to%memory_rise(first_node:, k) - from%memory_rise(first_node:, k)))
-      end do
+    do k = 1, size(to%memory, 2)
+      to%memory(:, k) = self%left(:, k) + self%present(k)*to%pressure
+      to%memory_rise(:, k) = self%left_rise(:, k) + self%present(k)*to%pressure_rise
+      if (to%time > from%time) to%dissipated = to%dissipated + self%creep%share(k)* &
+        self%creep%time(k)/(to%time - from%time)*sum(4*pi*self%instant*self%material%weight* &
+        (to%memory(:, k) - from%memory(:, k))* &
+        (to%memory_rise(first_node:, k) - from%memory_rise(first_node:, k)))
+    end do
+    if (allocated(self%drainage)) call self%remember_fluid(from, to)
+  end subroutine remember
+
+  !> Interpolates the rise of the gap due to the memory, and the earlier gaps of the fluid, at the
+  !> nodes of a mesh whose scale is about `scale`.
+  subroutine place_rise(self, mesh, scale)
+    class(remembering_t), intent(inout) :: self
+    integer, intent(in) :: mesh
+    real(wp), intent(in) :: scale
+
+    if (allocated(self%drainage)) call self%drainage%place(self%meshes%grid, mesh, scale)
+    if (size(self%creep%share) > 0) self%besides = rise_at(self%material%discretisation_t, &
+      self%risen, self%meshes%grid(mesh), scale)
+  end subroutine place_rise
+
+  !> The weights of present and earlier gaps in the rate of the gaps: the slope of a parabola in
+  !> time through the gaps of the last two instants and the present gaps, or of a line if there is
+  !> one earlier instant.
+  subroutine prepare_fluid(self, from, time)
+    class(remembering_t), intent(inout) :: self
+    type(instant_t), intent(in) :: from
+    real(wp), intent(in) :: time
+    real(wp) :: weights(3)
+
+    ! The rate jumps where the drive turns. The response of stiff bodies to this jump decays in a
+    ! time that may be shorter than a step: a parabola would overshoot.
+    weights = rate_weights(time - from%time, merge(from%time - self%before%time, 0.0_wp, &
+      from%since_turn >= calming))
+    ! A Jacobian computed for a different length of the step is not accurate for this step.
+    if (abs(log(weights(1)/self%made_for)) > other_length) then
+      call self%frozen%forget()
+      self%made_for = weights(1)
+    end if
+    self%drainage%weight = weights(1)
+    self%drainage%earlier(1) = earlier(from, weights(2))
+    self%drainage%earlier(2) = earlier(self%before, weights(3))
+
+  contains
+
+    type(earlier_t) function earlier(at, weight)
+      type(instant_t), intent(in) :: at
+      real(wp), intent(in) :: weight
+
+      earlier%mesh = at%mesh
+      earlier%scale = at%state%scale
+      earlier%weight = weight
+      earlier%raised = self%raised(at%mesh, at%state)
+    end function earlier
+
+  end subroutine prepare_fluid
+
+  !> The suction and power of the fluid at the end of a step, and the energy dissipated in the step.
+  subroutine remember_fluid(self, from, to)
+    class(remembering_t), intent(in) :: self
+    type(instant_t), intent(in) :: from
+    type(instant_t), intent(inout) :: to
+    real(wp), dimension(size(to%state%gap)) :: pressure, rate
+    integer :: lowest
+
+    associate (grid => self%meshes%grid(to%mesh), c => to%state%scale)
+      pressure = self%fluid_pressure(to%mesh, to%state, rate)
+      lowest = minloc(pressure, 1)
+      to%suction = -pressure(lowest)
+      to%suction_at = c*grid%x(lowest)
+      to%power = -2*pi*c**2*sum(grid%weight*pressure*rate)
     end associate
-  end subroutine remember_pressure
+    to%since_turn = from%since_turn + 1
+    to%dissipated = to%dissipated + (to%time - from%time)* &
+      merge(0.5_wp*(from%power + to%power), to%power, from%since_turn > 0)
+  end subroutine remember_fluid
 
   !> Sets the memories of an instant to those of relaxed bodies under the present pressure.
   subroutine set_memory(self, at)

@@ -57,8 +57,16 @@ contains
     end do
     if (found) then
       call steps%set_memory(at)
-      if (allocated(fluid) .and. size(steps%creep%time) > 0) &
-        call begin_as_steps_do(steps, at, found)
+      if (allocated(fluid) .and. size(steps%creep%time) > 0) then
+        ! The same state as a step of zero duration, with the delayed deformation from the
+        ! material's mesh. The deformations computed on the two meshes differ slightly; this
+        ! difference is not a motion, and the fluid must not resist it.
+        call steps%prepare(at, at%time)
+        call steps%place_rise(at%mesh, at%state%scale)
+        call steps%frozen%forget()
+        call steps%solve(steps%control_at(at%position, at%mesh, at%state), at%state, found)
+        call steps%frozen%forget()
+      end if
     end if
     if (allocated(fluid)) call move_alloc(fluid, steps%drainage)
     if (found) steps%before = at
@@ -89,21 +97,6 @@ contains
     if (allocated(at%state%gap)) load = at%state%load
     call steps%frozen%forget()
   end function load_at_rest
-
-  !> Solves for the same state as a step of zero duration, with the delayed deformation from the
-  !> material's mesh. The deformations computed on the two meshes differ slightly; this difference
-  !> is not a motion, and the fluid must not resist it.
-  subroutine begin_as_steps_do(steps, at, found)
-    type(time_stepper_t), intent(inout) :: steps
-    type(instant_t), intent(inout) :: at
-    logical, intent(out) :: found
-
-    call steps%prepare_memory(at, at%time)
-    call steps%place_rise(at%mesh, at%state%scale)
-    call steps%frozen%forget()
-    call steps%solve(steps%control_at(at%position, at%mesh, at%state), at%state, found)
-    call steps%frozen%forget()
-  end subroutine begin_as_steps_do
 
   !> Solves for relaxed bodies at a position, from the guess `state`. found: there is a solution
   !> near the state of `at`, on the path; this solution then replaces the state of `at`.

@@ -5,13 +5,13 @@
 module time_jump
   use kinds, only: wp
   use contact_state, only: state_t
-  use equilibrium, only: control_t, at_edge_radius
+  use equilibrium, only: control_t
   use path_coordinate, only: path_control, coordinate_of
   use regridding, only: regrid
   use root_finding, only: root_search_t, new_root_search
   use next_mesh, only: radius_for
   use time_instant, only: instant_t, extrapolate
-  use time_stepper, only: time_stepper_t
+  use time_stepper, only: time_stepper_t, expected_scale
   implicit none
   private
   public :: step_along
@@ -138,7 +138,7 @@ contains
     type(state_t) :: state
 
     control = path_control(steps%problem, steps%meshes, at%mesh, s)
-    call steps%place_rise(at%mesh, scale_of(control))
+    call steps%place_rise(at%mesh, expected_scale(control, at%state))
     state = at%state
     call steps%solve(control, state, found)
     if (.not. found) call steps%frozen%forget()
@@ -193,14 +193,6 @@ contains
       call search%note(here, left)
     end do
   end subroutine find_between
-
-  !> The scale of the mesh that a control of the path prescribes.
-  pure real(wp) function scale_of(control)
-    type(control_t), intent(in) :: control
-
-    scale_of = control%scale
-    if (control%kind == at_edge_radius) scale_of = control%value
-  end function scale_of
 
   !> Moves a state of the path to another mesh, at the same coordinate.
   subroutine change_mesh(steps, mesh, at, done)

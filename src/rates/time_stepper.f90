@@ -3,7 +3,7 @@
 module time_stepper
   use kinds, only: wp
   use contact_state, only: state_t
-  use equilibrium, only: control_t, at_h0_with_edge
+  use equilibrium, only: control_t, at_h0_with_edge, at_edge_radius
   use mesh_plan, only: approach
   use contact_scales, only: cohesive_width
   use locked_meshes, only: h0_control
@@ -13,13 +13,13 @@ module time_stepper
   use anderson, only: solve_anderson
   use solver_options, only: rescue_of
   use time_instant, only: instant_t, extrapolate
-  use draining, only: draining_t
+  use remembering, only: remembering_t
   implicit none
   private
-  public :: time_stepper_t
+  public :: time_stepper_t, expected_scale
 
   !> Computes one instant after the other.
-  type, extends(draining_t) :: time_stepper_t
+  type, extends(remembering_t) :: time_stepper_t
     !> The largest change of the path's coordinate in a step. A state that changes by more has
     !> jumped, or needs shorter steps.
     real(wp) :: farthest = 0.3_wp
@@ -64,7 +64,7 @@ contains
     to%mesh = from%mesh
     call self%guess(from, time, position, control, to%state)
     do round = 1, most_rounds
-      call self%place_rise(to%mesh, control_scale(control, to%state))
+      call self%place_rise(to%mesh, expected_scale(control, to%state))
       expected = to%state%scale
       call self%solve(control, to%state, done)
       if (.not. done .and. allocated(self%drainage)) then
@@ -137,13 +137,14 @@ contains
   end function finest
 
   !> The scale that a state is expected to have under a control.
-  pure real(wp) function control_scale(control, state)
+  pure real(wp) function expected_scale(control, state) result(scale)
     type(control_t), intent(in) :: control
     type(state_t), intent(in) :: state
 
-    control_scale = control%scale
-    if (control%kind == at_h0_with_edge) control_scale = state%scale
-  end function control_scale
+    scale = control%scale
+    if (control%kind == at_edge_radius) scale = control%value
+    if (control%kind == at_h0_with_edge) scale = state%scale
+  end function expected_scale
 
   !> The mesh on which a state of the mesh `mesh` is to be solved; it may be the same mesh.
   integer function mesh_for(self, mesh, state)

@@ -5,8 +5,8 @@ module derived_tables
   use scene_groups, only: scene_t
   use dimensionless_problem, only: problem_t, calm_gap
   use experiment_request, only: sensitivity_t
-  use h0_range, only: path_start
   use experiment_result, only: experiment_result_t
+  use path_demand, only: path_start
   use summary, only: summary_t
   use classical_rows, only: write_classical
   use approximation_tables, only: write_approximations

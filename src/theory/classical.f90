@@ -74,9 +74,9 @@ contains
 
   !> Hertz gap [m] at distance `r` [m] from the axis: (14), (17) under the pressure (3). For large r
   !> it tends to r^2/(2R) - a^2/R, the undeformed gap at h0 = -delta.
-  elemental function hertz_gap(r, contact_radius, radius) result(gap)
+  elemental real(wp) function hertz_gap(r, contact_radius, radius) result(gap)
     real(wp), intent(in) :: r, contact_radius, radius
-    real(wp) :: gap, outside
+    real(wp) :: outside
 
     gap = 0
     if (r > contact_radius) then
@@ -96,20 +96,19 @@ contains
   end function jkr_load
 
   !> JKR displacement [m] at a contact radius [m], (11).
-  elemental function jkr_displacement(contact_radius, radius, stiffness, surface_energy) &
+  elemental real(wp) function jkr_displacement(contact_radius, radius, stiffness, surface_energy) &
     result(displacement)
     real(wp), intent(in) :: contact_radius, radius, stiffness, surface_energy
-    real(wp) :: displacement
 
     displacement = hertz_displacement(contact_radius, radius) &
       - sqrt(4*pi*surface_energy*contact_radius/stiffness)
   end function jkr_displacement
 
   !> JKR contact radius [m] at a fixed load [N], (10), of the stable state. NaN beyond the pull-off.
-  elemental function jkr_radius_at_load(load, radius, stiffness, surface_energy) &
+  elemental real(wp) function jkr_radius_at_load(load, radius, stiffness, surface_energy) &
     result(contact_radius)
     real(wp), intent(in) :: load, radius, stiffness, surface_energy
-    real(wp) :: contact_radius, adhesion, inner
+    real(wp) :: adhesion, inner
 
     adhesion = 3*pi*surface_energy*radius
     inner = adhesion*(2*load + adhesion)
@@ -175,10 +174,10 @@ contains
 
   !> JKR pressure [Pa] at distance `r` [m] from the axis, (3) + (7) with (9). It tends to minus
   !> infinity at the contact edge; the result is zero at the edge and outside.
-  elemental function jkr_pressure(r, contact_radius, radius, stiffness, surface_energy) &
+  elemental real(wp) function jkr_pressure(r, contact_radius, radius, stiffness, surface_energy) &
     result(pressure)
     real(wp), intent(in) :: r, contact_radius, radius, stiffness, surface_energy
-    real(wp) :: pressure, inside
+    real(wp) :: inside
 
     pressure = 0
     if (r < contact_radius) then
@@ -211,10 +210,9 @@ contains
   end function dmt_load
 
   !> DMT contact radius [m] at a load [N]; NaN beyond the pull-off.
-  elemental function dmt_radius_at_load(load, radius, stiffness, surface_energy) &
+  elemental real(wp) function dmt_radius_at_load(load, radius, stiffness, surface_energy) &
     result(contact_radius)
     real(wp), intent(in) :: load, radius, stiffness, surface_energy
-    real(wp) :: contact_radius
 
     contact_radius = hertz_radius_at_load(load - dmt_pull_off(radius, surface_energy), &
       radius, stiffness)

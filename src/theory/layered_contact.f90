@@ -15,12 +15,13 @@ module layered_contact
   use root_finding, only: bracket_t
   use dimensionless_problem, only: problem_t
   use layered_body, only: layered_body_t
-  use maugis_scaled, only: of_load, of_displacement
   use theory_names, only: hertz, jkr
   implicit none
   private
   public :: layered_contact_t, new_layered_contact, has_layers
 
+  !> Quantities at a contact radius.
+  integer, parameter :: of_load = 1, of_displacement = 2
   !> Degree of the series; ratio of the radius without displacement to the smallest radius.
   integer, parameter :: degree = 80
   real(wp), parameter :: span = 100
@@ -57,50 +58,41 @@ contains
     end select
   end function has_layers
 
-  !> Contacts of bodies with layers up to the displacement `largest` [m].
+  !> Contacts of bodies with layers up to the displacement `largest` [m], or to the radius `widest`.
+  !> A negative `work` of the law counts as zero.
   type(layered_contact_t) function new_layered_contact(problem, largest) result(contact)
     type(problem_t), intent(in) :: problem
-    real(wp), intent(in) :: largest
-
-    select type (body => problem%body)
-    type is (layered_body_t)
-      contact = contacts_of(problem, body, largest/problem%length)
-    end select
-  end function new_layered_contact
-
-  !> Contacts up to the displacement `largest`, or to the radius `widest`. A negative `work` of the
-  !> law counts as zero.
-  type(layered_contact_t) function contacts_of(problem, body, largest) result(contact)
-    type(problem_t), intent(in) :: problem
-    type(layered_body_t), intent(in) :: body
     real(wp), intent(in) :: largest
     real(wp) :: delta(2), force(2), a(0:degree), values(0:degree, 4)
     integer :: i
 
-    contact%last = min(1.0_wp, widest*body%thinnest)
-    do
-      call contact_at(problem, body, contact%last, delta, force)
-      if (delta(jkr) > max(0.0_wp, largest) .and. force(jkr) > 0) exit
-      if (.not. contact%last < widest*body%thinnest) exit
-      contact%last = min(2*contact%last, widest*body%thinnest)
-    end do
-    contact%first = contact%last
-    do
-      call contact_at(problem, body, contact%first/2, delta, force)
-      if (.not. delta(jkr) > 0 .or. contact%first < contact%last/span) exit
-      contact%first = contact%first/2
-    end do
-    contact%first = contact%first/span
-    a = contact%first*(contact%last/contact%first)**((1 + chebyshev_points(degree))/2)
-    do i = 0, degree
-      call contact_at(problem, body, a(i), delta, force)
-      values(i, :) = [delta/a(i)**2, force/a(i)**3]
-    end do
-    do i = 1, 2
-      contact%displacement_series(:, i) = chebyshev_series(values(:, i))
-      contact%load_series(:, i) = chebyshev_series(values(:, 2 + i))
-    end do
-  end function contacts_of
+    select type (body => problem%body)
+    type is (layered_body_t)
+      contact%last = min(1.0_wp, widest*body%thinnest)
+      do
+        call contact_at(problem, body, contact%last, delta, force)
+        if (delta(jkr) > max(0.0_wp, largest/problem%length) .and. force(jkr) > 0) exit
+        if (.not. contact%last < widest*body%thinnest) exit
+        contact%last = min(2*contact%last, widest*body%thinnest)
+      end do
+      contact%first = contact%last
+      do
+        call contact_at(problem, body, contact%first/2, delta, force)
+        if (.not. delta(jkr) > 0 .or. contact%first < contact%last/span) exit
+        contact%first = contact%first/2
+      end do
+      contact%first = contact%first/span
+      a = contact%first*(contact%last/contact%first)**((1 + chebyshev_points(degree))/2)
+      do i = 0, degree
+        call contact_at(problem, body, a(i), delta, force)
+        values(i, :) = [delta/a(i)**2, force/a(i)**3]
+      end do
+      do i = 1, 2
+        contact%displacement_series(:, i) = chebyshev_series(values(:, i))
+        contact%load_series(:, i) = chebyshev_series(values(:, 2 + i))
+      end do
+    end select
+  end function new_layered_contact
 
   !> Displacements and loads of both theories at a contact radius.
   subroutine contact_at(problem, body, a, delta, force)
