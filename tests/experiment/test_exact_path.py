@@ -2,7 +2,7 @@
 over their meshes, made finer, where finer meshes help."""
 
 import pytest
-from support.scenes import deck, lennard_jones, of_numbers, several
+from support.scenes import deck, lennard_jones, of_numbers, path_of, several
 
 
 @pytest.mark.parametrize("sigma,accuracy", [(1.6607746, 1e-8), (1.6607746, 1e-7), (5.475, 1e-6)])
@@ -19,10 +19,7 @@ def test_extrema_that_have_just_come_to_be_are_as_exact_as_asked_for(run, sigma,
 
 def other_force(stiffness, accuracy, h0_end, **force):
     """The path under a Lennard-Jones law and another force [SI]."""
-    return deck(
-        bodies={"radius": 1.5e-2, "stiffness": stiffness},
-        force={"law": "lennard_jones", "hamaker": 1e-19, "z0": 0.5e-9},
-        equilibrium_path={"h0_end": h0_end}, numerics={"accuracy": accuracy}, **force)
+    return path_of(stiffness, h0_end, accuracy, **force)
 
 
 def test_extrema_on_panels_that_were_too_long_are_as_exact_as_asked_for(run):

@@ -7,7 +7,7 @@ import math
 
 import numpy as np
 import pytest
-from support.scenes import JKR, deck, exponential, lennard_jones, loading, several
+from support.scenes import JKR, deck, exponential, lennard_jones, loading
 
 
 def check(result, may_warn=False):

@@ -9,7 +9,7 @@ import math
 
 import pytest
 from support.calculus import zero
-from support.scenes import deck, lennard_jones, several
+from support.scenes import deck, lennard_jones, path_of, several
 
 # Pull-off over pi R w of Maugis' theory (1992), from a solver of its own.
 MAUGIS = {0.3: 1.815556, 1.0: 1.600735, 2.0: 1.534603}
@@ -117,11 +117,7 @@ def test_step_outside_a_stronger_attraction(run):
 
 def bridge(humidity, stiffness, h0_end, accuracy):
     """A deck with the path of bodies with a liquid bridge beside their Lennard-Jones force [SI]."""
-    return deck(
-        bodies={"radius": 1.5e-2, "stiffness": stiffness},
-        force={"law": "lennard_jones", "hamaker": 1e-19, "z0": 5e-10},
-        capillary={"humidity": humidity}, equilibrium_path={"h0_end": h0_end},
-        numerics={"accuracy": accuracy})
+    return path_of(stiffness, h0_end, accuracy, capillary={"humidity": humidity})
 
 
 @pytest.mark.parametrize(
@@ -220,10 +216,8 @@ def test_the_edge_of_a_contact_passes_the_rim_of_a_punch(run):
 
 def test_a_tip_does_not_make_meshes_grow_where_it_does_not_help(run):
     # The panel on the axis was halved again and again: 3,008 nodes, and 9 seconds.
-    found = run(deck(
-        bodies={"stiffness": 1e7}, shape={"kind": "cone", "half_angle": 1.2217},
-        force={"law": "lennard_jones", "hamaker": 1e-19, "z0": 0.5e-9},
-        equilibrium_path={"h0_end": -100e-9}, numerics={"accuracy": 1e-9}))
+    found = run(path_of(1e7, -100e-9, 1e-9, radius=None,
+                        shape={"kind": "cone", "half_angle": 1.2217}))
     assert found.cost["nodes"] < 1500
     assert found.summary["error_estimate"] < 3e-9
 

@@ -46,7 +46,7 @@ PATH = {"h0_end": -1.0}
 @pytest.mark.parametrize("scene", SCENES)
 def test_folds_and_states_are_those_of_independent_states(run, scene):
     layer = SCENES[scene]
-    (all_h0, loads), (h0, load) = path_by_axis("lennard_jones", 1.0, AXIS, ENDS, layer=layer)
+    (all_h0, loads), (h0, load) = path_by_axis(1.0, AXIS, ENDS, layer=layer)
     found = run(layered(layer, equilibrium_path={"h0_end": float(all_h0[-1])})).summary
     assert found["end_load"] == pytest.approx(loads[-1], rel=1e-8)
     assert [found["jump_in_h0"], found["jump_out_h0"]] == pytest.approx(h0, rel=1e-8)
@@ -56,7 +56,7 @@ def test_folds_and_states_are_those_of_independent_states(run, scene):
 def test_a_film_thirty_times_thinner_than_the_contact_has_independent_states(run):
     """The one that yields least beside what its half-space does: it cannot be compressed."""
     layer = (0.1, 0.0, 0.5, 0.0, 1.0)
-    ((h0, load),) = path_by_axis("lennard_jones", 1.0, AXIS, ENDS, layer=layer, softness=())
+    ((h0, load),) = path_by_axis(1.0, AXIS, ENDS, layer=layer, softness=())
     run = run(layered(layer, equilibrium_path={"h0_end": float(h0[-1])}))
     assert run.summary["end_load"] == pytest.approx(load[-1], rel=1e-7)
 
@@ -114,8 +114,7 @@ def test_a_thick_layer_is_its_half_space_and_a_thin_one_nothing(run):
     half = run(lennard_jones(1.0, equilibrium_path=PATH)).summary
     apart = []
     for thickness in (300.0, 3000.0):
-        thick = run(layered((thickness, *COAT[1:]), accuracy=1e-6,
-                               equilibrium_path=PATH)).summary
+        thick = run(layered((thickness, *COAT[1:]), accuracy=1e-6, equilibrium_path=PATH)).summary
         apart.append(abs(thick["max_tension"] / half["max_tension"] - 1))
     # The base moves as one under the load, which shifts h0 and not the pull-off; the rest falls as
     # the cube of contact radius over thickness.
@@ -166,8 +165,7 @@ def test_derivatives_are_differences_of_runs(run, key):
 
 def test_cases_of_a_sweep_are_runs_of_their_own(run):
     thickness = [0.4, 1.6]
-    rows = run(coated(sweep={"key": "layer.thickness(2)", "values": thickness})
-                 ).table("sweep.csv")
+    rows = run(coated(sweep={"key": "layer.thickness(2)", "values": thickness})).table("sweep.csv")
     for i, value in enumerate(thickness):
         alone = run(coated("layer.thickness(2)", value / 1.5)).summary
         for key in ("max_tension", "jump_out_h0", "top_modulus", "bottom_modulus"):

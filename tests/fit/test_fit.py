@@ -227,8 +227,7 @@ def test_conventions_do_not_matter(branches, tmp_path):
 def test_one_way_alone_can_be_fitted(branches, tmp_path, segment):
     z, force, segments = branches.measure(400, noise=2e-12)
     file = write(tmp_path / "a.csv", z, force, segments)
-    result = run(fit_deck(LENNARD_JONES, file, [STRENGTH, POINT],
-                          measurement={"segment": segment}))
+    result = run(fit_deck(LENNARD_JONES, file, [STRENGTH, POINT], measurement={"segment": segment}))
     assert set(result.fit["direction"]) == {segment}
     assert abs(values_of(result)[STRENGTH] - 1e-19) < 5 * errors_of(result)[STRENGTH]
 

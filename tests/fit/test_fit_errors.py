@@ -71,8 +71,7 @@ def test_the_ends_of_intervals_are_less_likely_than_the_estimate(shallow, tmp_pa
     low, high = (free[f"{end}_95"][1] / free["estimate"][1] for end in ("lower", "upper"))
     assert high * low > 2
     for end in "lower_95", "upper_95":
-        held = fit_of(tmp_path, curve, changed(STIFF, {STIFFNESS: free[end][1]}),
-                      [STRENGTH, POINT])
+        held = fit_of(tmp_path, curve, changed(STIFF, {STIFFNESS: free[end][1]}), [STRENGTH, POINT])
         rise = held["chi_squared"][0] - free["chi_squared"][0]
         assert rise > 0.75 * 1.96**2, end
 

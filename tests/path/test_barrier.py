@@ -11,6 +11,7 @@ import snapin
 from conftest import ROOT
 from support.calculus import zero
 from support.dlvo import Dlvo
+from support import half_space
 from support.half_space import path_by_axis
 from support.scenes import JKR, of_numbers
 
@@ -74,7 +75,7 @@ def test_a_path_does_not_end_just_before_a_barrier_gives_way(accuracy):
 
 
 def test_jumps_of_a_law_with_a_barrier_are_those_of_independent_states():
-    _, (h0, load) = path_by_axis("barrier", 1.0, AXIS, ENDS)
+    _, (h0, load) = path_by_axis(1.0, AXIS, ENDS, half_space.behind_a_barrier)
     found = behind_a_barrier(1.0, 1e-8)
     assert [found["jump_in_h0"], found["jump_out_h0"]] == pytest.approx(h0, rel=1e-9)
     # Beside a fold the load goes with the root of an error in H0.
@@ -88,11 +89,8 @@ def test_jumps_of_a_law_with_a_barrier_are_those_of_independent_states():
 def scene():
     """The result of the example, its numbers, and the law from the equations."""
     keys = f90nml.read(DECK)
-    layers = keys["double_layer"]
-    law = Dlvo(
-        hamaker=keys["van_der_waals"]["hamaker"],
-        retardation_length=keys["van_der_waals"]["retardation_length"], z0=keys["born"]["z0"],
-        potential=layers["potential"], regulation=layers["regulation"], salt=layers["salt"])
+    layers = {name: keys["double_layer"][name] for name in ("potential", "regulation", "salt")}
+    law = Dlvo(**keys["van_der_waals"], z0=keys["born"]["z0"], **layers)
     return snapin.run(DECK), keys["bodies"], law
 
 
@@ -137,11 +135,8 @@ def test_dlvo_jumps_are_those_of_independent_states():
     z0 = law.z0
     energy = law.hamaker / (16 * math.pi * z0**2)
     sigma = energy * math.sqrt(bodies["radius"] * z0) / (bodies["stiffness"] * z0**2)
-    keys = f90nml.read(DECK)
-    layers = {name: keys["double_layer"][name] for name in ("potential", "regulation", "salt")}
     _, (h0, load) = path_by_axis(
-        "dlvo", sigma, (20.0, 16.0, *AXIS), ENDS, z0=z0, hamaker=law.hamaker,
-        retardation_length=keys["van_der_waals"]["retardation_length"], **layers)
+        sigma, (20.0, 16.0, *AXIS), ENDS, half_space.in_units(law, z0, energy))
     summary = result.summary
     # The pushing load before the jump: the bodies are over the barrier under compression.
     assert summary["jump_in_load"] > 0

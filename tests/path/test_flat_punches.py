@@ -3,7 +3,7 @@ on the face and passes the rim, and paths have the folds that the bodies have.
 """
 
 import pytest
-from support.scenes import deck, several
+from support.scenes import deck, path_of, several
 
 
 FLAT_FACES = {
@@ -21,11 +21,8 @@ def test_paths_of_wide_flat_punches_have_the_folds_of_the_bodies(run, face):
     radius, flat_radius, stiffness = FLAT_FACES[face]
 
     def path(accuracy):
-        found = run(deck(
-            bodies={"radius": radius, "stiffness": stiffness},
-            shape={"kind": "rounded_punch", "flat_radius": flat_radius},
-            force={"law": "lennard_jones", "hamaker": 1e-19, "z0": 5e-10},
-            equilibrium_path={"h0_end": 0}, numerics={"accuracy": accuracy}))
+        found = run(path_of(stiffness, 0, accuracy, radius=radius,
+                            shape={"kind": "rounded_punch", "flat_radius": flat_radius}))
         # An extremum of the load may be so flat that its h0 has four digits only.
         assert all(said.startswith(("beyond the model", "the error is estimated"))
                    for said in found.warnings)
@@ -57,11 +54,10 @@ def test_a_wide_stiff_flat_punch_has_the_tension_of_a_rigid_one(run):
 def test_a_stiff_flat_face_is_pressed_far_within_the_gap_at_rest(run):
     """The coordinate of the path before the edge passes the rim had a singular gap there."""
     def path(accuracy):
-        found = run(deck(
-            bodies={"radius": 0.015, "stiffness": 4.2886e14},
-            shape={"kind": "rounded_punch", "flat_radius": 1.324e-5},
-            morse={"surface_energy": 0.05, "z0": 6.26e-10, "decay_length": 1.545e-10},
-            equilibrium_path={"h0_end": -4.4556e-9}, numerics={"accuracy": accuracy}))
+        found = run(path_of(4.2886e14, -4.4556e-9, accuracy, force=None,
+                            shape={"kind": "rounded_punch", "flat_radius": 1.324e-5},
+                            morse={
+                                "surface_energy": 0.05, "z0": 6.26e-10, "decay_length": 1.545e-10}))
         assert found.status == 0
         return found.summary
 
@@ -73,11 +69,10 @@ def test_a_stiff_flat_face_is_pressed_far_within_the_gap_at_rest(run):
 def test_the_largest_tension_is_that_of_an_extremum_although_meshes_differ_by_more(run):
     """A state with which the path passes to another mesh had a larger tension by its mesh's error,
     and its h0 was given an error of zero."""
-    found = run(deck(
-        bodies={"radius": 0.015, "stiffness": 567468086777.6749},
-        shape={"kind": "rounded_punch", "flat_radius": 9.569216047281413e-06},
-        van_der_waals={"hamaker": 1e-19}, born={"hamaker": 1e-19, "z0": 2.2645387901298425e-10},
-        equilibrium_path={"h0_end": -3.47533519966291e-10}, numerics={"accuracy": 1e-4})).summary
+    found = run(path_of(567468086777.6749, -3.47533519966291e-10, 1e-4, force=None,
+                        shape={"kind": "rounded_punch", "flat_radius": 9.569216047281413e-06},
+                        van_der_waals={"hamaker": 1e-19},
+                        born={"hamaker": 1e-19, "z0": 2.2645387901298425e-10})).summary
     assert found["max_tension_h0"] == found["load_folds_h0"][-1]
     assert found["max_tension"] == -found["load_folds_load"][-1]
     assert found["max_tension_h0"] == pytest.approx(2.9035747e-9, rel=1e-5)
@@ -92,11 +87,8 @@ def test_paths_of_rounded_punches_reach_the_accuracy_asked_for(run, radius, flat
     """The rim passed over the panels of meshes locked to the edge, and numbers converged to five
     digits or six at any accuracy."""
     def path(accuracy):
-        return run(deck(
-            bodies={"radius": radius, "stiffness": stiffness},
-            shape={"kind": "rounded_punch", "flat_radius": flat_radius},
-            force={"law": "lennard_jones", "hamaker": 1e-19, "z0": 5e-10},
-            equilibrium_path={"h0_end": -1e-9}, numerics={"accuracy": accuracy}))
+        return run(path_of(stiffness, -1e-9, accuracy, radius=radius,
+                           shape={"kind": "rounded_punch", "flat_radius": flat_radius}))
 
     exact = path(1e-10).summary
     for accuracy in (1e-5, 1e-7):

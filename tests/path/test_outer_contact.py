@@ -86,8 +86,7 @@ def test_outer_contacts_are_those_of_independent_states(h0):
     energy = HAMAKER / (16 * np.pi * Z0**2)
     s = energy * lateral / (STIFFNESS * Z0**2)
     bodies = HalfSpace(ENDS, order=10)
-    gap = bodies.from_gaps(
-        force, s, h0 / Z0, profile["r"] / lateral, profile["separation"] / Z0)
+    gap = bodies.from_gaps(force, s, h0 / Z0, profile["r"] / lateral, profile["separation"] / Z0)
     assert states.curve["h_centre"][-1] == pytest.approx(gap[0] * Z0, rel=1e-7)
     load = bodies.load(force, s, gap) * energy * RADIUS / s
     assert states.curve["load"][-1] == pytest.approx(load, rel=1e-6)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from support.known import BY_SIGMA
-from support.scenes import JKR, deck, exponential, lennard_jones, loading, several
+from support.scenes import JKR, deck, exponential, lennard_jones, loading, path_of, several
 
 EIGHT = {"rel": 1e-8}
 SEVEN = {"abs": 1.05e-7}
@@ -250,23 +250,16 @@ def test_a_path_that_starts_between_far_and_the_jump_begins_at_its_start(run):
 def test_points_of_a_smooth_curve_are_few_with_any_tolerance(run, numerics):
     """With residuals of a hundredth of the wanted distance from the curve steps became ever
     shorter, since extrapolation multiplies residuals, and the path was lost."""
-    found = run(deck(
-        bodies={"radius": 0.015, "stiffness": 2.894e13},
-        force={"law": "lennard_jones", "hamaker": 1e-19, "z0": 5e-10},
-        equilibrium_path={"h0_end": -2.32e-10}, fixed_load={"load": [0.0, 0.01]},
-        numerics=numerics))
+    found = run(path_of(2.894e13, -2.32e-10, fixed_load={"load": [0.0, 0.01]}, numerics=numerics))
     assert not found.warnings
     assert found.cost["states"] < 200
 
 
 def test_a_path_stops_where_its_mesh_misses_a_large_part_of_the_load(run):
     """It went on for thousands of states that mean nothing, until the mesh was refined."""
-    found = run(deck(
-        bodies={"radius": 0.015, "stiffness": 4.276e8},
-        force={"law": "lennard_jones", "hamaker": 1e-19, "z0": 5e-10},
-        steric={"brush_thickness": 3.38e-9, "grafting_density": 1e16},
-        equilibrium_path={"h0_end": -2.2345e-9},
-        device={"stiffness": [3.866e4, 1.021e7]}, numerics={"accuracy": 1e-5}))
+    found = run(path_of(4.276e8, -2.2345e-9, 1e-5,
+                        steric={"brush_thickness": 3.38e-9, "grafting_density": 1e16},
+                        device={"stiffness": [3.866e4, 1.021e7]}))
     assert found.cost["factorisations"] < 1000
 
 

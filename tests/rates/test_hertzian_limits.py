@@ -58,8 +58,7 @@ def test_a_hard_sphere_has_tings_load_on_both_ways(run, turn):
 
 def test_depth_under_a_constant_load_relaxes_exponentially(run):
     soft, travel = 0.01, 2.0e6
-    curve = run(scene(1e-2, velocity=2.0e10, z_turn=-travel, dwell=3.0,
-                      stiffness=soft)).curve
+    curve = run(scene(1e-2, velocity=2.0e10, z_turn=-travel, dwell=3.0, stiffness=soft)).curve
     dwell = curve["branch"] == "dwell"
     time = curve["time"][dwell] - curve["time"][dwell][0]
     load = curve["load"][dwell]

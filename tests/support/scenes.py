@@ -16,6 +16,8 @@ JKR = 1.5 * math.pi  # Pull-off of JKR theory in units of gamma R.
 
 # Bodies in whose decks lengths are in units of the law's length.
 UNIT = {"radius": 1.0, "stiffness": 1.0}
+# The force of most decks in SI units.
+FORCE = {"law": "lennard_jones", "hamaker": 1e-19, "z0": 0.5e-9}
 
 # --- Decks
 
@@ -44,6 +46,13 @@ def exponential(big_lambda, **groups):
     return deck(
         bodies=UNIT, force={"law": "exponential", "p0": float(big_lambda), "decay_length": 1.0},
         **groups)
+
+
+def path_of(stiffness, h0_end, accuracy=None, *, radius=1.5e-2, force=FORCE, **groups):
+    """A deck with a path in SI units."""
+    return deck(**{
+        "bodies": {"radius": radius, "stiffness": stiffness}, "force": force,
+        "equilibrium_path": {"h0_end": h0_end}, "numerics": {"accuracy": accuracy}, **groups})
 
 
 def changed(groups, values):

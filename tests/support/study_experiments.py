@@ -16,8 +16,7 @@ __all__ = ["examine", "jobs", "table"]
 NAMES = tuple(name for name in LAWS if name not in ("repulsive", "exponential"))
 STRENGTHS, STIFFNESSES = (1e-3, 1e3), (0.03, 30)
 
-jobs = functools.partial(
-    study_laws.jobs, study="experiments", names=NAMES, strengths=STRENGTHS)
+jobs = functools.partial(study_laws.jobs, study="experiments", names=NAMES, strengths=STRENGTHS)
 
 
 def examine(scene):

@@ -21,8 +21,7 @@ __all__ = ["examine", "jobs", "table"]
 # profile over that of the contact without load; part of the scenes that have layers.
 STRENGTHS, FACES, WIDTHS, LAYERED = (1e-2, 1e2), (0.03, 10), (6, 20), 0.25
 
-jobs = functools.partial(
-    study_laws.jobs, study="shapes", names=NAMES, strengths=STRENGTHS)
+jobs = functools.partial(study_laws.jobs, study="shapes", names=NAMES, strengths=STRENGTHS)
 
 
 def power(rng, law, scene, exponent=None):

@@ -63,8 +63,7 @@ def cycle(job):
     reading, letter, turns, draw = job
     scene = mixing.Scene(sigma_of(letter, draw), reading.spacing / _LATERAL, _EXTENT / _LATERAL,
                          reading.interpolated)
-    return mixing.cycle(scene, reading, [turn / _Z0 for turn in turns], 6.0 / _Z0, 16.0 / _Z0,
-                        _Z0)
+    return mixing.cycle(scene, reading, [turn / _Z0 for turn in turns], 6.0 / _Z0, 16.0 / _Z0, _Z0)
 
 
 @functools.lru_cache(maxsize=None)
