@@ -42,13 +42,9 @@ def test_a_cycle_reports_the_path_whatever_its_steps(tmp_path, case):
     assert not wrong_in([study_cycles.examined(path, scene, tmp_path, k) for k in range(2)])
 
 
-def test_random_cycles_report_the_path(tmp_path):
-    jobs = study_cycles.jobs(24, tmp_path, seed=2)
-    assert not wrong_in(f for job in jobs for f in study_cycles.examine(job))
-
-
-def test_cycles_about_the_cusp_jump_both_ways_or_neither(tmp_path):
-    jobs = study_cycles.jobs(24, tmp_path, seed=2, low=0.28, high=0.45)
+@pytest.mark.parametrize("about", [{}, {"low": 0.28, "high": 0.45}], ids=["any sigma", "the cusp"])
+def test_random_cycles_report_the_path(tmp_path, about):
+    jobs = study_cycles.jobs(24, tmp_path, seed=2, **about)
     assert not wrong_in(f for job in jobs for f in study_cycles.examine(job))
 
 
@@ -70,20 +66,14 @@ def test_each_number_is_as_good_as_its_estimate_says(tmp_path, sigma):
             assert one.ratio <= 1, (finding.kind, finding.accuracy, one)
 
 
-# Cycles and paths, with attraction and without; in the last, more digits mean fewer panels that are
-# no better.
-@pytest.mark.parametrize("number", [0, 1, 3, 17, 107])
-def test_estimates_hold_under_other_laws(tmp_path, number):
-    [finding] = study_laws.examine(study_laws.jobs(number + 1, tmp_path)[number])
-    assert finding.deviations
-    assert not is_bad(finding), finding
-
-
-# One number in 215 of such scenes has an error above its estimate (docs/testing.md). These scenes
-# have none; the next test has two that do.
-@pytest.mark.parametrize("number", [0, 1, 3, 4, 9, 14])
-def test_estimates_hold_for_bodies_with_layers(tmp_path, number):
-    [finding] = study_layers.examine(study_layers.jobs(number + 1, tmp_path)[number])
+# Cycles and paths, with attraction and without; in the last under another law, more digits mean
+# fewer panels that are no better. One number in 215 of scenes with layers has an error above its
+# estimate (docs/testing.md). These scenes have none; the next test has two that do.
+@pytest.mark.parametrize("study, number", [
+    *((study_laws, number) for number in (0, 1, 3, 17, 107)),
+    *((study_layers, number) for number in (0, 1, 3, 4, 9, 14))])
+def test_estimates_hold_under_other_laws_and_for_bodies_with_layers(tmp_path, study, number):
+    [finding] = study.examine(study.jobs(number + 1, tmp_path)[number])
     assert finding.deviations
     assert not is_bad(finding), finding
 
