@@ -5,19 +5,23 @@ import pytest
 from support import study_estimates
 from support.scenes import exponential, lennard_jones
 
-ACCURACIES = (1e-3, 1e-4, 1e-6, 1e-8)
+ACCURACIES = (1e-3, 1e-4, 1e-5, 1e-6, 1e-8)
 # Below this the reference is no better than the run.
 KNOWN = 3e-11
 
 
-@pytest.mark.parametrize("sigma", [0.01, 0.1, 0.87, 8.7, 1000.0])
+@pytest.mark.parametrize("sigma", [0.01, 0.1, 0.2914, 0.3, 0.87, 8.7, 100.0, 1000.0])
 def test_the_estimate_of_path_and_cycle_bounds_the_error_within_a_hundred(tmp_path, sigma):
     """Against the independent solution."""
     for found in study_estimates.examine(study_estimates.Job(sigma, ACCURACIES, tmp_path)):
         assert not found.wrong
-        assert max(one.relative for one in found.deviations) <= found.accuracy
-        error = max((one.relative for one in found.deviations if one.known), default=None)
-        assert error is None or error <= found.estimate <= 100 * error, found
+        # Near the cusp the energy lost, which has an estimate of its own, vanishes.
+        lost = [one for one in found.deviations if one.key == "energy_lost"]
+        assert all(one.ratio <= 1 and one.allowed < 0.01 * one.value for one in lost)
+        others = [one for one in found.deviations if one not in lost]
+        assert max(found.estimate, *(one.relative for one in others)) <= found.accuracy
+        errors = [one.relative for one in others if one.known]
+        assert not errors or max(errors) <= found.estimate <= 100 * max(errors), found
 
 
 @pytest.mark.parametrize("big_lambda", [1.0, 216.0])
