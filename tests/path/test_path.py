@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from support.scenes import deck, exponential, lennard_jones, loading, path_of, several
+from support.scenes import agreeing, deck, exponential, lennard_jones, loading, path_of, several
 
 
 def path(sigma, accuracy=None, part="full", **keys):
@@ -200,12 +200,8 @@ def test_path_of_a_law_without_attraction_is_the_h0_stepped_one(run, scene):
 
 def test_a_path_that_leaves_its_first_mesh_at_once_has_its_jump_in(run):
     """The first step passed to the next mesh; no piece of the path began at the first state."""
-    soft = {"radius": 0.015, "stiffness": 15907436.582095267}
-    force = {"law": "lennard_jones", "hamaker": 1e-19, "z0": 5e-10}
-    numbers = [run(deck(bodies=soft, force=force, equilibrium_path={"h0_end": 1.36e-10},
-                        numerics={"accuracy": accuracy})).summary for accuracy in (9e-6, 1e-7)]
-    for name in ("jump_in_h0", "jump_in_load", "energy_lost"):
-        assert numbers[0][name] == pytest.approx(numbers[1][name], rel=1e-6), name
+    agreeing(run, lambda accuracy: path_of(15907436.582095267, 1.36e-10, accuracy), (9e-6, 1e-7),
+             ("jump_in_h0", "jump_in_load", "energy_lost"), lambda _: 1e-6)
 
 
 def test_a_path_that_starts_in_contact_begins_there_and_has_no_jump_in(run):

@@ -9,6 +9,8 @@ import re
 from typing import NamedTuple
 
 import f90nml
+import numpy as np
+import pytest
 from snapin import deck_text, results
 from support.processes import HANG, threaded
 
@@ -166,6 +168,18 @@ class Run(NamedTuple):
 def several(value):
     """The values of a namelist key as a list; f90nml returns a single value without a list."""
     return list(value) if isinstance(value, list) else [value]
+
+
+def agreeing(run, scene, accuracies, names, rel=lambda accuracy: accuracy, perhaps=()):
+    """The runs of scene(accuracy), which have these numbers of the last run to within rel(accuracy);
+    those of `perhaps` may be absent in all of them."""
+    *found, truth = (run(scene(accuracy)) for accuracy in accuracies)
+    assert set(names) <= set(truth.summary)
+    for one, accuracy in zip(found, accuracies):
+        for name in (*names, *perhaps):
+            mine, exact = (np.ravel(each.summary.get(name, [])) for each in (one, truth))
+            assert mine == pytest.approx(exact, rel=rel(accuracy)), (accuracy, name)
+    return *found, truth
 
 
 def runner(snapin, folder):
