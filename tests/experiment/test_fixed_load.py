@@ -8,7 +8,6 @@ SIGMA = 0.87
 
 
 def under(*loads, sigma=SIGMA, **groups):
-    """A deck that asks for the equilibria under some loads."""
     return lennard_jones(sigma, equilibrium_path={"h0_end": -2.0},
                          fixed_load={"load": [float(load) for load in loads]}, **groups)
 

@@ -145,7 +145,6 @@ NUMBERS = ["layer.thickness(1)", "layer.thickness(2)", "layer.young(1)", "layer.
 
 
 def coated(key=None, factor=1.0, **groups):
-    """The deck of two layers with one of its numbers changed."""
     groups = COATED | groups
     return deck(**changed(groups, {key: factor * value_in(groups, key)} if key else {}))
 

@@ -28,7 +28,6 @@ STEPS = {"h0_start": 2.3e-8, "h0_end": 0.27e-9, "h0_step": 2.6e-9}
 
 
 def rigid(law, body, **groups):
-    """A deck of a law and a body."""
     return deck(**body.groups, **law, **groups)
 
 

@@ -16,7 +16,6 @@ READ = {
 
 
 def derivatives(found, kind="logarithmic"):
-    """Derivatives by quantity and parameter."""
     table = found.table("sensitivity.csv")
     by_quantity = {}
     for quantity, parameter, value in zip(table["quantity"], table["parameter"], table[kind]):

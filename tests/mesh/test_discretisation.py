@@ -16,7 +16,6 @@ def local_nodes(order):
 
 
 def elliptic(m):
-    """Return K and E of parameter m below 1."""
     a, b = np.ones_like(m), np.sqrt(1 - m)
     total, power = m / 2, 0.5
     for _ in range(10):

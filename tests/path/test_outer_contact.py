@@ -33,7 +33,6 @@ def force(gap):
 
 @functools.cache
 def found(accuracy):
-    """The path with an accuracy."""
     return snapin.run({**SCENE, "numerics": {"accuracy": accuracy},
                        "equilibrium_path": {"h0_end": -4e-9}})
 

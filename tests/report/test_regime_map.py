@@ -1,4 +1,4 @@
-"""The errors that `&regime` gives, over all strengths of adhesion: those of the theories against the
+"""The errors that `&regime` gives, over all strengths of adhesion: those of theories against the
 profile and the curve in the results."""
 
 import math

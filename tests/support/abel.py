@@ -26,7 +26,6 @@ def gauss(count):
 
 @functools.lru_cache(maxsize=None)
 def barycentric(count):
-    """Barycentric weights of the Gauss points."""
     points, weights = gauss(count)
     return (-1.0) ** np.arange(count) * np.sqrt(points * (1 - points) * weights)
 

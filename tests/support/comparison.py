@@ -61,7 +61,6 @@ def aslist(value):
 
 
 def deviations(report, expected, path):
-    """The deviations of all numbers that both have."""
     pull_off = path.pull_off.load
     found = []
     for key, value in expected.items():

@@ -33,7 +33,6 @@ class Dlvo:
         self.derivative = chebyshev.chebder(self.series)
 
     def double_layer(self, gap):
-        """Pressure and slope of the double layers."""
         x = gap / self.debye
         u = 2 * np.sqrt(np.minimum(x, FAR) / FAR) - 1
         pressure = self.osmotic * np.exp(chebyshev.chebval(u, self.series) - x)

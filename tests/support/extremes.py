@@ -33,7 +33,6 @@ def power(rng, low, high):
 
 
 def bodies(rng, radius, stiffness):
-    """The bodies, given in one of the three ways."""
     way = rng.random()
     if way < 0.15:
         return {"radius": radius, "rigid": True}
@@ -91,7 +90,6 @@ def ranges(rng, length):
 
 
 def effects(rng, groups):
-    """The other groups of a scene."""
     if rng.random() < 0.15:
         groups["stability"] = {}
     if rng.random() < 0.2:
@@ -133,7 +131,6 @@ def numerics(rng, radius, length):
 
 
 def extreme_deck(number):
-    """Deck `number`."""
     rng = random.Random(number)
     radius, stiffness = power(rng, -9, 6), power(rng, 0, 15)
     law, length = force(rng, radius, stiffness)
@@ -220,7 +217,6 @@ def check_run(status, stderr, folder):
 
 
 def tolerance_of(keys):
-    """The residual that a deck requests."""
     return keys.get("residual_tolerance", min(1e-8, 0.01 * keys.get("accuracy", 1e-6)))
 
 

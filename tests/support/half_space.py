@@ -89,7 +89,6 @@ def layer_image_to(last, r, t, layer):
 
 
 def bessel_j0(x):
-    """J0, from the C library."""
     j0 = ctypes.CDLL(ctypes.util.find_library("m")).j0
     j0.argtypes, j0.restype = [ctypes.c_double], ctypes.c_double
     return np.fromiter(map(j0, x.ravel().tolist()), float, x.size).reshape(x.shape)
@@ -208,13 +207,11 @@ class HalfSpace:
 
 
 def exponential(gap):
-    """Pressure, slope and energy of the exponential law."""
     p = np.exp(-gap)
     return p, -p, p
 
 
 def lennard_jones(gap):
-    """Pressure, slope and energy of the Lennard-Jones law."""
     return (
         8 / 3 * (gap**-9 - gap**-3), 8 * (gap**-4 - 3 * gap**-10), gap**-8 / 3 - 4 / 3 * gap**-2)
 

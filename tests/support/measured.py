@@ -105,7 +105,6 @@ def fitted(folder, curve, groups, parameters, fit=None, **others):
 
 
 def run(deck):
-    """A fit whose warnings the test examines."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", snapin.SnapinWarning)
         return snapin.run(deck)

@@ -82,7 +82,6 @@ def _parts(name):
 
 
 def loading(start, end, step):
-    """The keys of &loading."""
     return {"h0_start": float(start), "h0_end": float(end), "h0_step": float(step)}
 
 
@@ -128,8 +127,6 @@ def read_table(path):
 
 
 class Run(NamedTuple):
-    """The results of a deck."""
-
     status: int
     stderr: str
     folder: object
@@ -140,7 +137,6 @@ class Run(NamedTuple):
 
     @property
     def groups(self):
-        """The groups of summary.nml."""
         return f90nml.read(self.folder / "summary.nml")
 
     @property
@@ -171,7 +167,7 @@ def several(value):
 
 
 def agreeing(run, scene, accuracies, names, rel=lambda accuracy: accuracy, perhaps=()):
-    """The runs of scene(accuracy), which have these numbers of the last run to within rel(accuracy);
+    """The runs of scene(accuracy), which have these numbers of the last run to rel(accuracy);
     those of `perhaps` may be absent in all of them."""
     *found, truth = (run(scene(accuracy)) for accuracy in accuracies)
     assert set(names) <= set(truth.summary)

@@ -15,8 +15,6 @@ DEPTH = -4.0
 
 
 class Job(NamedTuple):
-    """A strength, and the requested accuracies."""
-
     sigma: float
     accuracies: tuple
     folder: object

@@ -47,7 +47,6 @@ DECKS = {
 
 @pytest.fixture(scope="module")
 def results(snapin, tmp_path_factory):
-    """A folder with the results of all decks."""
     folder = tmp_path_factory.mktemp("plots")
     for name, text in DECKS.items():
         (folder / f"{name}.nml").write_text(text)

@@ -20,7 +20,6 @@ GROWTH = 64 * 1024
 
 
 def resident():
-    """Memory of this process [bytes]."""
     with open("/proc/self/statm", encoding="ascii") as table:
         return int(table.read().split()[1]) * resource.getpagesize()
 

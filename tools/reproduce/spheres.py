@@ -94,7 +94,6 @@ def run(tabor, h0_end, **groups):
 
 @functools.lru_cache(maxsize=None)
 def sphere(tabor):
-    """Return the Sphere of a Tabor parameter."""
     loads = math.pi * sigma(tabor)
     found = run(tabor, _deep(tabor, 0))
     summary = found.summary

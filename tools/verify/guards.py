@@ -134,7 +134,6 @@ GUARDS = {
 
 
 def source_of(module, top=ROOT):
-    """The file of a module, in any room."""
     return next(path for path in sorted((top / "src").rglob(f"{module}.*")) if path.suffix in
                 (".f90", ".c"))
 
