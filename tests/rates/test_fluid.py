@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from support.calculus import gauss
 from support.drained import extrapolated
 from support.scenes import deck, lennard_jones, several
 
@@ -32,13 +33,12 @@ def of_way(table, way):
 def of_film(viscosity, h0, one, other):
     """The load of a film at unit velocity, 12 pi eta R^2 Int (h - h0)/m dh, with the flow between
     walls of two slip lengths that Navier's condition gives."""
-    points, weights = np.polynomial.legendre.leggauss(400)
-    y = 20 * (points + 1)
+    y, weights = gauss(400, 0, 40)
     h = h0 * np.exp(y)
     # u = (z^2 + a z + b)/2 per pressure gradient over viscosity.
     a = -h * (h + 2 * other) / (h + one + other)
     mobility = -6 * (h**3 / 3 + a * h**2 / 2 + one * a * h)
-    return 12 * math.pi * viscosity * 20 * weights @ ((h - h0) / mobility * h)
+    return 12 * math.pi * viscosity * weights @ ((h - h0) / mobility * h)
 
 
 @pytest.mark.parametrize("slip", [None, [2.0], [0.5, 8.0], [0.0, 3.0]])

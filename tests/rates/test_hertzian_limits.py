@@ -5,14 +5,13 @@ import math
 
 import numpy as np
 import pytest
-from support.calculus import zero
+from support.calculus import gauss, zero
 from support.scenes import UNIT, deck, exponential
 
 # Depth in decay lengths of the repulsion, and stiffness at rest over that at once.
 DEPTH, RELAXED = 1000.0, 0.25
 MODULUS = 0.5  # E* at once
 EXPONENTIAL = {"law": "exponential", "p0": 1e-2, "decay_length": 1.0}
-NODES, WEIGHTS = np.polynomial.legendre.leggauss(40)
 
 
 def scene(accuracy=1e-3, **drive):
@@ -39,8 +38,8 @@ def ting(time, turn):
 
     # On the way back the contact is as wide as it was at a time when it grew, until it is gone.
     grown = time if time <= turn else zero(longer, 0.0, turn) if longer(0.0) > 0 else 0.0
-    root = np.sqrt(grown) * (NODES + 1) / 2
-    integral = np.sqrt(grown) / 2 * WEIGHTS @ (2 * root**2 * relaxation(time - root**2))
+    root, weights = gauss(40, 0, np.sqrt(grown))
+    integral = weights @ (2 * root**2 * relaxation(time - root**2))
     return 4 / 3 * 1.5 * (DEPTH / turn)**1.5 * integral
 
 

@@ -12,16 +12,7 @@ import functools
 import math
 
 import numpy as np
-from numpy.polynomial import legendre
-
-
-
-
-@functools.lru_cache(maxsize=None)
-def gauss(count):
-    """Gauss-Legendre points and weights on (0, 1)."""
-    points, weights = legendre.leggauss(count)
-    return (points + 1) / 2, weights / 2
+from support.calculus import gauss
 
 
 @functools.lru_cache(maxsize=None)

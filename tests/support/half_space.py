@@ -10,6 +10,8 @@ import functools
 
 import numpy as np
 from numpy.polynomial import chebyshev
+from support.abel import lagrange
+from support.calculus import gauss
 
 
 def agm_k(complement):
@@ -27,19 +29,6 @@ def kernel(r, t, distance):
     large = np.maximum(r, t)
     complement = np.sqrt(distance / large * (1 + np.minimum(r, t) / large))
     return 4 / (np.pi * large) * agm_k(complement)
-
-
-def lagrange(nodes, at):
-    """Values at `at` of the Lagrange polynomials of `nodes`, (at, nodes)."""
-    weights = 1 / np.prod(nodes[:, None] - nodes + np.eye(len(nodes)), axis=1)
-    apart = at[:, None] - nodes
-    hit = apart == 0
-    apart[hit] = 1
-    ratio = weights / apart
-    values = ratio / ratio.sum(1, keepdims=True)
-    rows = hit.any(1)
-    values[rows] = hit[rows]
-    return values
 
 
 def ring_image(r, t, depth):
@@ -77,13 +66,13 @@ def layer_image(r, t, layer):
 def layer_image_to(last, r, t, layer):
     """The integral up to k = last; beyond 20 over the thickness, exp(-40) is neglected."""
     thickness, ratio, nu, base, part = layer
-    x, w = np.polynomial.legendre.leggauss(16)
+    x, w = gauss(16)
     # Panels are short for the waves and, near 0, for stiff layers.
     length = min(0.5 / thickness, 10 / max(r.max(), t.max()))
     ends = np.concatenate([length * 0.5 ** np.arange(12, 0, -1), np.arange(length, last, length)])
     ends = np.concatenate([[0], ends])
-    k = (ends[:-1, None] + np.diff(ends)[:, None] * (x + 1) / 2).ravel()
-    weight = (np.diff(ends)[:, None] * w / 2).ravel()
+    k = (ends[:-1, None] + np.diff(ends)[:, None] * x).ravel()
+    weight = (np.diff(ends)[:, None] * w).ravel()
     strength = 2 * part * weight * (waves_of_layer(k * thickness, ratio, nu, base) - 1)
     return (bessel_j0(np.outer(r, k)) * strength) @ bessel_j0(np.outer(t, k)).T
 
@@ -102,8 +91,7 @@ class HalfSpace:
     """
 
     def __init__(self, ends, order=12, image=None, layer=None):
-        x, w = np.polynomial.legendre.leggauss(order)
-        local, weight = (x + 1) / 2, w / 2
+        local, weight = gauss(order)
         ends = np.asarray(ends, float)
         length = np.diff(ends)
         self.r = (ends[:-1, None] + length[:, None] * local).ravel()
@@ -111,8 +99,7 @@ class HalfSpace:
         self.end = ends[-1]
         targets = np.concatenate([[0.0], self.r])
         self.matrix = np.empty((len(targets), len(self.r)))
-        s, v = np.polynomial.legendre.leggauss(40)
-        s, v = (s + 1) / 2, v / 2
+        s, v = gauss(40)
         for panel, (a, b) in enumerate(zip(ends[:-1], ends[1:])):
             columns = slice(panel * order, (panel + 1) * order)
             t = self.r[columns]
@@ -129,7 +116,7 @@ class HalfSpace:
                     offset = side * reach * s**6
                     at = near + offset
                     k = kernel(targets[i], at, abs((near - targets[i]) + offset))
-                    row += (k * 6 * s**5 * v * reach * at) @ lagrange(local, (at - a) / (b - a))
+                    row += (k * 6 * s**5 * v * reach * at) @ lagrange((at - a) / (b - a), order)
                 self.matrix[i, columns] = row
         if image:
             strength, depth = image
