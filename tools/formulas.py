@@ -58,7 +58,6 @@ def _loss(found):
 
 
 def formulas():
-    """Return all formulas of the page, in its order."""
     found = [Formula("pull-off", NAMES[name], _of_contact(name, 0, 0.0))
              for name in ("dmt", "jkr", "maugis", "carpick", "pietrement")]
     for load, title in ((0.0, "without load"), (LOADED, f"under {LOADED:g} πwR")):
@@ -111,7 +110,6 @@ def _short(value):
 
 
 def table(found):
-    """Return the lines of the table."""
     rows = []
     for one in found:
         errors = np.array([one.error(x) for x in one.grid])

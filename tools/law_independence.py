@@ -42,7 +42,6 @@ def pull_offs(law, tabor, accuracy=1e-8):
 
 
 def table():
-    """Return the lines of the table."""
     names = ("by range", "Maugis-Dugdale", *LAWS)
     rows = []
     for tabor in RANGES:

@@ -53,7 +53,6 @@ def picture(name, panels=1, width=6.4):
 
 
 def draw_bell():
-    """Draw pull-off against velocity."""
     with picture("rates_bell.png") as axes:
         for ratio in RATIOS:
             tension = [driven(ratio, v).summary["max_tension"] / (1.5 * math.pi * SIGMA)
@@ -66,7 +65,6 @@ def draw_bell():
 
 
 def draw_cycles():
-    """Draw load against h0 at several velocities."""
     with picture("rates_cycles.png") as axes:
         for velocity in (0.002, 0.2, 2.0, 20.0, 200.0, 2.0e5):
             curve = driven(10.0, velocity).curve
@@ -84,7 +82,6 @@ def off(found, exact):
 
 
 def print_orders():
-    """Print the errors for several numbers of steps."""
     exact = driven(4.0, 8.0, 1e-6)
     for parts in (50, 100, 200, 400, 800, 1600):
         found = driven(4.0, 8.0, 1e-6, time_step=24 / 8.0 / parts)

@@ -30,7 +30,6 @@ class Section(NamedTuple):
 
 
 def sections_of(output):
-    """Return the sections of the program's output."""
     sections = []
     for block in output.strip("\n").split("\n\n"):
         title, meaning, *lines = block.split("\n")
@@ -61,7 +60,6 @@ def keys_as_markdown(sections):
 
 
 def results_as_markdown(sections):
-    """Return every file, column and entry of results."""
     text = ""
     for section in sections:
         of_summary = section.name.startswith("&")

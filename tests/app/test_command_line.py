@@ -144,19 +144,13 @@ def test_one_bad_deck_stops_all_before_anything_is_written(snapin, decks):
     assert files_in(decks) == before
 
 
-@pytest.mark.parametrize("args", [["--out", "here/there"], ["--out=here/there"]])
-def test_out_chooses_another_folder(snapin, decks, args):
+@pytest.mark.parametrize("args, folder", [
+    (["--out", "here/there"], "here/there/good"), (["--out=here/there"], "here/there/good"),
+    (["--into", "here/there"], "here/there"), (["--into=here/there"], "here/there")])
+def test_out_chooses_another_folder_and_into_the_folder_itself(snapin, decks, args, folder):
     done = snapin("--quiet", "sub/good.nml", *args, cwd=decks)
     assert done.returncode == 0, done.stderr
-    assert (decks / "here" / "there" / "good" / "summary.nml").is_file()
-    assert not (decks / "results").exists()
-
-
-@pytest.mark.parametrize("args", [["--into", "here/there"], ["--into=here/there"]])
-def test_into_is_the_folder_itself(snapin, decks, args):
-    done = snapin("--quiet", "sub/good.nml", *args, cwd=decks)
-    assert done.returncode == 0, done.stderr
-    assert (decks / "here" / "there" / "summary.nml").is_file()
+    assert (decks / folder / "summary.nml").is_file()
     assert not (decks / "results").exists()
 
 

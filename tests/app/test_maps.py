@@ -59,8 +59,7 @@ def test_every_combination_is_a_case_and_the_last_key_is_the_fastest(run):
         alone = run(scene(bodies={**BODIES, "stiffness": stiffness},
                           force={**FORCE, "hamaker": hamaker})).summary
         for name in ("max_tension", "jump_in_h0", "end_load", "sigma"):
-            assert table[name][row] == pytest.approx(alone.get(name, np.nan), rel=1e-8,
-                                                     nan_ok=True)
+            assert table[name][row] == pytest.approx(alone.get(name, np.nan), rel=1e-8, nan_ok=True)
     assert set(table["failure"]) == {""}
 
 
@@ -152,8 +151,7 @@ def test_two_threads_leave_the_same_bytes(run):
 def test_two_threads_hardly_wait_for_each_other(snapin_path, tmp_path):
     """1,200 cases are done nearly twice as fast where there are two cores: what counts is the time
     that threads compute or ask for a core, however many others there are."""
-    (tmp_path / "d.nml").write_text(scene({
-        **GRID, "from": [1e8, 1e-20], "count": [40, 30]}))
+    (tmp_path / "d.nml").write_text(scene({**GRID, "from": [1e8, 1e-20], "count": [40, 30]}))
     began, busy = time.monotonic(), {}
     with subprocess.Popen([snapin_path, "--quiet", "d.nml"], cwd=tmp_path,
                           env=dict(os.environ, OMP_NUM_THREADS="2")) as run:

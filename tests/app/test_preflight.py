@@ -53,8 +53,7 @@ def test_check_says_what_does_not_fit_and_what_fills_the_disk(snapin, tmp_path):
     (tmp_path / "long.nml").write_text(
         lennard_jones(0.87, loading=loading(4, -2, 1e-6), unloading={}))
     (tmp_path / "short.nml").write_text(SMALL)
-    done = snapin("--check", "large.nml", "long.nml", "short.nml", cwd=tmp_path,
-                  preexec_fn=LITTLE)
+    done = snapin("--check", "large.nml", "long.nml", "short.nml", cwd=tmp_path, preexec_fn=LITTLE)
     assert done.returncode == 0
     assert "large.nml: not computed: matrices for 20000 nodes" in done.stderr
     size = re.search(r"long\.nml: its results take about ([\d.]+) GB on the disk", done.stderr)

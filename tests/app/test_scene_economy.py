@@ -12,7 +12,6 @@ PLAIN = {"loading": loading(8, -2, 0.25)}
 
 
 def counts(result):
-    """The counters of a run."""
     return {name: result.cost[name] for name in COUNTERS}
 
 

@@ -55,7 +55,7 @@ PATH = {"h0_end": -1.0}
 
 def dense(image=None):
     """H0 and loads at AXIS, of the folds, and where a drive behind the spring turns."""
-    return path_by_axis("lennard_jones", SIGMA, AXIS, ENDS, image, softness=(0.0, SOFTNESS))
+    return path_by_axis(SIGMA, AXIS, ENDS, image=image, softness=(0.0, SOFTNESS))
 
 
 def test_no_image_is_the_half_space(run):

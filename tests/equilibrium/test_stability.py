@@ -91,7 +91,6 @@ def agrees(result, sigma, least):
 
 
 def lowest(half_space, gap, sigma):
-    """The lowest eigenvalue of the operator at these gaps."""
     slope = 8 * (gap**-4 - 3 * gap**-10)
     return np.linalg.eigvals(
         np.eye(len(gap)) - 2 * sigma * half_space.matrix[1:] * slope).real.min()

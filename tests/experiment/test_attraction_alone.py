@@ -5,7 +5,7 @@ import math
 
 import numpy as np
 import pytest
-from support.half_space import path_by_axis
+from support.half_space import path_by_axis, sticky
 from support.scenes import deck
 
 RADIUS = 1e-6
@@ -72,7 +72,7 @@ def test_the_folds_at_a_barrier_are_those_of_dense_states(run):
         equilibrium_path={"h0_end": -2e-9}, numerics={"accuracy": 1e-8})).summary
     # In units of 1 nm and 10 MPa, the attraction's stress over two.
     softness = 1e7 * math.sqrt(1.5e-2 / 1e-9) / 1e10
-    _, folds = path_by_axis("sticky", softness, AXIS, ENDS)
+    _, folds = path_by_axis(softness, AXIS, ENDS, sticky)
     h0 = 1e9 * np.sort(summary["folds_h0"])
     assert h0 == pytest.approx(np.sort(folds[0]), abs=1e-6)
     unit = 2 * math.pi * 1.5e-2 * 1e7 * 1e-9

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from support.half_space import lennard_jones as lennard_jones_law
+from support.half_space import exponential as exponential_law
 from support.half_space import path_by_axis
 from support.scenes import JKR, deck, exponential, lennard_jones, loading, several
 
@@ -26,7 +27,7 @@ def fig1(**numerics):
 def test_fig1_exponential_is_that_of_an_independent_solution(run):
     axis, big_lambda = np.linspace(10, 4.34, 60), 2.5e8 / 1e10 * np.sqrt(1.5e-2 / 0.2e-9)
     ((all_h0, loads),) = path_by_axis(
-        "exponential", big_lambda, tuple(axis), tuple(np.linspace(0, 13, 27)), softness=())
+        big_lambda, tuple(axis), tuple(np.linspace(0, 13, 27)), exponential_law, softness=())
     assert all_h0[-1] < -75
     for k in (30, 45, -1):
         h0 = float(all_h0[k])

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from support.scenes import deck, lennard_jones, loading, several
+from support.scenes import deck, lennard_jones, loading, path_of, several
 
 # The first scene: the table that an independent splining of a path of accuracy 1e-8 gave. Position
 # of the drive [nm], load before and after [uN], of the jumps in and out, and energy lost [J].
@@ -206,11 +206,8 @@ def test_jumps_of_stiff_springs_have_the_errors_of_their_own_turns(run, stiffnes
 def test_a_spring_lets_go_outside_a_capillary_bridge(run, shape):
     """The largest pull of a sphere was once looked for behind the wall, at separations below zero,
     where it was found: the drive went to 1e159 m."""
-    found = run(deck(
-        bodies={"radius": 1.5e-2, "stiffness": 2.6e13}, capillary={"humidity": 0.37},
-        force={"law": "lennard_jones", "hamaker": 1e-19, "z0": 0.5e-9},
-        shape={"kind": shape} if shape else None, equilibrium_path={"h0_end": -1.2e-9},
-        device={"stiffness": [2e6]}))
+    found = run(path_of(2.6e13, -1.2e-9, capillary={"humidity": 0.37},
+                        shape={"kind": shape} if shape else None, device={"stiffness": [2e6]}))
     assert not found.warnings
     assert numbers(found, "jump_out_z")[0] == pytest.approx(4.7550698e-9, rel=1e-6)
 
@@ -218,11 +215,9 @@ def test_a_spring_lets_go_outside_a_capillary_bridge(run, shape):
 @pytest.mark.parametrize("exponent", [2.05, 2.4, 2.765, 2.95])
 def test_the_energy_of_a_force_that_falls_slowly_is_the_area_of_the_loop(run, exponent):
     """Most of the energy of the force lies far outside, where it falls as r^-2 or slower."""
-    found = run(deck(
-        bodies={"radius": 1.9e-3, "stiffness": 3.75e9},
-        force={"law": "lennard_jones", "surface_energy": 0.005, "z0": 5e-10,
-               "exponents": [9.0, exponent]},
-        equilibrium_path={"h0_end": -6.8e-9}, device={"stiffness": [1e9]})).summary
+    force = {"surface_energy": 0.005, "z0": 5e-10, "exponents": [9.0, exponent]}
+    found = run(path_of(3.75e9, -6.8e-9, radius=1.9e-3, force={"law": "lennard_jones", **force},
+                        device={"stiffness": [1e9]})).summary
     assert found["device_energy_lost"] == pytest.approx(found["device_cycle_energy"], rel=1e-6)
     assert found["device_energy_lost_error"] < 2e-5 * found["device_energy_lost"]
 
@@ -231,10 +226,7 @@ def test_the_energy_of_a_force_that_falls_slowly_is_the_area_of_the_loop(run, ex
 def test_the_energy_of_spheres_is_the_area_of_the_loop(run, stiffness, liquid):
     """It was counted from that of undeformed bodies near contact, which no mesh resolves: the
     energy lost was off by 0.1 % to many times itself, without a warning but beside &device."""
-    found = run(deck(
-        bodies={"radius": 1.5e-2, "stiffness": stiffness}, shape={"kind": "sphere"},
-        force={"law": "lennard_jones", "hamaker": 1e-19, "z0": 0.5e-9}, capillary=liquid,
-        equilibrium_path={"h0_end": -3e-9}, device={}))
+    found = run(path_of(stiffness, -3e-9, shape={"kind": "sphere"}, capillary=liquid, device={}))
     assert not found.warnings
     lost = found.summary["device_cycle_energy"]
     assert found.summary["energy_lost"] == pytest.approx(lost, rel=1e-6)

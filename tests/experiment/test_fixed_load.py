@@ -2,13 +2,12 @@
 
 import numpy as np
 import pytest
-from support.scenes import deck, lennard_jones, loading, several
+from support.scenes import deck, lennard_jones, loading, path_of, several
 
 SIGMA = 0.87
 
 
 def under(*loads, sigma=SIGMA, **groups):
-    """A deck that asks for the equilibria under some loads."""
     return lennard_jones(sigma, equilibrium_path={"h0_end": -2.0},
                          fixed_load={"load": [float(load) for load in loads]}, **groups)
 
@@ -55,11 +54,10 @@ def test_a_faint_tension_is_met_by_undeformed_bodies(run):
 def test_a_load_that_fades_by_orders_of_magnitude_has_its_own_zeros_alone(run):
     """Outside a step a repulsion of short range fades far out: the bodies have no equilibria under
     no load there, no outer well, and a dead load holds them up to the barrier."""
-    found = run(deck(
-        bodies={"radius": 1.0, "stiffness": 2.5},
-        dugdale={"stress": 1.0, "range": 1.0, "smoothing": 0.02},
-        hydration={"pressure": 20.0, "decay_length": 0.07}, equilibrium_path={"h0_end": -4.0},
-        fixed_load={"load": [0.0]}, device={"stiffness": [0.0]}))
+    found = run(path_of(2.5, -4.0, radius=1.0, force=None,
+                        dugdale={"stress": 1.0, "range": 1.0, "smoothing": 0.02},
+                        hydration={"pressure": 20.0, "decay_length": 0.07},
+                        fixed_load={"load": [0.0]}, device={"stiffness": [0.0]}))
     table = found.table("fixed_load.csv")
     assert list(table["stable"]) == [0, 1]
     assert not any(key.startswith("secondary") for key in found.summary)
@@ -84,20 +82,16 @@ def test_a_load_that_underflows_far_out_is_no_state_without_load(run, groups):
     ({"device": {"stiffness": [10.0], "z_end": -3e-6}}, "the slope at the contact's edge is 0.36")])
 def test_states_far_beyond_the_end_of_the_path_are_judged_too(run, groups, warned):
     """The path ends at a nanometre; a contact wider than the radius had no warning."""
-    found = run(deck(
-        bodies={"radius": 1e-6, "stiffness": 1e9},
-        force={"law": "lennard_jones", "hamaker": 1e-19, "z0": 0.4e-9},
-        equilibrium_path={"h0_end": -1e-9}, **groups))
+    found = run(path_of(1e9, -1e-9, radius=1e-6,
+                        force={"law": "lennard_jones", "hamaker": 1e-19, "z0": 0.4e-9}, **groups))
     assert warned in str(found.summary["warnings"])
 
 
 def test_states_that_no_drive_reaches_are_not_judged(run):
     """The last step of the path goes beyond its end, farther with less accuracy."""
-    widest = [run(deck(
-        bodies={"radius": 1e-6, "stiffness": 1e9},
-        force={"law": "lennard_jones", "hamaker": 1e-19, "z0": 0.4e-9},
-        equilibrium_path={"h0_end": -1e-9}, numerics={"accuracy": accuracy},
-        **groups)).summary["contact_over_radius"]
+    widest = [run(path_of(1e9, -1e-9, accuracy, radius=1e-6,
+                          force={"law": "lennard_jones", "hamaker": 1e-19, "z0": 0.4e-9},
+                          **groups)).summary["contact_over_radius"]
         for accuracy in (1e-4, 1e-6) for groups in ({}, {"device": {"stiffness": 10.0}})]
     assert widest == pytest.approx(4 * [widest[0]], rel=1e-4)
 
@@ -107,10 +101,9 @@ def test_states_beyond_the_points_of_files_have_a_warning(run, tmp_path):
     np.savetxt(tmp_path / "r.txt", np.column_stack([r, r**2 / 2e-6]))
     pressure = 1e-19 / (6 * np.pi * h**3) * ((4e-10 / h)**6 - 1)
     np.savetxt(tmp_path / "h.txt", np.column_stack([h, pressure]), "%.15e")
-    found = run(deck(
-        bodies={"stiffness": 1e9}, shape={"kind": "profile", "file": str(tmp_path / "r.txt")},
-        tabulated={"file": str(tmp_path / "h.txt"), "tail_exponent": 3},
-        equilibrium_path={"h0_end": -3e-8}, numerics={"accuracy": 1e-3}))
+    found = run(path_of(1e9, -3e-8, 1e-3, radius=None, force=None,
+                        shape={"kind": "profile", "file": str(tmp_path / "r.txt")},
+                        tabulated={"file": str(tmp_path / "h.txt"), "tail_exponent": 3}))
     warnings = str(found.summary["warnings"])
     assert "the contact reaches 1.87e-7 m" in warnings
     assert "gaps are down to 3.79e-10 m" in warnings

@@ -9,7 +9,7 @@ import math
 
 import pytest
 from support.calculus import zero
-from support.scenes import deck, lennard_jones, several
+from support.scenes import agreeing, deck, lennard_jones, path_of, several
 
 # Pull-off over pi R w of Maugis' theory (1992), from a solver of its own.
 MAUGIS = {0.3: 1.815556, 1.0: 1.600735, 2.0: 1.534603}
@@ -117,11 +117,7 @@ def test_step_outside_a_stronger_attraction(run):
 
 def bridge(humidity, stiffness, h0_end, accuracy):
     """A deck with the path of bodies with a liquid bridge beside their Lennard-Jones force [SI]."""
-    return deck(
-        bodies={"radius": 1.5e-2, "stiffness": stiffness},
-        force={"law": "lennard_jones", "hamaker": 1e-19, "z0": 5e-10},
-        capillary={"humidity": humidity}, equilibrium_path={"h0_end": h0_end},
-        numerics={"accuracy": accuracy})
+    return path_of(stiffness, h0_end, accuracy, capillary={"humidity": humidity})
 
 
 @pytest.mark.parametrize(
@@ -130,15 +126,14 @@ def bridge(humidity, stiffness, h0_end, accuracy):
 def test_bridges_between_soft_bodies_are_followed_into_contact(run, humidity, stiffness, h0_end):
     """Where the step lies outside the edge of a contact drawn out far is not foreseen by any
     theory of it; these paths once were lost."""
-    coarse, fine = (
-        check(run(bridge(humidity, stiffness, h0_end, accuracy)), accuracy)
-        for accuracy in (1e-3, 1e-5)
-    )
+    coarse, fine = agreeing(
+        run, lambda accuracy: bridge(humidity, stiffness, h0_end, accuracy), (1e-3, 1e-5),
+        ("max_tension", "jump_in_h0", "jump_in_load", "jump_out_h0", "jump_out_load"))
+    check(coarse, 1e-3)
+    fine = check(fine, 1e-5)
     assert 4 < fine["sigma"] < 13
     # Between JKR's and a third more, nearer to it the stronger the adhesion.
     assert 1 < fine["max_tension"] / fine["jkr_pull_off"] < 1 + 0.2 / fine["sigma"]
-    for key in ("max_tension", "jump_in_h0", "jump_in_load", "jump_out_h0", "jump_out_load"):
-        assert coarse[key] == pytest.approx(fine[key], rel=1e-3)
 
 
 def test_mesh_has_short_panels_only_where_the_step_is(run):
@@ -220,10 +215,8 @@ def test_the_edge_of_a_contact_passes_the_rim_of_a_punch(run):
 
 def test_a_tip_does_not_make_meshes_grow_where_it_does_not_help(run):
     # The panel on the axis was halved again and again: 3,008 nodes, and 9 seconds.
-    found = run(deck(
-        bodies={"stiffness": 1e7}, shape={"kind": "cone", "half_angle": 1.2217},
-        force={"law": "lennard_jones", "hamaker": 1e-19, "z0": 0.5e-9},
-        equilibrium_path={"h0_end": -100e-9}, numerics={"accuracy": 1e-9}))
+    found = run(path_of(1e7, -100e-9, 1e-9, radius=None,
+                        shape={"kind": "cone", "half_angle": 1.2217}))
     assert found.cost["nodes"] < 1500
     assert found.summary["error_estimate"] < 3e-9
 
@@ -270,34 +263,30 @@ def test_a_step_outside_a_well_is_followed(run, share, reach, sigma):
         # In units of the well's length; bodies so large that their strains are small.
         radius = 1e6
         gamma = sigma / math.sqrt(radius)
-        return run(lennard_jones(
+        return lennard_jones(
             gamma, bodies={"radius": radius, "stiffness": 1.0},
             dugdale={"stress": 1.026 * gamma * share / (1 - share), "range": reach},
-            equilibrium_path={"h0_end": -5.0 - 5 * sigma}, numerics={"accuracy": accuracy}))
+            equilibrium_path={"h0_end": -5.0 - 5 * sigma}, numerics={"accuracy": accuracy})
 
-    found, finer = (check(path(accuracy), accuracy) for accuracy in (1e-5, 1e-7))
-    for name in ("folds_h0", "max_tension", "end_load"):
-        near, exact = (several(summary[name]) for summary in (found, finer))
-        assert near == pytest.approx(exact, rel=1e-5), name
+    for one, accuracy in zip(
+            agreeing(run, path, (1e-5, 1e-7), ("folds_h0", "max_tension", "end_load")),
+            (1e-5, 1e-7)):
+        check(one, accuracy)
 
 
 EASILY_MISSED = {
     "a tiny contact in a wide hydration force": (57003128.5, -2.537e-11, {
-        "force": {"law": "lennard_jones", "hamaker": 1e-19, "z0": 5e-10},
         "hydration": {"energy": 0.0060939, "decay_length": 8.297e-10}}),
     "a wide hydration force and few folds": (315094422.0, -8.821e-11, {
-        "force": {"law": "lennard_jones", "hamaker": 1e-19, "z0": 5e-10},
         "hydration": {"energy": 0.0091518, "decay_length": 9.526e-10}}),
     "a tiny contact in a double layer": (23443826.7, -1.244e-10, {
-        "van_der_waals": {"hamaker": 1e-19, "retardation_length": 8.347e-8},
+        "force": None, "van_der_waals": {"hamaker": 1e-19, "retardation_length": 8.347e-8},
         "born": {"hamaker": 1e-19, "z0": 4.286e-10},
         "double_layer": {"potential": -0.08986, "regulation": 0.7368, "salt": 0.14068,
                          "valence": 1}}),
     "a weak step far outside": (411123179.0, -3.548e-9, {
-        "force": {"law": "lennard_jones", "hamaker": 1e-19, "z0": 5e-10},
         "depletion": {"osmotic_pressure": 1e5, "diameter": 4.577e-9}}),
     "a weak step around hard bodies": (3.44e13, -8e-11, {
-        "force": {"law": "lennard_jones", "hamaker": 1e-19, "z0": 5e-10},
         "depletion": {"osmotic_pressure": 1e5, "diameter": 3.208e-9}}),
 }
 
@@ -307,20 +296,10 @@ def test_no_fold_is_made_by_the_mesh(run, scene):
     """Nodes that miss a weak step, or features far outside a tiny contact, make folds that bodies
     do not have, and the stability of all later states depends on them."""
     stiffness, h0_end, forces = EASILY_MISSED[scene]
-
-    def path(accuracy):
-        found = run(deck(
-            bodies={"radius": 0.015, "stiffness": stiffness}, **forces,
-            equilibrium_path={"h0_end": h0_end}, numerics={"accuracy": accuracy}))
-        assert all(said.startswith("beyond the model") for said in found.warnings)
-        return found.summary
-
-    exact = path(1e-7)
-    for accuracy in (8e-4, 1e-4, 1e-5):
-        found = path(accuracy)
-        for name in ("max_tension", "folds_h0", "end_load"):
-            assert several(found.get(name, [])) == pytest.approx(
-                several(exact.get(name, [])), rel=1.2 * accuracy), (accuracy, name)
+    runs = agreeing(run, lambda accuracy: path_of(stiffness, h0_end, accuracy, **forces),
+                    (8e-4, 1e-4, 1e-5, 1e-7), ("max_tension", "end_load"),
+                    lambda accuracy: 1.2 * accuracy, ["folds_h0"])
+    assert not any(one.warnings for one in runs)
 
 
 @pytest.mark.parametrize("accuracy", [1e-4, 3e-6, 1e-6, 1e-8])

@@ -6,7 +6,7 @@ import subprocess
 import numpy as np
 import pytest
 from support.processes import HANG
-from support.scenes import deck, lennard_jones, loading, several
+from support.scenes import deck, lennard_jones, loading, path_of, several
 
 # Strength of adhesion, accuracy, stiffness over sigma, load over sigma.
 SCENES = [(0.02, 1e-4, 0.3, -1.0), (0.87, 1e-5, 3.0, 2.0), (8.7, 1e-6, 0.05, -3.0),
@@ -151,11 +151,9 @@ def test_a_landing_of_undeformed_bodies_is_as_uncertain_as_the_jump(run):
     """The load after the jump was given to rounding."""
     loads = {}
     for accuracy in (1e-3, 1e-9):
-        found = run(deck(
-            bodies={"radius": 1e-6, "stiffness": 1e10},
-            force={"law": "lennard_jones", "surface_energy": 0.05, "z0": 0.5e-9},
-            equilibrium_path={"h0_end": -2e-9}, device={"stiffness": [0.1, 1.0, 10.0]},
-            numerics={"accuracy": accuracy})).summary
+        found = run(path_of(1e10, -2e-9, accuracy, radius=1e-6,
+                            force={"law": "lennard_jones", "surface_energy": 0.05, "z0": 0.5e-9},
+                            device={"stiffness": [0.1, 1.0, 10.0]})).summary
         loads[accuracy] = np.array(found["device_jump_out_load_after"])
         if accuracy > 1e-6:
             allowed = np.array(found["device_jump_out_load_after_error"])

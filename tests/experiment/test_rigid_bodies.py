@@ -7,6 +7,7 @@ import pytest
 import snapin
 from conftest import ROOT
 from support import derjaguin
+from support.calculus import integrals
 from support.laws import LAWS, TABLE
 from support.scenes import deck, lennard_jones, loading, several
 
@@ -28,7 +29,6 @@ STEPS = {"h0_start": 2.3e-8, "h0_end": 0.27e-9, "h0_step": 2.6e-9}
 
 
 def rigid(law, body, **groups):
-    """A deck of a law and a body."""
     return deck(**body.groups, **law, **groups)
 
 
@@ -68,10 +68,7 @@ def test_the_tail_of_a_force_that_falls_slowly_is_integrated_to_its_end(run, exp
     law = {"tabulated": {"file": TABLE, "tail_exponent": exponent}}
     gap, h0, half_angle = np.loadtxt(TABLE)[:, 0], 4e-10, 1.2
     ends = np.concatenate([[h0], gap[gap > h0]])
-    x, w = np.polynomial.legendre.leggauss(20)
-    h = ends[:-1, None] + np.diff(ends)[:, None] * (x + 1) / 2
-    p = snapin.force_law(law, h.ravel()).pressure.reshape(h.shape)
-    exact = np.diff(ends) @ ((p * (h - h0)) @ (w / 2))
+    exact = integrals(lambda h: snapin.force_law(law, h).pressure * (h - h0), ends)[0].sum()
     last, a = snapin.force_law(law, gap[-1:]).pressure[0], gap[-1]
     exact += last * a**2 * (1 / (exponent - 2) - h0 / a / (exponent - 1))
     exact *= 2 * math.pi * math.tan(half_angle) ** 2

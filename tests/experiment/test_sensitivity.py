@@ -6,7 +6,7 @@ import re
 
 import numpy as np
 import pytest
-from support.scenes import changed, deck, lennard_jones, several, value_in
+from support.scenes import changed, deck, lennard_jones, path_of, several, value_in
 
 LAW = {"law": "lennard_jones", "hamaker": 1.0e-20, "z0": 0.5e-9}
 PARABOLA = {"radius": 1.5e-2, "stiffness": 1.0e10}
@@ -16,7 +16,6 @@ READ = {
 
 
 def derivatives(found, kind="logarithmic"):
-    """Derivatives by quantity and parameter."""
     table = found.table("sensitivity.csv")
     by_quantity = {}
     for quantity, parameter, value in zip(table["quantity"], table["parameter"], table[kind]):
@@ -75,10 +74,9 @@ def test_rigid_and_jkr_limits_have_the_powers_of_their_theories(run):
 def test_derivatives_for_other_shapes_obey_the_dimensions_too(run, shape, lengths):
     """Loads are w times a length, and what has no dimension depends on w/(E L)."""
     lengths = [f"shape.{name}" for name in lengths] + ["morse.z0", "morse.decay_length"]
-    found = derivatives(run(deck(
-        bodies={"stiffness": 5e7}, shape=shape,
+    found = derivatives(run(path_of(
+        5e7, -2e-9, 1e-4, radius=None, force=None, shape=shape,
         morse={"surface_energy": 0.05, "z0": 0.3e-9, "decay_length": 0.2e-9},
-        equilibrium_path={"h0_end": -2e-9}, numerics={"accuracy": 1e-4},
         sensitivity={"parameters": [*lengths, "bodies.stiffness", "morse.surface_energy"]})))
     for quantity in ("max_tension", "max_tension_h0", "jump_in_h0", "jump_out_h0"):
         rate = found[quantity]
@@ -202,10 +200,9 @@ def test_derivatives_hold_where_the_problem_depends_steeply_on_the_parameter(run
 
 def test_a_default_follows_the_number_whatever_else_is_named(run):
     """The Hamaker constant of &born is that of &van_der_waals unless the deck has it."""
-    rates = [derivatives(run(deck(
-        bodies={"radius": 1e-6, "stiffness": 1e10}, van_der_waals={"hamaker": 1e-20},
-        born={"z0": 0.3e-9}, equilibrium_path={"h0_end": -3e-9},
-        sensitivity={"parameters": ["van_der_waals.hamaker", *more]})))
+    rates = [derivatives(run(path_of(1e10, -3e-9, radius=1e-6, force=None,
+                                     van_der_waals={"hamaker": 1e-20}, born={"z0": 0.3e-9},
+                                     sensitivity={"parameters": ["van_der_waals.hamaker", *more]})))
         for more in ([], ["born.hamaker"])]
     for quantity in ("max_tension", "rest_gap"):
         alone, beside = (rate[quantity]["van_der_waals.hamaker"] for rate in rates)
@@ -260,11 +257,10 @@ def test_nothing_else_changes(run):
 @pytest.mark.parametrize("accuracy", [1e-5, 1e-8])
 def test_the_curve_has_no_derivative_at_its_folds(run, accuracy):
     """Some rows of folds had the inverse of a rounding error."""
-    found = run(deck(
-        bodies={"radius": 1.5e-2, "stiffness": 4.04e9}, numerics={"accuracy": accuracy},
-        van_der_waals={"hamaker": 1e-19, "retardation_length": 98e-9},
-        born={"hamaker": 1e-19, "z0": 4.63e-10}, equilibrium_path={"h0_end": -2.4e-9},
-        sensitivity={"parameters": ["bodies.stiffness"]}))
+    found = run(path_of(4.04e9, -2.4e-9, accuracy, force=None,
+                        van_der_waals={"hamaker": 1e-19, "retardation_length": 98e-9},
+                        born={"hamaker": 1e-19, "z0": 4.63e-10},
+                        sensitivity={"parameters": ["bodies.stiffness"]}))
     table, folds = found.table("curve_sensitivity.csv"), np.array(found.summary["folds_h0"])
     at_fold = abs(table["h0"][:, None] / folds - 1).min(axis=1) < 1e-14
     assert at_fold.sum() == folds.size

@@ -4,21 +4,9 @@ import math
 
 import numpy as np
 import pytest
-from support.measured import (
-    BODIES,
-    CONTACT_POINT,
-    LENNARD_JONES,
-    POINT,
-    SPRING,
-    STIFFNESS,
-    STRENGTH,
-    Branches,
-    branches,  # noqa: F401
-    fit_deck,
-    run,
-    states_of_device,
-    write,
-)
+from support.measured import (  # noqa: F401 (`branches` is a fixture)
+    BODIES, CONTACT_POINT, LENNARD_JONES, POINT, SPRING, STIFFNESS, STRENGTH, Branches, branches,
+    fit_deck, fitted, run, states_of_device, write)
 from support.scenes import changed
 
 # A noise that data without any are said to have, so that the sum of squares has a scale.
@@ -34,17 +22,13 @@ SCENES = {
         {"bodies": BODIES, "morse": {"surface_energy": 0.03, "z0": 3e-10, "decay_length": 2e-10}},
         {"morse.surface_energy": 0.03, "morse.decay_length": 2e-10, STIFFNESS: 1e10}),
     "sum": (
-        {
-            "bodies": {"radius": 50e-9, "stiffness": 1e10}, "van_der_waals": {"hamaker": 1e-19},
-            "born": {"z0": 3e-10}, "hydration": {"energy": 2e-3, "decay_length": 3e-10}},
-        {"van_der_waals.hamaker": 1e-19, STIFFNESS: 1e10},
-    ),
+        {"bodies": BODIES, "van_der_waals": {"hamaker": 1e-19}, "born": {"z0": 3e-10},
+         "hydration": {"energy": 2e-3, "decay_length": 3e-10}},
+        {"van_der_waals.hamaker": 1e-19, STIFFNESS: 1e10}),
     "double layer": (
-        {"bodies": {"radius": 50e-9, "stiffness": 1e10},
-         "van_der_waals": {"hamaker": 1e-19}, "born": {"z0": 3e-10},
+        {"bodies": BODIES, "van_der_waals": {"hamaker": 1e-19}, "born": {"z0": 3e-10},
          "double_layer": {"potential": 0.05, "regulation": 0.4, "debye_length": 2e-9}},
-        {"double_layer.potential": 0.05, "double_layer.debye_length": 2e-9},
-    ),
+        {"double_layer.potential": 0.05, "double_layer.debye_length": 2e-9}),
     "power": (
         {"bodies": {"stiffness": 1e10},
          "shape": {"kind": "power", "exponent": 3.0, "radius": 50e-9},
@@ -114,18 +98,17 @@ def test_errors_are_those_of_the_profile_of_the_sum_of_squares(branches, tmp_pat
     """With one value held a little off, the others found again, chi squared is the square of how
     many standard errors it is off: the Jacobian and what is made of it are right together."""
     truth = SCENES["lennard_jones"][1]
-    file = write(tmp_path / "a.csv", *branches.measure(300))
-    quiet = {"noise": 1e-11}
+    curve, quiet = branches.measure(300), {"noise": 1e-11}
     accurate = {"numerics": {"accuracy": 1e-8}}
-    free = run(fit_deck(LENNARD_JONES, file, [*truth, POINT], quiet, **accurate))
+    free = fitted(tmp_path, curve, LENNARD_JONES, [*truth, POINT], quiet, **accurate)
     for key in truth:
         others = [name for name in (*truth, POINT) if name != key]
         gained = []
         # On either side: the model is not linear, which shows in the difference of the two.
         for off in (-0.5, 0.5):
             value = values_of(free)[key] + off * errors_of(free)[key]
-            held = run(fit_deck(changed(LENNARD_JONES, {key: value}), file, others, quiet,
-                                **accurate)).fitted["fit"]
+            held = fitted(tmp_path, curve, changed(LENNARD_JONES, {key: value}), others, quiet,
+                          **accurate).fitted["fit"]
             gained.append(held["chi_squared"][0] - free.fitted["fit"]["chi_squared"][0])
         assert np.mean(gained) == pytest.approx(0.25, rel=0.01)
 
@@ -136,9 +119,8 @@ def test_errors_and_correlations_are_those_of_differences_between_curves(branche
     truth = SCENES["lennard_jones"][1]
     noise = 1e-11
     z, force, segment = branches.measure(150)
-    file = write(tmp_path / "a.csv", z, force, segment)
-    result = run(fit_deck(LENNARD_JONES, file, [*truth, POINT], {"noise": noise},
-                          numerics={"accuracy": 1e-8}))
+    result = fitted(tmp_path, (z, force, segment), LENNARD_JONES, [*truth, POINT],
+                    {"noise": noise}, numerics={"accuracy": 1e-8})
     inward, used = segment == 0, result.fit["used"] == 1
 
     def model(groups, curve, shift=0.0):
@@ -225,10 +207,8 @@ def test_conventions_do_not_matter(branches, tmp_path):
 
 @pytest.mark.parametrize("segment", ["approach", "retreat"])
 def test_one_way_alone_can_be_fitted(branches, tmp_path, segment):
-    z, force, segments = branches.measure(400, noise=2e-12)
-    file = write(tmp_path / "a.csv", z, force, segments)
-    result = run(fit_deck(LENNARD_JONES, file, [STRENGTH, POINT],
-                          measurement={"segment": segment}))
+    result = fitted(tmp_path, branches.measure(400, noise=2e-12), LENNARD_JONES, [STRENGTH, POINT],
+                    measurement={"segment": segment})
     assert set(result.fit["direction"]) == {segment}
     assert abs(values_of(result)[STRENGTH] - 1e-19) < 5 * errors_of(result)[STRENGTH]
 
@@ -238,10 +218,8 @@ def test_intervals_hold_what_they_say(branches, tmp_path):
     hundreds."""
     off = []
     for seed in range(6):
-        z, force, segment = branches.measure(150, noise=2e-11, seed=seed)
-        file = write(tmp_path / f"{seed}.csv", z, force, segment)
-        result = run(fit_deck(LENNARD_JONES, file, [STRENGTH, STIFFNESS, POINT],
-                              numerics={"accuracy": 1e-5}))
+        result = fitted(tmp_path, branches.measure(150, noise=2e-11, seed=seed), LENNARD_JONES,
+                        [STRENGTH, STIFFNESS, POINT], numerics={"accuracy": 1e-5})
         for key, truth in ((STRENGTH, 1e-19), (STIFFNESS, 1e10), (POINT, 0.0)):
             off.append((values_of(result)[key] - truth) / errors_of(result)[key])
     # 18 numbers, in threes correlated: their square has mean 1 and a standard deviation below 0.5.
@@ -255,11 +233,8 @@ def test_correlated_noise_is_seen_and_makes_errors_larger(branches, tmp_path):
     red = np.zeros_like(white)
     for i in range(1, len(z)):
         red[i] = 0.7 * red[i - 1] + math.sqrt(1 - 0.7**2) * white[i]
-    results = [
-        run(fit_deck(LENNARD_JONES, write(tmp_path / name, z, force + noise, segment),
-                     [STRENGTH, POINT]))
-        for name, noise in (("white.csv", white), ("red.csv", red))
-    ]
+    results = [fitted(tmp_path, (z, force + noise, segment), LENNARD_JONES, [STRENGTH, POINT])
+               for noise in (white, red)]
     fits = [result.fitted["fit"] for result in results]
     assert abs(fits[0]["noise_correlation"][0]) < 0.15
     assert fits[1]["noise_correlation"][0] == pytest.approx(0.7, abs=0.1)
@@ -286,10 +261,8 @@ def test_sensitivity_and_spring_are_found_with_what_is_known_of_them(exact):
 
 
 def test_what_cannot_be_told_apart_is_said(branches, tmp_path):
-    z, force, segment = branches.measure(300, noise=2e-11)
-    file = write(tmp_path / "a.csv", z, force, segment)
-    result = run(fit_deck(LENNARD_JONES, file, [STRENGTH, "force.z0", "bodies.radius", STIFFNESS,
-                                                POINT]))
+    result = fitted(tmp_path, branches.measure(300, noise=2e-11), LENNARD_JONES,
+                    [STRENGTH, "force.z0", "bodies.radius", STIFFNESS, POINT])
     assert any("cannot be told" in text for text in result.summary["warnings"])
     assert result.fitted["fit"]["identifiable"][0] < 0.05
 
@@ -299,7 +272,7 @@ def test_a_number_that_the_data_do_not_determine_is_named_without_a_factor(tmp_p
     stiff = changed(LENNARD_JONES, {STIFFNESS: 1e13})
     curve = Branches(stiff, h0_end=2e-10).measure(300, noise=1e-10)
     keys = [STRENGTH, STIFFNESS, "bodies.radius"]
-    result = run(fit_deck(stiff, write(tmp_path / "a.csv", *curve), [*keys, POINT]))
+    result = fitted(tmp_path, curve, stiff, [*keys, POINT])
     told = result.summary["warnings"]
     for key in keys:
         assert f"fit: the data do not determine {key}; fix it, or give a prior" in told
@@ -307,12 +280,9 @@ def test_a_number_that_the_data_do_not_determine_is_named_without_a_factor(tmp_p
 
 
 def test_a_bound_that_decides_is_said(branches, tmp_path):
-    z, force, segment = branches.measure(300, noise=2e-11)
-    file = write(tmp_path / "a.csv", z, force, segment)
-    deck = fit_deck(LENNARD_JONES, file, [STIFFNESS, POINT],
+    result = fitted(tmp_path, branches.measure(300, noise=2e-11),
+                    changed(LENNARD_JONES, {STIFFNESS: 5e9}), [STIFFNESS, POINT],
                     {"lower": [1e9, -1e-8], "upper": [9e9, 1e-8]})
-    deck["bodies"] = {**BODIES, "stiffness": 5e9}
-    result = run(deck)
     assert values_of(result)[STIFFNESS] == pytest.approx(9e9, rel=1e-3)
     assert any("touches upper" in text for text in result.summary["warnings"])
 
@@ -333,13 +303,12 @@ def test_jkr_data_give_the_values_of_jkr_back_and_the_path_agrees(tmp_path):
     work, stiffness, radius = 0.05, 1e8, 100e-9
     z, load = jkr_curve(work, stiffness, radius, SPRING, 150)
     far = np.linspace(z[-1] + 1e-9, z[-1] + 60e-9, 100)
-    file = write(tmp_path / "jkr.csv", np.append(z, far), np.append(load, 0 * far))
     groups = {
         "bodies": {"radius": radius, "stiffness": 1.2e8},
         "force": {"law": "lennard_jones", "surface_energy": 0.06, "z0": 2e-10}}
-    result = run(fit_deck(groups, file, ["force.surface_energy", STIFFNESS, POINT],
-                          {"noise": 1e-12},
-                          {"columns": ["z", "force"], "segment": "retreat"}))
+    result = fitted(tmp_path, (np.append(z, far), np.append(load, 0 * far)), groups,
+                    ["force.surface_energy", STIFFNESS, POINT], {"noise": 1e-12},
+                    measurement={"columns": ["z", "force"], "segment": "retreat"})
     jkr = values_of(result, "jkr")
     assert jkr["work_of_adhesion"] == pytest.approx(work, rel=1e-6)
     assert jkr["stiffness"] == pytest.approx(stiffness, rel=1e-6)

@@ -6,18 +6,8 @@ import re
 import numpy as np
 import pytest
 import snapin
-from support.measured import (
-    LENNARD_JONES,
-    POINT,
-    SPRING,
-    STIFFNESS,
-    STRENGTH,
-    Branches,
-    branches,  # noqa: F401
-    fit_deck,
-    run,
-    write,
-)
+from support.measured import (  # noqa: F401 (`branches` is a fixture)
+    LENNARD_JONES, POINT, SPRING, STIFFNESS, STRENGTH, Branches, branches, fitted)
 from support.scenes import changed
 
 # Pressed with a quarter of the pull-off only, and stiff: beyond some modulus the curve no longer
@@ -36,9 +26,8 @@ def shallow():
 
 
 def fit_of(tmp_path, curve, groups, keys=tuple(TRUTH), spring=SOFT_SPRING):
-    file = write(tmp_path / "curve.csv", *curve)
-    result = run(fit_deck(groups, file, list(keys), {"noise": NOISE}, {"spring_constant": spring}))
-    return result.fitted["fit"]
+    return fitted(tmp_path, curve, groups, keys, {"noise": NOISE},
+                  measurement={"spring_constant": spring}).fitted["fit"]
 
 
 @pytest.mark.parametrize("seed, modulus", [(5, 1.0), (8, 2.0), (40, 0.5)])
@@ -71,8 +60,7 @@ def test_the_ends_of_intervals_are_less_likely_than_the_estimate(shallow, tmp_pa
     low, high = (free[f"{end}_95"][1] / free["estimate"][1] for end in ("lower", "upper"))
     assert high * low > 2
     for end in "lower_95", "upper_95":
-        held = fit_of(tmp_path, curve, changed(STIFF, {STIFFNESS: free[end][1]}),
-                      [STRENGTH, POINT])
+        held = fit_of(tmp_path, curve, changed(STIFF, {STIFFNESS: free[end][1]}), [STRENGTH, POINT])
         rise = held["chi_squared"][0] - free["chi_squared"][0]
         assert rise > 0.75 * 1.96**2, end
 
@@ -104,11 +92,10 @@ def test_a_wrong_spring_constant_cannot_be_seen_in_a_deflection(branches, tmp_pa
     z, force, segment = branches.measure(300, 2e-11, seed=1)
     found = []
     for factor in 1.0, 3.0:
-        file = write(tmp_path / "curve.csv", z, force / SPRING, segment)
         start = changed(LENNARD_JONES, {STRENGTH: 1e-19 * factor, STIFFNESS: 1e10 * factor})
-        deck = fit_deck(start, file, list(TRUTH), {"noise": 2e-11 / SPRING},
-                        {"spring_constant": SPRING * factor, "sensitivity": 1.0})
-        found.append(run(deck).fitted["fit"])
+        found.append(fitted(
+            tmp_path, (z, force / SPRING, segment), start, TRUTH, {"noise": 2e-11 / SPRING},
+            measurement={"spring_constant": SPRING * factor, "sensitivity": 1.0}).fitted["fit"])
     right, wrong = found
     assert wrong["estimate"][:2] == pytest.approx(3 * np.array(right["estimate"][:2]), rel=1e-3)
     assert wrong["chi_squared"][0] == pytest.approx(right["chi_squared"][0], abs=0.01)
@@ -120,10 +107,8 @@ def test_a_saturated_detector_has_a_warning_and_its_samples_can_be_left_out(bran
     force = np.maximum(force, 0.8 * branches.inner[1].min())
     fit = fit_of(tmp_path, (z, force, segment), LENNARD_JONES, spring=SPRING)
     found = re.search(r"samples in a row.* skip = (\S+), ([^\s']+)", str(fit["warnings"]))
-    file = write(tmp_path / "curve.csv", z, force, segment)
-    skip = [float(found[1]), float(found[2])]
-    fit = run(fit_deck(LENNARD_JONES, file, list(TRUTH), {"noise": NOISE / 5},
-                       {"skip": skip})).fitted["fit"]
+    fit = fitted(tmp_path, (z, force, segment), LENNARD_JONES, TRUTH, {"noise": NOISE / 5},
+                 measurement={"skip": [float(found[1]), float(found[2])]}).fitted["fit"]
     assert "in a row" not in str(fit.get("warnings"))
     true = [1e-19, 1e10, 0.0]
     assert np.all(np.abs(np.array(fit["estimate"]) - true) < 4 * np.array(fit["standard_error"]))
@@ -134,8 +119,8 @@ def test_the_noise_of_a_signal_of_few_digits_is_that_of_rounding_at_least(branch
     """Neighbours that are alike seemed to have no noise."""
     z, force, segment = branches.measure(1500, 0.0, seed=3)
     step = step * -branches.inner[1].min()
-    file = write(tmp_path / "curve.csv", z, step * np.round(force / step), segment)
-    fit = run(fit_deck(LENNARD_JONES, file, list(TRUTH))).fitted["fit"]
+    curve = z, step * np.round(force / step), segment
+    fit = fitted(tmp_path, curve, LENNARD_JONES, TRUTH).fitted["fit"]
     assert fit["noise"][0] == pytest.approx(step / np.sqrt(12), rel=1e-6)
     true = [1e-19, 1e10, 0.0]
     assert np.all(np.abs(np.array(fit["estimate"]) - true) < 4 * np.array(fit["standard_error"]))

@@ -4,18 +4,8 @@ off, little baseline, models that are wrong."""
 import numpy as np
 import pytest
 import snapin
-from support.measured import (
-    LENNARD_JONES,
-    POINT,
-    SPRING,
-    STIFFNESS,
-    STRENGTH,
-    Branches,
-    branches,  # noqa: F401
-    fit_deck,
-    run,
-    write,
-)
+from support.measured import (  # noqa: F401 (`branches` is a fixture)
+    LENNARD_JONES, POINT, SPRING, STIFFNESS, STRENGTH, Branches, branches, fitted, run)
 from support.scenes import changed
 
 TRUTH = {STRENGTH: 1e-19, STIFFNESS: 1e10, POINT: 0.0}
@@ -26,11 +16,6 @@ NOISE, SAMPLES = 2e-10, 1500
 def started(strength=1.0, stiffness=1.0, **force):
     return {"bodies": {"radius": 50e-9, "stiffness": 1e10 * stiffness},
             "force": {**LENNARD_JONES["force"], "hamaker": 1e-19 * strength, **force}}
-
-
-def fitted(tmp_path, curve, groups, keys=tuple(TRUTH), **others):
-    file = write(tmp_path / "curve.csv", *curve)
-    return run(fit_deck(groups, file, list(keys), **others))
 
 
 def errors_off(result):
@@ -48,7 +33,7 @@ def jumps_off(result, branches):
 
 @pytest.mark.parametrize("start", [(1.0, 1.0), (1.6, 1.0), (8.0, 0.15), (0.12, 5.0)])
 def test_a_noisy_oversampled_curve_gives_truth_and_jumps_from_any_start(branches, tmp_path, start):
-    result = fitted(tmp_path, branches.measure(SAMPLES, NOISE, seed=3), started(*start))
+    result = fitted(tmp_path, branches.measure(SAMPLES, NOISE, seed=3), started(*start), TRUTH)
     assert np.abs(errors_off(result)).max() < 4
     assert np.abs(jumps_off(result, branches)).max() < 4
     assert result.fitted["fit"]["noise"][0] == pytest.approx(NOISE, rel=0.1)
@@ -60,7 +45,7 @@ def test_outliers_are_left_out_and_marked(branches, tmp_path):
     rng = np.random.default_rng(6)
     spoilt = rng.random(len(z)) < 0.05
     force = force + spoilt * rng.choice([-1, 1], len(z)) * rng.uniform(10, 40, len(z)) * NOISE
-    result = fitted(tmp_path, (z, force, segment), started(2.0))
+    result = fitted(tmp_path, (z, force, segment), started(2.0), TRUTH)
     assert np.abs(errors_off(result)).max() < 4
     assert np.abs(jumps_off(result, branches)).max() < 4
     assert result.fitted["fit"]["noise"][0] == pytest.approx(NOISE, rel=0.1)
@@ -74,7 +59,8 @@ def test_outliers_are_left_out_and_marked(branches, tmp_path):
 
 def test_a_wrong_range_of_force_is_said(branches, tmp_path):
     """z0 held at twice the truth: what is left exceeds the noise by little, but for long."""
-    result = fitted(tmp_path, branches.measure(SAMPLES, NOISE, seed=3), started(4.0, z0=6e-10))
+    curve = branches.measure(SAMPLES, NOISE, seed=3)
+    result = fitted(tmp_path, curve, started(4.0, z0=6e-10), TRUTH)
     fit = result.fitted["fit"]
     assert np.abs(errors_off(result)).max() > 5
     assert fit["chi_squared"][0] < 1.5 * fit["degrees_of_freedom"][0]
@@ -84,7 +70,7 @@ def test_a_wrong_range_of_force_is_said(branches, tmp_path):
 @pytest.mark.parametrize("off, bound", [(1e-3, "largest"), (1e3, "smallest")])
 def test_a_value_at_the_end_of_the_search_is_said(branches, tmp_path, off, bound):
     """The model is right, and would be found from a start that is nearer."""
-    result = fitted(tmp_path, branches.measure(400, NOISE, seed=3), started(stiffness=off))
+    result = fitted(tmp_path, branches.measure(400, NOISE, seed=3), started(stiffness=off), TRUTH)
     found = result.fitted["fit"]["estimate"][1]
     assert found / (1e10 * off) == pytest.approx(np.exp(5 if off < 1 else -5), rel=1e-3)
     told = result.summary["warnings"]
@@ -115,27 +101,23 @@ def test_what_the_data_ask_for_does_not_depend_on_the_start(tmp_path):
 def test_little_baseline_is_enough(branches, tmp_path):
     z, force, segment = branches.measure(SAMPLES, NOISE, seed=3)
     near = z < branches.inner[0][-1] + 5 * 5.5e-11
-    result = fitted(tmp_path, (z[near], force[near], segment[near]), started())
+    result = fitted(tmp_path, (z[near], force[near], segment[near]), started(), TRUTH)
     assert np.abs(errors_off(result)).max() < 4
 
 
 def test_skipped_samples_do_not_count(branches, tmp_path):
     z, force, segment = branches.measure(SAMPLES, NOISE, seed=3)
     spoilt = (z > 20e-9) & (z < 25e-9)
-    clean = fitted(tmp_path, (z[~spoilt], force[~spoilt], segment[~spoilt]), started())
-    skipped = fitted(tmp_path, (z, force + 1e-8 * spoilt, segment), started(),
+    clean = fitted(tmp_path, (z[~spoilt], force[~spoilt], segment[~spoilt]), started(), TRUTH)
+    skipped = fitted(tmp_path, (z, force + 1e-8 * spoilt, segment), started(), TRUTH,
                      measurement={"skip": [20e-9, 25e-9]})
     assert skipped.fitted["fit"]["estimate"] == pytest.approx(
         clean.fitted["fit"]["estimate"], rel=1e-3, abs=1e-12)
-    assert not result_uses(skipped, spoilt)
-
-
-def result_uses(result, samples):
-    return (result.fit["used"][samples] == 1).any()
+    assert not (skipped.fit["used"][spoilt] == 1).any()
 
 
 def test_the_summary_speaks_of_the_answer_and_intervals_are_wider_at_95(branches, tmp_path):
-    result = fitted(tmp_path, branches.measure(SAMPLES, NOISE, seed=3), started(3.0))
+    result = fitted(tmp_path, branches.measure(SAMPLES, NOISE, seed=3), started(3.0), TRUTH)
     fit = result.fitted["fit"]
     right = run({**LENNARD_JONES, "equilibrium_path": {"h0_end": -1e-9}}).summary
     assert fit["sigma"][0] == pytest.approx(right["sigma"], rel=0.1)
@@ -151,25 +133,24 @@ def test_a_baseline_as_steep_as_the_contact_is_no_exchange(branches, tmp_path):
     near = z < z.min() + 0.05 * np.ptp(z)
     tilted = force - np.polyfit(z[near], force[near], 1)[0] * z
     assert np.polyfit(z[near], tilted[near], 1)[0] == pytest.approx(0, abs=1e-3)
-    result = fitted(tmp_path, (z, tilted, segment), started())
+    result = fitted(tmp_path, (z, tilted, segment), started(), TRUTH)
     assert np.abs(errors_off(result)).max() < 4
     with pytest.raises(snapin.SnapinError, match="approach and retreat are exchanged"):
-        fitted(tmp_path, (z, tilted, 1 - segment), started())
+        fitted(tmp_path, (z, tilted, 1 - segment), started(), TRUTH)
 
 
 def test_units_and_skip_are_checked(tmp_path):
-    file = write(tmp_path / "a.csv", [0.0], [0.0], [0])
     wrong = ({"units": ["N", "nN"]}, "not a unit of position"), ({"skip": [1e-9]}, "pairs")
     for keys, said in wrong:
         with pytest.raises(snapin.DeckError, match=said):
-            run(fit_deck(started(), file, list(TRUTH), measurement=keys))
+            fitted(tmp_path, ([0.0], [0.0], [0]), started(), TRUTH, measurement=keys)
 
 
 @pytest.mark.parametrize("rise", [-5e-8, 5e-8])
 def test_a_steep_baseline_does_not_hide_the_pull_off(branches, tmp_path, rise):
     z, force, segment = branches.measure(SAMPLES, NOISE, seed=8)
     tilted = force + rise * (z - z.min()) / np.ptp(z)
-    result = fitted(tmp_path, (z, tilted, segment), started(4.0, 0.3))
+    result = fitted(tmp_path, (z, tilted, segment), started(4.0, 0.3), TRUTH)
     assert np.abs(errors_off(result)).max() < 4
 
 
@@ -179,7 +160,7 @@ def test_a_retreat_that_ends_before_the_bodies_part_is_named(branches, tmp_path)
     jump_in, jump_out = branches.outer[0][0], branches.inner[0][-1]
     near = z < jump_out - 0.2 * (jump_out - jump_in)
     for kept, named in ((near, True), (z < z.max(), False)):
-        result = fitted(tmp_path, (z[kept], force[kept], segment[kept]), started())
+        result = fitted(tmp_path, (z[kept], force[kept], segment[kept]), started(), TRUTH)
         told = [text for text in result.summary.get("warnings", []) if "retreat ends below" in text]
         assert bool(told) == named, result.summary.get("warnings")
         assert named or np.abs(errors_off(result)).max() < 4

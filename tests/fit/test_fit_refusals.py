@@ -3,17 +3,8 @@
 import numpy as np
 import pytest
 import snapin
-from support.measured import (
-    LENNARD_JONES,
-    POINT,
-    SPRING,
-    STIFFNESS,
-    STRENGTH,
-    branches,  # noqa: F401
-    fit_deck,
-    run,
-    write,
-)
+from support.measured import (  # noqa: F401 (`branches` is a fixture)
+    LENNARD_JONES, POINT, SPRING, STIFFNESS, STRENGTH, branches, fit_deck, fitted, run, write)
 from support.scenes import deck
 
 
@@ -49,10 +40,9 @@ BAD_DATA = {
 @pytest.mark.parametrize("case", BAD_DATA)
 def test_data_that_cannot_be_fitted_are_refused_with_the_reason(branches, tmp_path, case):
     change, message = BAD_DATA[case]
-    z, force, segment = branches.measure(300, noise=1e-11)
-    file = write(tmp_path / "a.csv", *change(z, force, segment, np.random.default_rng(1)))
+    curve = change(*branches.measure(300, noise=1e-11), np.random.default_rng(1))
     with pytest.raises(snapin.SnapinError, match=message):
-        run(fit_deck(LENNARD_JONES, file, [STRENGTH, POINT]))
+        fitted(tmp_path, curve, LENNARD_JONES, [STRENGTH, POINT])
 
 
 VOLT = 1 / (SPRING * 5e-8)
@@ -71,9 +61,9 @@ BAD_SIGNALS = {
 def test_a_signal_in_a_wrong_unit_is_refused_with_both_loads(branches, tmp_path, case):
     unit, keys, message = BAD_SIGNALS[case]
     z, force, segment = branches.measure(300, noise=1e-11)
-    file = write(tmp_path / "a.csv", z, unit * force, segment)
     with pytest.raises(snapin.SnapinError, match=message):
-        run(fit_deck(LENNARD_JONES, file, [STRENGTH, STIFFNESS, POINT], measurement=keys))
+        fitted(tmp_path, (z, unit * force, segment), LENNARD_JONES, [STRENGTH, STIFFNESS, POINT],
+               measurement=keys)
 
 
 BAD_FILES = {
@@ -110,12 +100,10 @@ def test_a_file_that_cannot_be_read_does_not_pass_the_check(snapin, tmp_path):
 
 def test_a_parameter_without_effect_is_named(branches, tmp_path):
     """A repulsion that is nothing beside the force's own."""
-    z, force, segment = branches.measure(300, noise=1e-11)
-    file = write(tmp_path / "a.csv", z, force, segment)
     groups = {**LENNARD_JONES, "hydration": {"energy": 1e-12, "decay_length": 2e-10}}
     with pytest.raises(snapin.SnapinError, match="hydration.energy has no effect"):
-        run(fit_deck(groups, file, ["hydration.energy", POINT],
-                     {"lower": [1e-13, -1e-8], "upper": [1e-11, 1e-8]}))
+        fitted(tmp_path, branches.measure(300, noise=1e-11), groups, ["hydration.energy", POINT],
+               {"lower": [1e-13, -1e-8], "upper": [1e-11, 1e-8]})
 
 
 BAD_DECKS = {

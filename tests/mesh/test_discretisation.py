@@ -16,15 +16,8 @@ def local_nodes(order):
 
 
 def elliptic(m):
-    """Return K and E of parameter m below 1."""
-    a, b = np.ones_like(m), np.sqrt(1 - m)
-    total, power = m / 2, 0.5
-    for _ in range(10):
-        a, b, c = (a + b) / 2, np.sqrt(a * b), (a - b) / 2
-        power *= 2
-        total = total + power * c**2
-    k = np.pi / 2 / a
-    return k, k * (1 - total)
+    """K and E of parameter m below 1."""
+    return [np.vectorize(one, otypes=[float])(m) for one in (mpmath.ellipk, mpmath.ellipe)]
 
 
 # --- Closed forms of the integral of k(r, t) p(t) t dt. With the kernel of the half-space it is the

@@ -7,6 +7,7 @@ import mpmath
 import numpy as np
 import pytest
 import snapin
+from support.calculus import gauss
 from test_discretisation import gaussian, graded
 
 flat = _snapin.flat_numerics
@@ -144,7 +145,7 @@ def panel_reference(grid, row, panel, degree):
     own = row - 2 - sum(orders[:panel])
     cuts = {mp(0), mp(1)}
     if 0 <= own < orders[panel]:
-        node = mp(float(gauss_nodes(orders[panel])[own]))
+        node = mp(float(gauss(orders[panel])[0][own]))
         r = position(node)
         cuts.add(node)
 
@@ -166,14 +167,10 @@ def panel_reference(grid, row, panel, degree):
     return total
 
 
-def gauss_nodes(order):
-    return (np.polynomial.legendre.leggauss(order)[0] + 1) / 2
-
-
 def panel_deformation(grid, panel, degree):
     """Return what the matrix makes of the same pressure."""
     orders = [*grid.order, grid.tail]
-    s = gauss_nodes(orders[panel])
+    s, _ = gauss(orders[panel])
     p = np.polynomial.legendre.Legendre.basis(degree)(2 * s - 1)
     if panel == len(grid.order):
         p *= (1 - s) ** grid.decay

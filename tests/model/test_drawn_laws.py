@@ -61,7 +61,6 @@ def claim_energy(of, gap, unit, size):
 
 
 def drawn(law, draw):
-    """The groups of a deck with this law."""
     keys = {}
     for name, (low, high, *most) in LOGARITHMIC[law].items():
         count = most[0] if most else None

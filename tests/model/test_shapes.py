@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from support.scenes import lennard_jones, loading
+from support.scenes import agreeing, lennard_jones, loading
 
 
 def scene(shape, sigma=1.0, **groups):
@@ -108,14 +108,11 @@ def test_a_profile_is_the_shape_that_it_was_taken_from(run, tmp_path):
     {"kind": "cone", "half_angle": math.atan(2.0)},
 ], ids=["1.5", "3", "4", "cone"])
 def test_the_path_has_the_accuracy_that_was_asked_for(run, shape):
-    path = {"h0_end": -5.0}
-    rough, fine = (
-        run(scene(shape, 5.0, equilibrium_path=path, numerics={"accuracy": accuracy})).summary
-        for accuracy in (1e-4, 1e-7)
-    )
-    for key in ("max_tension", "jump_in_h0", "jump_in_load", "jump_out_h0", "jump_out_load",
-                "end_load"):
-        assert rough[key] == pytest.approx(fine[key], rel=1e-5), key
+    agreeing(
+        run, lambda accuracy: scene(shape, 5.0, equilibrium_path={"h0_end": -5.0},
+                                    numerics={"accuracy": accuracy}), (1e-4, 1e-7),
+        ("max_tension", "jump_in_h0", "jump_in_load", "jump_out_h0", "jump_out_load", "end_load"),
+        lambda _: 1e-5)
 
 
 # --- Read from the path
@@ -154,26 +151,23 @@ def refused(run, shape, **groups):
     return run(text, status=2).stderr
 
 
-@pytest.mark.parametrize(
-    "shape, key, phrase",
-    [
-        ({"kind": "power"}, "exponent", "kind 'power' needs it"),
-        ({"kind": "power", "exponent": 3.0}, "radius", "missing"),
-        ({"kind": "power", "exponent": 3.0, "coefficient": 1.0, "radius": 1.0}, "radius",
-         "the coefficient replaces it"),
-        ({"kind": "cone"}, "half_angle", "kind 'cone' needs it"),
-        ({"kind": "cone", "half_angle": 1.0, "radius": 1.0}, "radius", "a cone has none"),
-        ({"kind": "cone", "half_angle": 1.0, "exponent": 2.0}, "exponent",
-         "belongs to kind 'power', not to 'cone'"),
-        ({"kind": "sphere"}, "radius", "missing"),
-        ({"kind": "sphere", "radius": 2.0}, "radius", "it would end where forces act"),
-        ({"kind": "sphere", "radius": 200.0}, "kind", "ends where the force still acts"),
-        ({"kind": "spheroid", "radius": 1.0}, "semi_axis", "kind 'spheroid' needs it"),
-        ({"kind": "rounded_punch", "radius": 1.0}, "flat_radius", "needs it"),
-        ({"kind": "profile"}, "file", "needs it"),
-        ({"kind": "profile", "file": "nowhere.txt"}, "file", "no such file"),
-    ],
-)
+@pytest.mark.parametrize("shape, key, phrase", [
+    ({"kind": "power"}, "exponent", "kind 'power' needs it"),
+    ({"kind": "power", "exponent": 3.0}, "radius", "missing"),
+    ({"kind": "power", "exponent": 3.0, "coefficient": 1.0, "radius": 1.0}, "radius",
+     "the coefficient replaces it"),
+    ({"kind": "cone"}, "half_angle", "kind 'cone' needs it"),
+    ({"kind": "cone", "half_angle": 1.0, "radius": 1.0}, "radius", "a cone has none"),
+    ({"kind": "cone", "half_angle": 1.0, "exponent": 2.0}, "exponent",
+     "belongs to kind 'power', not to 'cone'"),
+    ({"kind": "sphere"}, "radius", "missing"),
+    ({"kind": "sphere", "radius": 2.0}, "radius", "it would end where forces act"),
+    ({"kind": "sphere", "radius": 200.0}, "kind", "ends where the force still acts"),
+    ({"kind": "spheroid", "radius": 1.0}, "semi_axis", "kind 'spheroid' needs it"),
+    ({"kind": "rounded_punch", "radius": 1.0}, "flat_radius", "needs it"),
+    ({"kind": "profile"}, "file", "needs it"),
+    ({"kind": "profile", "file": "nowhere.txt"}, "file", "no such file"),
+])
 def test_a_shape_that_is_none_is_refused(run, shape, key, phrase):
     stderr = refused(run, shape)
     assert f'key "{key}"' in stderr and phrase in stderr
@@ -203,16 +197,13 @@ def test_the_regime_of_another_shape_is_refused(run):
 R = np.linspace(0, 5, 21)
 
 
-@pytest.mark.parametrize(
-    "r, f, phrase",
-    [
-        (R, R**2 + 0.3 * np.sin(4 * R) ** 2, "is not convex here"),
-        (R, np.sqrt(R), "is not convex here"),
-        (R + 1, R**2, "the first position is not 0"),
-        (R, R * (4 - R), "do not both grow"),
-        (R[::-1], R[::-1] ** 2, "the first position is not 0"),
-        (R[:4], R[:4] ** 2, "fewer than 5 points"),
-    ],
-)
+@pytest.mark.parametrize("r, f, phrase", [
+    (R, R**2 + 0.3 * np.sin(4 * R) ** 2, "is not convex here"),
+    (R, np.sqrt(R), "is not convex here"),
+    (R + 1, R**2, "the first position is not 0"),
+    (R, R * (4 - R), "do not both grow"),
+    (R[::-1], R[::-1] ** 2, "the first position is not 0"),
+    (R[:4], R[:4] ** 2, "fewer than 5 points"),
+])
 def test_a_profile_that_is_no_convex_body_is_refused(run, tmp_path, r, f, phrase):
     assert phrase in refused(run, write_profile(tmp_path, r, f))

@@ -175,21 +175,18 @@ def test_a_line_of_names_is_no_row(tmp_path):
 GOOD = [f"{gap:.6e} {(Z0 / gap) ** 9 - (Z0 / gap) ** 3:.6e}" for gap in points(8)]
 
 
-@pytest.mark.parametrize(
-    ("lines", "line", "what"),
-    [
-        ([*GOOD[:3], "nan 1", *GOOD[3:]], 4, "not a finite number"),
-        ([*GOOD[:3], "1e-9 inf", *GOOD[3:]], 4, "not a finite number"),
-        ([*GOOD[:3], "1e-9", *GOOD[3:]], 4, "1 column where 2"),
-        ([*GOOD[:3], "1e-9 2 3", *GOOD[3:]], 4, "3 columns where 2"),
-        ([*GOOD[:3], "1e-9 two", *GOOD[3:]], 4, "not a number"),
-        ([*GOOD[:3], GOOD[2], *GOOD[3:]], 4, "neither increase"),
-        ([*GOOD[:3], GOOD[0], *GOOD[3:]], 4, "neither increase"),
-        (["0.0 1", *GOOD], 1, "not positive"),
-        (GOOD[:7], 7, "fewer than 8"),
-        ([], 1, "fewer than 8"),
-    ],
-)
+@pytest.mark.parametrize(("lines", "line", "what"), [
+    ([*GOOD[:3], "nan 1", *GOOD[3:]], 4, "not a finite number"),
+    ([*GOOD[:3], "1e-9 inf", *GOOD[3:]], 4, "not a finite number"),
+    ([*GOOD[:3], "1e-9", *GOOD[3:]], 4, "1 column where 2"),
+    ([*GOOD[:3], "1e-9 2 3", *GOOD[3:]], 4, "3 columns where 2"),
+    ([*GOOD[:3], "1e-9 two", *GOOD[3:]], 4, "not a number"),
+    ([*GOOD[:3], GOOD[2], *GOOD[3:]], 4, "neither increase"),
+    ([*GOOD[:3], GOOD[0], *GOOD[3:]], 4, "neither increase"),
+    (["0.0 1", *GOOD], 1, "not positive"),
+    (GOOD[:7], 7, "fewer than 8"),
+    ([], 1, "fewer than 8"),
+])
 def test_a_mistake_in_the_file_is_shown_with_its_line(tmp_path, lines, line, what):
     (tmp_path / "law.txt").write_text("\n".join(lines))
     with pytest.raises(snapin.DeckError) as told:

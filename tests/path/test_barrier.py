@@ -11,8 +11,9 @@ import snapin
 from conftest import ROOT
 from support.calculus import zero
 from support.dlvo import Dlvo
+from support import half_space
 from support.half_space import path_by_axis
-from support.scenes import JKR, of_numbers
+from support.scenes import JKR, agreeing, of_numbers, path_of
 
 DECK = ROOT / "inputs" / "examples" / "dlvo.nml"
 # Gaps on the axis from far away into contact, and panels, narrow where the contact has its edge.
@@ -58,23 +59,16 @@ def test_the_path_does_not_depend_on_gaps_where_no_force_acts(h0_end):
 def test_a_path_does_not_end_just_before_a_barrier_gives_way(accuracy):
     """Bodies that are stable at h0_end come near before the barrier gives way, far below h0_end; a
     path that ended there, as some accuracies had it, had no contact at h0_end."""
-    def path(accuracy):
-        return snapin.run({
-            "bodies": {"radius": 0.015, "stiffness": 125465636.12137541},
-            "van_der_waals": {"hamaker": 1e-19},
-            "born": {"hamaker": 1e-19, "z0": 4.842064940925915e-10},
-            "double_layer": {"potential": -0.09329605816529256, "regulation": 0.17932669570039272,
-                             "salt": 18.12033177346722, "valence": 1},
-            "equilibrium_path": {"h0_end": -2.0483375925639015e-09},
-            "numerics": {"accuracy": accuracy}}).summary
-
-    found, finer = path(accuracy), path(1e-6)
-    for name in ("folds_h0", "folds_load", "jump_out_load", "end_load"):
-        assert found[name] == pytest.approx(finer[name], rel=1e-5)
+    agreeing(snapin.run, lambda each: path_of(
+        125465636.12137541, -2.0483375925639015e-09, each, force=None,
+        van_der_waals={"hamaker": 1e-19}, born={"hamaker": 1e-19, "z0": 4.842064940925915e-10},
+        double_layer={"potential": -0.09329605816529256, "regulation": 0.17932669570039272,
+                      "salt": 18.12033177346722, "valence": 1}), (accuracy, 1e-6),
+        ("folds_h0", "folds_load", "jump_out_load", "end_load"), lambda _: 1e-5)
 
 
 def test_jumps_of_a_law_with_a_barrier_are_those_of_independent_states():
-    _, (h0, load) = path_by_axis("barrier", 1.0, AXIS, ENDS)
+    _, (h0, load) = path_by_axis(1.0, AXIS, ENDS, half_space.behind_a_barrier)
     found = behind_a_barrier(1.0, 1e-8)
     assert [found["jump_in_h0"], found["jump_out_h0"]] == pytest.approx(h0, rel=1e-9)
     # Beside a fold the load goes with the root of an error in H0.
@@ -88,11 +82,8 @@ def test_jumps_of_a_law_with_a_barrier_are_those_of_independent_states():
 def scene():
     """The result of the example, its numbers, and the law from the equations."""
     keys = f90nml.read(DECK)
-    layers = keys["double_layer"]
-    law = Dlvo(
-        hamaker=keys["van_der_waals"]["hamaker"],
-        retardation_length=keys["van_der_waals"]["retardation_length"], z0=keys["born"]["z0"],
-        potential=layers["potential"], regulation=layers["regulation"], salt=layers["salt"])
+    layers = {name: keys["double_layer"][name] for name in ("potential", "regulation", "salt")}
+    law = Dlvo(**keys["van_der_waals"], z0=keys["born"]["z0"], **layers)
     return snapin.run(DECK), keys["bodies"], law
 
 
@@ -137,11 +128,8 @@ def test_dlvo_jumps_are_those_of_independent_states():
     z0 = law.z0
     energy = law.hamaker / (16 * math.pi * z0**2)
     sigma = energy * math.sqrt(bodies["radius"] * z0) / (bodies["stiffness"] * z0**2)
-    keys = f90nml.read(DECK)
-    layers = {name: keys["double_layer"][name] for name in ("potential", "regulation", "salt")}
     _, (h0, load) = path_by_axis(
-        "dlvo", sigma, (20.0, 16.0, *AXIS), ENDS, z0=z0, hamaker=law.hamaker,
-        retardation_length=keys["van_der_waals"]["retardation_length"], **layers)
+        sigma, (20.0, 16.0, *AXIS), ENDS, half_space.in_units(law, z0, energy))
     summary = result.summary
     # The pushing load before the jump: the bodies are over the barrier under compression.
     assert summary["jump_in_load"] > 0

@@ -1,9 +1,9 @@
-"""Claims about folds that a step could pass over, and about errors of paths."""
+"""Claims about folds that a step could pass over."""
 
 import numpy as np
 import pytest
 import snapin
-from support.scenes import deck, lennard_jones
+from support.scenes import agreeing, deck, lennard_jones, path_of
 
 
 # --- Folds that a step passes over
@@ -74,12 +74,9 @@ def test_a_step_whose_end_is_far_from_its_guess_is_repeated(run, name, accuracy)
 def test_two_folds_within_a_step_whose_slope_is_least_inside_are_found(run, accuracy):
     """The polynomial between the states did not turn there, although its slope was least inside.
     Dense independent states, by the gap on the axis, have these folds."""
-    found = run(deck(
-        bodies={"radius": 0.015, "stiffness": 78722523.35448572},
-        force={"law": "lennard_jones", "hamaker": 1e-19, "z0": 5e-10},
-        structural={"amplitude": 982565.7098164434, "period": 8.720519021717652e-10,
-                    "decay_length": 1e-9},
-        equilibrium_path={"h0_end": -3.52e-9}, numerics={"accuracy": accuracy})).summary
+    found = run(path_of(78722523.35448572, -3.52e-9, accuracy,
+                        structural={"amplitude": 982565.7098164434, "period": 8.720519021717652e-10,
+                                    "decay_length": 1e-9})).summary
     assert found["folds_h0"][:3] == pytest.approx([11.933793e-9, 11.933928e-9, 11.930680e-9],
                                                   abs=1e-14)
     assert found["jump_in_load"] == pytest.approx(-2.97126e-6, rel=1e-4)
@@ -90,74 +87,33 @@ def test_two_folds_within_a_step_whose_slope_is_least_inside_are_found(run, accu
     (3.2874751938112336e8, 1.8819993963801085e-9, -3.7388340973471256e-9, (3e-5, 1e-5))])
 def test_a_coarse_mesh_has_no_pairs_of_folds_of_its_own(run, stiffness, range_, h0_end, accuracies):
     """As the step of the tension passes the nodes, h0 has waves of the size of the mesh's error."""
-    found = [run(deck(
-        bodies={"radius": 0.015, "stiffness": stiffness},
-        force={"law": "lennard_jones", "hamaker": 1e-19, "z0": 5e-10},
-        dugdale={"stress": 1e7, "range": range_}, equilibrium_path={"h0_end": h0_end},
-        numerics={"accuracy": accuracy})).summary for accuracy in (*accuracies, 1e-6)]
-    for one in found:
-        assert not one.get("warnings")
-        assert one["folds_h0"] == pytest.approx(found[-1]["folds_h0"], rel=1e-4)
+    found = agreeing(run, lambda accuracy: path_of(
+        stiffness, h0_end, accuracy, dugdale={"stress": 1e7, "range": range_}),
+        (*accuracies, 1e-6), ["folds_h0"], lambda _: 1e-4)
+    assert not any("warnings" in one.summary for one in found)
 
 
 def test_an_extremum_beside_a_passage_between_meshes_stays_on_the_path(run):
     """Traced again on a finer mesh, it moved over the passage and was on neither mesh."""
-    found = [run(deck(
-        bodies={"radius": 0.015, "stiffness": 36259225492.46833},
-        force={"law": "lennard_jones", "hamaker": 1e-19, "z0": 5e-10},
+    agreeing(run, lambda accuracy: path_of(
+        36259225492.46833, -2.7455057304047334e-09, accuracy,
         structural={"amplitude": 2963782.395744549, "period": 1.0024841277431275e-09,
-                    "decay_length": 1e-09},
-        equilibrium_path={"h0_end": -2.7455057304047334e-09},
-        numerics={"accuracy": accuracy})).summary for accuracy in (1e-3, 2e-4, 1e-4, 1e-6)]
-    for one in found:
-        assert one["load_folds_load"] == pytest.approx(found[-1]["load_folds_load"], rel=1e-4)
+                    "decay_length": 1e-09}),
+        (1e-3, 2e-4, 1e-4, 1e-6), ["load_folds_load"], lambda _: 1e-4)
 
 
 def test_a_fold_where_the_path_passes_to_a_refined_mesh_later_is_reported(run):
     """The path seemed to be interrupted between the states with which it had first passed."""
-    found = [run(deck(
-        bodies={"radius": 0.015, "stiffness": 9867995842.805944},
-        force={"law": "lennard_jones", "hamaker": 1e-19, "z0": 5e-10},
+    found, _ = agreeing(run, lambda accuracy: path_of(
+        9867995842.805944, -2.0156122752850073e-09, accuracy,
         depletion={"osmotic_pressure": 1e5, "diameter": 2.0335697223412008e-09},
         double_layer={"potential": -0.09218970162280453, "regulation": 0.09738767408196936,
                       "salt": 0.673547496781325, "valence": 1},
         structural={"amplitude": 312505.9625710812, "period": 1.0229219159148328e-09,
-                    "decay_length": 1e-09},
-        equilibrium_path={"h0_end": -2.0156122752850073e-09},
-        numerics={"accuracy": accuracy})).summary for accuracy in (3e-6, 1e-5)]
-    assert len(found[0]["folds_h0"]) == 4
-    assert found[0]["folds_load"] == pytest.approx(found[1]["folds_load"], rel=1e-4)
+                    "decay_length": 1e-09}), (3e-6, 1e-5), ["folds_load"], lambda _: 1e-4)
+    assert len(found.summary["folds_h0"]) == 4
 
 
 @pytest.mark.parametrize("sigma", [0.1, 0.28, 0.29, 0.29108])
 def test_below_the_first_jump_there_is_no_fold(run, sigma):
     assert "folds_h0" not in run(lennard_jones(sigma, equilibrium_path={"h0_end": -2.0})).summary
-
-
-@pytest.mark.parametrize("sigma", [0.2914, 0.3, 0.87, 8.7, 100.0])
-def test_uncertainty_of_the_energy_lost_covers_its_error(run, sigma):
-    def energy(accuracy):
-        numerics = {"accuracy": accuracy}
-        return run(
-            lennard_jones(sigma, equilibrium_path={"h0_end": -2.0}, numerics=numerics)).summary
-
-    fine = energy(1e-9)
-    for accuracy in (1e-3, 1e-4, 1e-6):
-        coarse = energy(accuracy)
-        uncertainty = coarse["energy_lost_uncertainty"]
-        assert abs(coarse["energy_lost"] - fine["energy_lost"]) <= uncertainty
-        assert uncertainty < 0.01 * coarse["energy_lost"]
-
-
-# --- The error estimate
-
-
-@pytest.mark.parametrize("sigma", [0.0087, 0.1, 0.87])
-@pytest.mark.parametrize("accuracy", [1e-4, 1e-5])
-def test_the_estimate_includes_what_the_iteration_leaves(run, sigma, accuracy):
-    """Meshes are so good there that the tolerance of the iteration is the larger part."""
-    fields = {"equilibrium_path": {"h0_end": -4.0}}
-    coarse = run(lennard_jones(sigma, **fields, numerics={"accuracy": accuracy}))
-    fine = run(lennard_jones(sigma, **fields, numerics={"accuracy": 1e-10}))
-    error = abs(coarse.curve["load"][-1] / fine.curve["load"][-1] - 1)
-    assert error <= coarse.summary["error_estimate"] <= accuracy

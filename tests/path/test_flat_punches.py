@@ -3,7 +3,7 @@ on the face and passes the rim, and paths have the folds that the bodies have.
 """
 
 import pytest
-from support.scenes import deck, several
+from support.scenes import agreeing, deck, path_of
 
 
 FLAT_FACES = {
@@ -19,24 +19,12 @@ def test_paths_of_wide_flat_punches_have_the_folds_of_the_bodies(run, face):
     """Nodes that miss the rim far outside a nucleus of contact made folds, and the mesh for all
     positions of the edge had thousands of nodes."""
     radius, flat_radius, stiffness = FLAT_FACES[face]
-
-    def path(accuracy):
-        found = run(deck(
-            bodies={"radius": radius, "stiffness": stiffness},
-            shape={"kind": "rounded_punch", "flat_radius": flat_radius},
-            force={"law": "lennard_jones", "hamaker": 1e-19, "z0": 5e-10},
-            equilibrium_path={"h0_end": 0}, numerics={"accuracy": accuracy}))
-        # An extremum of the load may be so flat that its h0 has four digits only.
-        assert all(said.startswith(("beyond the model", "the error is estimated"))
-                   for said in found.warnings)
-        return found.summary
-
-    exact = path(1e-6)
-    for accuracy in (1e-3, 1e-5):
-        found = path(accuracy)
-        for name in ("max_tension", "folds_h0", "end_load"):
-            assert several(found.get(name, [])) == pytest.approx(
-                several(exact.get(name, [])), rel=1.2 * accuracy), (accuracy, name)
+    runs = agreeing(run, lambda accuracy: path_of(
+        stiffness, 0, accuracy, radius=radius,
+        shape={"kind": "rounded_punch", "flat_radius": flat_radius}),
+        (1e-3, 1e-5, 1e-6), (), lambda a: 1.2 * a, ("max_tension", "folds_h0", "end_load"))
+    # An extremum of the load may be so flat that its h0 has four digits only.
+    assert all(said.startswith("the error is estimated") for one in runs for said in one.warnings)
 
 
 def test_a_wide_stiff_flat_punch_has_the_tension_of_a_rigid_one(run):
@@ -56,28 +44,20 @@ def test_a_wide_stiff_flat_punch_has_the_tension_of_a_rigid_one(run):
 
 def test_a_stiff_flat_face_is_pressed_far_within_the_gap_at_rest(run):
     """The coordinate of the path before the edge passes the rim had a singular gap there."""
-    def path(accuracy):
-        found = run(deck(
-            bodies={"radius": 0.015, "stiffness": 4.2886e14},
-            shape={"kind": "rounded_punch", "flat_radius": 1.324e-5},
-            morse={"surface_energy": 0.05, "z0": 6.26e-10, "decay_length": 1.545e-10},
-            equilibrium_path={"h0_end": -4.4556e-9}, numerics={"accuracy": accuracy}))
-        assert found.status == 0
-        return found.summary
-
-    found, exact = path(1e-4), path(1e-7)
-    assert found["end_load"] == pytest.approx(exact["end_load"], rel=1e-4)
-    assert found["max_tension"] == pytest.approx(exact["max_tension"], rel=1e-4)
+    agreeing(run, lambda accuracy: path_of(
+        4.2886e14, -4.4556e-9, accuracy, force=None,
+        shape={"kind": "rounded_punch", "flat_radius": 1.324e-5},
+        morse={"surface_energy": 0.05, "z0": 6.26e-10, "decay_length": 1.545e-10}),
+        (1e-4, 1e-7), ("end_load", "max_tension"))
 
 
 def test_the_largest_tension_is_that_of_an_extremum_although_meshes_differ_by_more(run):
     """A state with which the path passes to another mesh had a larger tension by its mesh's error,
     and its h0 was given an error of zero."""
-    found = run(deck(
-        bodies={"radius": 0.015, "stiffness": 567468086777.6749},
-        shape={"kind": "rounded_punch", "flat_radius": 9.569216047281413e-06},
-        van_der_waals={"hamaker": 1e-19}, born={"hamaker": 1e-19, "z0": 2.2645387901298425e-10},
-        equilibrium_path={"h0_end": -3.47533519966291e-10}, numerics={"accuracy": 1e-4})).summary
+    found = run(path_of(567468086777.6749, -3.47533519966291e-10, 1e-4, force=None,
+                        shape={"kind": "rounded_punch", "flat_radius": 9.569216047281413e-06},
+                        van_der_waals={"hamaker": 1e-19},
+                        born={"hamaker": 1e-19, "z0": 2.2645387901298425e-10})).summary
     assert found["max_tension_h0"] == found["load_folds_h0"][-1]
     assert found["max_tension"] == -found["load_folds_load"][-1]
     assert found["max_tension_h0"] == pytest.approx(2.9035747e-9, rel=1e-5)
@@ -91,19 +71,12 @@ def test_the_largest_tension_is_that_of_an_extremum_although_meshes_differ_by_mo
 def test_paths_of_rounded_punches_reach_the_accuracy_asked_for(run, radius, flat_radius, stiffness):
     """The rim passed over the panels of meshes locked to the edge, and numbers converged to five
     digits or six at any accuracy."""
-    def path(accuracy):
-        return run(deck(
-            bodies={"radius": radius, "stiffness": stiffness},
-            shape={"kind": "rounded_punch", "flat_radius": flat_radius},
-            force={"law": "lennard_jones", "hamaker": 1e-19, "z0": 5e-10},
-            equilibrium_path={"h0_end": -1e-9}, numerics={"accuracy": accuracy}))
-
-    exact = path(1e-10).summary
-    for accuracy in (1e-5, 1e-7):
-        found = path(accuracy)
-        assert not any(said.startswith("the error is estimated") for said in found.warnings)
-        for name in ("max_tension", "end_load", "end_displacement"):
-            assert found.summary[name] == pytest.approx(exact[name], rel=accuracy), name
+    *runs, _ = agreeing(run, lambda accuracy: path_of(
+        stiffness, -1e-9, accuracy, radius=radius,
+        shape={"kind": "rounded_punch", "flat_radius": flat_radius}),
+        (1e-5, 1e-7, 1e-10), ("max_tension", "end_load", "end_displacement"))
+    assert not any(said.startswith("the error is estimated")
+                   for found in runs for said in found.warnings)
 
 
 def punch(flat_radius, h0_end, accuracy, **law):

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from support.scenes import deck, lennard_jones, several
+from support.scenes import deck, lennard_jones, path_of, several
 
 COLUMNS = ("h0", "load", "contact_radius", "displacement")
 SIGMAS = [1e-4, 0.0087, 0.3, 0.87, 8.7, 100.0, 1e4]
@@ -89,12 +89,9 @@ def test_every_row_is_an_equilibrium_and_there_are_not_too_many(run, sigma):
 
 def test_rows_go_one_way_where_meshes_change_from_step_to_step(run):
     """The maximum of h0 at the jump lies where bands of radii are narrower than steps."""
-    bent = deck(
-        bodies={"radius": 5e-6, "stiffness": 14352191095.1},
-        force={"law": "lennard_jones", "hamaker": 1e-19, "z0": 0.5e-9},
-        structural={"amplitude": 2727574.58541, "period": 1.084323267e-9, "decay_length": 1e-9},
-        dugdale={"stress": 1e7, "range": 7.051402e-10}, equilibrium_path={"h0_end": 0.5e-9},
-        numerics={"accuracy": 1e-3})
+    bent = path_of(
+        14352191095.1, 0.5e-9, 1e-3, radius=5e-6, dugdale={"stress": 1e7, "range": 7.051402e-10},
+        structural={"amplitude": 2727574.58541, "period": 1.084323267e-9, "decay_length": 1e-9})
     curve = run(bent).curve
     centre, stable = curve["h_centre"], curve["stable"]
     # The gap on the axis is a coordinate of the path, and between its two folds nothing is stable.

@@ -5,14 +5,13 @@ import math
 
 import numpy as np
 import pytest
-from support.calculus import zero
+from support.calculus import gauss, zero
 from support.scenes import UNIT, deck, exponential
 
 # Depth in decay lengths of the repulsion, and stiffness at rest over that at once.
 DEPTH, RELAXED = 1000.0, 0.25
 MODULUS = 0.5  # E* at once
 EXPONENTIAL = {"law": "exponential", "p0": 1e-2, "decay_length": 1.0}
-NODES, WEIGHTS = np.polynomial.legendre.leggauss(40)
 
 
 def scene(accuracy=1e-3, **drive):
@@ -39,8 +38,8 @@ def ting(time, turn):
 
     # On the way back the contact is as wide as it was at a time when it grew, until it is gone.
     grown = time if time <= turn else zero(longer, 0.0, turn) if longer(0.0) > 0 else 0.0
-    root = np.sqrt(grown) * (NODES + 1) / 2
-    integral = np.sqrt(grown) / 2 * WEIGHTS @ (2 * root**2 * relaxation(time - root**2))
+    root, weights = gauss(40, 0, np.sqrt(grown))
+    integral = weights @ (2 * root**2 * relaxation(time - root**2))
     return 4 / 3 * 1.5 * (DEPTH / turn)**1.5 * integral
 
 
@@ -58,8 +57,7 @@ def test_a_hard_sphere_has_tings_load_on_both_ways(run, turn):
 
 def test_depth_under_a_constant_load_relaxes_exponentially(run):
     soft, travel = 0.01, 2.0e6
-    curve = run(scene(1e-2, velocity=2.0e10, z_turn=-travel, dwell=3.0,
-                      stiffness=soft)).curve
+    curve = run(scene(1e-2, velocity=2.0e10, z_turn=-travel, dwell=3.0, stiffness=soft)).curve
     dwell = curve["branch"] == "dwell"
     time = curve["time"][dwell] - curve["time"][dwell][0]
     load = curve["load"][dwell]

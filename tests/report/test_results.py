@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from conftest import ROOT
 from support.processes import limited
-from support.scenes import deck, exponential, lennard_jones, loading, runner
+from support.scenes import deck, exponential, lennard_jones, loading, path_of, runner
 
 sys.path.append(str(ROOT / "tools"))
 
@@ -237,10 +237,9 @@ def test_a_table_that_cannot_be_written_leaves_no_results(snapin, tmp_path, coun
 
 def test_contact_ends_a_tenth_of_the_length_of_the_law_above_the_gap_at_rest(run):
     """For Morse's law this is far from 1.1 times the gap at rest."""
-    found = run(deck(
-        bodies={"radius": 1e-6, "stiffness": 1e9},
-        morse={"surface_energy": 0.02, "z0": 0.2e-9, "decay_length": 1e-9},
-        equilibrium_path={"h0_end": -2e-9}, profiles={"h0": [-2e-9]}, numerics={"accuracy": 1e-8}))
+    found = run(path_of(1e9, -2e-9, 1e-8, radius=1e-6, force=None,
+                        morse={"surface_energy": 0.02, "z0": 0.2e-9, "decay_length": 1e-9},
+                        profiles={"h0": [-2e-9]}))
     profile = found.table("profiles.csv")
     radius = np.interp(0.2e-9 + 0.2e-9, profile["separation"], profile["r"])
     assert found.curve["contact_radius"][-1] == pytest.approx(radius, rel=1e-3)

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from support.scenes import deck, lennard_jones, loading
+from support.scenes import deck, lennard_jones, loading, path_of
 
 
 def table_of(run, sigma, h0_end):
@@ -41,10 +41,9 @@ def test_at_large_sigma_the_dimensionless_columns_are_the_one_curve_of_jkr_theor
 
 def test_indentation_is_minus_h0_wherever_the_law_has_its_well(run):
     """It was counted from one length before the well."""
-    found = run(deck(
-        bodies={"radius": 1e-6, "stiffness": 1e9},
-        morse={"surface_energy": 0.02, "z0": 5e-9, "decay_length": 4e-10},
-        equilibrium_path={"h0_end": 1.5e-9}, table={}))
+    found = run(path_of(1e9, 1.5e-9, radius=1e-6, force=None,
+                        morse={"surface_energy": 0.02, "z0": 5e-9, "decay_length": 4e-10},
+                        table={}))
     approach = found.table("table.csv").rows("approach")
     assert approach["indentation"][-1] == pytest.approx(-1.5e-9, rel=1e-12)
     jump = np.isnan(approach["stiffness"])

@@ -12,21 +12,11 @@ import functools
 import math
 
 import numpy as np
-from numpy.polynomial import legendre
-
-
-
-
-@functools.lru_cache(maxsize=None)
-def gauss(count):
-    """Gauss-Legendre points and weights on (0, 1)."""
-    points, weights = legendre.leggauss(count)
-    return (points + 1) / 2, weights / 2
+from support.calculus import gauss
 
 
 @functools.lru_cache(maxsize=None)
 def barycentric(count):
-    """Barycentric weights of the Gauss points."""
     points, weights = gauss(count)
     return (-1.0) ** np.arange(count) * np.sqrt(points * (1 - points) * weights)
 
@@ -171,7 +161,13 @@ class Mesh:
 
     def interpolate(self, values, x):
         """A function given at the nodes, at places x inside the mesh."""
-        z = np.arcsinh((x - self.centre) / self.d)
-        k = np.clip(np.searchsorted(self.ends, z) - 1, 0, len(self.ends) - 2)
-        basis = lagrange((z - self.ends[k]) / np.diff(self.ends)[k], self.order)
-        return (basis * values.reshape(-1, self.order)[k]).sum(-1)
+        return self.interpolation(np.arcsinh((x - self.centre) / self.d)) @ values
+
+    def interpolation(self, z):
+        """The matrix from values at the nodes to values at the places z."""
+        panel = np.clip(np.searchsorted(self.ends, z) - 1, 0, len(self.ends) - 2)
+        matrix = np.zeros((len(z), len(self.z)))
+        for k in set(panel):
+            here = panel == k
+            matrix[here, self.panel(k)[2]] = self.basis(k, z[here])
+        return matrix

@@ -1,6 +1,15 @@
 """Zeros, derivatives and integrals of functions that tests can evaluate."""
 
+import functools
+
 import numpy as np
+
+
+@functools.cache
+def gauss(count, low=0.0, high=1.0):
+    """Points and weights of Gauss's rule between two places."""
+    points, weights = np.polynomial.legendre.leggauss(count)
+    return low + (high - low) / 2 * (points + 1), (high - low) / 2 * weights
 
 
 def zero(function, low, high):
@@ -19,12 +28,12 @@ def derivative(function, at, step):
     return (16 * d[1] - d[0]) / 15
 
 
-def integrals(function, ends):
+def integrals(function, ends, order=30):
     """The integrals of a function and of its size between successive ends, by Gauss's rule."""
-    x, w = np.polynomial.legendre.leggauss(30)
+    x, w = gauss(order)
     low, length = ends[:-1, None], np.diff(ends)[:, None]
-    values = function((low + length * (x + 1) / 2).ravel()).reshape(-1, x.size) * length
-    return values @ (w / 2), abs(values) @ (w / 2)
+    values = function((low + length * x).ravel()).reshape(-1, order) * length
+    return values @ w, abs(values) @ w
 
 
 def hermite(at, x, y, slope):

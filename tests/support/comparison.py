@@ -5,6 +5,7 @@ import math
 from typing import NamedTuple
 
 import numpy as np
+from support.scenes import several
 
 # Largest relative difference between two resolutions of the reference. It is largest for the place
 # of an extremum of the load; at strong adhesion rounding sets the limit.
@@ -50,41 +51,27 @@ def missing(report, expected):
         if there != wanted:
             wrong.append(f"{key} {'missing' if wanted else 'invented'}")
         elif there and isinstance(value, list):
-            mine, theirs = aslist(report.numbers[key]), value
+            mine, theirs = several(report.numbers[key]), value
             if [math.isnan(x) for x in mine] != [math.isnan(x) for x in theirs]:
                 wrong.append(f"{key} has {mine} for {theirs}")
     return wrong
 
 
-def aslist(value):
-    return value if isinstance(value, list) else [value]
-
-
 def deviations(report, expected, path):
-    """The deviations of all numbers that both have."""
-    pull_off = path.pull_off.load
     found = []
     for key, value in expected.items():
-        if key not in report.numbers or value is None:
+        mine, theirs = several(report.numbers.get(key, [])), several(value)
+        if value is None or len(mine) != len(theirs):
             continue
-        mine, theirs = aslist(report.numbers[key]), aslist(value)
-        errors = aslist(report.errors[key]) if key in report.errors else None
-        if len(mine) != len(theirs):
-            continue
+        errors, scale = several(report.errors.get(key, [])), scale_of(key, path.pull_off.load)
         for i, (one, other) in enumerate(zip(mine, theirs)):
             if math.isnan(one) or math.isnan(other):
                 continue
-            scale = scale_of(key, pull_off)
-            made = deviation(key, one, other, scale, report, errors, i)
-            found.append(made._replace(known=made.relative > floor(key, path.sigma)))
+            error, size = abs(one - other), max(abs(other), scale)
+            allowed = errors[i] if i < len(errors) else report.estimate * size
+            found.append(Deviation(key, other, error, allowed, error / size,
+                                   error / size > floor(key, path.sigma)))
     return found
-
-
-def deviation(key, mine, value, scale, report, errors, i):
-    error, size = abs(mine - value), max(abs(value), scale)
-    own = errors is not None and i < len(errors)
-    allowed = errors[i] if own else report.estimate * size
-    return Deviation(key, value, error, allowed, error / size)
 
 
 def floor(key, sigma):

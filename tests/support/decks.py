@@ -113,7 +113,6 @@ def with_bodies(text):
 
 
 def with_extra(text):
-    """A good deck followed by `text` from line 4 on."""
     return GOOD + text
 
 

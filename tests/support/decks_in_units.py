@@ -3,12 +3,14 @@
 import math
 import os
 import pathlib
+import resource
 import shutil
+import signal
 import subprocess
 from typing import NamedTuple
 
 import f90nml
-from support.processes import threaded
+from support.processes import HANG, threaded
 from support.scenes import deck, read_table, several
 
 LOADS = (
@@ -83,14 +85,19 @@ def program_path():
 
 def run_deck(folder, name, text, seconds):
     """Runs a deck in a folder on one thread: its status, its standard error, and the folder of its
-    results; status None if it takes longer."""
+    results; status None if it takes more seconds of the processor, whatever the load of the
+    machine."""
     folder.mkdir(parents=True, exist_ok=True)
     (folder / f"{name}.nml").write_text(text)
+    limits = (resource.RLIMIT_CPU, (math.ceil(seconds), math.ceil(seconds) + 5))
     try:
         done = subprocess.run(
-            [str(program_path()), "--quiet", f"{name}.nml"], cwd=folder, capture_output=True,
-            text=True, errors="replace", timeout=seconds, check=False, env=threaded())
+            [str(program_path()), f"{name}.nml"], cwd=folder, capture_output=True, text=True,
+            errors="replace", timeout=HANG, check=False, env=threaded(),
+            preexec_fn=lambda: resource.setrlimit(*limits))
     except subprocess.TimeoutExpired:
+        return None, "hangs", None
+    if done.returncode == -signal.SIGXCPU:
         return None, f"more than {seconds} s", None
     return done.returncode, done.stderr, folder / "results" / name
 

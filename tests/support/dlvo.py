@@ -7,6 +7,7 @@ import math
 import numpy as np
 from numpy.polynomial import chebyshev
 from support import boundary_value
+from support.calculus import gauss
 
 BOLTZMANN, CHARGE, AVOGADRO, VACUUM = 1.380649e-23, 1.602176634e-19, 6.02214076e23, 8.8541878128e-12
 # Gap in Debye lengths beyond which double layers decay as exp(-x) to all significant digits.
@@ -33,7 +34,6 @@ class Dlvo:
         self.derivative = chebyshev.chebder(self.series)
 
     def double_layer(self, gap):
-        """Pressure and slope of the double layers."""
         x = gap / self.debye
         u = 2 * np.sqrt(np.minimum(x, FAR) / FAR) - 1
         pressure = self.osmotic * np.exp(chebyshev.chebval(u, self.series) - x)
@@ -54,10 +54,9 @@ class Dlvo:
 
     def energy_of_layers(self, gap):
         """The integral of the pressure of the double layers from each gap to infinity."""
-        x, w = np.polynomial.legendre.leggauss(60)
         flat = np.atleast_1d(gap).ravel()
         # Over z = 1 - exp(-(t - gap)/debye), in which the integrand is nearly constant.
-        z, w = (x + 1) / 2, w / 2
+        z, w = gauss(60)
         t = flat[:, None] - self.debye * np.log1p(-z)
         pressure = self.double_layer(t)[0]
         return (self.debye * (pressure / (1 - z)) @ w).reshape(np.shape(gap))

@@ -11,7 +11,7 @@ Units: z0 for gaps, gamma/z0 for pressures, gamma R for loads. strength = 12 eta
 import functools
 
 import numpy as np
-from support.abel import Mesh, lagrange
+from support.abel import Mesh
 from support.series import USUAL
 from support.states import pressure, slope
 
@@ -19,17 +19,6 @@ from support.states import pressure, slope
 @functools.lru_cache(maxsize=None)
 def the_mesh():
     return Mesh(0.0, 0.5, 200.0, USUAL, 2)
-
-
-def interpolation(mesh, z):
-    """The matrix from nodal values to values at the places z."""
-    order = mesh.order
-    panel = np.clip(np.searchsorted(mesh.ends, z, side="right") - 1, 0, mesh.ends.size - 2)
-    u = (z - mesh.ends[panel]) / np.diff(mesh.ends)[panel]
-    matrix = np.zeros((z.size, mesh.x.size))
-    for row, (k, values) in enumerate(zip(panel, lagrange(u, order))):
-        matrix[row, k * order:(k + 1) * order] = values
-    return matrix
 
 
 class Drained:
@@ -45,8 +34,8 @@ class Drained:
         self.edge, self.speed = mesh.position(edge), mesh.growth(edge)
         area = np.diff(np.concatenate([[0], self.edge**2])) / 2
         # Matrix from rates at nodes to flows through edges.
-        self.gather = np.cumsum(area[:, None] * interpolation(mesh, edge - width / 2), axis=0)
-        self.at_edge = interpolation(mesh, edge)
+        self.gather = np.cumsum(area[:, None] * mesh.interpolation(edge - width / 2), axis=0)
+        self.at_edge = mesh.interpolation(edge)
         # Matrix from drops of the pressure between rings to pressures at nodes: sums from outside,
         # interpolated by parabolas through three rings.
         middle = edge - width / 2
@@ -104,14 +93,9 @@ def cycle(sigma, strength, start, turn, velocity, steps, rings):
     loads = []
     for begin, sign in ((start, -1), (turn, 1)):
         passed = 0.0
-        first = True
         for k in range(10):
-            lengths = np.full(steps, part / steps)
-            if first:
-                powers = np.concatenate([[0], np.geomspace(1e-4, 1, 3 * steps)])
-                lengths = np.diff(powers) * part
-                first = False
-            for length in lengths:
+            ends = np.linspace(0, 1, steps + 1) if k else [0, *np.geomspace(1e-4, 1, 3 * steps)]
+            for length in np.diff(ends) * part:
                 passed += length
                 bodies.go(begin + sign * velocity * passed, length)
             loads.append(bodies.load)

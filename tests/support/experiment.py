@@ -36,7 +36,6 @@ def in_contact(path, start, h0):
 
 
 def approach(path, start, end):
-    """The legs of the loading."""
     far, contact = path.far_branch, path.contact_branch
     if not path.folds or not in_contact(path, start, end):
         return [Leg(path.on(far, start), path.on(far, end))]
@@ -48,7 +47,6 @@ def approach(path, start, end):
 
 
 def withdrawal(path, start, turn, retreat):
-    """The legs of an unloading."""
     far, contact = path.far_branch, path.contact_branch
     if not in_contact(path, start, turn):
         return [Leg(path.on(far, turn), path.on(far, retreat))]

@@ -10,21 +10,19 @@ Deck number k is always the same deck.
 
 import argparse
 import collections
-import concurrent.futures
+import functools
 import math
 import pathlib
 import random
 import re
 import resource
-import signal
-import subprocess
 import sys
 
 import f90nml
 import numpy as np
-from support.decks_in_units import program_path
-from support.processes import HANG, threaded
+from support.decks_in_units import run_deck
 from support.scenes import deck, read_table, several
+from support.spread import spread
 
 # --- Decks
 
@@ -35,7 +33,6 @@ def power(rng, low, high):
 
 
 def bodies(rng, radius, stiffness):
-    """The bodies, given in one of the three ways."""
     way = rng.random()
     if way < 0.15:
         return {"radius": radius, "rigid": True}
@@ -93,7 +90,6 @@ def ranges(rng, length):
 
 
 def effects(rng, groups):
-    """The other groups of a scene."""
     if rng.random() < 0.15:
         groups["stability"] = {}
     if rng.random() < 0.2:
@@ -135,7 +131,6 @@ def numerics(rng, radius, length):
 
 
 def extreme_deck(number):
-    """Deck `number`."""
     rng = random.Random(number)
     radius, stiffness = power(rng, -9, 6), power(rng, 0, 15)
     law, length = force(rng, radius, stiffness)
@@ -168,29 +163,6 @@ class Broken(AssertionError):
 def claim(holds, text):
     if not holds:
         raise Broken(text)
-
-
-def run_deck(program, text, folder, name, seconds):
-    """The status of a deck's run, its standard error and its processor time, at most `seconds`. The
-    limit is independent of the load of the machine."""
-    folder.mkdir(parents=True, exist_ok=True)
-    (folder / f"{name}.nml").write_text(text)
-    limits = (resource.RLIMIT_CPU, (math.ceil(seconds), math.ceil(seconds) + 5))
-    before = processor_seconds()
-    try:
-        done = subprocess.run(
-            [str(program), f"{name}.nml"], cwd=folder, capture_output=True, text=True,
-            errors="replace", timeout=HANG, check=False, env=threaded(),
-            preexec_fn=lambda: resource.setrlimit(*limits))
-    except subprocess.TimeoutExpired:
-        raise Broken("hangs") from None
-    claim(done.returncode != -signal.SIGXCPU, f"took more than {seconds} s of the processor")
-    return done.returncode, done.stderr, processor_seconds() - before
-
-
-def processor_seconds():
-    """Processor time of all runs that have ended; with simultaneous runs, also of the others."""
-    return resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
 
 
 def check_run(status, stderr, folder):
@@ -245,20 +217,17 @@ def check_run(status, stderr, folder):
 
 
 def tolerance_of(keys):
-    """The residual that a deck requests."""
     return keys.get("residual_tolerance", min(1e-8, 0.01 * keys.get("accuracy", 1e-6)))
 
 
-def try_deck(number, program, out, seconds):
+def try_deck(number, out, seconds):
     """Runs deck `number`; returns its status, or the broken claim, and its processor time."""
-    name = f"deck{number}"
-    text = extreme_deck(number)
+    before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
     try:
-        status, stderr, taken = run_deck(program, text, out, name, seconds)
-        result = check_run(status, stderr, out / "results" / name)
+        result = check_run(*run_deck(out, f"deck{number}", extreme_deck(number), seconds))
     except Broken as broken:
-        return number, str(broken), seconds
-    return number, result, taken
+        result = str(broken)
+    return result, resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before
 
 
 def main():
@@ -269,20 +238,16 @@ def main():
     parser.add_argument("--seconds", type=float, default=60.0)
     parser.add_argument("--out", type=pathlib.Path, required=True)
     arguments = parser.parse_args()
-    program = program_path()
-    statuses, broken, slowest = collections.Counter(), 0, (0.0, -1)
-    with concurrent.futures.ThreadPoolExecutor(arguments.jobs) as pool:
-        numbers = range(arguments.first, arguments.first + arguments.count)
-        for number, result, taken in pool.map(
-                lambda k: try_deck(k, program, arguments.out, arguments.seconds), numbers):
-            slowest = max(slowest, (taken, number))
-            if isinstance(result, str):
-                broken += 1
-                print(f"deck{number}: {result}", flush=True)
-            else:
-                statuses[result] += 1
-    print(f"statuses {dict(statuses)}, broken {broken}, "
-          f"slowest {slowest[0]:.1f} s (deck{slowest[1]})")
+    numbers = range(arguments.first, arguments.first + arguments.count)
+    found = spread(functools.partial(try_deck, out=arguments.out, seconds=arguments.seconds),
+                   numbers, workers=arguments.jobs, name="decks")
+    broken = {number: text for number, (text, _) in zip(numbers, found) if isinstance(text, str)}
+    for number, text in broken.items():
+        print(f"deck{number}: {text}")
+    statuses = collections.Counter(status for status, _ in found if not isinstance(status, str))
+    taken, slowest = max((taken, number) for number, (_, taken) in zip(numbers, found))
+    print(f"statuses {dict(statuses)}, broken {len(broken)}, "
+          f"slowest {taken:.1f} s (deck{slowest})")
     return 1 if broken else 0
 
 

@@ -1,12 +1,10 @@
 /* Loaded before the C library, makes its calls fail, or the process die, where tests want it.
 
-   FAULT_CALL   the call: open, write, fsync, close, rename, unlink, ftruncate, fstat, mkdir,
-                malloc, mmap, or any (of those on files)
+   FAULT_CALL   the call: open, write, fsync, close, rename, unlink, ftruncate, fstat, mkdir, or any
    FAULT_AT     which of them, from 1; 0 counts only
    FAULT_ERRNO  the error; 0: the process is killed before the call
    FAULT_LASTS  set: every later one fails too
    FAULT_UNDER  part of a path: only files below it count
-   FAULT_BEGINS part of a path: nothing counts before a file of that name has been opened
    FAULT_LOG    a file that gets a line for every call that was made: its name, descriptor, path(s),
                 and what was written in hexadecimal digits
 
@@ -20,14 +18,13 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/mman.h>
 #include <sys/stat.h>
 #include <sys/syscall.h>
 #include <unistd.h>
 
 enum { most = 1024 };
 static char *paths[most];
-static const char *call, *under, *from;
+static const char *call, *under;
 static long at, failures, counted;
 static int lasts, failing, log_fd = -1, ready;
 
@@ -38,7 +35,6 @@ static void set_up(void) {
   ready = 1;
   call = getenv("FAULT_CALL");
   under = getenv("FAULT_UNDER");
-  from = getenv("FAULT_BEGINS");
   at = (text = getenv("FAULT_AT")) ? atol(text) : 0;
   failing = (text = getenv("FAULT_ERRNO")) ? atoi(text) : 0;
   lasts = getenv("FAULT_LASTS") != NULL;
@@ -62,8 +58,7 @@ static void note(const char *name, int fd, const char *path, const char *other) 
 /* Whether this call is to fail; sets errno. */
 static int fails(const char *name) {
   set_up();
-  if (!call || from || (strcmp(call, name) && (strcmp(call, "any") || !strcmp(name, "malloc") ||
-                                       !strcmp(name, "mmap"))))
+  if (!call || (strcmp(call, name) && strcmp(call, "any")))
     return 0;
   long mine = __sync_add_and_fetch(&counted, 1);
   if (at == 0 || mine < at || (mine > at && !lasts))
@@ -90,13 +85,14 @@ static const char *minds(int fd) {
   if (!real)                                                                                       \
     *(void **)&real = dlsym(RTLD_NEXT, name)
 
-static int opened(const char *path, int flags, mode_t mode) {
-  set_up();
-  if (from && path && strstr(path, from))
-    from = NULL;
+int open(const char *path, int flags, ...) {
+  va_list rest;
+  va_start(rest, flags);
+  mode_t mode = flags & O_CREAT ? va_arg(rest, mode_t) : 0;
+  va_end(rest);
   if (minds_path(path) && fails("open"))
     return -1;
-  int fd = syscall(SYS_openat, AT_FDCWD, path, flags, mode);
+  int fd = syscall(SYS_openat, AT_FDCWD, path, flags | O_LARGEFILE, mode);
   if (fd >= 0 && fd < most && minds_path(path)) {
     paths[fd] = strdup(path);
     note(flags & O_CREAT ? "create" : "open", fd, path, NULL);
@@ -104,28 +100,16 @@ static int opened(const char *path, int flags, mode_t mode) {
   return fd;
 }
 
-int open(const char *path, int flags, ...) {
-  va_list rest;
-  va_start(rest, flags);
-  mode_t mode = flags & O_CREAT ? va_arg(rest, mode_t) : 0;
-  va_end(rest);
-  return opened(path, flags, mode);
-}
-
-int open64(const char *path, int flags, ...) {
-  va_list rest;
-  va_start(rest, flags);
-  mode_t mode = flags & O_CREAT ? va_arg(rest, mode_t) : 0;
-  va_end(rest);
-  return opened(path, flags | O_LARGEFILE, mode);
-}
-
 /* What is opened from a folder that counts, the one above it for instance, counts too. */
-static int opened_in(int folder, const char *path, int flags, mode_t mode) {
+int openat(int folder, const char *path, int flags, ...) {
+  va_list rest;
+  va_start(rest, flags);
+  mode_t mode = flags & O_CREAT ? va_arg(rest, mode_t) : 0;
+  va_end(rest);
   const char *from_path = minds(folder);
   if (from_path && fails("open"))
     return -1;
-  int fd = syscall(SYS_openat, folder, path, flags, mode);
+  int fd = syscall(SYS_openat, folder, path, flags | O_LARGEFILE, mode);
   if (from_path && fd >= 0 && fd < most) {
     char whole[4200];
     snprintf(whole, sizeof whole, "%s/%s", from_path, path);
@@ -133,22 +117,6 @@ static int opened_in(int folder, const char *path, int flags, mode_t mode) {
     note("open", fd, whole, NULL);
   }
   return fd;
-}
-
-int openat(int folder, const char *path, int flags, ...) {
-  va_list rest;
-  va_start(rest, flags);
-  mode_t mode = flags & O_CREAT ? va_arg(rest, mode_t) : 0;
-  va_end(rest);
-  return opened_in(folder, path, flags, mode);
-}
-
-int openat64(int folder, const char *path, int flags, ...) {
-  va_list rest;
-  va_start(rest, flags);
-  mode_t mode = flags & O_CREAT ? va_arg(rest, mode_t) : 0;
-  va_end(rest);
-  return opened_in(folder, path, flags | O_LARGEFILE, mode);
 }
 
 ssize_t write(int fd, const void *bytes, size_t count) {
@@ -227,6 +195,10 @@ int fstatat(int folder, const char *name, struct stat *status, int flags) {
 }
 
 /* The names under which programs with large files know them. */
+int open64(const char *path, int flags, ...) __attribute__((alias("open")));
+
+int openat64(int folder, const char *path, int flags, ...) __attribute__((alias("openat")));
+
 int ftruncate64(int fd, off64_t length) { return ftruncate(fd, length); }
 
 int fstat64(int fd, struct stat64 *status) { return fstat(fd, (struct stat *)status); }
@@ -259,22 +231,6 @@ int mkdir(const char *path, mode_t mode) {
   if (minds_path(path))
     note("mkdir", -1, path, NULL);
   return syscall(SYS_mkdirat, AT_FDCWD, path, mode);
-}
-
-extern void *__libc_malloc(size_t), *__libc_calloc(size_t, size_t), *__libc_realloc(void *, size_t);
-
-void *malloc(size_t size) { return fails("malloc") ? NULL : __libc_malloc(size); }
-
-void *calloc(size_t count, size_t size) {
-  return fails("malloc") ? NULL : __libc_calloc(count, size);
-}
-
-void *realloc(void *old, size_t size) { return fails("malloc") ? NULL : __libc_realloc(old, size); }
-
-void *mmap(void *place, size_t size, int protection, int flags, int fd, off_t offset) {
-  if (fd < 0 && fails("mmap"))
-    return MAP_FAILED;
-  return (void *)syscall(SYS_mmap, place, size, protection, flags, fd, offset);
 }
 
 __attribute__((destructor)) static void end(void) {

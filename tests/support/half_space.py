@@ -7,15 +7,11 @@ continuation in the gap on the axis. Lengths are in units of the law's length; s
 import ctypes
 import ctypes.util
 import functools
-import json
-import pathlib
-import subprocess
-import sys
 
 import numpy as np
 from numpy.polynomial import chebyshev
-from support.dlvo import Dlvo
-from support.processes import HANG, threaded
+from support.abel import lagrange
+from support.calculus import gauss
 
 
 def agm_k(complement):
@@ -33,19 +29,6 @@ def kernel(r, t, distance):
     large = np.maximum(r, t)
     complement = np.sqrt(distance / large * (1 + np.minimum(r, t) / large))
     return 4 / (np.pi * large) * agm_k(complement)
-
-
-def lagrange(nodes, at):
-    """Values at `at` of the Lagrange polynomials of `nodes`, (at, nodes)."""
-    weights = 1 / np.prod(nodes[:, None] - nodes + np.eye(len(nodes)), axis=1)
-    apart = at[:, None] - nodes
-    hit = apart == 0
-    apart[hit] = 1
-    ratio = weights / apart
-    values = ratio / ratio.sum(1, keepdims=True)
-    rows = hit.any(1)
-    values[rows] = hit[rows]
-    return values
 
 
 def ring_image(r, t, depth):
@@ -83,20 +66,18 @@ def layer_image(r, t, layer):
 def layer_image_to(last, r, t, layer):
     """The integral up to k = last; beyond 20 over the thickness, exp(-40) is neglected."""
     thickness, ratio, nu, base, part = layer
-    x, w = np.polynomial.legendre.leggauss(16)
+    x, w = gauss(16)
     # Panels are short for the waves and, near 0, for stiff layers.
     length = min(0.5 / thickness, 10 / max(r.max(), t.max()))
-    ends = np.concatenate([length * 0.5 ** np.arange(12, 0, -1),
-                           np.arange(length, last, length)])
+    ends = np.concatenate([length * 0.5 ** np.arange(12, 0, -1), np.arange(length, last, length)])
     ends = np.concatenate([[0], ends])
-    k = (ends[:-1, None] + np.diff(ends)[:, None] * (x + 1) / 2).ravel()
-    weight = (np.diff(ends)[:, None] * w / 2).ravel()
+    k = (ends[:-1, None] + np.diff(ends)[:, None] * x).ravel()
+    weight = (np.diff(ends)[:, None] * w).ravel()
     strength = 2 * part * weight * (waves_of_layer(k * thickness, ratio, nu, base) - 1)
     return (bessel_j0(np.outer(r, k)) * strength) @ bessel_j0(np.outer(t, k)).T
 
 
 def bessel_j0(x):
-    """J0, from the C library."""
     j0 = ctypes.CDLL(ctypes.util.find_library("m")).j0
     j0.argtypes, j0.restype = [ctypes.c_double], ctypes.c_double
     return np.fromiter(map(j0, x.ravel().tolist()), float, x.size).reshape(x.shape)
@@ -110,8 +91,7 @@ class HalfSpace:
     """
 
     def __init__(self, ends, order=12, image=None, layer=None):
-        x, w = np.polynomial.legendre.leggauss(order)
-        local, weight = (x + 1) / 2, w / 2
+        local, weight = gauss(order)
         ends = np.asarray(ends, float)
         length = np.diff(ends)
         self.r = (ends[:-1, None] + length[:, None] * local).ravel()
@@ -119,8 +99,7 @@ class HalfSpace:
         self.end = ends[-1]
         targets = np.concatenate([[0.0], self.r])
         self.matrix = np.empty((len(targets), len(self.r)))
-        s, v = np.polynomial.legendre.leggauss(40)
-        s, v = (s + 1) / 2, v / 2
+        s, v = gauss(40)
         for panel, (a, b) in enumerate(zip(ends[:-1], ends[1:])):
             columns = slice(panel * order, (panel + 1) * order)
             t = self.r[columns]
@@ -137,7 +116,7 @@ class HalfSpace:
                     offset = side * reach * s**6
                     at = near + offset
                     k = kernel(targets[i], at, abs((near - targets[i]) + offset))
-                    row += (k * 6 * s**5 * v * reach * at) @ lagrange(local, (at - a) / (b - a))
+                    row += (k * 6 * s**5 * v * reach * at) @ lagrange((at - a) / (b - a), order)
                 self.matrix[i, columns] = row
         if image:
             strength, depth = image
@@ -202,8 +181,7 @@ class HalfSpace:
             u = chebyshev.chebpts1(12)[::-1]
             h0_of = chebyshev.chebfit(u, [state[1] for state in near], 11)
             load_of = chebyshev.chebfit(u, [self.load(law, s, state[0]) for state in near], 11)
-            roots = chebyshev.chebroots(
-                chebyshev.chebder(chebyshev.chebfit(u, driven(near), 11)))
+            roots = chebyshev.chebroots(chebyshev.chebder(chebyshev.chebfit(u, driven(near), 11)))
             root = roots[(abs(roots.imag) < 1e-9) & (abs(roots.real) <= 1)].real[0]
             found.append([chebyshev.chebval(root, h0_of), chebyshev.chebval(root, load_of)])
         return found
@@ -216,13 +194,11 @@ class HalfSpace:
 
 
 def exponential(gap):
-    """Pressure, slope and energy of the exponential law."""
     p = np.exp(-gap)
     return p, -p, p
 
 
 def lennard_jones(gap):
-    """Pressure, slope and energy of the Lennard-Jones law."""
     return (
         8 / 3 * (gap**-9 - gap**-3), 8 * (gap**-4 - 3 * gap**-10), gap**-8 / 3 - 4 / 3 * gap**-2)
 
@@ -239,54 +215,19 @@ def sticky(gap):
     return push - pull, 2 * pull - push / 2, 2 * push - pull / 2
 
 
-def dlvo(z0, **keys):
-    """DLVO forces in units of z0 and of the surface energy of the Lennard-Jones part over it."""
-    law = Dlvo(z0=z0, **keys)
-    energy = keys["hamaker"] / (16 * np.pi * z0**2)
-
-    def values(gap):
-        units = energy / z0, energy / z0**2, energy
-        return tuple(value / unit for value, unit in zip(law(gap * z0), units))
-
-    return values
+def in_units(law, length, energy):
+    """A law in SI as a law in units of a length and of an energy per area over it."""
+    units = energy / length, energy / length**2, energy
+    return lambda gap: tuple(value / unit for value, unit in zip(law(gap * length), units))
 
 
 @functools.cache
-def path_by_axis(law, s, axis, ends, image=None, layer=None, softness=(0.0,), **keys):
+def path_by_axis(s, axis, ends, law=lennard_jones, image=None, layer=None, softness=(0.0,)):
     """H0 and loads, (two, states), at each gap on the axis, from large gaps inwards; and, for each
     softness, H0 and load, (two, folds), where H0 - softness*load turns: the position of a drive
-    with a spring. softness is in lengths over loads of the result; `keys` are of the law."""
-    states, *folds = carried_out({"law": law, "s": s, "axis": axis, "ends": ends, "image": image,
-                                  "layer": layer, "softness": softness, "keys": keys})
-    return np.array(states).T, *(np.array(each).T for each in folds)
-
-
-def carried_out(task):
-    """The result of `main` for a task.
-
-    It runs in a process with one thread: NumPy's threads stall each other on a busy machine.
-    """
-    done = subprocess.run(
-        [sys.executable, "-m", "support.half_space"], cwd=pathlib.Path(__file__).parents[1],
-        input=json.dumps(task), capture_output=True, text=True, check=True, env=threaded(),
-        timeout=HANG)
-    return json.loads(done.stdout)
-
-
-def main():
-    """Carry out the task on standard input."""
-    task = json.load(sys.stdin)
-    law = {
-        "exponential": exponential, "lennard_jones": lennard_jones, "barrier": behind_a_barrier,
-        "sticky": sticky,
-    }.get(task["law"]) or dlvo(**task["keys"])
-    half_space = HalfSpace(task["ends"], image=task.get("image"), layer=task.get("layer"))
-    states = half_space.with_axis(law, task["s"], task["axis"])
-    folds = [half_space.folds(law, task["s"], task["axis"], states, softness)
-             for softness in task["softness"]]
-    loads = [[h0, half_space.load(law, task["s"], gap)] for gap, h0 in states]
-    print(json.dumps([loads, *folds]))
-
-
-if __name__ == "__main__":
-    main()
+    with a spring. softness is in lengths over loads of the result."""
+    bodies = HalfSpace(ends, image=image, layer=layer)
+    states = bodies.with_axis(law, s, axis)
+    folds = [bodies.folds(law, s, axis, states, each) for each in softness]
+    loads = [[h0, bodies.load(law, s, gap)] for gap, h0 in states]
+    return tuple(np.array(found).T for found in (loads, *folds))

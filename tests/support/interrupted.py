@@ -43,7 +43,6 @@ def checksum(words):
 
 
 def sealed(frame):
-    """A frame with its checksum."""
     words = list(struct.unpack(f"<{len(frame) // WORD}Q", frame))
     words[1] = 0
     words[1] = checksum(words)
@@ -51,14 +50,12 @@ def sealed(frame):
 
 
 def heading(text):
-    """The frame of a heading."""
     data = text.encode()
     data += b" " * (-len(data) % WORD)
     return sealed(struct.pack("<qqdq", 1 + len(data) // WORD, 0, 0.0, len(text)) + data)
 
 
 def owner(frame):
-    """The text of a heading."""
     (length,) = struct.unpack_from("<q", frame, 3 * WORD)
     return frame[4 * WORD : 4 * WORD + length].decode()
 
@@ -72,7 +69,6 @@ def linked_id(file):
 
 
 def rows(lines):
-    """The rows of a table, without the lines before them."""
     return [line for line in lines if not line.startswith(b"#")][1:]
 
 
@@ -115,7 +111,6 @@ class Bench:
         return target
 
     def resume(self, journal):
-        """The run that continues from a journal."""
         self.emptied(journal)
         return self.run("cut", "--resume")
 

@@ -1,40 +1,39 @@
 """Waves of pressure on layered bodies, solved directly with enough digits to avoid any loss of
 accuracy: each layer has four waves, and all conditions together are one linear system."""
 
-from decimal import Decimal, localcontext
+import mpmath
+from mpmath import mpf
 
 DIGITS = 60
 
 
 def surface_yield(k, thickness, shear, poisson, base=None):
     """L(k) of layers from the top down on a base, (shear modulus, Poisson's ratio), or rigid."""
-    with localcontext() as context:
-        context.prec = DIGITS
-        k = Decimal(k)
-        layers = [(Decimal(t), Decimal(g), Decimal(n))
-                  for t, g, n in zip(thickness, shear, poisson)]
+    with mpmath.workdps(DIGITS):
+        k = mpf(k)
+        layers = [tuple(map(mpf, layer)) for layer in zip(thickness, shear, poisson)]
         columns = 4 * len(layers) + (2 if base else 0)
         rows, right = [], []
         # No shear and unit pressure on the surface.
-        top = waves(layers[0][1], layers[0][2], k, Decimal(0), layers[0][0])
+        top = waves(layers[0][1], layers[0][2], k, 0, layers[0][0])
         for component, value in ((2, 0), (3, -1)):
-            rows.append([wave[component] for wave in top] + [Decimal(0)] * (columns - 4))
-            right.append(Decimal(value))
+            rows.append([wave[component] for wave in top] + [0] * (columns - 4))
+            right.append(value)
         for i, (t, g, n) in enumerate(layers):
             above = waves(g, n, k, t, t)
-            before = [Decimal(0)] * (4 * i)
+            before = [0] * (4 * i)
             if i + 1 < len(layers):
-                below = waves(layers[i + 1][1], layers[i + 1][2], k, Decimal(0), layers[i + 1][0])
+                below = waves(layers[i + 1][1], layers[i + 1][2], k, 0, layers[i + 1][0])
             elif base:
-                below = waves(Decimal(base[0]), Decimal(base[1]), k, Decimal(0), Decimal(0))[:2]
+                below = waves(*map(mpf, base), k, 0, 0)[:2]
             else:
                 below = []
             for component in range(4 if below else 2):
                 row = before + [wave[component] for wave in above]
                 row += [-wave[component] for wave in below]
-                rows.append(row + [Decimal(0)] * (columns - len(row)))
-                right.append(Decimal(0))
-        amplitude = solved(rows, right)
+                rows.append(row + [0] * (columns - len(row)))
+                right.append(0)
+        amplitude = mpmath.lu_solve(mpmath.matrix(rows), mpmath.matrix(right))
         deflection = sum(a * wave[1] for a, wave in zip(amplitude, top))
         # A half-space of the top layer: (1 - nu)/(G k).
         return float(deflection * layers[0][1] * k / (1 - layers[0][2]))
@@ -45,7 +44,7 @@ def waves(g, n, k, z, thickness):
     that decay upwards from its lower side. Papkovich and Neuber: u = -(phi + z psi)',
     w = 4 (1 - nu) psi - (phi + z psi)'."""
     found = []
-    for sign, size in ((-1, (-k * z).exp()), (1, (k * (z - thickness)).exp())):
+    for sign, size in ((-1, mpmath.exp(-k * z)), (1, mpmath.exp(k * (z - thickness)))):
         # Displacements u sin(k x), w cos(k x) from phi, psi ~ exp(sign k z) cos(k x).
         rate = sign * k
         for phi, psi in ((1, 0), (0, 1)):
@@ -59,20 +58,3 @@ def waves(g, n, k, z, thickness):
             sigma = 2 * g * w_z + 4 * g * n * rate * psi
             found.append([size * part for part in (u, w, tau, sigma)])
     return found
-
-
-def solved(rows, right):
-    """Gauss's elimination with row pivots."""
-    table = [row + [value] for row, value in zip(rows, right)]
-    n = len(table)
-    for i in range(n):
-        pivot = max(range(i, n), key=lambda j: abs(table[j][i]))
-        table[i], table[pivot] = table[pivot], table[i]
-        for j in range(i + 1, n):
-            factor = table[j][i] / table[i][i]
-            if factor:
-                table[j] = [a - factor * b for a, b in zip(table[j], table[i])]
-    x = [Decimal(0)] * n
-    for i in reversed(range(n)):
-        x[i] = (table[i][n] - sum(table[i][j] * x[j] for j in range(i + 1, n))) / table[i][i]
-    return x

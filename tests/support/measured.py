@@ -94,13 +94,17 @@ def fit_deck(groups, file, parameters, fit=None, measurement=None, **others):
         "measurement": {
             "file": file, "columns": ["z", "force", "segment"], "spring_constant": SPRING,
             **(measurement or {})},
-        "fit": {"parameters": parameters, **(fit or {})},
+        "fit": {"parameters": list(parameters), **(fit or {})},
         **others,
     }
 
 
+def fitted(folder, curve, groups, parameters, fit=None, **others):
+    """The result of the fit of a measured curve, which is written into a folder."""
+    return run(fit_deck(groups, write(folder / "curve.csv", *curve), parameters, fit, **others))
+
+
 def run(deck):
-    """A fit whose warnings the test examines."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", snapin.SnapinWarning)
         return snapin.run(deck)

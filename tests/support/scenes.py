@@ -9,6 +9,8 @@ import re
 from typing import NamedTuple
 
 import f90nml
+import numpy as np
+import pytest
 from snapin import deck_text, results
 from support.processes import HANG, threaded
 
@@ -16,6 +18,8 @@ JKR = 1.5 * math.pi  # Pull-off of JKR theory in units of gamma R.
 
 # Bodies in whose decks lengths are in units of the law's length.
 UNIT = {"radius": 1.0, "stiffness": 1.0}
+# The force of most decks in SI units.
+FORCE = {"law": "lennard_jones", "hamaker": 1e-19, "z0": 0.5e-9}
 
 # --- Decks
 
@@ -46,6 +50,13 @@ def exponential(big_lambda, **groups):
         **groups)
 
 
+def path_of(stiffness, h0_end, accuracy=None, *, radius=1.5e-2, force=FORCE, **groups):
+    """A deck with a path in SI units."""
+    return deck(**{
+        "bodies": {"radius": radius, "stiffness": stiffness}, "force": force,
+        "equilibrium_path": {"h0_end": h0_end}, "numerics": {"accuracy": accuracy}, **groups})
+
+
 def changed(groups, values):
     """Groups with other values of keys: {'group.key': value} or, of a list, 'group.key(number)'."""
     found = {name: dict(keys) for name, keys in groups.items()}
@@ -71,7 +82,6 @@ def _parts(name):
 
 
 def loading(start, end, step):
-    """The keys of &loading."""
     return {"h0_start": float(start), "h0_end": float(end), "h0_step": float(step)}
 
 
@@ -117,8 +127,6 @@ def read_table(path):
 
 
 class Run(NamedTuple):
-    """The results of a deck."""
-
     status: int
     stderr: str
     folder: object
@@ -129,7 +137,6 @@ class Run(NamedTuple):
 
     @property
     def groups(self):
-        """The groups of summary.nml."""
         return f90nml.read(self.folder / "summary.nml")
 
     @property
@@ -157,6 +164,18 @@ class Run(NamedTuple):
 def several(value):
     """The values of a namelist key as a list; f90nml returns a single value without a list."""
     return list(value) if isinstance(value, list) else [value]
+
+
+def agreeing(run, scene, accuracies, names, rel=lambda accuracy: accuracy, perhaps=()):
+    """The runs of scene(accuracy), which have these numbers of the last run to rel(accuracy);
+    those of `perhaps` may be absent in all of them."""
+    *found, truth = (run(scene(accuracy)) for accuracy in accuracies)
+    assert set(names) <= set(truth.summary)
+    for one, accuracy in zip(found, accuracies):
+        for name in (*names, *perhaps):
+            mine, exact = (np.ravel(each.summary.get(name, [])) for each in (one, truth))
+            assert mine == pytest.approx(exact, rel=rel(accuracy)), (accuracy, name)
+    return *found, truth
 
 
 def runner(snapin, folder):

@@ -28,7 +28,6 @@ def pressure(gap):
 
 
 def slope(gap):
-    """The derivative of the pressure by the gap."""
     return 8 * gap**-4 * (1 - 3 * gap**-6)
 
 

@@ -133,7 +133,6 @@ def examined(path, scene, folder, deck=0):
 
 
 def judged(path, sigma, expected, found, deck, text):
-    """The errors by kind."""
     numbers = reported(expected)
     wrong = {}
     if found.status != 0:

@@ -15,19 +15,18 @@ DEPTH = -4.0
 
 
 class Job(NamedTuple):
-    """A strength, and the requested accuracies."""
-
     sigma: float
     accuracies: tuple
     folder: object
 
 
 class Finding(NamedTuple):
-    """One deck: its deviations, or other errors."""
+    """One deck: its error estimate, its deviations, and other errors."""
 
     sigma: float
     kind: str
     accuracy: float
+    estimate: float
     deviations: list
     wrong: list
 
@@ -66,7 +65,7 @@ def examine(job):
             if found.status != 0:
                 wrong.append(said(found))
             off = deviations(found, expected, path)
-            findings.append(Finding(job.sigma, kind, accuracy, off, wrong))
+            findings.append(Finding(job.sigma, kind, accuracy, found.estimate, off, wrong))
     return findings
 
 

@@ -34,8 +34,6 @@ class Job(NamedTuple):
 
 
 class Finding(NamedTuple):
-    """One deck and its errors."""
-
     sigma: float
     accuracy: float
     experiment: str
@@ -58,7 +56,6 @@ def jobs(count, folder, *, low=0.3, high=1e3, accuracies=(1e-4, 1e-6), powers=tu
 
 
 def examine(job):
-    """All decks of a job."""
     far = 4 + 3.5 * job.sigma ** (2 / 3)
     path = Path(job.sigma, DEPTH, far + 1)
     groups = {"numerics": {"accuracy": job.accuracy}}
@@ -107,13 +104,11 @@ def look_at_path(job, path, groups, fold, way, place, true, far):
 
 
 def limit_of(path, fold, load, accuracy):
-    """The allowed error of a load near a fold."""
     at = path.jump_in.load if fold == "in" else path.jump_out.load
     return max(WRONG, 10 * accuracy) * abs(path.pull_off.load) + WRONG_BESIDE * abs(load - at)
 
 
 def look_at_cycle(job, path, groups, fold, way, place, true, far):
-    """A cycle with a state at h0."""
     groups = {name: dict(keys) for name, keys in groups.items()}
     turning = [DEPTH]
     branch, start = ("loading", far) if fold == "in" else ("unloading_1", DEPTH)

@@ -48,8 +48,9 @@ class Law(NamedTuple):
 
 
 class Scene(NamedTuple):
-    """A scene: its number and seed, and its random values."""
+    """A scene: its study, number and seed, and its random values."""
 
+    study: str
     number: int
     seed: int
     law: str
@@ -76,7 +77,6 @@ def lennard_jones(rng, **more):
 
 
 def beside(rng, **groups):
-    """A Lennard-Jones force and another force."""
     return Law({**lennard_jones(rng), **groups}, Z0, Z0)
 
 
@@ -140,13 +140,13 @@ LAWS = {
 }
 
 
-def jobs(count, folder, *, seed=1, study="laws", names=tuple(LAWS), strengths=STRENGTHS):
+def jobs(count, folder, *, seed=1, study="law", names=tuple(LAWS), strengths=STRENGTHS):
     """Scenes of a study one by one, the laws (or bodies) of these names in turn."""
     made = []
     for number in range(count):
-        rng = random.Random(f"{study} {seed} {number}")
+        rng = random.Random(f"{study}s {seed} {number}")
         made.append(Scene(
-            number, seed, names[number % len(names)],
+            study, number, seed, names[number % len(names)],
             float(f"{logarithmic(rng, *strengths):.4g}"),
             rng.choice(("path", "cycle")), float(f"{logarithmic(rng, *ACCURACIES):.1g}"),
             folder / f"scene{number}"))
@@ -154,16 +154,19 @@ def jobs(count, folder, *, seed=1, study="laws", names=tuple(LAWS), strengths=ST
 
 
 def examine(scene):
-    """The findings of a job: one."""
     rng = random.Random(f"law {scene.seed} {scene.number}")
-
-    def bodies(stiffness):
-        return {"bodies": {"radius": RADIUS, "stiffness": stiffness}}
-
-    return [compared(scene, rng, LAWS[scene.law](rng), bodies)]
+    return [compared(scene, rng, LAWS[scene.law](rng), parabolas)]
 
 
-def compared(scene, rng, law, bodies, more=lambda rng, law, scales: {}):
+def parabolas(stiffness):
+    return {"bodies": {"radius": RADIUS, "stiffness": stiffness}}
+
+
+def nothing(rng, law, scales):
+    return {}
+
+
+def compared(scene, rng, law, bodies, more=nothing):
     """The finding of a scene; bodies(stiffness): the groups of its bodies; more: further groups, by
     the scales of the law."""
     scene.folder.mkdir(parents=True, exist_ok=True)
@@ -198,7 +201,7 @@ def scales_of(scene, law):
     """The summary of the law on bodies of the usual stiffness, from a table without solved
     equations."""
     return run(scene, "strength", {
-        "bodies": {"radius": RADIUS, "stiffness": STIFFNESS}, **law.groups,
+        **parabolas(STIFFNESS), **law.groups,
         "classical": {"h0_start": law.rest + law.length, "h0_end": law.rest}})[0]
 
 

@@ -37,7 +37,6 @@ def flat(result):
 
 
 def same(one, other):
-    """Whether two results are identical to the bit."""
     one, other = flat(one), flat(other)
     return len(one) == len(other) and all(map(same_part, one, other))
 

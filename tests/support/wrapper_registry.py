@@ -38,7 +38,6 @@ class Entry:
 
 
 def entry(call, **arguments):
-    """An entry from name=(kind, good value)."""
     return Entry(
         call, {name: value for name, (_, value) in arguments.items()},
         {name: kind for name, (kind, _) in arguments.items()})

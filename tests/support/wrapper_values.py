@@ -28,7 +28,6 @@ NONE = {"None": None}
 
 
 def refused(values):
-    """Cases of values that are refused."""
     return [(label, value, REFUSED) for label, value in values.items()]
 
 
@@ -38,12 +37,10 @@ def taken(values, clean):
 
 
 def own(values):
-    """Cases of values that are clean themselves."""
     return [(label, value, value) for label, value in values.items()]
 
 
 def scalars(good):
-    """Cases of a real number."""
     many = {"list": [good], "1-d": np.array([good]), "2-d": np.array([[good]]),
             "empty": np.array([]), "two": np.array([good, good])}
     large = {"too large": 10**400, "far too large": 10**5000, "inexact whole": 2**53 + 1}
@@ -62,7 +59,6 @@ def scalars(good):
 
 
 def positives(good):
-    """Cases of a number above zero."""
     return {sort: [(label, value, clean if clean is not REFUSED and clean > 0 else REFUSED)
                    for label, value, clean in cases] for sort, cases in scalars(good).items()}
 
@@ -131,7 +127,6 @@ def pairs(good):
 
 
 def counts(good):
-    """Cases of a whole number."""
     fractions = {"float": float(good), "half": good + 0.5, "numpy float": np.float64(good),
                  "Decimal": Decimal(good)}
     large = {"2**32 + good": 2**32 + good, "2**31": 2**31, "2**63": 2**63,
@@ -147,7 +142,6 @@ def counts(good):
 
 
 def names(good):
-    """Cases of a name."""
     wrong = {"number": 1, "bytes": good.encode(), "blank": "", "NUL behind": good + "\0",
              "long": good * 100_000, "not ASCII": "é" * 300, "lone surrogate": "\ud800"}
     return {"foreign": refused(FOREIGN), "none": refused(NONE), "finite": refused(NOT_FINITE),
@@ -169,7 +163,6 @@ def in_deck(make, like_good, left_out=()):
 
 
 def switches(good):
-    """Cases of True or False in a deck."""
     foreign = {label: value for label, value in FOREIGN.items() if "bool" not in label}
     return {"foreign": refused(foreign), "finite": refused(NOT_FINITE),
             "number": refused({"0": 0, "1": 1}), "shape": refused(
@@ -202,7 +195,6 @@ def laws(good):
 
 
 def meshes(good):
-    """Cases of a mesh."""
     return {"foreign": refused(FOREIGN), "none": refused(NONE), "finite": refused(NOT_FINITE),
             "kind": refused({"nodes": good.x, "class": type(good)})}
 

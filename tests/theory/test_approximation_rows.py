@@ -13,7 +13,6 @@ from test_approximations import UNITS, lennard_jones
 
 
 def table(h0_start, h0_end, **kwargs):
-    """The rows, by theory."""
     rows = {}
     for row in snapin.approximation_rows(h0_start, h0_end, **kwargs):
         rows.setdefault(str(row["theory"]), []).append(row)

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 import snapin
-from support.calculus import derivative
+from support.calculus import derivative, gauss
 
 RADIUS, STIFFNESS = 1.5e-2, 1e10
 BODIES = {"radius": RADIUS, "stiffness": STIFFNESS}
@@ -100,8 +100,7 @@ def test_displacement_is_the_integral_of_the_pressure_over_the_plane():
     # (13) at the centre of bodies that keep their shape, for the law as the program has it:
     # delta = 4 (1-nu^2)/E times the integral of p(h + t^2/(2R)) over t.
     h = 1.3 * Z0
-    s, w = np.polynomial.legendre.leggauss(200)
-    angle, weight = math.pi / 4 * (s + 1), math.pi / 4 * w
+    angle, weight = gauss(200, 0, math.pi / 2)
     t = math.sqrt(2 * RADIUS * h) * np.tan(angle)
     pressure = snapin.force_law(FULL, h + t**2 / (2 * RADIUS)).pressure
     integral = weight @ (pressure * math.sqrt(2 * RADIUS * h) / np.cos(angle) ** 2)

@@ -3,9 +3,7 @@
 import math
 
 import pytest
-from support import (
-    study_cycles, study_estimates, study_experiments, study_folds, study_laws, study_layers,
-    study_shapes)
+from support import study_bodies, study_cycles, study_estimates, study_folds, study_laws
 from support.comparison import deviations, is_bad
 from support.decks_in_units import Report
 from support.reference import Path
@@ -42,13 +40,9 @@ def test_a_cycle_reports_the_path_whatever_its_steps(tmp_path, case):
     assert not wrong_in([study_cycles.examined(path, scene, tmp_path, k) for k in range(2)])
 
 
-def test_random_cycles_report_the_path(tmp_path):
-    jobs = study_cycles.jobs(24, tmp_path, seed=2)
-    assert not wrong_in(f for job in jobs for f in study_cycles.examine(job))
-
-
-def test_cycles_about_the_cusp_jump_both_ways_or_neither(tmp_path):
-    jobs = study_cycles.jobs(24, tmp_path, seed=2, low=0.28, high=0.45)
+@pytest.mark.parametrize("about", [{}, {"low": 0.28, "high": 0.45}], ids=["any sigma", "the cusp"])
+def test_random_cycles_report_the_path(tmp_path, about):
+    jobs = study_cycles.jobs(24, tmp_path, seed=2, **about)
     assert not wrong_in(f for job in jobs for f in study_cycles.examine(job))
 
 
@@ -70,36 +64,30 @@ def test_each_number_is_as_good_as_its_estimate_says(tmp_path, sigma):
             assert one.ratio <= 1, (finding.kind, finding.accuracy, one)
 
 
-# Cycles and paths, with attraction and without; in the last, more digits mean fewer panels that are
-# no better.
-@pytest.mark.parametrize("number", [0, 1, 3, 17, 107])
-def test_estimates_hold_under_other_laws(tmp_path, number):
-    [finding] = study_laws.examine(study_laws.jobs(number + 1, tmp_path)[number])
-    assert finding.deviations
-    assert not is_bad(finding), finding
-
-
-# One number in 215 of such scenes has an error above its estimate (docs/testing.md). These scenes
-# have none; the next test has two that do.
-@pytest.mark.parametrize("number", [0, 1, 3, 4, 9, 14])
-def test_estimates_hold_for_bodies_with_layers(tmp_path, number):
-    [finding] = study_layers.examine(study_layers.jobs(number + 1, tmp_path)[number])
+# Cycles and paths, with attraction and without; in the last under another law, more digits mean
+# fewer panels that are no better. One number in 215 of scenes with layers has an error above its
+# estimate (docs/testing.md). These scenes have none; the next test has two that do.
+@pytest.mark.parametrize("study, jobs, number", [
+    *((study_laws, study_laws.jobs, number) for number in (0, 1, 3, 17, 107)),
+    *((study_bodies, study_bodies.layers, number) for number in (0, 1, 3, 4, 9, 14))])
+def test_estimates_hold_under_other_laws_and_for_bodies_with_layers(tmp_path, study, jobs, number):
+    [finding] = study.examine(jobs(number + 1, tmp_path)[number])
     assert finding.deviations
     assert not is_bad(finding), finding
 
 
 @pytest.mark.parametrize("number", [2, 59])
 def test_an_error_above_its_estimate_is_within_the_accuracy(tmp_path, number):
-    [finding] = study_layers.examine(study_layers.jobs(number + 1, tmp_path)[number])
+    [finding] = study_bodies.examine(study_bodies.layers(number + 1, tmp_path)[number])
     assert finding.deviations and not finding.wrong
     for one in finding.deviations:
         assert one.error <= finding.scene.accuracy * abs(one.value), one
 
 
-@pytest.mark.parametrize("study", [study_experiments, study_shapes])
-def test_springs_and_fixed_loads_under_random_laws_are_within_the_accuracy(tmp_path, study):
-    for scene in study.jobs(6, tmp_path):
-        [finding] = study.examine(scene)
+@pytest.mark.parametrize("jobs", [study_bodies.experiments, study_bodies.shapes])
+def test_springs_and_fixed_loads_under_random_laws_are_within_the_accuracy(tmp_path, jobs):
+    for scene in jobs(6, tmp_path):
+        [finding] = study_bodies.examine(scene)
         assert finding.unknown > 0 and not finding.wrong, finding
         for one in finding.deviations:
             assert one.error <= max(one.allowed, scene.accuracy * abs(one.value)), (scene, one)

@@ -47,7 +47,6 @@ DECKS = {
 
 @pytest.fixture(scope="module")
 def results(snapin, tmp_path_factory):
-    """A folder with the results of all decks."""
     folder = tmp_path_factory.mktemp("plots")
     for name, text in DECKS.items():
         (folder / f"{name}.nml").write_text(text)
@@ -156,29 +155,26 @@ def test_the_picture_can_be_elsewhere_and_larger(plot, results, tmp_path):
     assert size_of(tmp_path / "here.png")[0] == 2700
 
 
-@pytest.mark.parametrize(
-    ("args", "phrase"),
-    [
-        (("force_curve.py", "nowhere"), "no such folder"),
-        (("force_curve.py", "theories"), "no curve.csv in .*neither &loading nor"),
-        (("force_curve.py", "sweep"), "no curve.csv in .*&sweep"),
-        (("regime.py", "theories"), "deck needs &regime"),
-        (("map.py", "theories"), "no sweep.csv in .*&sweep"),
-        (("map.py", "sweep", "--value", "speed"), "no column 'speed'; it has force.hamaker"),
-        (("map.py", "sweep", "--value", "failure"), "failure has words and cannot be drawn"),
-        (("map.py", "three"), "bodies.stiffness was swept too: .*--where bodies.stiffness=VALUE"),
-        (("map.py", "map", "--where", "bodies.size=1"), "is not KEY=VALUE; keys are force.hamaker"),
-        (("map.py", "words", "--where", "numerics.method=mixing"), "has anderson, newton"),
-        (("map.py", "map", "--over", "jkr_pull_off", "dmt_pull_off"), "lie on one line"),
-        (("profiles.py", "theories"), "no profiles.csv in .*no &profiles group"),
-        (("profiles.py", "cycle", "--branch", "path"), "loading, unloading_1, unloading_2"),
-        (("force_curve.py", "cycle", "-o", "no/such/folder.png"), "no/such"),
-        (("force_curve.py", "cycle", "-o", "here.xyz"), "here.xyz: Format 'xyz' is not supported"),
-        (("map.py", "map", "--dpi", "0"), "dpi must be positive"),
-        (("map.py", "map", "--per", "big_lambda"),
-         "no case has the column 'max_tension' and the column 'big_lambda'"),
-    ],
-)
+@pytest.mark.parametrize(("args", "phrase"), [
+    (("force_curve.py", "nowhere"), "no such folder"),
+    (("force_curve.py", "theories"), "no curve.csv in .*neither &loading nor"),
+    (("force_curve.py", "sweep"), "no curve.csv in .*&sweep"),
+    (("regime.py", "theories"), "deck needs &regime"),
+    (("map.py", "theories"), "no sweep.csv in .*&sweep"),
+    (("map.py", "sweep", "--value", "speed"), "no column 'speed'; it has force.hamaker"),
+    (("map.py", "sweep", "--value", "failure"), "failure has words and cannot be drawn"),
+    (("map.py", "three"), "bodies.stiffness was swept too: .*--where bodies.stiffness=VALUE"),
+    (("map.py", "map", "--where", "bodies.size=1"), "is not KEY=VALUE; keys are force.hamaker"),
+    (("map.py", "words", "--where", "numerics.method=mixing"), "has anderson, newton"),
+    (("map.py", "map", "--over", "jkr_pull_off", "dmt_pull_off"), "lie on one line"),
+    (("profiles.py", "theories"), "no profiles.csv in .*no &profiles group"),
+    (("profiles.py", "cycle", "--branch", "path"), "loading, unloading_1, unloading_2"),
+    (("force_curve.py", "cycle", "-o", "no/such/folder.png"), "no/such"),
+    (("force_curve.py", "cycle", "-o", "here.xyz"), "here.xyz: Format 'xyz' is not supported"),
+    (("map.py", "map", "--dpi", "0"), "dpi must be positive"),
+    (("map.py", "map", "--per", "big_lambda"),
+     "no case has the column 'max_tension' and the column 'big_lambda'"),
+])
 def test_what_is_missing_is_said_in_one_line(plot, results, args, phrase):
     done = plot(args[0], results / args[1], *args[2:])
     assert done.returncode == 1

@@ -8,6 +8,7 @@ import math
 import numpy as np
 import pytest
 from support.abel import Mesh
+from support.calculus import gauss
 from support.known import BY_SIGMA, BY_TABOR, ERRORS
 from support.reference import CUSP, Path, path
 from support.scenes import JKR
@@ -87,10 +88,9 @@ def test_energy_lost_is_the_work_of_the_loop():
     found = path(0.87)
     low, high = found.jump_in.h0, found.jump_out.h0
     # Both branches end in a square root: h0 = low + ... sin^2 takes it away.
-    nodes, weights = np.polynomial.legendre.leggauss(40)
-    angle = (nodes + 1) * math.pi / 4
+    angle, weights = gauss(40, 0, math.pi / 2)
     h0 = low + (high - low) * np.sin(angle) ** 2
-    rate = (high - low) * np.sin(2 * angle) * math.pi / 4
+    rate = (high - low) * np.sin(2 * angle)
     pairs = [(found.on(found.far_branch, x), found.on(found.contact_branch, x)) for x in h0]
     loads = np.array([one.load - other.load for one, other in pairs])
     assert weights @ (rate * loads) == pytest.approx(found.energy_lost, rel=1e-8)

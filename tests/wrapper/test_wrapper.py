@@ -40,38 +40,24 @@ def there_and_back():
 # --- The program's numbers
 
 
-def test_three_lines_give_the_program_s_curve(run):
-    law = snapin.lennard_jones(hamaker=1e-20, z0=0.5e-9)
-    h0 = np.linspace(4e-9, -2e-9, 61)
-    curve = snapin.force_curve(h0, radius=1.5e-2, stiffness=1e10, law=law)
-
-    step = {"h0_start": 4e-9, "h0_end": -2e-9, "h0_step": 1e-10}
-    result = run(deck(bodies=BODIES, force=FORCE, loading=step))
-    assert len(result.curve) == h0.size
+@pytest.mark.parametrize("ways, unloading", [(["in"], None), (["in", "out"], {})])
+def test_h0_that_falls_or_turns_round_gives_the_program_s_curve(
+        run, there_and_back, ways, unloading):
+    curve = snapin.force_curve(DOWN, **BODIES, law=LAW) if unloading is None else there_and_back
+    result = run(deck(bodies=BODIES, force=FORCE, loading=loading(4e-9, -2e-9, 1e-10),
+                      unloading=unloading))
     assert_same(curve, result.curve)
-    # How far below the tolerance an iteration ends is rounding's affair.
-    assert max(curve.residual.max(), result.summary["worst_residual"]) <= tolerance_of({})
-    (jump,) = curve.jumps
-    assert jump.h0 == pytest.approx(result.summary["jump_in_h0"], rel=SAME)
-    assert jump.load == pytest.approx(result.summary["jump_in_load"], rel=SAME)
-    assert curve.max_tension == pytest.approx(result.summary["max_tension"], rel=SAME)
-    # At a smooth maximum the place is known to half the digits.
-    assert curve.max_tension_h0 == pytest.approx(result.summary["max_tension_h0"], rel=1e-6)
-    # What the estimate is far below the accuracy is rounding's affair too.
-    estimate = result.summary["error_estimate"]
-    assert curve.error_estimate == pytest.approx(estimate, rel=0.5, abs=1e-8)
-    assert curve.converged
-
-
-def test_h0_that_turns_round_gives_the_program_s_cycle(run, there_and_back):
-    step = {"h0_start": 4e-9, "h0_end": -2e-9, "h0_step": 1e-10}
-    result = run(deck(bodies=BODIES, force=FORCE, loading=step, unloading={}))
-    assert len(result.curve) == there_and_back.h0.size
-    assert_same(there_and_back, result.curve)
     summary = result.summary
-    jumps = [(summary[f"jump_{way}_h0"], summary[f"jump_{way}_load"]) for way in ("in", "out")]
-    np.testing.assert_allclose(there_and_back.jumps, jumps, rtol=SAME)
-    assert there_and_back.max_tension == pytest.approx(result.summary["max_tension"], rel=SAME)
+    # How far below the tolerance an iteration ends is rounding's affair.
+    assert max(curve.residual.max(), summary["worst_residual"]) <= tolerance_of({})
+    jumps = [(summary[f"jump_{way}_h0"], summary[f"jump_{way}_load"]) for way in ways]
+    np.testing.assert_allclose(curve.jumps, jumps, rtol=SAME)
+    assert curve.max_tension == pytest.approx(summary["max_tension"], rel=SAME)
+    # At a smooth maximum the place is known to half the digits.
+    assert curve.max_tension_h0 == pytest.approx(summary["max_tension_h0"], rel=1e-6)
+    # What the estimate is far below the accuracy is rounding's affair too.
+    assert curve.error_estimate == pytest.approx(summary["error_estimate"], rel=0.5, abs=1e-8)
+    assert curve.converged
 
 
 RIGID = {"radius": 1.0, "rigid": True}
@@ -99,8 +85,7 @@ def test_any_law_bodies_and_options_give_the_program_s_curve(run, bodies, law, e
 
 
 def test_path_is_that_of_the_program(run):
-    scene = deck(bodies=BODIES, force=FORCE, equilibrium_path={"h0_end": -2e-9})
-    result = run(scene)
+    result = run(deck(bodies=BODIES, force=FORCE, equilibrium_path={"h0_end": -2e-9}))
     path = snapin.equilibrium_path(h0_end=-2e-9, **BODIES, law=LAW)
     assert_same(path, result.curve)
     assert (path.stable == (result.curve["stable"] == 1)).all()

@@ -64,40 +64,30 @@ def path_with(**changes):
     return lambda: snapin.equilibrium_path(**arguments)
 
 
-@pytest.mark.parametrize(
-    ("call", "name"),
-    [
-        (curve_with(h0=[1.0]), "h0"),
-        (curve_with(h0=[]), "h0"),
-        (curve_with(h0=3.0), "h0"),
-        (curve_with(h0=[2.0, 4.0]), "h0"),
-        (curve_with(h0=[4.0, 3.0, 2.5]), "h0"),
-        (curve_with(h0=[4.0, 3.0, 5.0, 2.0]), "h0"),
-        (curve_with(h0=[4.0, 3.0, 3.5, 5.0]), "h0"),
-        (curve_with(h0=[4.0, 4.0]), "h0"),
-        (curve_with(rigid=True), "rigid"),
-        (path_with(h0_start=-3.0), "h0_start"),
-        # Beyond all physical sense, or beyond float64.
-        (curve_with(law=law_of(1e99)), "hamaker"),
-        (lambda: snapin.force_law(law_of(1.0), 1e-60), "gap"),
-        # Beyond the pole, where its formulas go on.
-        (lambda: snapin.force_law(law_of(1.0), [1.0, -1.0]), "gap"),
-        (lambda: snapin.slow_deformation([1.0, -1.0], radius=1.0, stiffness=1.0, law=law_of(1.0)),
-         "gap"),
-        (lambda: snapin.panel_mesh(np.arange(400.0), 64), "ends"),
-        (lambda: snapin.numerics.Mesh("uniform", 1.0, [0.0, 2.0], 5), "ends"),
-    ],
-)
-def test_a_bad_value_is_a_value_error_with_its_name(call, name):
-    with pytest.raises(ValueError, match=rf'^{name}: |: key "{name}'):
-        call()
-
-
 LAW, PANEL, EDGE = law_of(1.0), snapin.panel_mesh([0.0, 1.0], 8), {**UNIT, "surface_energy": 1.0}
 STATE = {"law": LAW, "mesh": PANEL, "h0": 2.0, "coupling": 0.1}
 
 
 @pytest.mark.parametrize(("call", "name"), [
+    (curve_with(h0=[1.0]), "h0"),
+    (curve_with(h0=[]), "h0"),
+    (curve_with(h0=3.0), "h0"),
+    (curve_with(h0=[2.0, 4.0]), "h0"),
+    (curve_with(h0=[4.0, 3.0, 2.5]), "h0"),
+    (curve_with(h0=[4.0, 3.0, 5.0, 2.0]), "h0"),
+    (curve_with(h0=[4.0, 3.0, 3.5, 5.0]), "h0"),
+    (curve_with(h0=[4.0, 4.0]), "h0"),
+    (curve_with(rigid=True), "rigid"),
+    (path_with(h0_start=-3.0), "h0_start"),
+    # Beyond all physical sense, or beyond float64.
+    (curve_with(law=law_of(1e99)), "hamaker"),
+    (lambda: snapin.force_law(law_of(1.0), 1e-60), "gap"),
+    # Beyond the pole, where its formulas go on.
+    (lambda: snapin.force_law(law_of(1.0), [1.0, -1.0]), "gap"),
+    (lambda: snapin.slow_deformation([1.0, -1.0], radius=1.0, stiffness=1.0, law=law_of(1.0)),
+     "gap"),
+    (lambda: snapin.panel_mesh(np.arange(400.0), 64), "ends"),
+    (lambda: snapin.numerics.Mesh("uniform", 1.0, [0.0, 2.0], 5), "ends"),
     (lambda: snapin.uniform_mesh(1, 1.0), "nodes"),
     (lambda: snapin.panel_mesh([0.0], 8), "ends"),
     (lambda: snapin.panel_mesh([0.0, 1.0, 1.0], 8), "ends"),
@@ -114,17 +104,18 @@ STATE = {"law": LAW, "mesh": PANEL, "h0": 2.0, "coupling": 0.1}
     (lambda: snapin.force_law(snapin.exponential(p0=1.0), [1e-9]), "decay_length"),
     (lambda: snapin.force_law(snapin.exponential(p0=1.0, decay_length=1.0, z0=1.0), [1.0]), "z0"),
     (lambda: snapin.force_law(LAW, [0.0]), "gap"),
-    (lambda: snapin.force_law({}, [1.0]), "force"),
+    (lambda: snapin.force_law({}, [1.0]), "deck:1: &force"),
     (lambda: snapin.equilibrium(**STATE, most_iterations=0), "most_iterations"),
     (lambda: snapin.equilibrium(**STATE, patience=0), "patience"),
     (lambda: snapin.equilibrium(**STATE, displacement_tolerance=1e-4), "displacement_tolerance"),
     (lambda: snapin.contact_curve("jkr", [1.0], **UNIT), "surface_energy"),
     (lambda: snapin.contact_curve("maugis", [1.0], **EDGE), "strength"),
     (lambda: snapin.contact_curve("bradley", [1.0], **UNIT), "theory"),
-    (lambda: snapin.contact_radius("jkr", "speed", [1.0], **EDGE), "speed"),
+    (lambda: snapin.contact_radius("jkr", "speed", [1.0], **EDGE),
+     "control: must be one of load, displacement, edge_ratio, not 'speed'"),
     (lambda: snapin.profile("hertz", [-1.0], 1.0, **UNIT), "r"),
-    (lambda: snapin.profile("dmt", [1.0], 1.0, **EDGE), "dmt"),
-    (lambda: snapin.pull_off("hertz", **UNIT), "hertz"),
+    (lambda: snapin.profile("dmt", [1.0], 1.0, **EDGE), "theory: 'dmt' has no pressure"),
+    (lambda: snapin.pull_off("hertz", **UNIT), "theory: 'hertz' has no pull off at load"),
     (lambda: snapin.slow_deformation([0.0], **UNIT, law=LAW), "gap"),
     (lambda: snapin.slow_deformation(
         [1.0], **UNIT, law=snapin.exponential(p0=1.0, decay_length=1.0), form="attraction_only"),
@@ -132,8 +123,8 @@ STATE = {"law": LAW, "mesh": PANEL, "h0": 2.0, "coupling": 0.1}
     (lambda: snapin.approximation_rows(1.0, 2.0, **UNIT, law=LAW), "h0_end"),
     (lambda: snapin.approximation_rows(1.0, 0.0, **UNIT, law=LAW, count=1), "count"),
 ])
-def test_what_has_no_meaning_is_a_value_error_that_names_it(call, name):
-    with pytest.raises(ValueError, match=rf"\b{name}\b"):
+def test_what_cannot_be_is_a_value_error_that_begins_with_its_name(call, name):
+    with pytest.raises(ValueError, match=rf'^{name}(: |$)|: key "{name}'):
         call()
 
 

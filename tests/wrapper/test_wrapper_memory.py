@@ -20,7 +20,6 @@ GROWTH = 64 * 1024
 
 
 def resident():
-    """Memory of this process [bytes]."""
     with open("/proc/self/statm", encoding="ascii") as table:
         return int(table.read().split()[1]) * resource.getpagesize()
 
@@ -78,20 +77,17 @@ def test_calls_that_are_refused_do_not_leak(name):
     assert not grows(call)
 
 
-@pytest.mark.parametrize(
-    "call",
-    [
-        # Ends early, does not converge, is refused by the library.
-        lambda: snapin.force_curve([4.0, 0.0], **UNIT, law=law_of(1.0, "attractive")),
-        lambda: snapin.force_curve([-1.0, -2.0], radius=1.0, rigid=True, law=law_of(1.0)),
-        lambda: snapin.force_curve([3.0, 2.0], **UNIT, law=law_of(0.1), nodes=1),
-        lambda: snapin.equilibrium_path(-1.0, radius=1.0, rigid=True, law=law_of(1.0)),
-        lambda: snapin.run({"bodies": {"radius": -1, "frog": "x"}, "dog": True}),
-        lambda: snapin.run({**law_of(1.0), "bodies": UNIT}, out="/dev/null/folder"),
-        lambda: snapin.contact_radius("dmt", "edge_ratio", [2.0], **UNIT, surface_energy=1.0),
-        lambda: snapin.equilibrium(LAW, snapin.uniform_mesh(50, 5.0), 0.0, 9.0, most_iterations=2),
-    ],
-)
+@pytest.mark.parametrize("call", [
+    # Ends early, does not converge, is refused by the library.
+    lambda: snapin.force_curve([4.0, 0.0], **UNIT, law=law_of(1.0, "attractive")),
+    lambda: snapin.force_curve([-1.0, -2.0], radius=1.0, rigid=True, law=law_of(1.0)),
+    lambda: snapin.force_curve([3.0, 2.0], **UNIT, law=law_of(0.1), nodes=1),
+    lambda: snapin.equilibrium_path(-1.0, radius=1.0, rigid=True, law=law_of(1.0)),
+    lambda: snapin.run({"bodies": {"radius": -1, "frog": "x"}, "dog": True}),
+    lambda: snapin.run({**law_of(1.0), "bodies": UNIT}, out="/dev/null/folder"),
+    lambda: snapin.contact_radius("dmt", "edge_ratio", [2.0], **UNIT, surface_energy=1.0),
+    lambda: snapin.equilibrium(LAW, snapin.uniform_mesh(50, 5.0), 0.0, 9.0, most_iterations=2),
+])
 def test_calculations_that_fail_do_not_leak(call):
     def attempt():
         with warnings.catch_warnings(), contextlib.suppress(snapin.SnapinError, ValueError):

@@ -128,7 +128,6 @@ def _law_row(problem, knob, value, run, reference):
 
 
 def draw_law(rows, folder):
-    """Draw the three laws."""
     page, panels = pictures.figure(1, 3, (10.5, 4.4), sharey=True)
     pictures.dress(panels[0], "edge-locked meshes", "nodes of all meshes",
                    "largest relative error", log="y")

@@ -53,7 +53,6 @@ _COMPARED = ("accuracy", "laws", "experiments", "ratios")
 
 
 def main():
-    """Run the requested parts."""
     options, folder = _options()
     build = options.build.resolve()
     with tempfile.TemporaryDirectory() as scratch:
@@ -111,7 +110,6 @@ def _present(folder, in_guide):
 
 
 def _sources(path):
-    """Return the note of a table about its sources."""
     return next((note for note in tables.notes(path) if note.startswith("sources ")), "")
 
 
@@ -121,7 +119,6 @@ def _before(path):
 
 
 def _options():
-    """Return the options, and the folder of the measurements."""
     parser = argparse.ArgumentParser(
         prog="./bench", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--quick", action="store_true", help="coarser, in two minutes")

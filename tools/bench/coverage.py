@@ -69,8 +69,6 @@ class Case:
 
 
 class Outcome:
-    """The result of a fit."""
-
     def __init__(self, case):
         began = time.perf_counter()
         with tempfile.TemporaryDirectory() as folder, warnings.catch_warnings():

@@ -42,7 +42,6 @@ def measure(program, quick, say):
 
 
 def measure_experiments(program, quick, say):
-    """Return one row for every experiment and accuracy."""
     _lay_out_data(program)
     rows = []
     for name in _EXPERIMENTS:
@@ -75,12 +74,10 @@ def draw(rows, folder):
 
 
 def tables(rows, before):
-    """Return the table of costs of laws and shapes."""
     return {"laws": _price_list(rows, before, "error", "true error")}
 
 
 def tables_experiments(rows, before):
-    """Return the table of costs of experiments."""
     return {"experiments": _price_list(rows, before, "ratio", "true error / estimate, largest")}
 
 

@@ -71,6 +71,5 @@ def guide(panel, x, y, power, text):
 
 
 def save(page, path):
-    """Write a picture."""
     path.parent.mkdir(parents=True, exist_ok=True)
     page.savefig(path, dpi=110)

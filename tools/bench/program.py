@@ -98,7 +98,6 @@ class Program:
         self.gauge = Gauge(self.environment())
 
     def environment(self, threads=1):
-        """Return an environment with the given number of threads."""
         return dict(os.environ, OMP_NUM_THREADS=str(threads), OPENBLAS_NUM_THREADS=str(threads))
 
     def run(self, deck, cap=60, threads=1, before=()):
@@ -202,6 +201,5 @@ class Program:
 
 
 def _processor_seconds():
-    """Return the processor time of all finished child processes."""
     used = resource.getrusage(resource.RUSAGE_CHILDREN)
     return used.ru_utime + used.ru_stime

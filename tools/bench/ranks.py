@@ -122,7 +122,6 @@ def planned(rows_a_second, messages_a_second):
 
 
 def main():
-    """Measure everything and renew the page."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--build", type=Path, default=ROOT / "build-openmpi")
     parser.add_argument("--mpirun", default="mpirun.openmpi --oversubscribe --bind-to none")
@@ -146,7 +145,6 @@ def main():
 
 
 def renew(name, columns, rows):
-    """Renew a table of the page."""
     pages.insert(PAGE, name, pages.table(columns, rows), measured=False)
 
 

@@ -67,7 +67,6 @@ def measure(program, quick, say):
 
 
 def tables(rows, before):
-    """Return the guide's table."""
     measured_before = earlier(before, "measured", "quantity", "case")
     return {"ratios": (
         ["", "", "measured", "limit", "before", "goal", "holds"],

@@ -71,7 +71,6 @@ def measure_nodes(program, quick, say):
 
 
 def draw_nodes(rows, folder):
-    """Draw the pieces' times."""
     page, (times, ratios) = pictures.figure(1, 2, (9.0, 4.4))
     nodes = [row["nodes"] for row in rows]
     ticks = [count for count in (100, 200, 400, 800, 1500) if nodes[0] <= count <= nodes[-1]]
@@ -112,7 +111,6 @@ def measure_threads(program, quick, say):
 
 
 def draw_threads(rows, folder):
-    """Draw the speed-up by threads."""
     page, panels = pictures.figure(1, 2, (9.0, 4.0), sharey=True)
     for panel, key, title in zip(panels, ("kernel", "solution"), ("kernel assembly", "solution")):
         pictures.dress(panel, title, "threads", "speed-up" if key == "kernel" else "", log="")
@@ -129,7 +127,6 @@ def draw_threads(rows, folder):
 
 
 def tables_threads(rows, before):
-    """Return the guide's table."""
     return {"threads": (
         ["nodes", "threads", "kernel [G]", "solution [G]", "estimate [G]"],
         [[*whole(row, "nodes", "threads"), row["kernel"], row["solution"], row["error_estimate"]]

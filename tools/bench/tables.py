@@ -7,7 +7,6 @@ import platform
 
 
 def machine():
-    """Return the kind of machine, in general words."""
     return f"{platform.machine()}, {os.cpu_count()} cores, {platform.system()}"
 
 
@@ -34,7 +33,6 @@ def notes(path):
 
 
 def chosen(rows, **values):
-    """Return the rows that have these values."""
     return [row for row in rows if all(row[key] == value for key, value in values.items())]
 
 

@@ -15,7 +15,6 @@ def elliptic(m):
 
 
 def numbers(runs):
-    """Return the numbers that decide, as a dict."""
     nodes, weights = np.polynomial.legendre.leggauss(60)
     nodes, weights = (nodes + 1) / 2, weights / 2
     # Displacement 2 (1-nu^2)/E * Int p k t dt on the axis over a^2/R, for p of (3) and t = a sin x.

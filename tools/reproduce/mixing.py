@@ -60,7 +60,6 @@ class Scene:
 
 
 def pressure(gap):
-    """Return the pressure of the law, (33)."""
     inverse = 1 / np.maximum(gap, _CLOSEST) ** 3
     return 8 / 3 * inverse * (inverse * inverse - 1)
 
@@ -176,7 +175,6 @@ def _graded(points):
 
 
 def _ring_weights(r, interpolated):
-    """Return the weights of int p t dt."""
     x, weight = _gauss(4)
     right = x if interpolated else (x > 0.5).astype(float)
     values = weight * r[1] * (r[:-1, None] + r[1] * x)

@@ -29,7 +29,6 @@ NEAREST = dataclasses.replace(KEPT, name="ratio kept, 500 iterations a step", pa
 
 
 def _readings():
-    """Return the readings of the table."""
     def base(name, **changes):
         return dataclasses.replace(BASE, name=name, **changes)
 
@@ -63,8 +62,7 @@ def cycle(job):
     reading, letter, turns, draw = job
     scene = mixing.Scene(sigma_of(letter, draw), reading.spacing / _LATERAL, _EXTENT / _LATERAL,
                          reading.interpolated)
-    return mixing.cycle(scene, reading, [turn / _Z0 for turn in turns], 6.0 / _Z0, 16.0 / _Z0,
-                        _Z0)
+    return mixing.cycle(scene, reading, [turn / _Z0 for turn in turns], 6.0 / _Z0, 16.0 / _Z0, _Z0)
 
 
 @functools.lru_cache(maxsize=None)
@@ -122,7 +120,6 @@ def statements(branches, sigma):
 
 
 def _line(reading):
-    """Return a line of the table."""
     runs = [_all()[reading, "c", _TURNS, draw] for draw in range(_RUNS)]
     columns = list(zip(*map(tensions, runs)))
     left = [np.median(np.concatenate([_contact(branch).residual for branch in run]))

@@ -101,12 +101,10 @@ def names(which=tuple(REPORTS)):
 
 
 def module(name):
-    """Return the module of a chapter."""
     return importlib.import_module(REPORTS[CHAPTERS[name].report].package + name)
 
 
 def filled(name, runs):
-    """Return the text of a chapter and the cells of its rows."""
     chapter = module(name)
     fields = chapter.numbers(runs) if hasattr(chapter, "numbers") else {}
     lines = CHAPTERS[name].text.format(**fields).split("\n")
@@ -156,7 +154,6 @@ def write(folder, key, part, made, runs, version):
 
 
 def _anchor(title):
-    """Return the anchor that Markdown viewers make of a heading."""
     return re.sub(r"[^\w\- ]", "", title.lower()).replace(" ", "-")
 
 

@@ -65,7 +65,6 @@ def main():
 
 
 def _chapter(name, module, runs, folder):
-    """Return a chapter of the report, its picture drawn."""
     chapter = {"name": name, "title": report.CHAPTERS[name].title, "caption": "", "rows": [],
                "decks": getattr(module, "DECKS", ()), "picture": hasattr(module, "draw"),
                "problem": None}

@@ -98,7 +98,6 @@ class Runs:
         return self._changed_deck(path, str(deck), number)
 
     def _changed_deck(self, path, name, number):
-        """Return the path of a changed copy of a deck of inputs/."""
         with self._writing:
             if name not in self._written:
                 groups = draws.changed(f90nml.read(path), number)
@@ -110,7 +109,6 @@ class Runs:
         return self._written[name]
 
     def digest(self, path):
-        """Return a digest of a deck and the program."""
         if self._program_digest is None:
             self._program_digest = hashlib.sha256(self.program.read_bytes()).hexdigest()
         deck = hashlib.sha256(self.path_of(path).read_bytes()).hexdigest()

@@ -94,7 +94,6 @@ def run(tabor, h0_end, **groups):
 
 @functools.lru_cache(maxsize=None)
 def sphere(tabor):
-    """Return the Sphere of a Tabor parameter."""
     loads = math.pi * sigma(tabor)
     found = run(tabor, _deep(tabor, 0))
     summary = found.summary
@@ -137,8 +136,7 @@ def contact(tabor, load):
     errors = {name: np.asarray(summary[f"regime_error_{name}"]) for name in THEORIES}
     (jkr,) = snapin.contact_radius("jkr", "load", [summary["end_load"]], radius=1.0, stiffness=1.0,
                                    surface_energy=sigma(tabor))
-    return Contact(jkr / (1 + errors["jkr"][1]) / unit(tabor), (1 - h0) / unit(tabor) ** 2,
-                   errors)
+    return Contact(jkr / (1 + errors["jkr"][1]) / unit(tabor), (1 - h0) / unit(tabor) ** 2, errors)
 
 
 def solved_at(lam):

@@ -129,7 +129,6 @@ def bar(page, panels, colors):
 
 
 def signed(text):
-    """Return a number's text with a typographic minus sign."""
     return text.replace("-", "\N{MINUS SIGN}")
 
 

@@ -94,7 +94,8 @@ GUARDS = {
         ("resume/test_resume_whose.py::test_a_second_run_is_refused_and_touches_nothing",)),
     "checksum": Guard("a damaged record of the journal does not count", "journal",
         "if checksum words", GONE,
-        ("resume/test_resume_sweep.py::test_a_damaged_record_is_computed_again",)),
+        ("resume/test_resume_sweep.py"
+         "::test_a_complete_case_is_not_computed_again_and_a_damaged_record_is",)),
     "owner": Guard("a journal of another deck or program is not continued", "journal",
         "if other owner", NEVER,
         ("resume/test_resume_whose.py::test_another_deck_is_refused_and_told_apart",)),
@@ -133,7 +134,6 @@ GUARDS = {
 
 
 def source_of(module, top=ROOT):
-    """The file of a module, in any room."""
     return next(path for path in sorted((top / "src").rglob(f"{module}.*")) if path.suffix in
                 (".f90", ".c"))
 

@@ -17,6 +17,7 @@ The program is $SNAPIN, else build/snapin. Ends with status 1 if a study finds a
 """
 
 import argparse
+import functools
 import os
 import pathlib
 import sys
@@ -27,17 +28,14 @@ os.environ["OMP_NUM_THREADS"] = os.environ["OPENBLAS_NUM_THREADS"] = "1"
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 sys.path.insert(0, str(ROOT / "tests"))
 
-from support import study_cycles, study_estimates, study_folds  # noqa: E402
-from support import study_experiments, study_laws, study_layers, study_shapes  # noqa: E402
+from support import study_bodies, study_cycles, study_estimates  # noqa: E402
+from support import study_folds, study_laws  # noqa: E402
 from support.comparison import is_bad  # noqa: E402
 from support.decks_in_units import program_path  # noqa: E402
 from support.spread import spread  # noqa: E402
 
-
-def cusp_jobs(count, folder, *, seed):
-    """Cycles near and above the cusp."""
-    return study_cycles.jobs(count, folder, seed=seed, low=0.28, high=0.45)
-
+# Near and above the cusp.
+cusp_jobs = functools.partial(study_cycles.jobs, low=0.28, high=0.45)
 
 # Module, jobs, number of them (decks for cycles, scenes for laws, else strengths), and the test for
 # a bad finding.
@@ -47,9 +45,9 @@ STUDIES = {
     "cusp": (study_cycles, cusp_jobs, 1000, lambda finding: finding.wrong),
     "folds": (study_folds, study_folds.jobs, 10, lambda finding: finding.wrong),
     "laws": (study_laws, study_laws.jobs, 1000, is_bad),
-    "layers": (study_layers, study_layers.jobs, 200, is_bad),
-    "experiments": (study_experiments, study_experiments.jobs, 500, is_bad),
-    "shapes": (study_shapes, study_shapes.jobs, 500, is_bad),
+    "layers": (study_bodies, study_bodies.layers, 200, is_bad),
+    "experiments": (study_bodies, study_bodies.experiments, 500, is_bad),
+    "shapes": (study_bodies, study_bodies.shapes, 500, is_bad),
     "energy": (study_estimates, study_estimates.energy_jobs, 40, is_bad),
 }
 SEEDED = ("cycles", "cusp", "laws", "layers", "experiments", "shapes")

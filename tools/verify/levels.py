@@ -29,8 +29,8 @@ sys.path.insert(0, str(ROOT / "tests"))
 from support.processes import threaded  # noqa: E402
 from support.scenes import Run, exponential, lennard_jones, loading, several  # noqa: E402
 
-# Limits of differences. EXACT is promised for a residual_tolerance of 1e-12. Without it a state that
-# the path predicts within the tolerance takes no step, by Newton's method either, and rounding of
+# Limits of differences. EXACT is promised for a residual_tolerance of 1e-12. Without it a state
+# that the path predicts within the tolerance takes no step, by Newton's method either; rounding of
 # the prediction remains: 1.8e-12 between compilers at sigma 8.7. Anderson acceleration stops
 # anywhere below its tolerance, 1e-10 by default, at a residual that depends on rounding: then the
 # states agree to WITHIN (between OpenBLAS's kernels they differ by 1.1e-12 at sigma 0.87 already,
@@ -114,7 +114,6 @@ def kernels():
 
 
 def input_decks():
-    """The decks of inputs/, as files."""
     return {str(file.relative_to(ROOT)): file
             for file in sorted((ROOT / "inputs").rglob("*.nml"))
             if not any(word in file.stem for word in LEFT_OUT)}
@@ -215,7 +214,6 @@ class Comparison:
         return Run(done.returncode, done.stderr, folder / file.stem)
 
     def note(self, variant, deck_name, limit, one, other):
-        """Adds a row to the table."""
         found = difference(one, other, limit)
         if found is None:
             print(f"| {variant} | {deck_name} | other rows or entries | | | |", flush=True)

@@ -20,7 +20,6 @@ def solved(chi):
 
 
 def error(name, chi):
-    """Return the error [%] of a formula."""
     return 100 * (getattr(layers, name)(chi) / solved(chi) - 1)
 
 
