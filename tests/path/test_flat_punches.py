@@ -3,7 +3,7 @@ on the face and passes the rim, and paths have the folds that the bodies have.
 """
 
 import pytest
-from support.scenes import agreeing, deck, path_of
+from support.scenes import agreeing, deck, path_of, several
 
 
 FLAT_FACES = {
