@@ -21,8 +21,9 @@ module regime_rows
   !> fitted to one of them. closed: those that are closed forms of the load.
   character(len=*), parameter :: theories(*) = [character(len=13) :: 'hertz', 'jkr', 'dmt', &
     'maugis', 'hertz_layered', 'jkr_layered', 'carpick', 'pietrement']
-  integer, parameter :: of_layers_from = 5, fits_from = 7
-  integer, parameter :: closed(*) = [2, 3, 7, 8]
+  integer, parameter :: by_hertz = 1, by_jkr = 2, by_dmt = 3, by_maugis = 4, &
+    by_hertz_layered = 5, by_jkr_layered = 6, by_carpick = 7, by_pietrement = 8
+  integer, parameter :: closed(*) = [by_jkr, by_dmt, by_carpick, by_pietrement]
   !> The numbers that theories are compared in: pull-off [N], negative; contact radius and
   !> indentation [m] at the largest load.
   integer, parameter :: pull_off = 1, radius = 2, indentation = 3
@@ -71,7 +72,7 @@ contains
         abs(all_errors(load, solved + [uncertain(pull_off), 0.0_wp, 0.0_wp]) - errors) + &
         abs(all_errors(load, solved + [0.0_wp, uncertain(radius), 0.0_wp]) - errors)
       do i = 1, size(theories)
-        if (i >= of_layers_from .and. i < fits_from .and. .not. has_layers(problem)) cycle
+        if (any(i == [by_hertz_layered, by_jkr_layered]) .and. .not. has_layers(problem)) cycle
         call summary%set('regime_error_' // trim(theories(i)), errors(:, i), spread(:, i))
       end do
     end associate
@@ -130,22 +131,24 @@ contains
     says = nan
     associate (r => problem%radius, y => problem%stiffness, gamma => surface_energy(problem))
       a = hertz_radius_at_load(load, r, y)
-      says(:, 1) = [0.0_wp, a, hertz_displacement(a, r)]
+      says(:, by_hertz) = [0.0_wp, a, hertz_displacement(a, r)]
       a = jkr_radius_at_load(load, r, y, gamma)
-      says(:, 2) = [jkr_pull_off(r, gamma), a, jkr_displacement(a, r, y, gamma)]
+      says(:, by_jkr) = [jkr_pull_off(r, gamma), a, jkr_displacement(a, r, y, gamma)]
       a = dmt_radius_at_load(load, r, y, gamma)
-      says(:, 3) = [dmt_pull_off(r, gamma), a, hertz_displacement(a, r)]
+      says(:, by_dmt) = [dmt_pull_off(r, gamma), a, hertz_displacement(a, r)]
     end associate
-    says(:radius, 4) = [cohesive%pull_off(), cohesive%radius_at_load(load)]
-    if (says(radius, 4) > 0) says(indentation, 4) = cohesive%displacement(says(radius, 4))
+    says(:radius, by_maugis) = [cohesive%pull_off(), cohesive%radius_at_load(load)]
+    if (says(radius, by_maugis) > 0) says(indentation, by_maugis) = &
+      cohesive%displacement(says(radius, by_maugis))
     ! Carpick's formula gives no displacement.
     fit = carpick_fit(cohesive)
-    says(:radius, 7) = [fit%pull_off, fit%radius_at_load(load)]
+    says(:radius, by_carpick) = [fit%pull_off, fit%radius_at_load(load)]
     fit = pietrement_fit(cohesive)
-    says(:, 8) = [fit%pull_off, fit%radius_at_load(load), fit%displacement_at_load(load)]
+    says(:, by_pietrement) = [fit%pull_off, fit%radius_at_load(load), &
+      fit%displacement_at_load(load)]
     if (.not. has_layers(problem)) return
-    do i = of_layers_from, fits_from - 1
-      associate (theory => merge(hertz, jkr, i == of_layers_from))
+    do i = by_hertz_layered, by_jkr_layered
+      associate (theory => merge(hertz, jkr, i == by_hertz_layered))
         a = layered%radius_at(theory, load=load/problem%load)
         says(:radius, i) = [0.0_wp, a*problem%lateral]
         if (theory == jkr) says(pull_off, i) = layered%pull_off()*problem%load
@@ -178,7 +181,7 @@ contains
     do i = 1, size(worst)
       if (worst(i) < huge(1.0_wp)) call summary%set('regime_worst_' // trim(theories(i)), worst(i))
     end do
-    best = minloc(worst(:fits_from - 1), 1)
+    best = minloc(worst(:by_jkr_layered), 1)
     call summary%set('regime_theory', merge(real(best, wp), 0.0_wp, worst(best) <= acceptable))
     where_worst = maxloc(abs(errors(:, best)), 1)
     write (percent, '(f16.1)') 100*min(worst(best), 1.0e6_wp)
