@@ -3,7 +3,7 @@
 !> Before contact the mesh is about the axis, and the gap on the axis is the coordinate of the path.
 !> In contact meshes are locked to the contact edge: positions are in units of the contact radius c,
 !> the edge stays at 1, and c is the coordinate. Both coordinates are monotonic along the path. (If
-!> the gap on the axis is not, the path passes early to the mesh of the edge: `continuation`.) A
+!> the gap on the axis is not, the path passes early to the mesh of the edge: `mesh_passage`.) A
 !> mesh is for a band of contact radii; the path passes from one mesh to the next. If a step of the
 !> pressure pulls the bodies together, further meshes between the approach and contact are locked to
 !> the front of the step (`step_front`) in the same way. While the path is traced, meshes may be

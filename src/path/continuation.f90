@@ -8,15 +8,13 @@ module continuation
   use contact_state, only: state_t
   use equilibrium, only: equations_t
   use solver, only: solver_t
-  use regridding, only: regrid
-  use next_mesh, only: radius_for, locked_alike, lay_out_next, beyond_passage
+  use next_mesh, only: radius_for, locked_alike, beyond_passage
   use path_coordinate, only: path_control, coordinate_of, axis_gap_rate
   use path_tangent, only: tangent_t, tangent_along
-  use mending, only: left_in_state
   use arc, only: arc_t
   implicit none
   private
-  public :: continuation_t
+  public :: continuation_t, add_with_tangent
 
   !> States kept for the extrapolation; the first, the shortest and the longest step (changes of the
   !> coordinate).
@@ -36,9 +34,8 @@ module continuation
   !> define a smooth curve; small errors are foretold best from more states.
   real(wp), parameter :: miss_of_curve = 1.0e-7_wp, step_of_curve = 0.12_wp
   integer, parameter :: states_of_curve = 4
-  !> Least contact radius, over that of a passage, at which a state is transferred to the next mesh;
-  !> and the least step for which steps are shortened so that they end on the mesh.
-  real(wp), parameter :: nearly_passed = 0.8_wp, shortest_passage = 0.05_wp
+  !> The least step for which steps are shortened so that they end on the mesh.
+  real(wp), parameter :: shortest_passage = 0.05_wp
 
   !> The last states on the current mesh, newest last.
   type, extends(arc_t) :: continuation_t
@@ -54,10 +51,7 @@ module continuation
     procedure :: forget
     procedure :: is_full
     procedure :: advance
-    procedure :: has_come_to_next
-    procedure :: change_mesh
     procedure, private :: next_step
-    procedure, private :: may_leave_early
     procedure, private :: step_past_step
   end type continuation_t
 
@@ -216,126 +210,5 @@ contains
         abs(axis_gap_rate(law, self%coordinate(self%held)))
     end associate
   end function step_past_step
-
-  !> Whether the contact radius has crossed the passage to the next mesh, and the previous state is
-  !> near the passage or beyond it; where no step converged, whether the path may leave the mesh
-  !> before. A path stays on its first mesh for two steps, since the last step before a passage is
-  !> on the next mesh.
-  pure logical function has_come_to_next(self, equations) result(come)
-    class(continuation_t), intent(in) :: self
-    type(equations_t), intent(in) :: equations
-
-    associate (meshes => equations%meshes)
-      come = self%held > 2 .and. equations%problem%law%edge_gap > 0 .and. &
-        self%mesh < size(meshes%grid)
-      if (come .and. self%stuck) then
-        come = self%may_leave_early(equations)
-        return
-      end if
-      if (come) come = radius_for(equations, self%mesh, self%mesh + 1, self%state(self%held)) >= &
-        meshes%passage(self%mesh)
-      if (come) come = radius_for(equations, self%mesh, self%mesh + 1, &
-        self%state(self%held - 1)) >= nearly_passed*meshes%passage(self%mesh)
-    end associate
-  end function has_come_to_next
-
-  !> Whether the gap on the axis may have a fold as a coordinate, and the radius of the contact, to
-  !> which the next mesh is locked, has none: between blunt bodies on layers the gap on the axis
-  !> may rise again while the contact grows.
-  pure logical function may_leave_early(self, equations) result(may)
-    class(continuation_t), intent(in) :: self
-    type(equations_t), intent(in) :: equations
-    real(wp) :: before, now
-
-    associate (meshes => equations%meshes, next => self%mesh + 1)
-      may = meshes%is_about_axis(self%mesh) .and. .not. meshes%is_about_axis(next)
-      if (.not. may) return
-      before = radius_for(equations, self%mesh, next, self%state(self%held - 1))
-      now = radius_for(equations, self%mesh, next, self%state(self%held))
-      may = before > 0 .and. now > before
-    end associate
-  end function may_leave_early
-
-  !> Passes to the next mesh once the contact radius has crossed the passage to that mesh (to be
-  !> called after each `advance`). The last two states are transferred, so that the next mesh has
-  !> the interval between them too. A mesh that was laid out for predicted gaps is laid out anew for
-  !> those of the path if it does not resolve the first of the two states, or if the path comes to
-  !> it before the passage. h0 and load must change in the same sense on both meshes there.
-  subroutine change_mesh(self, solver, lost)
-    class(continuation_t), intent(inout) :: self
-    class(solver_t), intent(inout) :: solver
-    logical, intent(out) :: lost
-    type(arc_t) :: next
-    logical :: suffices
-
-    lost = .false.
-    if (.not. self%has_come_to_next(solver%equations_t)) return
-    suffices = .not. (self%stuck .or. solver%meshes%waits(self%mesh + 1))
-    if (suffices) then
-      call transfer(self, solver, next, lost)
-      suffices = .not. lost
-      if (suffices) suffices = &
-        left_in_state(solver%equations_t, next%mesh, next%state(1)) <= self%most
-    end if
-    if (.not. suffices) then
-      call lay_out_next(solver%equations_t, self%arc_t)
-      call solver%operator%forget()
-      call transfer(self, solver, next, lost)
-    end if
-    if (lost .or. next%held < 2) return
-    associate (old => self%tangent(self%held - 1), new => next%tangent(1))
-      if (.not. old%goes_with(new)) return
-      ! The next mesh may not have the step of a law where the path enters it.
-      if (solver%problem%law%step_width > 0 .and. .not. old%is_alike(new) .and. &
-        left_in_state(solver%equations_t, self%mesh, self%state(self%held - 1)) <= self%most) return
-    end associate
-    self%arc_t = next
-    self%step = 0.5_wp*self%step
-    if (self%stuck) self%step = self%coordinate(self%held) - self%coordinate(self%held - 1)
-    self%stuck = .false.
-  end subroutine change_mesh
-
-  !> Solves the last two states of an arc on the next mesh. lost: this failed.
-  subroutine transfer(arc, solver, next, lost)
-    class(continuation_t), intent(in) :: arc
-    class(solver_t), intent(inout) :: solver
-    type(arc_t), intent(out) :: next
-    logical, intent(out) :: lost
-    type(state_t) :: state
-    integer :: j
-    logical :: done
-
-    next%mesh = arc%mesh + 1
-    next%moved = arc%moved
-    next%extrapolated_from = arc%extrapolated_from
-    do j = arc%held - 1, arc%held
-      state = arc%state(j)
-      ! The two states are a step of the path apart.
-      call solver%frozen%forget()
-      call move_to_mesh(solver, arc%mesh, next%mesh, state, done)
-      lost = .not. done
-      if (done) call add_with_tangent(solver, arc%slope_error, state, next, lost)
-      if (lost) return
-    end do
-  end subroutine transfer
-
-  !> Solves a state of one mesh on another mesh, at the same contact radius or axis gap. done =
-  !> .false.: the state has no contact edge for the locked mesh, or the iteration did not converge.
-  subroutine move_to_mesh(solver, from, to, state, done)
-    class(solver_t), intent(inout) :: solver
-    integer, intent(in) :: from, to
-    type(state_t), intent(inout) :: state
-    logical, intent(out) :: done
-    real(wp) :: c
-
-    c = radius_for(solver%equations_t, from, to, state)
-    done = c > 0
-    if (.not. done) return
-    associate (problem => solver%problem, meshes => solver%meshes, grid => solver%meshes%grid)
-      state = regrid(problem%shape, state, grid(from), grid(to), c)
-      call solver%correct(path_control(problem, meshes, to, &
-        coordinate_of(problem, meshes, to, state)), state, done)
-    end associate
-  end subroutine move_to_mesh
 
 end module continuation

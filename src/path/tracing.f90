@@ -13,6 +13,7 @@ module tracing
   use locked_meshes, only: h0_control
   use path_coordinate, only: path_control
   use continuation, only: continuation_t
+  use mesh_passage, only: has_come_to_next, pass_to_next
   use ending, only: ending_t, beyond_rounding, no_equilibrium, path_lost
   use traced_path, only: traced_path_t
   use path_end, only: demand_t, touches, astray, collapsed
@@ -85,7 +86,7 @@ contains
     walker%most = mender%most
     do while (.not. (known%ending%early() .or. finished))
       call extend(known%path, walker, solver, lost)
-      if (lost) lost = .not. walker%has_come_to_next(solver%equations_t)
+      if (lost) lost = .not. has_come_to_next(walker, solver%equations_t)
       steps = steps + 1
       if (mod(steps, steps_a_message) == 0) then
         write (so_far, '(a, i0, a)') 'tracing the path: ', known%path%held, ' states'
@@ -99,7 +100,7 @@ contains
         adrift = mod(steps, steps_a_check) == 0
         if (adrift) adrift = left_in_state(solver%equations_t, walker%mesh, &
           walker%state(walker%held)) > most_adrift
-        leaving = walker%has_come_to_next(solver%equations_t)
+        leaving = has_come_to_next(walker, solver%equations_t)
         ! A mesh was judged when the next one was inserted. The path may stay on it for some steps,
         ! past an extremum, and would come to the inserted one earlier each time it is mended.
         if (leaving) leaving = .not. solver%meshes%inserted(walker%mesh + 1)
@@ -223,7 +224,7 @@ contains
     integer :: mesh
 
     mesh = walker%mesh
-    call walker%change_mesh(solver, lost)
+    call pass_to_next(walker, solver, lost)
     lost = lost .or. walker%stuck
     if (lost .or. walker%mesh == mesh) return
     path%point(path%held - 1)%leads_on = .false.

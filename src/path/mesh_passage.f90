@@ -1,0 +1,129 @@
+!> How the continuation of the path passes from one mesh to the next.
+module mesh_passage
+  use kinds, only: wp
+  use contact_state, only: state_t
+  use equilibrium, only: equations_t
+  use solver, only: solver_t
+  use regridding, only: regrid
+  use next_mesh, only: radius_for, lay_out_next
+  use path_coordinate, only: path_control, coordinate_of
+  use mending, only: left_in_state
+  use arc, only: arc_t
+  use continuation, only: continuation_t, add_with_tangent
+  implicit none
+  private
+  public :: has_come_to_next, pass_to_next
+
+  !> Least contact radius, over that of a passage, at which a state is transferred to the next mesh.
+  real(wp), parameter :: nearly_passed = 0.8_wp
+
+contains
+
+  !> Whether the contact radius has crossed the passage to the next mesh, and the previous state is
+  !> near the passage or beyond it. A path stays on its first mesh for two steps, since the last
+  !> step before a passage is on the next mesh. Where no step converged, the gap on the axis may
+  !> have a fold as a coordinate: between blunt bodies on layers it may rise again while the contact
+  !> grows. There a contact that grows is enough, if the next mesh is locked to its edge.
+  pure logical function has_come_to_next(walker, equations) result(come)
+    type(continuation_t), intent(in) :: walker
+    type(equations_t), intent(in) :: equations
+    real(wp) :: before, now
+
+    associate (meshes => equations%meshes, mesh => walker%mesh, held => walker%held)
+      come = held > 2 .and. equations%problem%law%edge_gap > 0 .and. mesh < size(meshes%grid)
+      if (.not. come) return
+      before = radius_for(equations, mesh, mesh + 1, walker%state(held - 1))
+      now = radius_for(equations, mesh, mesh + 1, walker%state(held))
+      if (walker%stuck) then
+        come = meshes%is_about_axis(mesh) .and. .not. meshes%is_about_axis(mesh + 1) .and. &
+          before > 0 .and. now > before
+      else
+        come = now >= meshes%passage(mesh) .and. before >= nearly_passed*meshes%passage(mesh)
+      end if
+    end associate
+  end function has_come_to_next
+
+  !> Passes to the next mesh if the path has come to it (to be called after each `advance`). The
+  !> last two states are transferred, so that the next mesh has the interval between them too. A
+  !> mesh that was laid out for predicted gaps is laid out anew for those of the path if it does not
+  !> resolve the first of the two states, or if the path comes to it before the passage. h0 and load
+  !> must change in the same sense on both meshes there.
+  subroutine pass_to_next(walker, solver, lost)
+    type(continuation_t), intent(inout) :: walker
+    class(solver_t), intent(inout) :: solver
+    logical, intent(out) :: lost
+    type(arc_t) :: next
+    logical :: suffices
+
+    lost = .false.
+    if (.not. has_come_to_next(walker, solver%equations_t)) return
+    suffices = .not. (walker%stuck .or. solver%meshes%waits(walker%mesh + 1))
+    if (suffices) then
+      call transfer(walker, solver, next, lost)
+      suffices = .not. lost
+      if (suffices) suffices = &
+        left_in_state(solver%equations_t, next%mesh, next%state(1)) <= walker%most
+    end if
+    if (.not. suffices) then
+      call lay_out_next(solver%equations_t, walker%arc_t)
+      call solver%operator%forget()
+      call transfer(walker, solver, next, lost)
+    end if
+    if (lost .or. next%held < 2) return
+    associate (old => walker%tangent(walker%held - 1), new => next%tangent(1))
+      if (.not. old%goes_with(new)) return
+      ! The next mesh may not have the step of a law where the path enters it.
+      if (solver%problem%law%step_width > 0 .and. .not. old%is_alike(new) .and. &
+        left_in_state(solver%equations_t, walker%mesh, walker%state(walker%held - 1)) <= &
+        walker%most) return
+    end associate
+    walker%arc_t = next
+    walker%step = 0.5_wp*walker%step
+    if (walker%stuck) walker%step = next%coordinate(2) - next%coordinate(1)
+    walker%stuck = .false.
+  end subroutine pass_to_next
+
+  !> Solves the last two states of an arc on the next mesh. lost: this failed.
+  subroutine transfer(arc, solver, next, lost)
+    type(continuation_t), intent(in) :: arc
+    class(solver_t), intent(inout) :: solver
+    type(arc_t), intent(out) :: next
+    logical, intent(out) :: lost
+    type(state_t) :: state
+    integer :: j
+    logical :: done
+
+    next%mesh = arc%mesh + 1
+    next%moved = arc%moved
+    next%extrapolated_from = arc%extrapolated_from
+    do j = arc%held - 1, arc%held
+      state = arc%state(j)
+      ! The two states are a step of the path apart.
+      call solver%frozen%forget()
+      call move_to_mesh(solver, arc%mesh, next%mesh, state, done)
+      lost = .not. done
+      if (done) call add_with_tangent(solver, arc%slope_error, state, next, lost)
+      if (lost) return
+    end do
+  end subroutine transfer
+
+  !> Solves a state of one mesh on another mesh, at the same contact radius or axis gap. done =
+  !> .false.: the state has no contact edge for the locked mesh, or the iteration did not converge.
+  subroutine move_to_mesh(solver, from, to, state, done)
+    class(solver_t), intent(inout) :: solver
+    integer, intent(in) :: from, to
+    type(state_t), intent(inout) :: state
+    logical, intent(out) :: done
+    real(wp) :: c
+
+    c = radius_for(solver%equations_t, from, to, state)
+    done = c > 0
+    if (.not. done) return
+    associate (problem => solver%problem, meshes => solver%meshes, grid => solver%meshes%grid)
+      state = regrid(problem%shape, state, grid(from), grid(to), c)
+      call solver%correct(path_control(problem, meshes, to, &
+        coordinate_of(problem, meshes, to, state)), state, done)
+    end associate
+  end subroutine move_to_mesh
+
+end module mesh_passage
