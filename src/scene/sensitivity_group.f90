@@ -3,7 +3,7 @@ module sensitivity_group
   use failure, only: failure_t, fail, bad_input
   use text, only: lower, quoted, word_count, word_of
   use deck_numbers, only: find_number
-  use deck_keys, only: key_spec, group, names_key
+  use deck_keys, only: key_spec, group, names_key, real_value, real_list
   use variation, only: vary, to_report
   use scene_groups, only: scene_t
   use path_groups, only: check_path
@@ -78,9 +78,15 @@ contains
         call find_number(deck, name, row, term, trouble)
         if (.not. allocated(trouble)) then
           scene%sensitivity%varied(i)%parameter%name = name
-          if (.not. allocated(deck%values(row)%reals) .or. index(name, 'numerics.') == 1) then
+          if (index(name, 'numerics.') == 1 .or. &
+            all(deck%specs(row)%kind /= [real_value, real_list])) then
             call fail(trouble, bad_input, quoted(name) // ' is not a number on which results ' // &
               'depend smoothly')
+          else if (.not. allocated(deck%values(row)%reals)) then
+            call fail(trouble, bad_input, 'the deck gives no ' // quoted(name))
+          else if (term == 0 .and. size(deck%values(row)%reals) > 1) then
+            call fail(trouble, bad_input, quoted(name) // ' is a list; name an element of it, ' // &
+              'as ' // quoted(name // '(1)'))
           else
             associate (value => deck%values(row)%reals(max(1, term)))
               scene%sensitivity%varied(i)%parameter%value = value

@@ -358,10 +358,13 @@ def test_the_radius_in_the_definition_of_an_effective_work_is_differentiated(run
 @pytest.mark.parametrize("name, message", [
     ("numerics.accuracy", "is not a number on which results depend"),
     ("drive.dwell", "is 0"),
+    ("drive.stiffness", "the deck gives no"),
+    ("bodies.young", "is a list; name an element of it, as 'bodies.young(1)'"),
     ("bodies.weight", "not a key"),
 ])
 def test_what_a_drive_cannot_be_differentiated_by_is_named(run, name, message):
     found = run(lennard_jones(
-        0.1, drive={"velocity": 8.0, "z_start": 20.0, "z_turn": 0.0, "dwell": 0.0},
+        0.1, bodies={"radius": 1.0, "young": [1.0, 2.0], "poisson": 0.3},
+        drive={"velocity": 8.0, "z_start": 20.0, "z_turn": 0.0, "dwell": 0.0},
         sensitivity={"parameters": name}), status=2)
     assert message in found.stderr
