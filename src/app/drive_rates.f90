@@ -1,5 +1,6 @@
 !> Derivatives of the results of a drive in time by numbers of its deck, from whole runs with each
-!> number slightly smaller and slightly larger, since no path gives these derivatives.
+!> number slightly smaller and slightly larger, since no path gives these derivatives. A number at
+!> the end of its range is varied to one side.
 module drive_rates
   use kinds, only: wp
   use failure, only: failure_t
@@ -30,7 +31,7 @@ contains
     class(keeping_stepper_t), intent(inout) :: keeper
     class(listener_t), intent(inout) :: listener
     type(timed_result_t), intent(inout) :: timed
-    real(wp) :: change, side(numbers, 2)
+    real(wp) :: change, place(2), side(numbers, 2)
     real(wp), allocatable :: rate(:, :)
     logical :: found
     integer :: i, j
@@ -41,20 +42,42 @@ contains
       do j = 1, size(varied)
         associate (name => varied(j)%parameter%name, value => varied(j)%parameter%value)
           call listener%hear('differentiating by '//name)
+          place = [-change, change]
+          if (.not. allowed(scene, name, value*(1 + change))) then
+            place = [-change, -2*change]
+          else if (.not. allowed(scene, name, value*(1 - change))) then
+            place = [change, 2*change]
+          end if
           do i = 1, 2
-            call run_with(scene, name, value*(1 + merge(-change, change, i == 1)), keeper, &
-              side(:, i), found)
+            call run_with(scene, name, value*(1 + place(i)), keeper, side(:, i), found)
             if (.not. found) then
               timed%not_rated = name
               return
             end if
           end do
-          rate(j, :) = (side(:, 2) - side(:, 1))/(2*change*value)
+          if (place(1)*place(2) < 0) then
+            rate(j, :) = (side(:, 2) - side(:, 1))/(2*change*value)
+          else
+            rate(j, :) = (4*side(:, 1) - side(:, 2) - 3*si_numbers(problem_of(scene), timed))/ &
+              (2*place(1)*value)
+          end if
         end associate
       end do
     end associate
     timed%rate = rate
   end subroutine rate_drive
+
+  !> Whether the number `name` may have this value.
+  logical function allowed(scene, name, value)
+    type(scene_t), intent(in) :: scene
+    character(len=*), intent(in) :: name
+    real(wp), intent(in) :: value
+    type(scene_t) :: variant
+    type(failure_t), allocatable :: error
+
+    call swept_scene(scene, name, [value], variant, error)
+    allowed = .not. allocated(error)
+  end function allowed
 
   !> The numbers that a run with another value of the number `name` finds.
   subroutine run_with(scene, name, value, keeper, side, found)

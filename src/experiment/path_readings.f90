@@ -17,9 +17,10 @@ module path_readings
   private
   public :: path_readings_t, loaded_state_t, read_path
 
-  !> An equilibrium under a load (units of `dimensionless_problem`). It is stable at fixed load if
-  !> no mode is unstable at fixed h0 and dF/dh0 < 0.
+  !> An equilibrium under a load (units of `dimensionless_problem`), and the load's place in its
+  !> list. It is stable at fixed load if no mode is unstable at fixed h0 and dF/dh0 < 0.
   type :: loaded_state_t
+    integer :: number = 0
     real(wp) :: wanted = 0
     type(path_state_t) :: state
     logical :: stable = .false.
@@ -93,7 +94,8 @@ contains
       readings%solved = readings%solved .and. solved
       do k = 1, size(states)
         ! On the path followed inward, h0 decreases where states are stable at fixed h0.
-        one = loaded_state_t(load(i), states(k), states(k)%modes == 0 .and. states(k)%slopes(2) > 0)
+        one = loaded_state_t(i, load(i), states(k), &
+          states(k)%modes == 0 .and. states(k)%slopes(2) > 0)
         readings%loaded = [readings%loaded, one]
       end do
     end do

@@ -175,7 +175,7 @@ contains
         lost%error + uncertainty(device)*unit)
       call summary%set('device_energy_uncertainty', max(uncertainty(device)*unit, lost%error))
       if (.not. all(device%caught)) call summary%warn('device: no stable state is known ' // &
-        'that catches the bodies after a jump; see device_jumps.csv')
+        'that catches the bodies after a jump; its load_after is NaN')
       if (any(uncertainty(device) > known_energy*abs(device%energy_lost))) &
         call summary%warn('device: the energy lost in jumps is not the area of the cycle; ' // &
         'a smaller accuracy may help')

@@ -47,7 +47,7 @@ contains
 
     associate (loaded => readings%loaded)
       do i = 1, size(loads)
-        associate (same => abs(loaded%wanted - loads(i)/problem%load) <= 0)
+        associate (same => loaded%number == i)
           held(i) = count(same)
           stable(i) = count(same .and. loaded%stable)
           ! They are in the order from large to small h0.

@@ -4,7 +4,7 @@ module sensitivity_group
   use text, only: lower, quoted, word_count, word_of
   use deck, only: deck_t
   use deck_numbers, only: find_number
-  use deck_keys, only: key_spec, names_value
+  use deck_keys, only: key_spec, names_value, real_value, real_list
   use problem_family, only: parameter_t
   use variation, only: vary, to_report
   use scene_groups, only: scene_t
@@ -75,14 +75,20 @@ contains
     call find_number(deck, name, row, term, error)
     if (allocated(error)) return
     parameter%name = name
-    if (.not. allocated(deck%values(row)%reals) .or. index(name, 'numerics.') == 1) then
+    if (index(name, 'numerics.') == 1 .or. &
+      all(deck%specs(row)%kind /= [real_value, real_list])) then
       call fail(error, bad_input, quoted(name) // ' is not a number on which results depend ' // &
         'smoothly')
-      return
+    else if (.not. allocated(deck%values(row)%reals)) then
+      call fail(error, bad_input, 'the deck gives no ' // quoted(name))
+    else if (term == 0 .and. size(deck%values(row)%reals) > 1) then
+      call fail(error, bad_input, quoted(name) // ' is a list; name an element of it, as ' // &
+        quoted(name // '(1)'))
+    else
+      parameter%value = deck%values(row)%reals(max(1, term))
+      if (.not. abs(parameter%value) > 0) call fail(error, bad_input, quoted(name) // &
+        ' is 0, so that no relative change of it can be made')
     end if
-    parameter%value = deck%values(row)%reals(max(1, term))
-    if (.not. abs(parameter%value) > 0) call fail(error, bad_input, quoted(name) // &
-      ' is 0, so that no relative change of it can be made')
   end subroutine take_number
 
 end module sensitivity_group

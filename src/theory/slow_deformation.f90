@@ -6,6 +6,7 @@
 !> J(h), where J is the integral of p(h')/sqrt(h' - h) over h' from h to infinity.
 module slow_deformation
   use kinds, only: wp, pi, nan
+  use adaptive_quadrature, only: integral_t, new_integral, in_order
   use exponential, only: exponential_t
   use lennard_jones, only: lennard_jones_t
   use dimensionless_problem, only: problem_t
@@ -107,8 +108,9 @@ contains
   !> J(h) by quadrature, or with `of_slope` the same integral of p', which is its derivative. With
   !> h' = h + s^2 it is the integral of p(h + s^2) over all s. With s = scale sinh(t) the integrand
   !> falls exponentially or faster for algebraic and exponential laws alike, and the trapezoidal
-  !> rule in t converges exponentially. The error is a few epsilon times the integral of the
-  !> integrand's magnitude.
+  !> rule in t converges exponentially. If it does not, the law has a step, a kink or a short
+  !> period, and the integral is computed in pieces. The error is a few epsilon times the integral
+  !> of the integrand's magnitude.
   pure real(wp) function axis_integral(problem, gap, of_slope) result(integral)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: gap
@@ -117,7 +119,7 @@ contains
     real(wp), parameter :: agreement = 1.0e-13_wp
     !> If a block of points contributes less than this part of the whole, the rest is negligible.
     real(wp), parameter :: negligible = 1.0e-18_wp
-    integer, parameter :: block = 16, halvings = 8
+    integer, parameter :: block = 16, halvings = 5
     real(wp) :: scale, step, before, points, magnitude, more
     integer :: level
 
@@ -136,6 +138,7 @@ contains
       if (abs(integral - before) <= agreement*step*magnitude) return
       step = step/2
     end do
+    integral = in_pieces()
 
   contains
 
@@ -151,12 +154,7 @@ contains
       magnitude = 0
       t = first + step*[(k, k=0, block - 1)]
       do
-        if (of_slope) then
-          value = problem%law%slope(gap + (scale*sinh(t))**2)
-        else
-          value = problem%law%pressure(gap + (scale*sinh(t))**2)
-        end if
-        value = 2*scale*cosh(t)*value
+        value = 2*integrand(t)
         if (.not. t(1) > 0) value(1) = value(1)/2
         points = points + sum(value)
         magnitude = magnitude + sum(abs(value))
@@ -164,6 +162,38 @@ contains
         t = t + block*step
       end do
     end subroutine add_points
+
+    !> The integral in pieces that end at the breaks of the law.
+    pure real(wp) function in_pieces()
+      !> Further ends of pieces. Beyond the last one the integrand is negligible, since it falls
+      !> as exp(-t) or faster.
+      real(wp), parameter :: usual(*) = &
+        [0.0_wp, 0.5_wp, 1.0_wp, 2.0_wp, 3.0_wp, 5.0_wp, 8.0_wp, 12.0_wp, 20.0_wp, 40.0_wp]
+      type(integral_t) :: pieces
+      real(wp), allocatable :: ends(:)
+
+      ends = usual
+      if (allocated(problem%law%breaks)) ends = [usual, &
+        asinh(sqrt(pack(problem%law%breaks, problem%law%breaks > gap) - gap)/scale)]
+      ends = in_order(ends)
+      pieces = new_integral(ends(:size(ends) - 1), ends(2:))
+      do while (pieces%is_open())
+        call pieces%note(integrand(pieces%places()))
+      end do
+      in_pieces = 2*pieces%value
+    end function in_pieces
+
+    pure function integrand(t) result(value)
+      real(wp), intent(in) :: t(:)
+      real(wp) :: value(size(t))
+
+      if (of_slope) then
+        value = problem%law%slope(gap + (scale*sinh(t))**2)
+      else
+        value = problem%law%pressure(gap + (scale*sinh(t))**2)
+      end if
+      value = scale*cosh(t)*value
+    end function integrand
 
   end function axis_integral
 

@@ -25,6 +25,13 @@ def test_two_equilibria_under_tension_one_under_pressure_none_beyond_the_pull_of
                                       [*table[key][table["stable"] == 1], np.nan])
 
 
+def test_a_load_given_twice_has_its_own_equilibria_each_time(run):
+    found = run(under(-1.0, 5.0, -1.0))
+    assert several(found.summary["fixed_load_equilibria"]) == [2, 1, 2]
+    assert several(found.summary["fixed_load_stable"]) == [1, 1, 1]
+    assert len(found.table("fixed_load.csv")) == 5
+
+
 def test_equilibria_have_the_load_that_stepping_h0_finds(run):
     table = run(under(-1.0, 5.0)).table("fixed_load.csv")
     for h0, displacement, load in zip(table["h0"], table["displacement"], table["load"]):

@@ -355,13 +355,28 @@ def test_the_radius_in_the_definition_of_an_effective_work_is_differentiated(run
     assert rate["effective_work_of_adhesion"] == pytest.approx(rate["max_tension"] - 1, abs=0.01)
 
 
+def test_a_number_at_the_end_of_its_range_is_varied_to_one_side(run):
+    found = run(lennard_jones(
+        0.2, bodies={"radius": 1.0, "young": 0.75, "poisson": 0.5},
+        drive={"velocity": 8.0, "z_start": 20.0, "z_turn": -4.0}, numerics={"accuracy": 1e-4},
+        sensitivity={"parameters": ["bodies.young", "bodies.poisson"]}))
+    table = found.table("sensitivity.csv")
+    tension = table["quantity"] == "max_tension"
+    rate = dict(zip(table["parameter"][tension], table["logarithmic"][tension]))
+    # The stiffness is E/(1-nu^2), whose logarithmic derivative by nu is 2/3 at 1/2.
+    assert rate["bodies.poisson"] == pytest.approx(2 / 3 * rate["bodies.young"], rel=1e-2)
+
+
 @pytest.mark.parametrize("name, message", [
     ("numerics.accuracy", "is not a number on which results depend"),
     ("drive.dwell", "is 0"),
+    ("drive.stiffness", "the deck gives no"),
+    ("bodies.young", "is a list; name an element of it, as 'bodies.young(1)'"),
     ("bodies.weight", "not a key"),
 ])
 def test_what_a_drive_cannot_be_differentiated_by_is_named(run, name, message):
     found = run(lennard_jones(
-        0.1, drive={"velocity": 8.0, "z_start": 20.0, "z_turn": 0.0, "dwell": 0.0},
+        0.1, bodies={"radius": 1.0, "young": [1.0, 2.0], "poisson": 0.3},
+        drive={"velocity": 8.0, "z_start": 20.0, "z_turn": 0.0, "dwell": 0.0},
         sensitivity={"parameters": name}), status=2)
     assert message in found.stderr

@@ -108,6 +108,23 @@ def test_displacement_is_the_integral_of_the_pressure_over_the_plane():
     assert found.displacement[0] == pytest.approx(4 / STIFFNESS * integral, rel=1e-12)
 
 
+@pytest.mark.parametrize("law", [
+    {"dugdale": {"stress": 1e7, "range": 1e-9, "smoothing": 1e-15}},
+    {"dugdale": {"stress": 1e7, "range": 1e-9, "smoothing": 1e-17}},
+    {"steric": {"brush_thickness": 0.5e-9, "grafting_density": 1e17}},
+], ids=["sharp_step", "sharper_step", "kink"])
+def test_a_step_or_a_kink_costs_no_digits(law):
+    # The same integral in two pieces that end at the step or kink, where h is 1 nm.
+    end = 1e-9
+    x, w = np.polynomial.legendre.leggauss(80)
+    for gap in (0.1e-9, 0.5e-9, 0.95e-9):
+        t = math.sqrt(2 * RADIUS * (end - gap)) * (x + 1) / 2
+        pressure = snapin.force_law(law, gap + t**2 / (2 * RADIUS)).pressure
+        integral = w @ pressure * math.sqrt(2 * RADIUS * (end - gap)) / 2
+        found = snapin.slow_deformation([gap], **BODIES, law=law)
+        assert found.displacement[0] == pytest.approx(4 / STIFFNESS * integral, rel=1e-8)
+
+
 # --- Rigid bodies
 
 
