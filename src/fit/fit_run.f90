@@ -99,7 +99,8 @@ contains
     end if
     do i = 1, size(outcome%fitted%effect)
       if (outcome%fitted%effect(i) > least_effect) cycle
-      outcome%trouble = other_order(outcome%curve, model)
+      outcome%trouble = ''
+      if (.not. outcome%fitted%lack%is_noise()) outcome%trouble = other_order(outcome%curve, model)
       if (len(outcome%trouble) == 0) outcome%trouble = outcome%curve%unknown(i)%name // &
         ' has no effect on this curve near the best value found, ' // &
         rounded(outcome%fitted%value(i)) // '; remove it from parameters, or give a prior'
