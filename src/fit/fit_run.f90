@@ -55,7 +55,7 @@ module fit_run
   !> Starting stiffnesses of the theories over the deck's; starting ranges of the force over the
   !> deck's; samples to which the theories are fitted to find starting values.
   real(wp), parameter :: factors(*) = [1.0_wp, 0.1_wp, 10.0_wp, 0.01_wp, 100.0_wp], &
-    ranges(*) = [0.25_wp, 4.0_wp]
+    ranges(*) = [0.25_wp, 4.0_wp], works(*) = [0.2_wp, 5.0_wp]
   integer, parameter :: few_samples = 1000
 
 contains
@@ -178,6 +178,11 @@ contains
     allocate (likely(0))
     own = character_of(problem)
     if (.not. own%work > 0) return
+    do k = 1, size(works)
+      new = own
+      new%work = own%work*works(k)
+      likely = [likely, new]
+    end do
     associate (data => curve%data%measured)
       pull_off = -[minval(data%signal, data%usable) - level_of(data), &
         minval(off_baseline(data), data%usable)]
@@ -186,7 +191,7 @@ contains
       own%work = pull_off(i)*curve%spring*curve%sensitivity/(1.5_wp*pi*problem%radius)
       if (own%work > 0) likely = [likely, own]
     end do
-    if (size(likely) == 0) return
+    if (size(likely) == size(works)) return
     own = likely(size(likely))
     model%radius = problem%radius
     few = curve
