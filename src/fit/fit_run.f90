@@ -8,7 +8,7 @@ module fit_run
   use dimensionless_problem, only: problem_t
   use problem_family, only: problem_family_t
   use experiment_request, only: numerics_t
-  use fit_request, only: measurement_t, fit_t, unknown_t, of_model, of_contact_point
+  use fit_request, only: measurement_t, fit_t, unknown_t, of_model, of_contact_point, is_at_end
   use measured_curve, only: measured_t
   use measured_jumps, only: find_jump
   use measured_checks, only: check_measured
@@ -97,11 +97,17 @@ contains
         'the search ended where the path has no derivatives; start from other values'
       return
     end if
+    associate (fitted => outcome%fitted)
+      if (.not. fitted%lack%is_noise() .and. any(fitted%effect <= least_effect .or. &
+        is_at_end(outcome%curve%unknown, fitted%value))) then
+        outcome%trouble = other_order(outcome%curve, model)
+        if (len(outcome%trouble) > 0) return
+        deallocate (outcome%trouble)
+      end if
+    end associate
     do i = 1, size(outcome%fitted%effect)
       if (outcome%fitted%effect(i) > least_effect) cycle
-      outcome%trouble = ''
-      if (.not. outcome%fitted%lack%is_noise()) outcome%trouble = other_order(outcome%curve, model)
-      if (len(outcome%trouble) == 0) outcome%trouble = outcome%curve%unknown(i)%name // &
+      outcome%trouble = outcome%curve%unknown(i)%name // &
         ' has no effect on this curve near the best value found, ' // &
         rounded(outcome%fitted%value(i)) // '; remove it from parameters, or give a prior'
       return
