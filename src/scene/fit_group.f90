@@ -125,6 +125,7 @@ contains
           call find_number(scene%deck, unknown%name, row, term, trouble)
           unknown%in_log = unknown%value > 0 .and. scene%deck%specs(row)%low >= 0
           unknown%origin = unknown%value
+          call take_range(scene%deck%specs(row), unknown)
         end if
       end associate
       do k = 1, i - 1
@@ -139,6 +140,20 @@ contains
       'give contact_point in &measurement', error)
     call take_bounds(scene%deck, scene%fit%unknown, error)
   end subroutine take_unknowns
+
+  !> Makes the ends of a key's range bounds of the unknown: a search that may not go beyond them
+  !> otherwise ends there before the others are found.
+  pure subroutine take_range(spec, unknown)
+    type(key_spec), intent(in) :: spec
+    type(unknown_t), intent(inout) :: unknown
+    !> Part of the value by which the search stays inside an end that is excluded.
+    real(wp), parameter :: inside = 1.0e-6_wp
+
+    if (.not. unknown%in_log .and. spec%low > -huge(1.0_wp)) unknown%lower = spec%low + &
+      merge(inside, 0.0_wp, spec%low_open)*abs(unknown%value - spec%low)
+    if (spec%high < huge(1.0_wp)) unknown%upper = spec%high - &
+      merge(inside, 0.0_wp, spec%high_open)*abs(spec%high - unknown%value)
+  end subroutine take_range
 
   !> Sets role, value and scale of an unknown in &measurement.
   subroutine take_measured(scene, unknown, error)
@@ -190,9 +205,11 @@ contains
       do i = 1, size(unknown)
         select case (keys(k))
         case ('lower')
+          if (unknown(i)%in_log .and. value(i) <= 0) cycle
+          if (allocated(unknown(i)%lower)) value(i) = max(value(i), unknown(i)%lower)
           unknown(i)%lower = value(i)
-          if (unknown(i)%in_log .and. value(i) <= 0) deallocate (unknown(i)%lower)
         case ('upper')
+          if (allocated(unknown(i)%upper)) value(i) = min(value(i), unknown(i)%upper)
           unknown(i)%upper = value(i)
         case default
           unknown(i)%prior = value(i)

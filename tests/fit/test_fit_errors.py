@@ -140,3 +140,21 @@ def test_the_noise_of_a_signal_of_few_digits_is_that_of_rounding_at_least(branch
     true = [1e-19, 1e10, 0.0]
     assert np.all(np.abs(np.array(fit["estimate"]) - true) < 4 * np.array(fit["standard_error"]))
     assert "warnings" not in fit
+
+
+def test_a_number_at_the_end_of_its_range_does_not_keep_others_from_their_best_values(tmp_path):
+    """The search could not step beyond a regulation of 1, and ended with another contact point."""
+    groups = {"bodies": {"radius": 5e-6, "stiffness": 1e10}, "van_der_waals": {"hamaker": 2e-20},
+              "born": {"z0": 3e-10},
+              "double_layer": {"potential": -0.05, "salt": 1.0, "regulation": 1.0}}
+    curve = Branches(groups, 20.0, far=100e-9, h0_end=-3e-9, step=5e-11).measure(400, 8e-10, seed=3)
+    file = write(tmp_path / "a.csv", *curve)
+    found = []
+    for start in 1.0, 0.5:
+        deck = fit_deck(changed(groups, {"double_layer.regulation": start}), file,
+                        ["double_layer.regulation", POINT], None, {"spring_constant": 20.0})
+        found.append(run(deck).fitted["fit"])
+    assert found[0]["estimate"][0] == pytest.approx(1, rel=1e-3)
+    for key in "estimate", "standard_error":
+        assert found[0][key] == pytest.approx(found[1][key], rel=0.01, abs=1e-13)
+    assert all("touches upper = 1" in str(fit["warnings"]) for fit in found)
