@@ -59,7 +59,8 @@ contains
       if (deck%has_group('sweep')) call deck%mistake('fit', '', 'not together with &sweep', error)
       if (allocated(scene%law)) then
         if (scene%bodies%rigid .or. .not. scene%law%adhesion > 0) call deck%mistake('fit', '', &
-          'needs elastic bodies and a force that attracts', error)
+          'needs elastic bodies and a force that attracts; beside a repulsion a weak ' // &
+          '&van_der_waals with &born is enough', error)
       end if
     end associate
     if (allocated(error)) return

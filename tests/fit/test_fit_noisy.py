@@ -1,6 +1,8 @@
 """Claims about fits of curves as instruments give them: much noise, outliers, starts that are far
 off, little baseline, models that are wrong."""
 
+import resource
+
 import numpy as np
 import pytest
 import snapin
@@ -208,3 +210,13 @@ def test_a_number_that_does_not_show_before_the_jump_is_named(branches, tmp_path
         fitted(tmp_path, (z[apart], force[apart], segment[apart]), started(),
                measurement={"segment": "approach", "contact_point": 0.0},
                keys=[STRENGTH, STIFFNESS])
+
+
+def test_the_time_of_a_fit_is_proportional_to_the_samples(branches, tmp_path):
+    """Ten times the samples took thirty times as long."""
+    taken = []
+    for n in 5000, 50000:
+        before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
+        fitted(tmp_path, branches.measure(n, NOISE, seed=2), started())
+        taken.append(resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before)
+    assert taken[1] < 15 * taken[0]
