@@ -158,3 +158,21 @@ def test_a_number_at_the_end_of_its_range_does_not_keep_others_from_their_best_v
     for key in "estimate", "standard_error":
         assert found[0][key] == pytest.approx(found[1][key], rel=0.01, abs=1e-13)
     assert all("touches upper = 1" in str(fit["warnings"]) for fit in found)
+
+
+@pytest.mark.parametrize("seed", [0, 8])
+def test_a_number_has_the_error_that_another_brings_along_a_curved_valley(tmp_path, seed):
+    """The spring is so soft that stiff bodies look like soft ones which adhere more. The modulus had
+    an error of a factor of 75, the strength one of a hundredth, and was fifteen of these off."""
+    spring = 0.01
+    curves = Branches(LENNARD_JONES, spring)
+    z, load = curves.outer
+    # Far out, the attraction of a rigid sphere; the pull-off is at 0.64 um.
+    far = np.linspace(1.02 * z[-1], 1.3e-6, 400)
+    curves.outer = np.append(z, far), np.append(load, load[-1] * (z[-1] / far) ** 2)
+    file = write(tmp_path / "a.csv", *curves.measure(300, 6e-11, seed))
+    fit = run(fit_deck(LENNARD_JONES, file, [STRENGTH, STIFFNESS, POINT], None,
+                       {"spring_constant": spring})).fitted["fit"]
+    for number, true in enumerate([1e-19, 1e10]):
+        estimate, error = fit["estimate"][number], fit["standard_error"][number]
+        assert abs(np.log(estimate / true)) < 4 * error / estimate
