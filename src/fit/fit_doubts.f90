@@ -63,8 +63,9 @@ contains
 
     if (.not. is_at_end(unknown, value)) return
     call add(lines, unknown%name // ' ends at ' // rounded(value) // ', the ' // &
-      trim(merge('largest ', 'smallest', fitted_of(unknown, value) > 0)) // ' value that is tried, a factor of ' // &
-      rounded(exp(farthest_off)) // ' from the value in the deck: other values may fit ' // &
+      trim(merge('largest ', 'smallest', fitted_of(unknown, value) > 0)) // &
+      ' value that is tried, a factor of ' // rounded(exp(farthest_off)) // &
+      ' from the value in the deck: other values may fit ' // &
       'better, and standard errors mean nothing; start nearer')
   end subroutine doubt_reach
 

@@ -118,7 +118,8 @@ contains
     real(wp), intent(in) :: z(:), before(:), after(:), change, noise
     integer, intent(in) :: first
     real(wp) :: leaves(size(z)), arrives(size(z)), cost(size(z), 0:most_within)
-    real(wp) :: ahead(size(z)), behind(size(z)), middle(size(z)), typical, neither, one_side(2), least
+    real(wp) :: ahead(size(z)), behind(size(z)), middle(size(z)), typical, neither
+    real(wp) :: one_side(2), least
     integer :: i, m, n
 
     n = size(z)

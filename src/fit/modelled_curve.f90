@@ -17,6 +17,9 @@ module modelled_curve
   !> Least distance of the ends of contact over the travel of the base: a model with a single branch
   !> may end its contact outside Z = 0.
   real(wp), parameter :: least_reach = 0.01_wp
+  !> Slope over the stiffness of the spring above which a sample is at the turn of its branch, where
+  !> derivatives have no limit and tell nothing.
+  real(wp), parameter :: steep = 10
 
   type :: modelled_curve_t
     !> The target must exist as long as this object is used.
@@ -118,6 +121,8 @@ contains
     do n = 1, size(self%data%sample)
       i = self%data%sample(n)
       load = self%response%load_on(self%data%way(i), self%data%side(i), self%position_of(value, i))
+      by(n, :) = 0
+      if (self%data%side(i) == 0 .and. abs(load%slope) > steep*k) cycle
       by(n, :) = unfolded(self%unknown%role, load%rate/(k*s), &
         -self%data%measured%facing*load%slope/(k*s), -load%load/(k*s**2), &
         -(load%slope*load%load/k**2 + load%load/k)/(k*s))

@@ -39,7 +39,8 @@ contains
                'bodies would touch.', &
                otherwise='an unknown of &fit, in its parameters'), &
       names_key('measurement', 'units', 2, 'Units of position (m, mm, um, nm, pm) and signal ' // &
-                '(N, mN, uN, nN, pN, V, mV, or as of position) in the file.', otherwise='m and N or V'), &
+                '(N, mN, uN, nN, pN, V, mV, or as of position) in the file.', &
+                otherwise='m and N or V'), &
       list_key('measurement', 'skip', 'm', 'Pairs of positions of the base, SI; samples ' // &
                'between the two of a pair are left out.', most=most_skipped, otherwise='none'), &
       word_key('measurement', 'segment', 'both approach retreat', 'The branches to fit.', &
@@ -108,8 +109,8 @@ contains
     end do
     if (word_count(names) < 2 .or. deck%is_set('measurement', 'sensitivity')) return
     if (scan(name(len(name):), 'Vm') > 0) call deck%mistake('measurement', 'units', 'a signal in ' &
-      // 'volts needs sensitivity, the deflection of the spring for one volt, and a deflection ' // &
-      'sensitivity = 1', error)
+      // 'volts needs sensitivity, the deflection of the spring for one volt, and a ' // &
+      'deflection sensitivity = 1', error)
   end subroutine take_units
 
   !> Reads the ranges of position that are left out.
