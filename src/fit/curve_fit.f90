@@ -15,8 +15,9 @@ module curve_fit
   private
   public :: fit_curve
 
-  !> Contact points that are tried, samples used for each, and sections that refine the best ones.
-  integer, parameter :: tried = 160, samples = 250, sections = 25
+  !> Contact points that are tried where the nearest sample is in contact, and where it is not;
+  !> samples used for each, and sections that refine the best ones.
+  integer, parameter :: tried = 160, tried_apart = 40, samples = 250, sections = 25
   !> Contact points kept for each candidate; searches from the best candidates; results of searches
   !> that are followed up; rounds in which the data are examined again.
   integer, parameter :: most_points = 2, most_fits = 8, most_looks = 3, most_rounds = 8
@@ -144,7 +145,7 @@ contains
     real(wp), allocatable, intent(out) :: value(:, :), cost(:)
     type(curve_residuals_t) :: few
     real(wp), allocatable :: points(:), costs(:)
-    real(wp) :: trial(size(start, 1)), ends(2)
+    real(wp) :: trial(size(start, 1)), ends(3)
     logical :: found
     integer :: i, k, role
 
@@ -182,22 +183,27 @@ contains
 
   end subroutine find_candidates
 
-  !> The contact points between two ends with the lowest sums of squares, and these sums. role: the
-  !> index of the contact point among the unknowns. Many points are tried, since the model is not
-  !> solved again when only the contact point changes.
+  !> The contact points with the lowest sums of squares, and these sums. ends: as of `reach`; points
+  !> between the first two are evenly spaced, and from there to the last one their distances grow.
+  !> role: the index of the contact point among the unknowns. Many points are tried,
+  !> since the model is not solved again when only the contact point changes.
   subroutine lowest_points(residuals, value, role, ends, points, costs)
     type(curve_residuals_t), intent(inout) :: residuals
-    real(wp), intent(in) :: value(:), ends(2)
+    real(wp), intent(in) :: value(:), ends(3)
     integer, intent(in) :: role
     real(wp), allocatable, intent(out) :: points(:), costs(:)
     type(bracket_t) :: bracket
-    real(wp) :: at(0:tried + 1), cost(0:tried + 1), golden(2)
+    real(wp), dimension(0:tried + tried_apart + 1) :: at, cost
+    real(wp) :: golden(2), step, growth
     integer :: i, k
 
     allocate (points(0), costs(0))
-    at = [(ends(1) + (ends(2) - ends(1))*(i - 1)/(tried - 1), i=0, tried + 1)]
-    cost = [(cost_at(at(i)), i=0, tried + 1)]
-    do i = 1, tried
+    step = (ends(2) - ends(1))/(tried - 1)
+    at(:tried) = [(ends(1) + step*(i - 1), i=0, tried)]
+    growth = max(2.0_wp, (ends(3) - ends(2))/step)**(1.0_wp/tried_apart)
+    at(tried + 1:) = [(ends(2) + step*growth**i, i=1, tried_apart + 1)]
+    cost = [(cost_at(at(i)), i=0, ubound(at, 1))]
+    do i = 1, ubound(at, 1) - 1
       if (.not. (cost(i) <= cost(i - 1) .and. cost(i) < cost(i + 1))) cycle
       bracket = bracket_t(at(i - 1), at(i + 1))
       do k = 1, sections

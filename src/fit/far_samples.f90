@@ -76,14 +76,16 @@ contains
     type(measured_t), intent(in) :: measured
     real(wp) :: step(size(measured%z))
     integer, allocatable :: mine(:)
+    real(wp) :: travel
     integer :: way, k, n
 
+    travel = maxval(measured%z) - minval(measured%z)
     do way = 1, 2
       mine = pack([(k, k=1, size(step))], measured%inward .eqv. way == 1)
       n = size(mine)
       associate (z => measured%z(mine))
         do k = 1, n
-          step(mine(k)) = max((maxval(measured%z) - minval(measured%z))/n, &
+          step(mine(k)) = max(travel/n, &
             0.5_wp*maxval(abs(z(k) - z([max(1, k - 2), min(n, k + 2)]))))
         end do
       end associate

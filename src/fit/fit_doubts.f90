@@ -4,7 +4,7 @@ module fit_doubts
   use kinds, only: wp
   use text, only: brief, rounded, rounded_to
   use namelist_writer, only: line_t
-  use fit_request, only: unknown_t, fitted_of, farthest_off
+  use fit_request, only: unknown_t, fitted_of, is_at_end, farthest_off
   use lack_of_fit, only: lack_t, hardly_ever
   use fit_errors, only: fitted_t
   use held_numbers, only: held_t
@@ -60,15 +60,12 @@ contains
     type(unknown_t), intent(in) :: unknown
     real(wp), intent(in) :: value
     type(line_t), allocatable, intent(inout) :: lines(:)
-    real(wp), parameter :: within = 1.0e-3_wp
-    real(wp) :: off
 
-    if (.not. unknown%in_log) return
-    off = fitted_of(unknown, value)
-    if (abs(off) < farthest_off - within) return
+    if (.not. is_at_end(unknown, value)) return
     call add(lines, unknown%name // ' ends at ' // rounded(value) // ', the ' // &
-      trim(merge('largest ', 'smallest', off > 0)) // ' value that is tried, a factor of ' // &
-      rounded(exp(farthest_off)) // ' from the value in the deck: other values may fit ' // &
+      trim(merge('largest ', 'smallest', fitted_of(unknown, value) > 0)) // &
+      ' value that is tried, a factor of ' // rounded(exp(farthest_off)) // &
+      ' from the value in the deck: other values may fit ' // &
       'better, and standard errors mean nothing; start nearer')
   end subroutine doubt_reach
 

@@ -152,6 +152,7 @@ contains
             better = value
             return
           end if
+          call widen_others(residuals%curve%unknown, fitted, j, value, rise)
           if (rise > (1 - lacking)*(far/fitted%side(way, j))**2) exit
           ! A rise that has ended would make this step endless.
           fitted%side(way, j) = min(2*fitted%side(way, j), far/sqrt(max(rise, tiny(rise))))
@@ -160,6 +161,26 @@ contains
     end do
     call set_deviations(fitted, residuals%curve%unknown)
   end subroutine widen
+
+  !> Widens the errors of numbers other than j at values with a known rise. On a curved valley a
+  !> number may move far with number j, where it finds no way by its own derivatives.
+  pure subroutine widen_others(unknown, fitted, j, value, rise)
+    type(unknown_t), intent(in) :: unknown(:)
+    type(fitted_t), intent(inout) :: fitted
+    integer, intent(in) :: j
+    real(wp), intent(in) :: value(:), rise
+    real(wp) :: moved
+    integer :: k, way
+
+    if (rise > out_to**2) return
+    do k = 1, size(value)
+      if (k == j) cycle
+      moved = fitted_of(unknown(k), value(k)) - fitted_of(unknown(k), fitted%value(k))
+      way = merge(2, 1, moved > 0)
+      if (rise < (1 - lacking)*(moved/fitted%side(way, k))**2) fitted%side(way, k) = &
+        max(fitted%side(way, k), abs(moved)/sqrt(max(rise, 1.0_wp)))
+    end do
+  end subroutine widen_others
 
   !> Moves fitted number j by `far` from its best value, and the others to the smallest sum of
   !> squares there, which is `rise` above the best. value: on entry where the last step ended.

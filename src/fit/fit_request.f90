@@ -7,7 +7,8 @@ module fit_request
   implicit none
   private
   public :: measurement_t, fit_t, unknown_t, of_model, of_contact_point, of_sensitivity, &
-    of_spring, free_of, value_of, fitted_of, value_by_free, value_by_fitted, farthest_off
+    of_spring, free_of, value_of, fitted_of, value_by_free, value_by_fitted, farthest_off, &
+    is_at_end
 
   !> &measurement [SI]. sensitivity: of a signal in volts; not allocated: the signal is the force.
   type :: measurement_t
@@ -55,6 +56,16 @@ contains
     u = (value - unknown%origin)/unknown%scale
     if (unknown%in_log) u = log(value/unknown%scale)
   end function fitted_of
+
+  !> Whether a value is as far from the deck's as the search may go.
+  elemental logical function is_at_end(unknown, value)
+    type(unknown_t), intent(in) :: unknown
+    real(wp), intent(in) :: value
+    real(wp), parameter :: within = 1.0e-3_wp
+
+    is_at_end = .false.
+    if (unknown%in_log) is_at_end = abs(fitted_of(unknown, value)) >= farthest_off - within
+  end function is_at_end
 
   !> The free number of a value. A value at or beyond its bound is moved slightly inside.
   elemental real(wp) function free_of(unknown, value) result(x)

@@ -8,7 +8,7 @@ module fit_run
   use dimensionless_problem, only: problem_t
   use problem_family, only: problem_family_t
   use experiment_request, only: numerics_t
-  use fit_request, only: measurement_t, fit_t, unknown_t, of_model, of_contact_point
+  use fit_request, only: measurement_t, fit_t, unknown_t, of_model, of_contact_point, is_at_end
   use measured_curve, only: measured_t
   use measured_jumps, only: find_jump
   use measured_checks, only: check_measured, check_loads, other_order
@@ -54,7 +54,7 @@ module fit_run
   !> Starting stiffnesses of the theories over the deck's; starting ranges of the force over the
   !> deck's; samples to which the theories are fitted to find starting values.
   real(wp), parameter :: factors(*) = [1.0_wp, 0.1_wp, 10.0_wp, 0.01_wp, 100.0_wp], &
-    ranges(*) = [0.25_wp, 4.0_wp]
+    ranges(*) = [0.25_wp, 4.0_wp], works(*) = [0.2_wp, 5.0_wp]
   integer, parameter :: few_samples = 1000
 
 contains
@@ -96,10 +96,17 @@ contains
         'the search ended where the path has no derivatives; start from other values'
       return
     end if
+    associate (fitted => outcome%fitted)
+      if (.not. fitted%lack%is_noise() .and. any(fitted%effect <= least_effect .or. &
+        is_at_end(outcome%curve%unknown, fitted%value))) then
+        outcome%trouble = other_order(outcome%curve, model)
+        if (len(outcome%trouble) > 0) return
+        deallocate (outcome%trouble)
+      end if
+    end associate
     do i = 1, size(outcome%fitted%effect)
       if (outcome%fitted%effect(i) > least_effect) cycle
-      outcome%trouble = other_order(outcome%curve, model)
-      if (len(outcome%trouble) == 0) outcome%trouble = outcome%curve%unknown(i)%name // &
+      outcome%trouble = outcome%curve%unknown(i)%name // &
         ' has no effect on this curve near the best value found, ' // &
         rounded(outcome%fitted%value(i)) // '; remove it from parameters, or give a prior'
       return
@@ -176,6 +183,11 @@ contains
     allocate (likely(0))
     own = character_of(problem)
     if (.not. own%work > 0) return
+    do k = 1, size(works)
+      new = own
+      new%work = own%work*works(k)
+      likely = [likely, new]
+    end do
     associate (data => curve%data%measured)
       pull_off = -[minval(data%signal, data%usable) - level_of(data), &
         minval(off_baseline(data), data%usable)]
@@ -184,7 +196,7 @@ contains
       own%work = pull_off(i)*curve%spring*curve%sensitivity/(1.5_wp*pi*problem%radius)
       if (own%work > 0) likely = [likely, own]
     end do
-    if (size(likely) == 0) return
+    if (size(likely) == size(works)) return
     own = likely(size(likely))
     model%radius = problem%radius
     few = curve

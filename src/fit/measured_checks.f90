@@ -38,8 +38,9 @@ contains
 
     left = off_baseline(measured)
     if (.not. maxval(abs(left), measured%usable) > stands_out*noise%deviation) then
-      trouble = 'no contact in the data: the signal does not exceed the noise of ' // &
-        rounded(noise%deviation) // '; measure nearer, or check that columns names the signal'
+      trouble = 'no contact in the data: the signal differs from a straight line by no more ' // &
+        'than the noise of ' // rounded(noise%deviation) // '; data must reach from outside ' // &
+        'contact into the forces; check that columns names the signal'
       return
     end if
     call check_ways(measured, noise, stiffness, trouble)
@@ -50,7 +51,8 @@ contains
       jump = jumps_in(left)
       back = jumps_in(-left)
       if (maxval(abs(back%change)) > maxval(abs(jump%change))) trouble = 'the force jumps up ' // &
-        'on the approach or down on the retreat: the rows of the file are in reverse order'
+        'on the approach or down on the retreat: the rows of the file are in reverse order, ' // &
+        'or the position is a separation and not that of the base'
       return
     end if
     back = jumps_in(-measured%signal)

@@ -78,9 +78,11 @@ contains
       else
         measured%inward = before_turn(z, request%segment)
       end if
-      wanted = [(.true., i=1, size(z))]
-      if (request%segment == 'approach') wanted = measured%inward
-      if (request%segment == 'retreat') wanted = .not. measured%inward
+      ! A row that repeats the one before it tells nothing new.
+      wanted = [.true., (abs(z(i) - z(i - 1)) > 0 .or. abs(signal(i) - signal(i - 1)) > 0 .or. &
+        (measured%inward(i) .neqv. measured%inward(i - 1)), i=2, size(z))]
+      if (request%segment == 'approach') wanted = wanted .and. measured%inward
+      if (request%segment == 'retreat') wanted = wanted .and. .not. measured%inward
       measured%z = [pack(z, measured%inward .and. wanted), &
         pack(z, wanted .and. .not. measured%inward)]
       measured%signal = [pack(signal, measured%inward .and. wanted), &
@@ -117,11 +119,8 @@ contains
     pure real(wp) function evenness_of(number) result(evenness)
       real(wp), intent(in) :: number(:)
       real(wp) :: mean(parts)
-      integer :: i, n
 
-      n = size(number)
-      mean = [(sum(number(1 + (i - 1)*n/parts:i*n/parts))/(i*n/parts - (i - 1)*n/parts), i=1, &
-        parts)]
+      mean = means_of(number)
       associate (change => abs(mean(2:) - mean(:parts - 1)))
         evenness = median_of(change)/max(sum(change)/size(change), tiny(1.0_wp))
       end associate
@@ -143,8 +142,8 @@ contains
     inward = [(i <= turn, i=1, size(z))]
   end function before_turn
 
-  !> Finds the direction of z on the approach. Fails if a way is too short or both ways have the
-  !> same direction.
+  !> Finds the direction of z on the approach. Fails if a way is too short or goes back, or if both
+  !> ways have the same direction.
   subroutine find_facing(file, measured, error)
     character(len=*), intent(in) :: file
     type(measured_t), intent(inout) :: measured
@@ -164,8 +163,35 @@ contains
     if (n(2) > 0) travel(2) = -travel_of(measured%z(n(1) + 1:))
     if (travel(1)*travel(2) < 0) call fail(error, bad_input, file // ': z goes the same way ' // &
       'in approach and retreat; is the third column 0 for approach and 1 for retreat?')
+    if (goes_back(pack(measured%z, measured%inward)) .or. &
+      goes_back(pack(measured%z, .not. measured%inward))) call fail(error, bad_input, file // &
+      ': z goes back and forth within the approach or the retreat; a file has the rows of one ' // &
+      'approach and one retreat, in the order of time')
     measured%facing = merge(1.0_wp, -1.0_wp, sum(travel) < 0)
   end subroutine find_facing
+
+  !> Whether z goes much farther, back and forth, than from one end of a way to the other: rows
+  !> that are not in order, or of several curves.
+  pure logical function goes_back(z)
+    real(wp), intent(in) :: z(:)
+    real(wp), parameter :: much = 1.5_wp
+    real(wp) :: mean(parts)
+
+    goes_back = .false.
+    if (size(z) < fewest) return
+    mean = means_of(z)
+    goes_back = sum(abs(mean(2:) - mean(:parts - 1))) > much*abs(mean(parts) - mean(1))
+  end function goes_back
+
+  !> Means over the parts of a column.
+  pure function means_of(number) result(mean)
+    real(wp), intent(in) :: number(:)
+    real(wp) :: mean(parts)
+    integer :: i, n
+
+    n = size(number)
+    mean = [(sum(number(1 + (i - 1)*n/parts:i*n/parts))/(i*n/parts - (i - 1)*n/parts), i=1, parts)]
+  end function means_of
 
   !> The change of z from the begin to the end of a way.
   pure real(wp) function travel_of(z) result(travel)

@@ -112,13 +112,14 @@ contains
   !> The jump by likelihood. before(i), after(i): squared distances of sample i from either branch
   !> in standard deviations; 0 for samples that do not count. change: of the signal in the jump.
   !> noise: its standard deviation. first: number of the first sample. No jump if its position is
-  !> not known.
+  !> not known, or if all samples are on one branch.
   pure type(measured_jump_t) function likely_jump(z, before, after, change, noise, first) &
     result(jump)
     real(wp), intent(in) :: z(:), before(:), after(:), change, noise
     integer, intent(in) :: first
     real(wp) :: leaves(size(z)), arrives(size(z)), cost(size(z), 0:most_within)
     real(wp) :: ahead(size(z)), behind(size(z)), middle(size(z)), typical, neither
+    real(wp) :: one_side(2), least
     integer :: i, m, n
 
     n = size(z)
@@ -137,7 +138,10 @@ contains
         cost(i, m) = ahead(i) + behind(i + 1 + m) + m*neither - max(0, m - 1)*together
       end do
     end do
-    cost = cost - minval(cost)
+    one_side = [ahead(n), behind(1)]
+    least = min(minval(cost), minval(one_side))
+    cost = cost - least
+    one_side = exp(-0.5_wp*min(one_side - least, 200.0_wp))*typical
     leaves = 0
     arrives = 0
     do m = 0, most_within
@@ -149,6 +153,7 @@ contains
         end associate
       end do
     end do
+    if (sum(leaves) <= doubtful*maxval(one_side)) return
     leaves = leaves/sum(leaves)
     arrives = arrives/sum(arrives)
     middle(:n - 1) = 0.5_wp*(z(2:) + z(:n - 1))

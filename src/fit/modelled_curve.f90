@@ -13,6 +13,13 @@ module modelled_curve
   private
   public :: modelled_curve_t
 
+  !> Least distance of the ends of contact over the travel of the base: a model with a single branch
+  !> may end its contact outside Z = 0.
+  real(wp), parameter :: least_reach = 0.01_wp
+  !> Slope over the stiffness of the spring above which a sample is at the turn of its branch, where
+  !> derivatives have no limit and tell nothing.
+  real(wp), parameter :: steep = 10
+
   type :: modelled_curve_t
     !> The target must exist as long as this object is used.
     class(force_model_t), pointer :: model => null()
@@ -113,6 +120,8 @@ contains
     do n = 1, size(self%data%sample)
       i = self%data%sample(n)
       load = self%response%load_on(self%data%way(i), self%data%side(i), self%position_of(value, i))
+      by(n, :) = 0
+      if (self%data%side(i) == 0 .and. abs(load%slope) > steep*k) cycle
       by(n, :) = unfolded(self%unknown%role, load%rate/(k*s), &
         -self%data%measured%facing*load%slope/(k*s), -load%load/(k*s**2), &
         -(load%slope*load%load/k**2 + load%load/k)/(k*s))
@@ -174,20 +183,21 @@ contains
     model = model + baseline
   end subroutine split
 
-  !> The interval of contact points for which the nearest sample lies between the end of the model's
-  !> contact and the outermost state in contact.
+  !> The contact points for which the nearest sample lies at the end of the model's contact, at the
+  !> outermost state in contact, and as far beyond this state as the samples span.
   subroutine reach(self, value, ends, found)
     class(modelled_curve_t), intent(inout) :: self
     real(wp), intent(in) :: value(:)
-    real(wp), intent(out) :: ends(2)
+    real(wp), intent(out) :: ends(3)
     logical, intent(out) :: found
-    real(wp) :: nearest, inner, outer
+    real(wp) :: nearest, inner, outer, travel
     integer :: i
 
     ends = 0
     call self%ask(value, .false., found)
     if (.not. found) return
     nearest = minval(self%data%measured%facing*self%data%measured%z)
+    travel = maxval(self%data%measured%z) - minval(self%data%measured%z)
     inner = huge(inner)
     outer = 0
     do i = 1, size(self%response%branch)
@@ -196,8 +206,9 @@ contains
         if (i > 1) outer = max(outer, maxval(position))
       end associate
     end do
+    outer = max(outer, inner + least_reach*travel)
     ! Z = facing (z - contact point), solved for the contact point.
-    ends = self%data%measured%facing*(nearest - [inner, outer])
+    ends = self%data%measured%facing*(nearest - [inner, outer, outer + travel])
   end subroutine reach
 
   !> Position of the drive at a sample.

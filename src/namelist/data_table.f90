@@ -78,7 +78,8 @@ contains
         end if
         if (header .and. any(verify(wanted, '-0123456789 ') > 0)) then
           call table%source%complain(named, counted(size(names)) // ' where ' // &
-            counted(table%columns) // ' are expected', error)
+            counted(table%columns) // ' are expected; number the columns if names have ' // &
+            'blanks; a comment begins with #', error)
           return
         end if
         named = first

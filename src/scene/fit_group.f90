@@ -54,7 +54,8 @@ contains
       if (deck%has_group('sweep')) call deck%mistake('fit', '', 'not together with &sweep', error)
       if (allocated(scene%law)) then
         if (scene%bodies%rigid .or. .not. scene%law%adhesion > 0) call deck%mistake('fit', '', &
-          'needs elastic bodies and a force that attracts', error)
+          'needs elastic bodies and a force that attracts; beside a repulsion a weak ' // &
+          '&van_der_waals with &born is enough', error)
       end if
     end associate
     if (allocated(error)) return
@@ -121,6 +122,7 @@ contains
           unknown%in_log = unknown%value > 0 .and. &
             max(scene%deck%specs(row)%low, scene%deck%specs(row)%above) >= 0
           unknown%origin = unknown%value
+          call take_range(scene%deck%specs(row), unknown)
         end if
       end associate
       do k = 1, i - 1
@@ -135,6 +137,25 @@ contains
       'give contact_point in &measurement', error)
     call take_bounds(scene%deck, scene%fit%unknown, error)
   end subroutine take_unknowns
+
+  !> Makes the ends of a key's range bounds of the unknown: a search that may not go beyond them
+  !> otherwise ends there before the others are found.
+  pure subroutine take_range(spec, unknown)
+    type(key_spec), intent(in) :: spec
+    type(unknown_t), intent(inout) :: unknown
+    !> Part of the value by which the search stays inside an end that is excluded.
+    real(wp), parameter :: inside = 1.0e-6_wp
+
+    associate (value => unknown%value)
+      if (.not. unknown%in_log) then
+        if (spec%low > -huge(1.0_wp)) unknown%lower = spec%low
+        if (spec%above > -huge(1.0_wp)) &
+          unknown%lower = spec%above + inside*abs(value - spec%above)
+      end if
+      if (spec%high < huge(1.0_wp)) unknown%upper = spec%high
+      if (spec%below < huge(1.0_wp)) unknown%upper = spec%below - inside*abs(spec%below - value)
+    end associate
+  end subroutine take_range
 
   !> Sets role, value and scale of an unknown in &measurement.
   subroutine take_measured(scene, unknown, error)
@@ -186,9 +207,11 @@ contains
       do i = 1, size(unknown)
         select case (keys(k))
         case ('lower')
+          if (unknown(i)%in_log .and. value(i) <= 0) cycle
+          if (allocated(unknown(i)%lower)) value(i) = max(value(i), unknown(i)%lower)
           unknown(i)%lower = value(i)
-          if (unknown(i)%in_log .and. value(i) <= 0) deallocate (unknown(i)%lower)
         case ('upper')
+          if (allocated(unknown(i)%upper)) value(i) = min(value(i), unknown(i)%upper)
           unknown(i)%upper = value(i)
         case default
           unknown(i)%prior = value(i)

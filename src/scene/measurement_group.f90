@@ -33,7 +33,8 @@ module measurement_group
     key_spec('measurement', 'contact_point', real_value, 'Position of the base at which ' // &
       'undeformed bodies would touch.', 'm', otherwise='an unknown of &fit, in its parameters'), &
     key_spec('measurement', 'units', names_value, 'Units of position (m, mm, um, nm, pm) and ' // &
-      'signal (N, mN, uN, nN, pN, V, mV) in the file.', most=2, otherwise='m and N or V'), &
+      'signal (N, mN, uN, nN, pN, V, mV, or as of position) in the file.', most=2, &
+      otherwise='m and N or V'), &
     key_spec('measurement', 'skip', real_list, 'Pairs of positions of the base, SI; samples ' // &
       'between the two of a pair are left out.', 'm', most=most_skipped, otherwise='none'), &
     key_spec('measurement', 'segment', word_value, 'The branches to fit.', &
@@ -79,12 +80,12 @@ contains
     end associate
   end subroutine take_measurement
 
-  !> Reads the units of the file's columns: metres, newtons and volts with SI prefixes.
+  !> Reads the units of the file's columns: metres, newtons and volts, with SI prefixes.
   subroutine take_units(deck, unit, error)
     type(deck_t), intent(inout) :: deck
     real(wp), intent(out) :: unit(2)
     type(failure_t), allocatable, intent(inout) :: error
-    character(len=*), parameter :: prefixes = 'munp', bases(2) = ['m ', 'NV']
+    character(len=*), parameter :: prefixes = 'munp', bases(2) = ['m  ', 'NVm']
     integer, parameter :: powers(*) = [-3, -6, -9, -12]
     character(len=:), allocatable :: names, name
     integer :: i, k
@@ -101,9 +102,10 @@ contains
         trim(merge('position', 'signal  ', i == 1)) // ' such as ' // &
         trim(merge('nm', 'nN', i == 1)), error)
     end do
-    if (index(names, 'V') > 0 .and. .not. deck%is_set('measurement', 'sensitivity')) &
-      call deck%mistake('measurement', 'units', 'a signal in volts needs sensitivity, the ' // &
-      'deflection of the spring for one volt', error)
+    if (word_count(names) < 2 .or. deck%is_set('measurement', 'sensitivity')) return
+    if (scan(name(len(name):), 'Vm') > 0) call deck%mistake('measurement', 'units', 'a signal in ' &
+      // 'volts needs sensitivity, the deflection of the spring for one volt, and a ' // &
+      'deflection sensitivity = 1', error)
   end subroutine take_units
 
   !> Reads the ranges of position that are left out.

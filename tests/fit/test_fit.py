@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+import snapin
 from support.measured import (  # noqa: F401 (`branches` is a fixture)
     BODIES, CONTACT_POINT, LENNARD_JONES, POINT, SPRING, STIFFNESS, STRENGTH, Branches, branches,
     fit_deck, fitted, run, states_of_device, write)
@@ -317,3 +318,25 @@ def test_jkr_data_give_the_values_of_jkr_back_and_the_path_agrees(tmp_path):
     assert found[STIFFNESS] == pytest.approx(stiffness, rel=0.02)
     left = {name: group["chi_squared"][0] for name, group in result.fitted.items()}
     assert left["jkr"] < left["fit"] < left["dmt"]
+
+
+def test_rows_that_repeat_tell_nothing_new(branches, tmp_path):
+    """Each row written several times once gave smaller errors."""
+    z, force, segment = branches.measure(300, noise=6e-11, seed=2)
+    keys = [STRENGTH, STIFFNESS, POINT]
+    fits = [run(fit_deck(LENNARD_JONES, write(tmp_path / f"{n}.csv", *(
+        np.repeat(column, n) for column in (z, force, segment))), keys)).fitted["fit"]
+        for n in (1, 5)]
+    assert fits[1]["standard_error"] == pytest.approx(fits[0]["standard_error"], rel=1e-6)
+
+
+def test_a_deflection_has_units_of_length(branches, tmp_path):
+    z, force, segment = branches.measure(300, noise=6e-11, seed=2)
+    keys = [STRENGTH, POINT]
+    plain = run(fit_deck(LENNARD_JONES, write(tmp_path / "a.csv", z, force, segment), keys))
+    file = write(tmp_path / "b.csv", 1e9 * z, 1e9 * force / SPRING, segment)
+    units = {"units": ["nm", "nm"], "sensitivity": 1.0}
+    found = run(fit_deck(LENNARD_JONES, file, keys, measurement=units))
+    assert values_of(found)[STRENGTH] == pytest.approx(values_of(plain)[STRENGTH], rel=1e-6)
+    with pytest.raises(snapin.DeckError, match="needs sensitivity"):
+        run(fit_deck(LENNARD_JONES, file, keys, measurement={"units": ["nm", "nm"]}))

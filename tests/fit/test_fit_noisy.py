@@ -1,6 +1,8 @@
 """Claims about fits of curves as instruments give them: much noise, outliers, starts that are far
 off, little baseline, models that are wrong."""
 
+import resource
+
 import numpy as np
 import pytest
 import snapin
@@ -164,3 +166,37 @@ def test_a_retreat_that_ends_before_the_bodies_part_is_named(branches, tmp_path)
         told = [text for text in result.summary.get("warnings", []) if "retreat ends below" in text]
         assert bool(told) == named, result.summary.get("warnings")
         assert named or np.abs(errors_off(result)).max() < 4
+
+
+@pytest.mark.parametrize("start", [1.0, 0.2, 5.0])
+@pytest.mark.parametrize("gap", [1e-10, 2e-9])
+def test_a_curve_that_ends_before_the_jump_is_on_the_outer_branch(branches, tmp_path, start, gap):
+    """The last sample once was said to be after a jump, and the nearest one to be in contact."""
+    z, force, segment = branches.measure(SAMPLES, NOISE / 100, seed=9)
+    apart = (segment == 0) & (z > branches.outer[0][0] + gap)
+    result = fitted(tmp_path, (z[apart], force[apart], segment[apart]), started(start),
+                    [STRENGTH, POINT], measurement={"segment": "approach"})
+    fit = result.fitted["fit"]
+    assert np.abs((fit["estimate"] - [1e-19, 0.0]) / fit["standard_error"]).max() < 4
+    assert "jump_in_z" not in fit
+    told = result.summary["warnings"]
+    assert not any("jump" in text or "does not describe" in text for text in told), told
+
+
+def test_a_number_that_does_not_show_before_the_jump_is_named(branches, tmp_path):
+    """The tension of the model is that in contact, which is not in the data."""
+    z, force, segment = branches.measure(SAMPLES, NOISE / 100, seed=9)
+    apart = (segment == 0) & (z > branches.outer[0][0] + 2e-9)
+    with pytest.raises(snapin.SnapinError, match="bodies.stiffness has no effect"):
+        fitted(tmp_path, (z[apart], force[apart], segment[apart]), started(),
+               [STRENGTH, STIFFNESS], measurement={"segment": "approach", "contact_point": 0.0})
+
+
+def test_the_time_of_a_fit_is_proportional_to_the_samples(branches, tmp_path):
+    """Ten times the samples took thirty times as long."""
+    taken = []
+    for n in 5000, 50000:
+        before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
+        fitted(tmp_path, branches.measure(n, NOISE, seed=2), started(), TRUTH)
+        taken.append(resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before)
+    assert taken[1] < 15 * taken[0]

@@ -32,6 +32,14 @@ BAD_DATA = {
     "noisy columns": (lambda z, f, s, rng: (f, z + 1e-9 * rng.standard_normal(len(z)), s),
                       "columns exchanged"),
     "nanometres": (lambda z, f, s, rng: (1e9 * z, 1e9 * f, s), "give units"),
+    "two curves": (lambda z, f, s, rng: (np.tile(z, 2), np.tile(f, 2), np.tile(s, 2)),
+                   "back and forth within the approach"),
+    "shuffled": (lambda z, f, s, rng: [x[np.random.default_rng(1).permutation(len(z))]
+                                       for x in (z, f, s)], "back and forth"),
+    "separations": (lambda z, f, s, rng: (z + f / SPRING, f, s), "a separation and not that of"),
+    "all in contact": (lambda z, f, s, rng: (z[z < 1e-9], (f + 5 * flat(rng, z))[z < 1e-9],
+                                             s[z < 1e-9]),
+                       "from a straight line by no more than the noise"),
     "picometres": (lambda z, f, s, rng: (1e-9 * z, f, s), "less than a picometre"),
     "heights": (lambda z, f, s, rng: (z, f, 1e6 * z), "neither 0, approach, nor 1, retreat"),
 }
@@ -69,6 +77,8 @@ def test_a_signal_in_a_wrong_unit_is_refused_with_both_loads(branches, tmp_path,
 BAD_FILES = {
     "no such column": ("z,load,segment\n1,2,0\n", "no column 'force'"),
     "cells": ("z,force,segment\n1,2,0\n1,2\n", "2 columns where 3 columns are expected"),
+    "names of several words": ("z [m],force [N],segment\n1,2,0\n",
+                               "5 columns where 3 .*; number the columns if names have blanks"),
     "words": ("z,force,segment\n1,two,0\n", "two is not a number"),
     "nan": ("z,force,segment\n1,nan,0\n", "not a finite number"),
     "empty cell": ("z,force,segment\n1,,0\n", "nothing where a number is expected"),
