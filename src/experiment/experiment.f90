@@ -113,7 +113,7 @@ contains
     allocate (outcome%timed)
     call run_timed(request, driven, outcome%chosen, journal, observer, outcome%timed, &
       outcome%cost, outcome%nodes)
-    outcome%error_estimate = outcome%timed%estimate
+    if (outcome%timed%begun) outcome%error_estimate = outcome%timed%estimate
   end subroutine run_driven
 
   !> Runs the path, and the cycle if `with_cycle` and the scene has one, with a stepper, for H0 from

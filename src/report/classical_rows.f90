@@ -156,7 +156,7 @@ contains
   end subroutine summarise_layered
 
   !> Adds numbers of Maugis-Dugdale theory with the law's surface energy and largest tension, and of
-  !> the formulas fitted to it, if they are wanted.
+  !> the formulas fitted to it, if they are wanted; notes why classical.csv has no rows.
   subroutine summarise_classical(problem, range, summary)
     type(problem_t), intent(in) :: problem
     type(range_t), intent(in) :: range
@@ -164,6 +164,11 @@ contains
     type(maugis_t) :: theory
     real(wp) :: gamma, strength
 
+    if (problem%rigid) then
+      call summary%note('classical: rigid bodies have no displacement, so that no theory has rows')
+    else if (.not. (problem%law%work > 0 .or. range%shown(hertz))) then
+      call summary%note('classical: under a law that does not attract only Hertz theory has rows')
+    end if
     if (has_layers(problem)) then
       call summarise_layered(problem, range, summary)
       return

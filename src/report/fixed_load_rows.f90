@@ -14,7 +14,7 @@ module fixed_load_rows
 
 contains
 
-  !> Writes the rows of fixed_load.csv: load by load, from large to small h0.
+  !> Writes the rows of fixed_load.csv: load by load, in the order of the path.
   subroutine write_fixed_loads(problem, readings, places, results)
     type(problem_t), intent(in) :: problem
     type(path_readings_t), intent(in) :: readings
@@ -50,7 +50,7 @@ contains
         associate (same => loaded%number == i)
           held(i) = count(same)
           stable(i) = count(same .and. loaded%stable)
-          ! They are in the order from large to small h0.
+          ! On the path the stable one with the smallest h0 is the last.
           nearest(i) = findloc(same .and. loaded%stable, .true., 1, back=.true.)
         end associate
       end do

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 import snapin
-from support.scenes import exponential, lennard_jones
+from support.scenes import deck, exponential, lennard_jones
 
 # In units of z0 and E/(1-nu^2), with R = 1: gamma is sigma.
 # Largest tension of the Lennard-Jones law in units of gamma/z0, at h = 3^(1/6).
@@ -70,14 +70,27 @@ def test_summary_has_maugis_parameter_and_pull_off(run, sigma):
 
 
 @pytest.mark.parametrize(
-    "deck",
+    "text",
     [
         lennard_jones(0.87, part="attractive", classical=RANGE),
         lennard_jones(0.87, part="repulsive", classical=RANGE), exponential(1, classical=RANGE)],
     ids=["attractive", "repulsive", "exponential"],
 )
-def test_a_law_without_a_largest_tension_has_no_maugis_rows(run, deck):
-    result = run(deck)
+def test_a_law_without_a_largest_tension_has_no_maugis_rows(run, text):
+    result = run(text)
     table = result.table("classical.csv")
     assert "hertz" in table["theory"] and "maugis_dugdale" not in table["theory"]
     assert [key for key in result.summary if key.startswith("maugis")] == []
+
+
+@pytest.mark.parametrize(("groups", "why"), [
+    ({"bodies": {"radius": 1.0, "rigid": True}}, "rigid bodies"),
+    ({"force": {"law": "exponential", "p0": 1.0, "decay_length": 1.0},
+      "classical": {**RANGE, "theories": "jkr"}}, "does not attract"),
+])
+def test_a_table_without_rows_has_a_note(run, groups, why):
+    bodies = {"radius": 1.0, "stiffness": 1.0}
+    result = run(deck(**{"bodies": bodies, "classical": RANGE, "force": {
+        "law": "lennard_jones", "surface_energy": 1.0, "z0": 1.0}, **groups}))
+    assert why in result.summary["notes"]
+    assert len(result.table("classical.csv")["theory"]) == 0
