@@ -247,12 +247,20 @@ contains
 
     value = unknown%origin + unknown%scale*u
     if (unknown%in_log) value = unknown%scale*exp(u)
-    if (allocated(unknown%lower)) value = max(value, unknown%lower)
-    if (allocated(unknown%upper)) value = min(value, unknown%upper)
+    value = bounded(unknown, value)
   end function within_bounds
 
-  !> The end of the interval of `sign` standard deviations about unknown i. For a positive unknown
-  !> the standard deviations are of the logarithm.
+  elemental real(wp) function bounded(unknown, value)
+    type(unknown_t), intent(in) :: unknown
+    real(wp), intent(in) :: value
+
+    bounded = value
+    if (allocated(unknown%lower)) bounded = max(bounded, unknown%lower)
+    if (allocated(unknown%upper)) bounded = min(bounded, unknown%upper)
+  end function bounded
+
+  !> The end of the interval of `sign` standard deviations about unknown i, at a bound at most. For
+  !> a positive unknown the standard deviations are of the logarithm.
   pure real(wp) function end_of(self, i, unknown, sign) result(value)
     class(fitted_t), intent(in) :: self
     integer, intent(in) :: i
@@ -264,6 +272,7 @@ contains
     deviation = self%side(merge(2, 1, sign > 0), i)
     value = self%value(i) + sign*deviation*unknown%scale
     if (unknown%in_log) value = self%value(i)*exp(sign*min(deviation, largest))
+    value = bounded(unknown, value)
   end function end_of
 
 end module fit_errors

@@ -142,6 +142,8 @@ def test_a_number_at_the_end_of_its_range_does_not_keep_others_from_their_best_v
     for key in "estimate", "standard_error":
         assert found[0][key] == pytest.approx(found[1][key], rel=0.01, abs=1e-13)
     assert all("touches upper = 1" in str(fit["warnings"]) for fit in found)
+    # No interval goes beyond what the key allows.
+    assert all(fit["upper_95"][0] == 1 for fit in found)
 
 
 @pytest.mark.parametrize("seed", [0, 8])
