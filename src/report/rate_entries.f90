@@ -1,8 +1,9 @@
 !> The numbers of a drive in time in the summary.
 module rate_entries
+  ! The module with most dependencies is first: compiler note 12.
+  use scene_groups, only: scene_t
   use kinds, only: wp, long
   use dimensionless_problem, only: problem_t, adhesion_strength
-  use scene_groups, only: scene_t
   use timed_record, only: timed_result_t, numbers, of_tension, of_tension_h0, of_end_h0, &
     of_end_load, of_end_displacement, of_dissipation, of_suction, of_work
   use summary, only: summary_t
