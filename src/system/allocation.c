@@ -70,5 +70,19 @@ static void leave_room(int count, char **arguments, char **environment) {
   execve("/proc/self/exe", arguments, changed);
 }
 
-__attribute__((section(".preinit_array"), used)) static void (*first)(int, char **, char **) =
-    leave_room;
+/* The stack grows when a part of it is first used. If the limit of the address space refuses this,
+   the program ends with a signal instead of the message above. Therefore the stack grows here, at
+   the start, to three times the size that was seen to be used. */
+static void grow_stack(int count, char **arguments, char **environment) {
+  volatile char room[500000];
+  struct rlimit limit;
+  size_t i;
+  (void)count, (void)arguments, (void)environment;
+  if (getrlimit(RLIMIT_STACK, &limit) != 0 || limit.rlim_cur < 4 * sizeof room)
+    return;
+  for (i = 0; i < sizeof room; i += 4096)
+    room[i] = 0;
+}
+
+__attribute__((section(".preinit_array"), used)) static void (*first[])(int, char **, char **) = {
+    leave_room, grow_stack};
