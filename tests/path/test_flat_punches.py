@@ -188,7 +188,7 @@ def test_paths_of_blunt_bodies_on_layers_go_on_where_the_gap_on_the_axis_rises_a
     assert path.status == 0 and all(said.startswith("the error is estimated")
                                     for said in path.warnings)
     assert path.warnings == [] or "flat_radius" in shape
-    steps = found(loading={"h0_start": 2e-8, "h0_end": end, "h0_step": 2e-10},
+    steps = found(loading={"h0_start": 2e-8, "h0_end": end, "h0_step": 1e-9},
                   numerics={"method": "newton", "grid": "uniform", "nodes": 500}).summary
     assert abs(path.summary["end_load"] - steps["end_load"]) <= \
         steps["end_load_error"] + path.summary["end_load_error"]

@@ -150,7 +150,6 @@ def test_viscoelastic_bodies_with_a_fluid_have_their_limits(run):
     elastic = run(scene(0.1, 0.01, start=40.0)).summary
     hardly = run(scene(0.1, 0.01, start=40.0, creep={
         "stiffness_relaxed": 0.999999, "retardation_time": 1.0})).summary
-    soft = run(scene(0.2, 0.01, start=40.0)).summary
     at_rest = run(scene(0.1, 0.01, start=40.0, creep={
         "stiffness_relaxed": 0.5, "retardation_time": 1e-5})).summary
     for key in ("max_tension", "energy_dissipated"):
@@ -159,7 +158,6 @@ def test_viscoelastic_bodies_with_a_fluid_have_their_limits(run):
     assert at_rest["max_tension"] != pytest.approx(elastic["max_tension"], rel=1e-2)
     twice = run(scene(0.2, 0.02, start=40.0)).summary
     assert at_rest["max_tension"] == pytest.approx(twice["max_tension"] / 2, rel=2e-3)
-    assert soft["max_tension"] != pytest.approx(twice["max_tension"], rel=1e-3)
     creep = {"stiffness_relaxed": 0.25, "retardation_time": 1.0}
     wet = run(scene(0.1, 1e-6, creep=creep)).summary
     without = lennard_jones(0.1, drive={"velocity": 1.0, "z_start": 15.0, "z_turn": -1.0},
