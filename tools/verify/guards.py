@@ -218,10 +218,8 @@ def main():
     alone = []
     with tempfile.TemporaryDirectory() as folder:
         copy = pathlib.Path(folder)
-        for name in ("src", "pywrap", "tools", "tests"):
-            shutil.copytree(ROOT / name, copy / name)
-        for name in ("meson.build", "meson.options"):
-            shutil.copy(ROOT / name, copy)
+        shutil.copytree(ROOT, copy, dirs_exist_ok=True, ignore=shutil.ignore_patterns(
+            ".*", "build", "build-*", "results", "__pycache__"))
         for build, options in (
                 ("plain", ["-Dpython=enabled"]),
                 ("traps", ["-Dpython=disabled", "--buildtype=debug", "-Dtraps=true"])):
