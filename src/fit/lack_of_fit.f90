@@ -74,7 +74,7 @@ contains
     real(wp), intent(in) :: total, known_by
     integer, intent(in) :: n
 
-    normal_of = ((total/n)**(1.0_wp/3) - 1 + 2.0_wp/(9*n))/sqrt(2.0_wp/(9*n) + 2/(9*known_by))
+    normal_of = ((total/n)**(1.0_wp/3) - 1 + 2.0_wp/(9*n))/sqrt(2.0_wp/(9*n) + 2/9.0_wp/known_by)
   end function normal_of
 
 end module lack_of_fit

@@ -108,9 +108,14 @@ contains
   pure real(wp) function smallest_feature(problem, c)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: c
+    real(wp) :: opening
 
-    smallest_feature = max(finest*max(c, 1.0_wp), min(cohesive_width(problem), 0.5_wp, &
-      (problem%law%repulsion_length**2/problem%shape%opening(max(c, 1.0_wp)))**(1.0_wp/3)))
+    smallest_feature = min(cohesive_width(problem), 0.5_wp)
+    opening = problem%shape%opening(max(c, 1.0_wp))
+    ! On a flat face nothing opens.
+    if (opening > 0) smallest_feature = min(smallest_feature, &
+      (problem%law%repulsion_length**2/opening)**(1.0_wp/3))
+    smallest_feature = max(finest*max(c, 1.0_wp), smallest_feature)
   end function smallest_feature
 
   !> Whether a contact of radius c (lateral units) is deformed so much under the law's largest

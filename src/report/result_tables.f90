@@ -134,10 +134,10 @@ contains
     character(len=*), intent(in) :: file
     character(len=*), intent(in), optional :: set
     character(len=96), allocatable :: columns(:)
-    logical :: of_file, wanted
+    logical :: of_file, wanted, listed(size(tables))
     integer :: i
 
-    allocate (columns(0))
+    listed = .false.
     of_file = .false.
     wanted = .false.
     do i = 1, size(tables)
@@ -147,10 +147,11 @@ contains
       else if (tables(i)(:2) == '+ ') then
         wanted = .false.
         if (present(set)) wanted = of_file .and. tables(i)(3:) == set
-      else if (wanted) then
-        columns = [columns, tables(i)(:96)]
+      else
+        listed(i) = wanted
       end if
     end do
+    columns = pack(tables(:)(:len(columns)), listed)
   end function columns_of
 
 end module result_tables
