@@ -35,6 +35,7 @@ _LARGEST_ORDER = 64
 _UNMAPPED = (0.0, 0.0, 0.0, 1.0)
 # As in src/scene/numerics_group.f90.
 _MOST_NODES = 20000
+# More than the deck allows: differences of so many iterations still fit into memory.
 _MOST_DEPTH = 1000
 
 

@@ -81,7 +81,7 @@ contains
     call open_folder(scene, problem, out_dir, destination, resume, results, error)
     if (allocated(error)) return
     call compute(scene, problem, destination, crew, job, results, summary, cost)
-    call write_derived_tables(scene, problem, results)
+    call write_derived_tables(scene, problem, results, summary)
     if (allocated(scene%fit)) call fit_measured(scene, problem, destination, results, summary)
     call describe_program(summary)
     call summary%set('wall_seconds', results%journal%earlier + seconds() - began)

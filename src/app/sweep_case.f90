@@ -1,4 +1,4 @@
-!> One case of a sweep: its computation, its record, and what cases come to together.
+!> One case of a sweep: its computation, its record, and the tally of all cases.
 module sweep_case
   use kinds, only: wp
   use text, only: first_line

@@ -185,8 +185,8 @@ contains
 
   !> The contact points with the lowest sums of squares, and these sums. ends: as of `reach`; points
   !> between the first two are evenly spaced, and from there to the last one their distances grow.
-  !> role: the index of the contact point among the unknowns. Many points are tried,
-  !> since the model is not solved again when only the contact point changes.
+  !> role: the index of the contact point among the unknowns. Many points are tried, since the model
+  !> is not solved again when only the contact point changes.
   subroutine lowest_points(residuals, value, role, ends, points, costs)
     type(curve_residuals_t), intent(inout) :: residuals
     real(wp), intent(in) :: value(:), ends(3)

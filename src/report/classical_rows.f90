@@ -31,18 +31,23 @@ contains
   !> its contact radius is that at the load of Maugis-Dugdale theory. `from` [m] replaces a start
   !> that the range does not have. No rows for rigid bodies, which have no displacement. For other
   !> shapes than the parabola there are Hertz and JKR for any convex body, for layered bodies Hertz
-  !> and JKR for layers.
-  subroutine write_classical(problem, range, from, results)
+  !> and JKR for layers. The summary has a note if there is no row.
+  subroutine write_classical(problem, range, from, results, summary)
     type(problem_t), intent(in) :: problem
     type(range_t), intent(in) :: range
     real(wp), intent(in) :: from
     type(results_t), intent(inout) :: results
+    type(summary_t), intent(inout) :: summary
     type(layered_contact_t) :: contact
     real(wp) :: start, h0, delta, gamma, strength, narrowest, a
-    logical :: layered
+    logical :: layered, any_row
     integer :: i
 
-    if (problem%rigid) return
+    if (problem%rigid) then
+      call summary%note('classical: rigid bodies have no displacement, and no theory has rows')
+      return
+    end if
+    any_row = .false.
     layered = has_layers(problem)
     if (layered) contact = new_layered_contact(problem, problem%law%origin - range%h0_end)
     start = from
@@ -63,6 +68,8 @@ contains
         call add_convex()
       end if
     end do
+    if (.not. any_row) call summary%note('classical: none of these theories has a state ' // &
+      'in this range of h0; if the law does not attract, only Hertz theory has states')
 
   contains
 
@@ -117,8 +124,8 @@ contains
 
       if (.not. range%shown(theory)) return
       a = contact%radius_at(theory, delta/problem%length)
-      if (.not. ieee_is_nan(a)) call results%row(trim(theories(theory))//'_layered', &
-        [h0, delta, contact%load(theory, a)*problem%load, a*problem%lateral])
+      if (.not. ieee_is_nan(a)) &
+        call add(theory, contact%load(theory, a)*problem%load, a*problem%lateral)
     end subroutine add_layered
 
     subroutine add(theory, load, contact_radius)
@@ -127,8 +134,10 @@ contains
 
       ! NaN: the theory has no state here.
       if (ieee_is_nan(load) .or. ieee_is_nan(contact_radius)) return
-      if (range%shown(theory)) &
-        call results%row(trim(theories(theory)), [h0, delta, load, contact_radius])
+      if (.not. range%shown(theory)) return
+      any_row = .true.
+      call results%row(trim(theories(theory))//trim(merge('_layered', '        ', layered)), &
+        [h0, delta, load, contact_radius])
     end subroutine add
 
   end subroutine write_classical
@@ -156,7 +165,7 @@ contains
   end subroutine summarise_layered
 
   !> Adds numbers of Maugis-Dugdale theory with the law's surface energy and largest tension, and of
-  !> the formulas fitted to it, if they are wanted; notes why classical.csv has no rows.
+  !> the formulas fitted to it, if they are wanted.
   subroutine summarise_classical(problem, range, summary)
     type(problem_t), intent(in) :: problem
     type(range_t), intent(in) :: range
@@ -164,11 +173,6 @@ contains
     type(maugis_t) :: theory
     real(wp) :: gamma, strength
 
-    if (problem%rigid) then
-      call summary%note('classical: rigid bodies have no displacement, so that no theory has rows')
-    else if (.not. (problem%law%work > 0 .or. range%shown(hertz))) then
-      call summary%note('classical: under a law that does not attract only Hertz theory has rows')
-    end if
     if (has_layers(problem)) then
       call summarise_layered(problem, range, summary)
       return

@@ -20,14 +20,15 @@ module derived_tables
 contains
 
   !> Writes the tables of theories that the scene asks for.
-  subroutine write_derived_tables(scene, problem, results)
+  subroutine write_derived_tables(scene, problem, results, summary)
     type(scene_t), intent(in) :: scene
     type(problem_t), intent(in) :: problem
     type(results_t), intent(inout) :: results
+    type(summary_t), intent(inout) :: summary
 
     if (allocated(scene%classical)) then
       call results%begin_table('classical.csv')
-      call write_classical(problem, scene%classical, path_start(scene, problem), results)
+      call write_classical(problem, scene%classical, path_start(scene, problem), results, summary)
     end if
     if (.not. allocated(scene%approximations)) return
     call results%begin_table('approximations.csv')

@@ -87,6 +87,7 @@ def test_a_law_without_a_largest_tension_has_no_maugis_rows(run, text):
     ({"bodies": {"radius": 1.0, "rigid": True}}, "rigid bodies"),
     ({"force": {"law": "exponential", "p0": 1.0, "decay_length": 1.0},
       "classical": {**RANGE, "theories": "jkr"}}, "does not attract"),
+    ({"classical": {"h0_start": 8.0, "h0_end": 5.0, "theories": "hertz"}}, "range of h0"),
 ])
 def test_a_table_without_rows_has_a_note(run, groups, why):
     bodies = {"radius": 1.0, "stiffness": 1.0}
