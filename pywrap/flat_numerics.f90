@@ -16,7 +16,7 @@ module flat_numerics
 
 contains
 
-  !> x = a^{-1} b by LU factors; regular = 0 if there are none.
+  !> x = a^{-1} b by rough LU factors; regular = 0 if there are none.
   subroutine linear_solution(a, b, x, regular, n)
     use linear_algebra, only: factorisation_t, factorise, solve
     integer(c_int), intent(in) :: n
@@ -26,7 +26,7 @@ contains
     type(factorisation_t) :: factors
 
     factors%lu = a
-    call factorise(factors)
+    call factorise(factors, rough=.true.)
     regular = merge(1, 0, factors%valid)
     x = b
     if (factors%valid) call solve(factors, x)

@@ -1,12 +1,14 @@
 !> Working precision and mathematical constants.
 module kinds
-  use, intrinsic :: iso_fortran_env, only: real64, int64
+  use, intrinsic :: iso_fortran_env, only: real64, real32, int64
   implicit none
   private
-  public :: wp, pi, nan, long
+  public :: wp, sp, pi, nan, long
 
   !> Working precision of all reals.
   integer, parameter :: wp = real64
+  !> Precision of factors that only approximate.
+  integer, parameter :: sp = real32
   !> Integers that may exceed 2^31.
   integer, parameter :: long = int64
   real(wp), parameter :: pi = 3.14159265358979323846264338327950288_wp

@@ -1,9 +1,9 @@
 !> Interfaces of the BLAS and LAPACK routines in use.
 module lapack
-  use kinds, only: wp
+  use kinds, only: wp, sp
   implicit none
   private
-  public :: idamax, dgemv, dgemm, dgetrf, dgetrs, dgtsv, dgeev, dgesvd
+  public :: idamax, dgemv, dgemm, dgetrf, dgetrs, sgetrf, sgetrs, dgtsv, dgeev, dgesvd
 
   interface
     integer function idamax(n, x, incx)
@@ -31,6 +31,12 @@ module lapack
       real(wp), intent(inout) :: a(lda, *)
       integer, intent(out) :: ipiv(*), info
     end subroutine dgetrf
+    subroutine sgetrf(m, n, a, lda, ipiv, info)
+      import :: sp
+      integer, intent(in) :: m, n, lda
+      real(sp), intent(inout) :: a(lda, *)
+      integer, intent(out) :: ipiv(*), info
+    end subroutine sgetrf
     subroutine dgetrs(trans, n, nrhs, a, lda, ipiv, b, ldb, info)
       import :: wp
       character, intent(in) :: trans
@@ -39,6 +45,14 @@ module lapack
       real(wp), intent(inout) :: b(ldb, *)
       integer, intent(out) :: info
     end subroutine dgetrs
+    subroutine sgetrs(trans, n, nrhs, a, lda, ipiv, b, ldb, info)
+      import :: sp
+      character, intent(in) :: trans
+      integer, intent(in) :: n, nrhs, lda, ldb, ipiv(*)
+      real(sp), intent(in) :: a(lda, *)
+      real(sp), intent(inout) :: b(ldb, *)
+      integer, intent(out) :: info
+    end subroutine sgetrs
     subroutine dgtsv(n, nrhs, dl, d, du, b, ldb, info)
       import :: wp
       integer, intent(in) :: n, nrhs, ldb

@@ -2,7 +2,7 @@
 module linear_algebra
   use kinds, only: wp
   use lapack, only: dgemv, dgemm, dgetrf, dgetrs, dgtsv, dgeev, dgesvd
-  use small_lu, only: lu_factorise, lu_solve, most_rows
+  use rough_lu, only: rough_lu_t
   implicit none
   private
   public :: multiply, multiply_left, multiply_transposed, &
@@ -10,10 +10,13 @@ module linear_algebra
     log_determinant, claim_buffers, eigenvalues, solve_tridiagonal, singular_values
 
   !> LU factors of a square matrix, from `factorise`. Columns of the unit matrix need no factors: lu
-  !> is then the block of the other columns, the kept ones, and of their rows.
+  !> is then the block of the other columns, the kept ones, and of their rows. If the factors are
+  !> rough, lu is still the matrix.
   type :: factorisation_t
     real(wp), allocatable :: lu(:, :)
     integer, allocatable :: pivot(:)
+    type(rough_lu_t) :: rough
+    logical :: is_rough = .false.
     !> .false. if there are no factors, or the matrix was singular.
     logical :: valid = .false.
     !> The kept columns in the order of lu, the columns of the unit matrix, and the rows of these,
@@ -73,22 +76,28 @@ contains
       0.0_wp, c, size(c, 1))
   end subroutine multiply_transposed
 
-  !> Factorises the matrix held in factors%lu in place.
-  subroutine factorise(factors)
+  !> Factorises the matrix held in factors%lu, in place unless the factors are to be rough. Rough
+  !> factors are in single precision, for iterations that correct what they leave; a matrix that is
+  !> singular in this precision gets exact factors. rough: .false. if absent.
+  subroutine factorise(factors, rough)
     type(factorisation_t), intent(inout) :: factors
+    logical, intent(in), optional :: rough
     integer :: n, info
 
+    factors%is_rough = .false.
+    if (present(rough)) factors%is_rough = rough
+    if (factors%is_rough) then
+      call factors%rough%factorise(factors%lu, factors%valid)
+      if (factors%valid) return
+      factors%is_rough = .false.
+    end if
     n = size(factors%lu, 1)
     if (allocated(factors%pivot)) then
       if (size(factors%pivot) /= n) deallocate (factors%pivot)
     end if
     if (.not. allocated(factors%pivot)) allocate (factors%pivot(n))
-    if (n <= most_rows) then
-      call lu_factorise(n, factors%lu, factors%pivot, factors%valid)
-    else
-      call dgetrf(n, n, factors%lu, n, factors%pivot, info)
-      factors%valid = info == 0
-    end if
+    call dgetrf(n, n, factors%lu, n, factors%pivot, info)
+    factors%valid = info == 0
   end subroutine factorise
 
   !> Number of unknowns of a factorised system.
@@ -135,8 +144,8 @@ contains
     integer :: info, n
 
     n = size(b)
-    if (n <= most_rows) then
-      call lu_solve(n, factors%lu, factors%pivot, b)
+    if (factors%is_rough) then
+      call factors%rough%solve(b)
     else
       call dgetrs('n', n, 1, factors%lu, n, factors%pivot, b, n, info)
     end if
@@ -173,25 +182,31 @@ contains
   !> Sign of the determinant, +1 or -1.
   pure integer function determinant_sign(factors)
     type(factorisation_t), intent(in) :: factors
-    integer :: i
 
-    determinant_sign = 1
-    do i = 1, size(factors%pivot)
-      if (factors%pivot(i) /= i) determinant_sign = -determinant_sign
-      if (factors%lu(i, i) < 0) determinant_sign = -determinant_sign
-    end do
+    determinant_sign = (-1)**count(signed_pivots(factors) < 0)
   end function determinant_sign
 
   !> Logarithm of the absolute value of the determinant.
   pure real(wp) function log_determinant(factors)
     type(factorisation_t), intent(in) :: factors
+
+    log_determinant = sum(log(abs(signed_pivots(factors))))
+  end function log_determinant
+
+  !> Numbers whose product is the determinant: the pivots, negative after an exchange of rows.
+  pure function signed_pivots(factors) result(pivots)
+    type(factorisation_t), intent(in) :: factors
+    real(wp), allocatable :: pivots(:)
     integer :: i
 
-    log_determinant = 0
-    do i = 1, size(factors%pivot)
-      log_determinant = log_determinant + log(abs(factors%lu(i, i)))
-    end do
-  end function log_determinant
+    if (factors%is_rough) then
+      pivots = factors%rough%signed_pivots()
+    else
+      associate (lu => factors%lu, row => factors%pivot)
+        pivots = [(merge(lu(i, i), -lu(i, i), row(i) == i), i=1, size(row))]
+      end associate
+    end if
+  end function signed_pivots
 
   !> Real parts of all eigenvalues of a square matrix, and a bound of their errors. With the vectors
   !> V and values B found, a + E = V B V^-1 with E = (V B - a V) V^-1, and by Bauer and Fike (1960)

@@ -1,6 +1,6 @@
 !> Mixing with Anderson acceleration; a matrix replaces the mixing ratio. The plain step is -B^{-1}
-!> G, where B is one LAPACK factorisation of the Jacobian that is kept for many states. The
-!> accelerated step is the least-squares combination of the last few steps.
+!> G, where B is one factorised Jacobian that is kept for many states. The accelerated step is the
+!> least-squares combination of the last few steps.
 !>
 !> If B is no longer a good approximation (the residual grows, or convergence is slow), B is renewed
 !> at the best state so far and the history is removed. Newton's method is the same iteration with B

@@ -51,19 +51,24 @@ contains
   end subroutine forget
 
   !> Factorises the Jacobian at a state. frozen%factors%valid: the Jacobian is regular. The factors
-  !> are approximate, for iterations, unless they are to be exact or H0 is prescribed at a fixed
-  !> scale, where their determinants are used.
+  !> are rough, for iterations, unless they are to be exact, and leave out nodes unless H0 is
+  !> prescribed at a fixed scale, where their determinants are used.
   subroutine freeze(equations, control, state, frozen, exact)
     type(equations_t), intent(inout) :: equations
     type(control_t), intent(in) :: control
     type(state_t), intent(in) :: state
     type(frozen_jacobian_t), intent(inout) :: frozen
     logical, intent(in), optional :: exact
-    real(wp) :: neglected
+    logical :: rough
 
-    neglected = merge(0.0_wp, negligible, control%kind == at_h0)
-    if (present(exact)) neglected = merge(0.0_wp, neglected, exact)
-    call factorise_jacobian(equations, control, state, frozen%factors, neglected=neglected)
+    rough = .true.
+    if (present(exact)) rough = .not. exact
+    if (rough) then
+      call factorise_jacobian(equations, control, state, frozen%factors, &
+        neglected=merge(0.0_wp, negligible, control%kind == at_h0))
+    else
+      call factorise_jacobian(equations, control, state, frozen%factors)
+    end if
     frozen%control = control
     frozen%state%gap = state%gap
     frozen%state%h0 = state%h0
