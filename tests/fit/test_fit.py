@@ -1,6 +1,7 @@
 """Claims about fits of measured curves: what data without noise give back, what errors mean."""
 
 import math
+import re
 
 import numpy as np
 import pytest
@@ -243,6 +244,16 @@ def test_correlated_noise_is_seen_and_makes_errors_larger(branches, tmp_path):
     for fit in fits:
         # The noise is that of some 300 samples; of red noise they are like 60 independent ones.
         assert fit["chi_squared"][0] == pytest.approx(fit["degrees_of_freedom"][0], rel=0.4)
+
+
+def test_a_prescribed_noise_that_is_too_large_is_said(branches, tmp_path):
+    curve = branches.measure(300, noise=2e-11)
+    for noise, too_large in ((2e-11, False), (2e-10, True)):
+        result = fitted(tmp_path, curve, LENNARD_JONES, [STRENGTH, POINT], {"noise": noise})
+        said = [text for text in result.summary.get("warnings", []) if "noise is smaller" in text]
+        assert bool(said) == too_large
+        if said:
+            assert 0.05 < float(re.search(r"is (\S+) times", said[0])[1]) < 0.15
 
 
 def test_sensitivity_and_spring_are_found_with_what_is_known_of_them(exact):
