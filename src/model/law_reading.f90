@@ -2,7 +2,6 @@
 module law_reading
   use kinds, only: wp
   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
-  use failure, only: failure_t
   use text, only: brief, quoted
   use deck, only: deck_t
   use deck_keys, only: key_spec, word_value
@@ -37,21 +36,19 @@ contains
 
   !> Fails if the deck does not give a key of a group that a `choice` needs, the value of the
   !> group's key `by`.
-  pure subroutine require(deck, group, by, choice, key, error)
-    type(deck_t), intent(in) :: deck
+  pure subroutine require(deck, group, by, choice, key)
+    type(deck_t), intent(inout) :: deck
     character(len=*), intent(in) :: group, by, choice, key
-    type(failure_t), allocatable, intent(inout) :: error
 
     if (.not. deck%is_set(group, key)) call deck%mistake(group, key, 'missing; '//by//' '// &
-      quoted(choice)//' needs it', error)
+      quoted(choice)//' needs it')
   end subroutine require
 
   !> Fails if the deck gives one of the keys `rows`, which belong to one choice, to another.
-  pure subroutine refuse_foreign(deck, group, by, choice, rows, error)
-    type(deck_t), intent(in) :: deck
+  pure subroutine refuse_foreign(deck, group, by, choice, rows)
+    type(deck_t), intent(inout) :: deck
     character(len=*), intent(in) :: group, by, choice
     type(key_spec), intent(in) :: rows(:)
-    type(failure_t), allocatable, intent(inout) :: error
     character(len=:), allocatable :: other
     integer :: i
 
@@ -60,39 +57,36 @@ contains
     if (other == choice) return
     do i = 1, size(rows)
       if (deck%is_set(group, trim(rows(i)%key))) call deck%mistake(group, trim(rows(i)%key), &
-        'belongs to '//by//' '//quoted(choice)//', not to '//quoted(other), error)
+        'belongs to '//by//' '//quoted(choice)//', not to '//quoted(other))
     end do
   end subroutine refuse_foreign
 
   !> Refuses `what`, a quantity of 10^decades `unit` that follows from values of &bodies and of the
   !> group, if it is out of range.
-  pure subroutine check_decades(deck, group, key, decades, what, unit, error)
-    type(deck_t), intent(in) :: deck
+  pure subroutine check_decades(deck, group, key, decades, what, unit)
+    type(deck_t), intent(inout) :: deck
     character(len=*), intent(in) :: group, key, what, unit
     real(wp), intent(in) :: decades
-    type(failure_t), allocatable, intent(inout) :: error
 
     if (ieee_is_nan(decades)) then
       call deck%mistake(group, key, 'these values make no finite '//what(index(what, ' ') + 1:)// &
-        '; do forces cancel each other?', error)
+        '; do forces cancel each other?')
     else if (.not. abs(decades) <= most_decades) then
       call deck%mistake(group, key, 'these values of &bodies and &'//group//' make '//what// &
-        ' of 1e'//brief(nint(decades))//unit//'; allowed: from 1e-100 to 1e100', error)
+        ' of 1e'//brief(nint(decades))//unit//'; allowed: from 1e-100 to 1e100')
     end if
   end subroutine check_decades
 
   !> Hands out a law that was read from a group, with the names of the group and of its keys for the
   !> magnitudes of pressure and gap; refuses it if its pressure is out of range.
-  subroutine accept_law(deck, group, strength_key, length_key, this, law, error)
-    type(deck_t), intent(in) :: deck
+  subroutine accept_law(deck, group, strength_key, length_key, this, law)
+    type(deck_t), intent(inout) :: deck
     character(len=*), intent(in) :: group, strength_key, length_key
     class(force_law_t), intent(inout) :: this
     class(force_law_t), allocatable, intent(out) :: law
-    type(failure_t), allocatable, intent(inout) :: error
 
-    call check_decades(deck, group, strength_key, log10(this%pressure_unit), 'a pressure', ' Pa', &
-      error)
-    if (allocated(error)) return
+    call check_decades(deck, group, strength_key, log10(this%pressure_unit), 'a pressure', ' Pa')
+    if (allocated(deck%error)) return
     this%group = group
     this%strength_key = strength_key
     this%length_key = length_key

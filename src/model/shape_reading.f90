@@ -1,7 +1,6 @@
 !> Common parts of the readers of shapes.
 module shape_reading
   use kinds, only: wp
-  use failure, only: failure_t
   use deck, only: deck_t
   use deck_keys, only: key_spec, real_value, word_value
   implicit none
@@ -26,33 +25,31 @@ contains
   end function keys_of_shape
 
   !> Reads R [m] from &shape or &bodies.
-  subroutine read_radius(deck, radius, error)
-    type(deck_t), intent(in) :: deck
+  subroutine read_radius(deck, radius)
+    type(deck_t), intent(inout) :: deck
     real(wp), intent(out) :: radius
-    type(failure_t), allocatable, intent(inout) :: error
 
     radius = 1
     if (deck%is_set('shape', 'radius') .and. deck%is_set('bodies', 'radius')) then
-      call deck%mistake('shape', 'radius', 'given in &bodies too; give it once', error)
+      call deck%mistake('shape', 'radius', 'given in &bodies too; give it once')
     else if (deck%is_set('shape', 'radius')) then
       call deck%get('shape', 'radius', radius)
     else if (deck%is_set('bodies', 'radius')) then
       call deck%get('bodies', 'radius', radius)
     else
-      call deck%mistake('bodies', 'radius', 'missing; give it a number > 0 m', error)
+      call deck%mistake('bodies', 'radius', 'missing; give it a number > 0 m')
     end if
   end subroutine read_radius
 
   !> Fails for the given reason if the deck gives a radius.
-  pure subroutine refuse_radius(deck, reason, error)
-    type(deck_t), intent(in) :: deck
+  pure subroutine refuse_radius(deck, reason)
+    type(deck_t), intent(inout) :: deck
     character(len=*), intent(in) :: reason
-    type(failure_t), allocatable, intent(inout) :: error
 
     if (deck%is_set('shape', 'radius')) &
-      call deck%mistake('shape', 'radius', 'has no meaning here: '//reason, error)
+      call deck%mistake('shape', 'radius', 'has no meaning here: '//reason)
     if (deck%is_set('bodies', 'radius')) &
-      call deck%mistake('bodies', 'radius', 'has no meaning here: '//reason, error)
+      call deck%mistake('bodies', 'radius', 'has no meaning here: '//reason)
   end subroutine refuse_radius
 
 end module shape_reading

@@ -1,9 +1,8 @@
 !> Any namelist file, read against a table of the groups and keys it may hold.
 !>
 !> `read_deck` finds every mistake within one key. The caller checks how keys go together, and
-!> reports with `mistake`, which adds file, line, group and key.
+!> reports with `mistake`, which adds file, line, group and key. The deck keeps all mistakes.
 module deck
-  use failure, only: failure_t
   use text, only: lower, brief, guess, listing, clip
   use deck_source, only: load_source, take_source
   use deck_scan, only: span_t, entry_t, scan_t, scan_deck
@@ -20,13 +19,12 @@ module deck
 contains
 
   !> Reads `file` against the table `specs`, or `text` if it is given; `file` is then only a name
-  !> for messages. `error` lists the mistakes found, each as `FILE:LINE: &group: key "x": what is
-  !> wrong, what is allowed` with the line and a caret below.
-  subroutine read_deck(file, specs, deck, error, text)
+  !> for messages. The deck's error lists the mistakes found, each as `FILE:LINE: &group: key "x":
+  !> what is wrong, what is allowed` with the line and a caret below.
+  subroutine read_deck(file, specs, deck, text)
     character(len=*), intent(in) :: file
     type(key_spec), intent(in) :: specs(:)
     type(deck_t), intent(out) :: deck
-    type(failure_t), allocatable, intent(out) :: error
     character(len=*), intent(in), optional :: text
     type(scan_t) :: found
     integer :: mistakes
@@ -34,23 +32,22 @@ contains
     deck%specs = specs
     allocate (deck%values(size(specs)))
     if (present(text)) then
-      call take_source(file, text, deck%source, error)
+      call take_source(file, text, deck%source, deck%error)
     else
-      call load_source(file, deck%source, error)
+      call load_source(file, deck%source, deck%error)
     end if
-    if (allocated(error)) return
-    call scan_deck(deck%source, found, error)
-    if (allocated(error)) return
-    call take_entries(deck, found, mistakes, error)
-    if (mistakes < most_mistakes) call complete(deck, error)
+    if (allocated(deck%error)) return
+    call scan_deck(deck%source, found, deck%error)
+    if (allocated(deck%error)) return
+    call take_entries(deck, found, mistakes)
+    if (mistakes < most_mistakes) call complete(deck)
   end subroutine read_deck
 
   !> Enters the scanned groups and assignments into the values of the table.
-  subroutine take_entries(deck, found, mistakes, error)
+  subroutine take_entries(deck, found, mistakes)
     type(deck_t), intent(inout) :: deck
     type(scan_t), intent(in) :: found
     integer, intent(out) :: mistakes
-    type(failure_t), allocatable, intent(inout) :: error
     integer :: rows(found%n_groups), i, at
     character(len=:), allocatable :: name, what
 
@@ -79,9 +76,9 @@ contains
       integer, intent(in) :: where
 
       mistakes = mistakes + 1
-      call deck%source%complain(where, what, error, group, key)
-      if (mistakes == most_mistakes) &
-        error%message = error%message // new_line('a') // 'further mistakes are not shown'
+      call deck%source%complain(where, what, deck%error, group, key)
+      if (mistakes == most_mistakes) deck%error%message = deck%error%message // &
+        new_line('a') // 'further mistakes are not shown'
     end subroutine report
 
   end subroutine take_entries
@@ -144,9 +141,8 @@ contains
   end subroutine take_entry
 
   !> Fills in the table's defaults and reports required groups and keys that are missing.
-  subroutine complete(deck, error)
+  subroutine complete(deck)
     type(deck_t), intent(inout) :: deck
-    type(failure_t), allocatable, intent(inout) :: error
     character(len=:), allocatable :: group, key, what
     integer :: i
 
@@ -156,9 +152,9 @@ contains
       key = trim(deck%specs(i)%key)
       if (deck%specs(i)%required) then
         if (len(key) == 0) then
-          call deck%mistake(group, '', 'this group is missing; every deck needs it', error)
+          call deck%mistake(group, '', 'this group is missing; every deck needs it')
         else if (deck%has_group(group)) then
-          call deck%mistake(group, key, 'missing; give it ' // allowed(deck%specs(i)), error)
+          call deck%mistake(group, key, 'missing; give it ' // allowed(deck%specs(i)))
         end if
       else if (len_trim(deck%specs(i)%default) > 0) then
         call convert(deck%specs(i), trim(deck%specs(i)%default), deck%values(i), what)

@@ -1,7 +1,6 @@
 !> &bodies: the two bodies, and how they deform.
 module bodies_group
   use kinds, only: wp
-  use failure, only: failure_t
   use deck_keys, only: key_spec, real_value, real_list, logical_value
   use scene_groups, only: scene_t
   use layer_group, only: layer_bears_all
@@ -30,9 +29,8 @@ module bodies_group
 contains
 
   !> Reads &bodies, which must say in exactly one way how the bodies deform.
-  subroutine take_bodies(scene, error)
+  subroutine take_bodies(scene)
     type(scene_t), intent(inout) :: scene
-    type(failure_t), allocatable, intent(inout) :: error
     real(wp), allocatable :: young(:), poisson(:)
     real(wp) :: compliance(2)
     integer :: ways
@@ -47,14 +45,14 @@ contains
       if (ways == 0 .and. layer_bears_all(deck)) then
         bodies%rigid = .true.
       else if (ways == 0) then
-        call deck%mistake('bodies', 'stiffness', 'missing; ' // one_way, error)
+        call deck%mistake('bodies', 'stiffness', 'missing; ' // one_way)
       else if (ways > 1) then
         call deck%mistake('bodies', second_way(), 'more than one way to say how the bodies ' // &
-                          'deform; ' // one_way, error)
+                          'deform; ' // one_way)
       else if (size(young) > 0 .and. size(poisson) == 0) then
-        call deck%mistake('bodies', 'poisson', 'missing; young and poisson go together', error)
+        call deck%mistake('bodies', 'poisson', 'missing; young and poisson go together')
       else if (size(poisson) > 0 .and. size(young) == 0) then
-        call deck%mistake('bodies', 'young', 'missing; young and poisson go together', error)
+        call deck%mistake('bodies', 'young', 'missing; young and poisson go together')
       else if (pair) then
         bodies%young = spread_out(young)
         bodies%poisson = spread_out(poisson)

@@ -1,7 +1,6 @@
 !> &loading and &unloading: the approach and the retreats of a cycle in steps of h0.
 module cycle_groups
   use kinds, only: wp
-  use failure, only: failure_t
   use text, only: brief
   use deck, only: deck_t
   use deck_keys, only: key_spec, real_value, real_list
@@ -34,9 +33,8 @@ module cycle_groups
 contains
 
   !> Reads &loading; its range must run downwards.
-  subroutine take_loading(scene, error)
+  subroutine take_loading(scene)
     type(scene_t), intent(inout) :: scene
-    type(failure_t), allocatable, intent(inout) :: error
 
     if (.not. scene%deck%has_group('loading')) return
     allocate (scene%loading)
@@ -45,35 +43,32 @@ contains
       call deck%get('loading', 'h0_end', loading%h0_end)
       call deck%get('loading', 'h0_step', loading%h0_step)
       call check_order(deck, 'loading', 'h0_end', loading%h0_end, 'below', 'h0_start', &
-        loading%h0_start, error)
-      call check_steps(deck, 'loading', loading%h0_start - loading%h0_end, loading%h0_step, error)
+        loading%h0_start)
+      call check_steps(deck, 'loading', loading%h0_start - loading%h0_end, loading%h0_step)
     end associate
   end subroutine take_loading
 
   !> Refuses a step so small that the run would not end.
-  subroutine check_steps(deck, group, range, step, error)
-    type(deck_t), intent(in) :: deck
+  subroutine check_steps(deck, group, range, step)
+    type(deck_t), intent(inout) :: deck
     character(len=*), intent(in) :: group
     real(wp), intent(in) :: range, step
-    type(failure_t), allocatable, intent(inout) :: error
 
     ! A product, since the quotient may overflow.
     if (range > step*most_steps) &
       call deck%mistake(group, 'h0_step', brief(step) // ' makes too many steps over the ' // &
-                        'range of ' // brief(range) // ' m; allowed: at most 10 million', error)
+                        'range of ' // brief(range) // ' m; allowed: at most 10 million')
   end subroutine check_steps
 
   !> Reads &unloading; turning points must be inside the range of &loading, and each retreat must
   !> run upwards.
-  subroutine take_unloading(scene, error)
+  subroutine take_unloading(scene)
     type(scene_t), intent(inout) :: scene
-    type(failure_t), allocatable, intent(inout) :: error
     integer :: i
 
     if (.not. scene%deck%has_group('unloading')) return
     if (.not. allocated(scene%loading)) then
-      call scene%deck%mistake('unloading', '', 'needs &loading, from whose states it starts', &
-                              error)
+      call scene%deck%mistake('unloading', '', 'needs &loading, from whose states it starts')
       return
     end if
     allocate (scene%unloading)
@@ -88,17 +83,16 @@ contains
         if (unloading%from(i) < loading%h0_end .or. unloading%from(i) > loading%h0_start) then
           call deck%mistake('unloading', 'from', brief(unloading%from(i)) // &
                             ' is outside the range of &loading; allowed: from ' // &
-                            brief(loading%h0_end) // ' to ' // brief(loading%h0_start) // ' m', &
-                            error)
+                            brief(loading%h0_end) // ' to ' // brief(loading%h0_start) // ' m')
           return
         else if (unloading%from(i) >= unloading%h0_end) then
           call deck%mistake('unloading', 'h0_end', brief(unloading%h0_end) // ' is not above ' // &
-                            'the turning point from = ' // brief(unloading%from(i)) // ' m', error)
+                            'the turning point from = ' // brief(unloading%from(i)) // ' m')
           return
         end if
       end do
       call check_steps(deck, 'unloading', unloading%h0_end - minval(unloading%from), &
-                       unloading%h0_step, error)
+                       unloading%h0_step)
     end associate
   end subroutine take_unloading
 

@@ -86,14 +86,18 @@ contains
     do i = 1, size(value)
       if (.not. self%parameter(i)%follows .or. abs(value(i) - 1) <= 0) cycle
       usual = scene
-      call take_model(usual, error)
-      if (allocated(error)) return
+      call take_model(usual)
+      if (allocated(usual%deck%error)) then
+        call move_alloc(usual%deck%error, error)
+        return
+      end if
       call find_number(usual%deck, self%parameter(i)%name, row, term, error)
       call set_number(scene%deck, self%parameter(i)%name, &
         value(i)*usual%deck%values(row)%reals(max(1, term)), error)
       if (allocated(error)) return
     end do
-    call take_model(scene, error)
+    call take_model(scene)
+    call move_alloc(scene%deck%error, error)
     if (.not. allocated(error)) problem = problem_of(scene)
   end subroutine pose
 

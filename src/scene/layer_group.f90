@@ -1,7 +1,6 @@
 !> &layer: layers bonded to one of the bodies of &bodies, or to both.
 module layer_group
   use kinds, only: wp
-  use failure, only: failure_t
   use text, only: brief
   use deck, only: deck_t
   use deck_keys, only: key_spec, real_list, word_value
@@ -50,9 +49,8 @@ contains
 
   !> Reads &layer, after &bodies: the surfaces, and the stiffness of the two bodies as given by
   !> their top layers.
-  subroutine take_layer(scene, error)
+  subroutine take_layer(scene)
     type(scene_t), intent(inout) :: scene
-    type(failure_t), allocatable, intent(inout) :: error
     type(layered_surface_t) :: coat
     real(wp), allocatable :: young(:)
     real(wp) :: compliance(2)
@@ -60,15 +58,15 @@ contains
     logical :: has_coat(2)
     integer :: i
 
-    if (.not. scene%deck%has_group('layer') .or. allocated(error)) return
+    if (.not. scene%deck%has_group('layer') .or. allocated(scene%deck%error)) return
     associate (deck => scene%deck, bodies => scene%bodies)
       call deck%assume('layer', 'base', trim(merge('rigid  ', 'elastic', bodies%rigid)))
       call deck%get('layer', 'body', body)
       if (body /= 'both') &
         call deck%assume('layer', 'partner', trim(merge('rigid  ', 'elastic', bodies%rigid)))
       call deck%get('layer', 'partner', partner)
-      call check_layers(scene, error)
-      if (allocated(error)) return
+      call check_layers(scene)
+      if (allocated(scene%deck%error)) return
       call deck%get('layer', 'thickness', coat%thickness)
       call deck%get('layer', 'young', young)
       call deck%get('layer', 'poisson', coat%poisson)
@@ -98,9 +96,8 @@ contains
   end subroutine take_layer
 
   !> Refuses a top layer that is too thin to be computed; called after forces and shape are read.
-  subroutine check_thinness(scene, error)
-    type(scene_t), intent(in) :: scene
-    type(failure_t), allocatable, intent(inout) :: error
+  subroutine check_thinness(scene)
+    type(scene_t), intent(inout) :: scene
     real(wp), allocatable :: thickness(:)
 
     if (.not. scene%deck%has_group('layer')) return
@@ -108,7 +105,7 @@ contains
     associate (least => thinnest*sqrt(scene%shape%radius*scene%law%length))
       if (thickness(1) < least) call scene%deck%mistake('layer', 'thickness', 'the top layer ' // &
         'is thinner than ' // brief(least) // ' m, ' // brief(thinnest) // ' of sqrt(R L), ' // &
-        'with the range L of the force; contacts are too wide beside it; leave it out', error)
+        'with the range L of the force; contacts are too wide beside it; leave it out')
     end associate
   end subroutine check_thinness
 
@@ -136,9 +133,8 @@ contains
   end function compliance_of
 
   !> Refuses keys that contradict each other or &bodies.
-  subroutine check_layers(scene, error)
-    type(scene_t), intent(in) :: scene
-    type(failure_t), allocatable, intent(inout) :: error
+  subroutine check_layers(scene)
+    type(scene_t), intent(inout) :: scene
     real(wp), allocatable :: thickness(:), young(:), poisson(:)
 
     associate (deck => scene%deck, bodies => scene%bodies)
@@ -147,45 +143,44 @@ contains
       call deck%get('layer', 'poisson', poisson)
       if (size(young) /= size(thickness)) call deck%mistake('layer', 'young', &
         brief(size(young)) // ' for ' // brief(size(thickness)) // &
-        ' layers; give one value for each thickness, from the top down', error)
+        ' layers; give one value for each thickness, from the top down')
       if (size(poisson) /= size(thickness)) call deck%mistake('layer', 'poisson', &
         brief(size(poisson)) // ' for ' // brief(size(thickness)) // &
-        ' layers; give one value for each thickness, from the top down', error)
-      call check_spread(scene, 'thickness', thickness, error)
-      call check_spread(scene, 'young', young, error)
+        ' layers; give one value for each thickness, from the top down')
+      call check_spread(scene, 'thickness', thickness)
+      call check_spread(scene, 'young', young)
       if (allocated(bodies%young) .and. word_is(deck, 'base', 'elastic')) &
-        call check_spread(scene, 'young', [young, bodies%young], error)
-      if (allocated(error)) return
+        call check_spread(scene, 'young', [young, bodies%young])
+      if (allocated(scene%deck%error)) return
       if (word_is(deck, 'base', 'elastic')) then
         if (bodies%rigid) then
           call deck%mistake('layer', 'base', 'the bodies are rigid; give base = ''rigid'', or ' // &
-            'young and poisson in &bodies', error)
+            'young and poisson in &bodies')
         else if (.not. allocated(bodies%young)) then
           call deck%mistake('bodies', 'stiffness', 'the material below the layers must be ' // &
-            'known; give young and poisson here, or base = ''rigid'' in &layer', error)
+            'known; give young and poisson here, or base = ''rigid'' in &layer')
         end if
       end if
       if (word_is(deck, 'body', 'both')) then
         if (deck%is_set('layer', 'partner')) call deck%mistake('layer', 'partner', &
-          'both bodies have layers; leave it out', error)
+          'both bodies have layers; leave it out')
       else if (bodies%rigid .and. word_is(deck, 'partner', 'elastic')) then
         call deck%mistake('layer', 'partner', 'the bodies are rigid; leave it out, or give ' // &
-          'how they deform in &bodies', error)
+          'how they deform in &bodies')
       end if
     end associate
   end subroutine check_layers
 
   !> Refuses numbers so different that rounding would hide the smaller ones.
-  subroutine check_spread(scene, key, values, error)
-    type(scene_t), intent(in) :: scene
+  subroutine check_spread(scene, key, values)
+    type(scene_t), intent(inout) :: scene
     character(len=*), intent(in) :: key
     real(wp), intent(in) :: values(:)
-    type(failure_t), allocatable, intent(inout) :: error
 
     if (maxval(values) > most_unlike*minval(values)) call scene%deck%mistake('layer', key, &
       'from ' // brief(minval(values)) // ' to ' // brief(maxval(values)) // ' is more than a ' // &
       'factor of ' // brief(most_unlike) // '; leave out layers so thin or soft, or make so ' // &
-      'stiff a body rigid', error)
+      'stiff a body rigid')
   end subroutine check_spread
 
   !> Whether a key of the group has this value.

@@ -2,7 +2,6 @@
 !> &fixed_load, &table, &regime, &profiles, &stability.
 module path_groups
   use kinds, only: wp
-  use failure, only: failure_t
   use text, only: brief
   use deck, only: deck_t
   use deck_keys, only: key_spec, real_value, real_list
@@ -45,9 +44,8 @@ module path_groups
 contains
 
   !> Reads &equilibrium_path.
-  subroutine take_path(scene, error)
+  subroutine take_path(scene)
     type(scene_t), intent(inout) :: scene
-    type(failure_t), allocatable, intent(inout) :: error
 
     if (.not. scene%deck%has_group('equilibrium_path')) return
     allocate (scene%path)
@@ -56,68 +54,65 @@ contains
         call deck%assume('equilibrium_path', 'h0_end', scene%loading%h0_end)
       else if (.not. deck%is_set('equilibrium_path', 'h0_end')) then
         call deck%mistake('equilibrium_path', 'h0_end', &
-                          'missing; give it, or a &loading to take it from', error)
+                          'missing; give it, or a &loading to take it from')
       end if
       call deck%get('equilibrium_path', 'h0_end', path%h0_end)
       call deck%get_optional('equilibrium_path', 'h0_start', path%h0_start)
       if (allocated(path%h0_start)) call check_order(deck, 'equilibrium_path', 'h0_start', &
-        path%h0_start, 'above', 'h0_end', path%h0_end, error)
+        path%h0_start, 'above', 'h0_end', path%h0_end)
     end associate
   end subroutine take_path
 
   !> Reads &device, &fixed_load and &table.
-  subroutine take_readings(scene, error)
+  subroutine take_readings(scene)
     type(scene_t), intent(inout) :: scene
-    type(failure_t), allocatable, intent(inout) :: error
 
     associate (deck => scene%deck)
       if (deck%has_group('device')) then
-        call check_path(scene, 'device', error)
+        call check_path(scene, 'device')
         allocate (scene%device)
         associate (device => scene%device)
           call deck%get('device', 'stiffness', device%stiffness)
           call deck%get_optional('device', 'z_start', device%z_start)
           call deck%get_optional('device', 'z_end', device%z_end)
           if (allocated(device%z_start) .and. allocated(device%z_end)) call check_order(deck, &
-            'device', 'z_start', device%z_start, 'above', 'z_end', device%z_end, error)
+            'device', 'z_start', device%z_start, 'above', 'z_end', device%z_end)
         end associate
       end if
       if (deck%has_group('fixed_load')) then
-        call check_path(scene, 'fixed_load', error)
+        call check_path(scene, 'fixed_load')
         allocate (scene%fixed_load)
         call deck%get('fixed_load', 'load', scene%fixed_load%load)
       end if
       scene%table = deck%has_group('table')
-      if (scene%table) call check_path(scene, 'table', error)
+      if (scene%table) call check_path(scene, 'table')
     end associate
   end subroutine take_readings
 
   !> Reads &regime.
-  subroutine take_regime(scene, error)
+  subroutine take_regime(scene)
     type(scene_t), intent(inout) :: scene
-    type(failure_t), allocatable, intent(inout) :: error
 
     scene%regime = scene%deck%has_group('regime')
     if (.not. scene%regime) return
     if (.not. scene%shape%parabolic) call scene%deck%mistake('regime', '', &
-      'the theories are those of the parabola; leave out this group or &shape', error)
-    call check_path(scene, 'regime', error)
+      'the theories are those of the parabola; leave out this group or &shape')
+    call check_path(scene, 'regime')
   end subroutine take_regime
 
   !> Reads &profiles; each h0 must be within the range of the loading or of the path.
-  subroutine take_profiles(scene, error)
+  subroutine take_profiles(scene)
     type(scene_t), intent(inout) :: scene
-    type(failure_t), allocatable, intent(inout) :: error
     integer :: i
 
-    if (.not. has_states(scene, 'profiles', error)) return
+    if (.not. has_states(scene, 'profiles')) return
     allocate (scene%profiles)
     call scene%deck%get('profiles', 'h0', scene%profiles%h0)
     do i = 1, size(scene%profiles%h0)
       if (allocated(scene%drive)) exit
       if (reached(scene%profiles%h0(i))) cycle
       call scene%deck%mistake('profiles', 'h0', brief(scene%profiles%h0(i)) // &
-                              ' m is outside the range of &loading and &equilibrium_path', error)
+                              ' m is outside the range of &loading and &equilibrium_path')
       return
     end do
 
@@ -139,47 +134,43 @@ contains
   end subroutine take_profiles
 
   !> Reads &stability.
-  subroutine take_stability(scene, error)
+  subroutine take_stability(scene)
     type(scene_t), intent(inout) :: scene
-    type(failure_t), allocatable, intent(inout) :: error
 
-    scene%stability = has_states(scene, 'stability', error)
+    scene%stability = has_states(scene, 'stability')
   end subroutine take_stability
 
   !> Whether the deck has a group that shows states; refuses the group if there are no states.
-  logical function has_states(scene, group, error)
-    type(scene_t), intent(in) :: scene
+  logical function has_states(scene, group)
+    type(scene_t), intent(inout) :: scene
     character(len=*), intent(in) :: group
-    type(failure_t), allocatable, intent(inout) :: error
 
     has_states = scene%deck%has_group(group) .and. scene%finds_states()
     if (scene%deck%has_group(group) .and. .not. has_states) &
-      call scene%deck%mistake(group, '', 'needs &loading or &equilibrium_path', error)
+      call scene%deck%mistake(group, '', 'needs &loading or &equilibrium_path')
   end function has_states
 
   !> Refuses a group that needs the path if there is no path, or one without jumps.
-  subroutine check_path(scene, group, error)
-    type(scene_t), intent(in) :: scene
+  subroutine check_path(scene, group)
+    type(scene_t), intent(inout) :: scene
     character(len=*), intent(in) :: group
-    type(failure_t), allocatable, intent(inout) :: error
 
     if (.not. allocated(scene%path)) then
-      call scene%deck%mistake(group, '', 'needs &equilibrium_path', error)
+      call scene%deck%mistake(group, '', 'needs &equilibrium_path')
     else if (scene%bodies%rigid .or. .not. scene%law%adhesion > 0) then
-      call scene%deck%mistake(group, '', 'needs elastic bodies and a force that attracts', error)
+      call scene%deck%mistake(group, '', 'needs elastic bodies and a force that attracts')
     end if
   end subroutine check_path
 
   !> Refuses a position [m] that is not `word`, above or below, that of another key.
-  subroutine check_order(deck, group, key, position, word, other, limit, error)
-    type(deck_t), intent(in) :: deck
+  subroutine check_order(deck, group, key, position, word, other, limit)
+    type(deck_t), intent(inout) :: deck
     character(len=*), intent(in) :: group, key, word, other
     real(wp), intent(in) :: position, limit
-    type(failure_t), allocatable, intent(inout) :: error
 
     if (merge(position > limit, position < limit, word == 'above')) return
     call deck%mistake(group, key, brief(position) // ' is not ' // word // ' ' // other // ' = ' &
-      // brief(limit) // ' m', error)
+      // brief(limit) // ' m')
   end subroutine check_order
 
 end module path_groups

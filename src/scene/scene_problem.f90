@@ -2,7 +2,6 @@
 module scene_problem
   ! The module with most dependencies is first: compiler note 12.
   use scene_groups, only: scene_t
-  use failure, only: failure_t
   use dimensionless_problem, only: problem_t, new_problem
   use deck_keys, only: key_spec
   use laws, only: keys_of_laws, read_laws
@@ -25,16 +24,15 @@ contains
   end function keys_of_model
 
   !> Reads bodies, layers, forces and shape of the scene's deck.
-  subroutine take_model(scene, error)
+  subroutine take_model(scene)
     type(scene_t), intent(inout) :: scene
-    type(failure_t), allocatable, intent(inout) :: error
 
-    call take_bodies(scene, error)
-    call take_layer(scene, error)
-    call read_laws(scene%deck, scene%law, error)
+    call take_bodies(scene)
+    call take_layer(scene)
+    call read_laws(scene%deck, scene%law)
     if (allocated(scene%law)) &
-      call read_shapes(scene%deck, scene%law%length, scene%shape, error)
-    if (.not. allocated(error)) call check_thinness(scene, error)
+      call read_shapes(scene%deck, scene%law%length, scene%shape)
+    if (.not. allocated(scene%deck%error)) call check_thinness(scene)
   end subroutine take_model
 
   !> The problem of a scene.

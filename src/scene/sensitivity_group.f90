@@ -24,9 +24,8 @@ module sensitivity_group
 contains
 
   !> Reads &sensitivity.
-  subroutine take_sensitivity(scene, error)
+  subroutine take_sensitivity(scene)
     type(scene_t), intent(inout) :: scene
-    type(failure_t), allocatable, intent(inout) :: error
     type(deck_family_t) :: family
     type(failure_t), allocatable :: trouble
     character(len=:), allocatable :: keys, why
@@ -38,12 +37,12 @@ contains
     driven = scene%deck%has_group('drive')
     why = ''
     if (.not. driven) then
-      call check_path(scene, 'sensitivity', error)
+      call check_path(scene, 'sensitivity')
       why = ', whose cases show no curve'
     end if
     if (scene%deck%has_group('sweep')) call scene%deck%mistake('sensitivity', '', &
-      'not together with &sweep' // why, error)
-    if (allocated(error) .and. .not. driven) return
+      'not together with &sweep' // why)
+    if (allocated(scene%deck%error) .and. .not. driven) return
     call scene%deck%get('sensitivity', 'parameters', keys)
     allocate (scene%sensitivity)
     allocate (scene%sensitivity%varied(word_count(keys)))
@@ -58,7 +57,7 @@ contains
         end if
       end associate
       if (.not. allocated(trouble)) cycle
-      call scene%deck%mistake('sensitivity', 'parameters', trouble%message, error)
+      call scene%deck%mistake('sensitivity', 'parameters', trouble%message)
       return
     end do
   end subroutine take_sensitivity

@@ -10,7 +10,6 @@
 !> The pressure unit is 64 n kT tanh^2(y1/4), y1 the larger potential.
 module double_layer
   use kinds, only: wp
-  use failure, only: failure_t
   use deck, only: deck_t
   use deck_keys, only: key_spec, real_value, real_list, integer_value, word_value
   use force_law, only: force_law_t, of_slope
@@ -71,10 +70,9 @@ module double_layer
 contains
 
   !> The law, if the deck has its group.
-  subroutine read_law(deck, law, error)
+  subroutine read_law(deck, law)
     type(deck_t), intent(inout) :: deck
     class(force_law_t), allocatable, intent(out) :: law
-    type(failure_t), allocatable, intent(inout) :: error
     type(double_layer_t) :: this
     character(len=:), allocatable :: model
     real(wp) :: osmotic
@@ -85,8 +83,8 @@ contains
     this%model = linear
     if (model == 'superposition') this%model = superposition
     if (model == 'nonlinear') this%model = nonlinear
-    call take_electrolyte(deck, this, osmotic, error)
-    if (allocated(error)) return
+    call take_electrolyte(deck, this, osmotic)
+    if (allocated(deck%error)) return
     if (this%model == linear .and. this%surface(1)%potential > small_potential) this%caveat = &
       'double_layer: model = ''linear'' is for potentials below kT/(z e), 25.7 mV for single ' // &
       'charges at room temperature; pressures may be wrong by orders of magnitude: leave model out'
@@ -108,7 +106,7 @@ contains
       call new_layer_table(this%surface, this%table, solved)
       if (.not. solved) then
         call deck%mistake('double_layer', 'model', 'the Poisson-Boltzmann equation could not be ' &
-          // 'solved at every gap for these potentials and this regulation', error)
+          // 'solved at every gap for these potentials and this regulation')
         return
       end if
     end if
@@ -116,11 +114,10 @@ contains
   end subroutine read_law
 
   !> Sets Debye length and surfaces. osmotic: 2 n kT [Pa].
-  subroutine take_electrolyte(deck, this, osmotic, error)
+  subroutine take_electrolyte(deck, this, osmotic)
     type(deck_t), intent(inout) :: deck
     type(double_layer_t), intent(inout) :: this
     real(wp), intent(out) :: osmotic
-    type(failure_t), allocatable, intent(inout) :: error
     real(wp), allocatable :: potential(:), regulation(:)
     real(wp) :: salt, permittivity, temperature, thermal, decades
     integer :: valence
@@ -129,9 +126,9 @@ contains
     if (deck%is_set('double_layer', 'salt') .eqv. deck%is_set('double_layer', 'debye_length')) then
       if (deck%is_set('double_layer', 'salt')) then
         call deck%mistake('double_layer', 'debye_length', 'salt gives it already; give ' // &
-          'debye_length or salt', error)
+          'debye_length or salt')
       else
-        call deck%mistake('double_layer', 'salt', 'missing; give salt or debye_length', error)
+        call deck%mistake('double_layer', 'salt', 'missing; give salt or debye_length')
       end if
       return
     end if
@@ -149,21 +146,20 @@ contains
     else
       call deck%get('double_layer', 'debye_length', this%length)
     end if
-    call take_surfaces(deck, potential/thermal, regulation, this, error)
-    if (allocated(error)) return
+    call take_surfaces(deck, potential/thermal, regulation, this)
+    if (allocated(deck%error)) return
     decades = log10(permittivity) + 2*(log10(thermal) - log10(this%length)) + &
       2*log10(abs(this%surface(1)%potential))
-    call check_decades(deck, 'double_layer', 'potential', decades, 'a pressure', ' Pa', error)
+    call check_decades(deck, 'double_layer', 'potential', decades, 'a pressure', ' Pa')
     osmotic = permittivity*(thermal/this%length)**2
   end subroutine take_electrolyte
 
   !> Sets the surfaces, first the one with the larger potential, whose sign is made positive: this
   !> does not change pressures.
-  subroutine take_surfaces(deck, potential, regulation, this, error)
-    type(deck_t), intent(in) :: deck
+  subroutine take_surfaces(deck, potential, regulation, this)
+    type(deck_t), intent(inout) :: deck
     real(wp), intent(in) :: potential(:), regulation(:)
     type(double_layer_t), intent(inout) :: this
-    type(failure_t), allocatable, intent(inout) :: error
 
     this%surface%potential = [potential(1), potential(size(potential))]
     this%surface%regulation = [regulation(1), regulation(size(regulation))]
@@ -172,10 +168,10 @@ contains
     if (this%surface(1)%potential < 0) this%surface%potential = -this%surface%potential
     if (.not. this%surface(1)%potential > 0) then
       call deck%mistake('double_layer', 'potential', 'without a potential there is no double ' // &
-        'layer; leave the group out', error)
+        'layer; leave the group out')
     else if (this%surface(1)%potential > largest_potential) then
       call deck%mistake('double_layer', 'potential', 'more than 20 kT for each ion: the size ' // &
-        'of ions would matter', error)
+        'of ions would matter')
     end if
   end subroutine take_surfaces
 

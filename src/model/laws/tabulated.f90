@@ -54,10 +54,9 @@ module tabulated
 contains
 
   !> The law, if the deck has its group.
-  subroutine read_law(deck, law, error)
+  subroutine read_law(deck, law)
     type(deck_t), intent(inout) :: deck
     class(force_law_t), allocatable, intent(out) :: law
-    type(failure_t), allocatable, intent(inout) :: error
     type(tabulated_t) :: this
     type(failure_t), allocatable :: trouble
     type(data_table_t) :: table
@@ -66,17 +65,17 @@ contains
     if (deck%is_set('tabulated', 'tail_exponent') .eqv. &
         deck%is_set('tabulated', 'tail_decay_length')) then
       call deck%mistake('tabulated', 'tail_exponent', 'give tail_exponent or ' // &
-        'tail_decay_length, one of the two, for gaps beyond the table', error)
+        'tail_decay_length, one of the two, for gaps beyond the table')
       return
     end if
     call read_columns(deck, 'tabulated', 'file', fewest, table, trouble)
     if (.not. allocated(trouble)) call put_in_order(table, trouble)
     if (allocated(trouble)) then
-      call deck%mistake('tabulated', 'file', 'the table cannot be used: ' // trouble%message, error)
+      call deck%mistake('tabulated', 'file', 'the table cannot be used: ' // trouble%message)
       return
     end if
-    call take_table(deck, table, this, error)
-    if (.not. allocated(error)) allocate (law, source=this)
+    call take_table(deck, table, this)
+    if (.not. allocated(deck%error)) allocate (law, source=this)
   end subroutine read_law
 
   !> Puts gaps in ascending order; fails if they neither ascend nor descend, or are not positive.
@@ -104,11 +103,10 @@ contains
   end subroutine put_in_order
 
   !> Makes the law of an ordered table, in units of its first gap and its largest number.
-  subroutine take_table(deck, table, this, error)
-    type(deck_t), intent(in) :: deck
+  subroutine take_table(deck, table, this)
+    type(deck_t), intent(inout) :: deck
     type(data_table_t), intent(inout) :: table
     type(tabulated_t), intent(inout) :: this
-    type(failure_t), allocatable, intent(inout) :: error
     character(len=:), allocatable :: quantity, interpolation
     real(wp), allocatable :: g(:), value(:)
     real(wp) :: exponent, decay_length
@@ -128,13 +126,13 @@ contains
     value = table%value(:, 2)/max(this%pressure_unit, tiny(1.0_wp))
     if (quantity == 'energy') this%pressure_unit = this%pressure_unit/this%length
     call check_decades(deck, 'tabulated', 'file', &
-      log10(max(this%pressure_unit, tiny(1.0_wp))), 'a pressure', ' Pa', error)
-    if (allocated(error)) return
+      log10(max(this%pressure_unit, tiny(1.0_wp))), 'a pressure', ' Pa')
+    if (allocated(deck%error)) return
     decay_length = decay_length/this%length
     do i = 1, n - 1
       if (.not. fall(g(i), g(i + 1)) > largest_step) cycle
       call deck%mistake('tabulated', 'file', 'from one point of the table to the next the ' // &
-        'tail falls by more than exp(-10)', error)
+        'tail falls by more than exp(-10)')
       return
     end do
     this%fine = new_force_table(g, value, quantity == 'energy', exponent, decay_length, &
@@ -146,7 +144,7 @@ contains
     this%share = merge(share_of_spline, share_of_monotone, interpolation == 'spline')
     i = max(1, count(g <= end_of_lever*g(n)))
     this%tail_error = tail_error_of(g([i, n]), this%pressure(g([i, n])))
-    call take_scales(deck, this, error)
+    call take_scales(deck, this)
     if (.not. decay_length > 0) this%tail_power = exponent
     this%breaks = g
     call find_kinks(deck, this)
@@ -204,14 +202,13 @@ contains
   end subroutine find_kinks
 
   !> Sets the scales of the repulsion, which is a power before the first point.
-  subroutine take_scales(deck, this, error)
-    type(deck_t), intent(in) :: deck
+  subroutine take_scales(deck, this)
+    type(deck_t), intent(inout) :: deck
     type(tabulated_t), intent(inout) :: this
-    type(failure_t), allocatable, intent(inout) :: error
 
     if (.not. this%fine%power > 0) then
       call deck%mistake('tabulated', 'file', 'the force does not grow towards the first gap, ' // &
-        'so that it cannot be continued to smaller ones', error)
+        'so that it cannot be continued to smaller ones')
       return
     end if
     ! For the ninth power these are the numbers of the Lennard-Jones law.

@@ -3,7 +3,6 @@
 !> 1 + c h, c = 5.32/retardation_length, so that p falls as h^-4 at large h.
 module van_der_waals
   use kinds, only: wp, pi
-  use failure, only: failure_t
   use deck, only: deck_t
   use deck_keys, only: key_spec, real_value
   use force_law, only: force_law_t, of_pressure, of_slope
@@ -35,10 +34,9 @@ module van_der_waals
 contains
 
   !> The law, if the deck has its group. It has no characteristic length.
-  subroutine read_law(deck, law, error)
+  subroutine read_law(deck, law)
     type(deck_t), intent(inout) :: deck
     class(force_law_t), allocatable, intent(out) :: law
-    type(failure_t), allocatable, intent(inout) :: error
     type(van_der_waals_t) :: this
     real(wp) :: hamaker, wavelength
 
@@ -55,7 +53,7 @@ contains
     end if
     this%smallest_gap = 1.0e-12_wp
     this%closure_fraction = 0.3_wp
-    call accept_law(deck, 'van_der_waals', 'hamaker', 'hamaker', this, law, error)
+    call accept_law(deck, 'van_der_waals', 'hamaker', 'hamaker', this, law)
   end subroutine read_law
 
   pure subroutine evaluate(self, quantity, gap, value)
