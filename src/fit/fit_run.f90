@@ -6,7 +6,7 @@ module fit_run
   use failure, only: failure_t
   use listener, only: listener_t
   use dimensionless_problem, only: problem_t
-  use problem_family, only: problem_family_t
+  use variation, only: problem_family_t
   use experiment_request, only: numerics_t
   use fit_request, only: measurement_t, fit_t, unknown_t, of_model, of_contact_point, is_at_end
   use measured_curve, only: measured_t

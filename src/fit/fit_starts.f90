@@ -5,7 +5,7 @@ module fit_starts
   use failure, only: failure_t
   use linear_algebra, only: factorisation_t, factorise, solve
   use dimensionless_problem, only: problem_t, surface_energy, largest_tension
-  use problem_family, only: problem_family_t
+  use variation, only: problem_family_t
   use fit_request, only: unknown_t, of_model
   implicit none
   private

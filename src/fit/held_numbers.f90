@@ -8,8 +8,7 @@ module held_numbers
   use fit_request, only: measurement_t, unknown_t, of_model, of_contact_point, of_sensitivity, &
     of_spring
   use failure, only: failure_t
-  use problem_family, only: problem_family_t
-  use variation, only: variation_t, vary, to_search
+  use variation, only: problem_family_t, variation_t, vary, to_search
   use experiment_request, only: numerics_t
   use modelled_curve, only: modelled_curve_t
   use curve_residuals, only: curve_residuals_t

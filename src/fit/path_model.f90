@@ -6,8 +6,7 @@ module path_model
   use interpolation, only: hermite_t, polynomial_weights
   use listener, only: listener_t
   use dimensionless_problem, only: problem_t
-  use problem_family, only: problem_family_t
-  use variation, only: variation_t, vary, to_search
+  use variation, only: problem_family_t, variation_t, vary, to_search
   use edge_locked, only: new_mesh_family
   use mesh_store, only: mesh_store_t
   use path_tangent, only: of_h0, of_load

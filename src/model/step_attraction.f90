@@ -5,7 +5,7 @@ module step_attraction
   use kinds, only: wp, pi
   use deck, only: deck_t
   use force_law, only: force_law_t, of_pressure, of_slope, whole_step
-  use law_reading, only: accept_law
+  use group_reading, only: accept_law
   implicit none
   private
   public :: new_step, read_step

@@ -9,7 +9,7 @@ module deck_family
   use deck_keys, only: key_spec, real_value, real_list
   use deck_values, only: given
   use dimensionless_problem, only: problem_t
-  use problem_family, only: problem_family_t, parameter_t
+  use variation, only: problem_family_t, parameter_t
   use scene_groups, only: scene_t
   use scene_problem, only: keys_of_model, take_model, problem_of
   implicit none

@@ -6,7 +6,7 @@ module rate_groups
   use deck_keys, only: key_spec, real_value, real_list
   use creep, only: creep_t
   use scene_groups, only: scene_t
-  use path_groups, only: check_order
+  use curve_groups, only: check_order
   implicit none
   private
   public :: rate_keys, take_rates

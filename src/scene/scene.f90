@@ -10,9 +10,8 @@ module scene
   use deck_keys, only: key_spec, ignored_group, text_value
   use scene_groups, only: scene_t
   use scene_problem, only: keys_of_model, take_model
-  use cycle_groups, only: cycle_keys, take_loading, take_unloading
-  use path_groups, only: path_keys, profiles_keys, take_path, take_readings, take_regime, &
-    take_profiles, take_stability
+  use curve_groups, only: cycle_keys, take_loading, take_unloading, path_keys, profiles_keys, &
+    take_path, take_readings, take_regime, take_profiles, take_stability
   use sensitivity_group, only: sensitivity_keys, take_sensitivity
   use rate_groups, only: rate_keys, take_rates
   use theory_groups, only: theory_keys, take_theories

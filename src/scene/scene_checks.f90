@@ -8,7 +8,7 @@ module scene_checks
   use dimensionless_problem, only: problem_t
   use contact_scales, only: largest_radius, contact_level
   use path_demand, only: range_of
-  use law_reading, only: check_decades
+  use group_reading, only: check_decades
   use scene_groups, only: scene_t
   use scene_problem, only: problem_of
   implicit none

@@ -6,8 +6,7 @@ module scene_problem
   use deck_keys, only: key_spec
   use laws, only: keys_of_laws, read_laws
   use shapes, only: keys_of_shapes, read_shapes
-  use bodies_group, only: bodies_keys, take_bodies
-  use layer_group, only: layer_keys, take_layer, check_thinness
+  use bodies_group, only: bodies_keys, take_bodies, layer_keys, take_layer, check_thinness
   use layered_surface, only: layered_surface_t
   use layered_body, only: new_layered_body
   implicit none

@@ -5,10 +5,9 @@ module sensitivity_group
   use deck, only: deck_t
   use deck_numbers, only: find_number
   use deck_keys, only: key_spec, names_value, real_value, real_list
-  use problem_family, only: parameter_t
-  use variation, only: vary, to_report
+  use variation, only: parameter_t, vary, to_report
   use scene_groups, only: scene_t
-  use path_groups, only: check_path
+  use curve_groups, only: check_path
   use deck_family, only: deck_family_t, new_deck_family
   implicit none
   private

@@ -4,7 +4,7 @@ module theory_groups
   use deck_keys, only: key_spec, real_value, integer_value, names_value
   use theory_names, only: convex, theories
   use scene_groups, only: scene_t, range_t
-  use path_groups, only: check_order
+  use curve_groups, only: check_order
   implicit none
   private
   public :: theory_keys, take_theories

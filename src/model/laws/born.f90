@@ -5,7 +5,7 @@ module born
   use deck, only: deck_t
   use deck_keys, only: key_spec, real_value
   use force_law, only: force_law_t
-  use law_reading, only: accept_law
+  use group_reading, only: accept_law
   use power_pair, only: power_pair_t
   implicit none
   private

@@ -13,7 +13,7 @@ module double_layer
   use deck, only: deck_t
   use deck_keys, only: key_spec, real_value, real_list, integer_value, word_value
   use force_law, only: force_law_t, of_slope
-  use law_reading, only: check_decades
+  use group_reading, only: check_decades
   use poisson_boltzmann, only: surface_t
   use linear_layers, only: linear_values
   use layer_table, only: layer_table_t, new_layer_table, nearest_gap

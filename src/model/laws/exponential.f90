@@ -6,7 +6,7 @@ module exponential
   use deck_keys, only: key_spec, real_value
   use force_law, only: force_law_t, of_pressure, of_slope
   use force_sum, only: add_term
-  use law_reading, only: is_law, require, refuse_foreign, accept_law
+  use group_reading, only: is_law, require, refuse_foreign, accept_law
   implicit none
   private
   public :: exponential_t, keys, read_law, read_exponentials

@@ -7,7 +7,7 @@ module lennard_jones
   use deck_keys, only: key_spec, real_value, real_list, word_value
   use force_law, only: force_law_t, of_pressure, of_slope
   use power_pair, only: power_pair_t, new_power_pair, pair_factor
-  use law_reading, only: is_law, require, refuse_foreign, check_decades
+  use group_reading, only: is_law, require, refuse_foreign, check_decades
   implicit none
   private
   public :: lennard_jones_t, keys, read_law

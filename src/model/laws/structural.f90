@@ -4,7 +4,7 @@ module structural
   use deck, only: deck_t
   use deck_keys, only: key_spec, real_value
   use force_law, only: force_law_t, of_pressure, of_slope
-  use law_reading, only: accept_law
+  use group_reading, only: accept_law
   implicit none
   private
   public :: keys, read_law

@@ -7,7 +7,7 @@ module tabulated
   use data_table, only: data_table_t, read_columns
   use force_law, only: force_law_t, of_pressure, of_energy
   use force_table, only: force_table_t, new_force_table, largest_step
-  use law_reading, only: check_decades
+  use group_reading, only: check_decades
   implicit none
   private
   public :: keys, read_law

@@ -4,8 +4,7 @@ module cone
   use deck, only: deck_t
   use deck_keys, only: key_spec, real_value
   use shape, only: shape_t
-  use law_reading, only: require
-  use shape_reading, only: refuse_radius
+  use group_reading, only: require, refuse_radius
   use power, only: take_power
   implicit none
   private

@@ -5,7 +5,7 @@ module parabola
   use deck, only: deck_t
   use deck_keys, only: key_spec
   use shape, only: shape_t
-  use shape_reading, only: read_radius
+  use group_reading, only: read_radius
   implicit none
   private
   public :: keys, read_shape, new_parabola

@@ -4,9 +4,8 @@ module power
   use kinds, only: wp, pi
   use deck, only: deck_t
   use deck_keys, only: key_spec, real_value
-  use law_reading, only: require, check_decades
+  use group_reading, only: require, check_decades, read_radius, refuse_radius
   use shape, only: shape_t
-  use shape_reading, only: read_radius, refuse_radius
   use parabola, only: new_parabola
   implicit none
   private

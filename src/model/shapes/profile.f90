@@ -9,9 +9,8 @@ module profile
   use cubic, only: spline
   use interpolation, only: interval_of
   use quadrature, only: gauss_legendre
-  use law_reading, only: require, check_decades
+  use group_reading, only: require, check_decades, refuse_radius
   use shape, only: shape_t
-  use shape_reading, only: refuse_radius
   implicit none
   private
   public :: keys, read_shape

@@ -4,7 +4,7 @@ module sphere
   use deck, only: deck_t
   use deck_keys, only: key_spec
   use shape, only: shape_t
-  use shape_reading, only: read_radius
+  use group_reading, only: read_radius
   use spheroid, only: take_spheroid
   implicit none
   private

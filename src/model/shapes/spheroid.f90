@@ -7,8 +7,7 @@ module spheroid
   use deck, only: deck_t
   use deck_keys, only: key_spec, real_value
   use shape, only: shape_t
-  use law_reading, only: require
-  use shape_reading, only: read_radius
+  use group_reading, only: require, read_radius
   implicit none
   private
   public :: keys, read_shape, take_spheroid
