@@ -43,7 +43,7 @@ _NO_NUMBERS = (
     "deck", "deck_keys", "deck_number", "deck_numbers", "deck_scan", "deck_source",
     "deck_store", "deck_values", "dispatch", "failure", "files", "folder_lock", "journal",
     "launch", "memory", "namelist_writer", "preflight", "progress", "publication", "ranks",
-    "result_listing", "result_rows", "result_tables", "run_identity", "snapin", "state_records",
+    "result_rows", "result_tables", "run_identity", "snapin", "state_records",
     "text", "text_file",
 )
 _MARK = re.compile(r"<!-- measured at (\w+) -->")

@@ -11,7 +11,7 @@ program snapin
   use files, only: read_standard_input
   use results, only: to_stream
   use blas_threads, only: begin_with_one_thread
-  use result_listing, only: write_result_listing
+  use result_tables, only: write_result_listing
   use command_line, only: options_t, read_command_line, stem_of, write_help, write_usage
   use simulation, only: run_scene
   use sweeps, only: work_on_sweeps

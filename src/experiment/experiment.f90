@@ -16,10 +16,9 @@ module experiment
   use stepped_branch, only: h0_schedule_t, run_branch
   use path_demand, only: path_start, range_of
   use h0_schedule, only: path_plan, loading_plan, unloading_plan
-  use experiment_result, only: experiment_result_t
+  use experiment_result, only: experiment_result_t, enter_readings, enter_energy, enter_table
   use exact_path, only: trace_exactly
   use finer_solver, only: finer_t
-  use outcome_places, only: enter_readings, enter_energy, enter_table
   use place_errors, only: judge_places, conclude
   use place_rates, only: rate_places
   use path, only: follow_path

@@ -23,8 +23,7 @@ module place_errors
     of_energy, of_radius, of_edge, nowhere, read_of_states
   use places, only: places_t
   use arc, only: arc_t
-  use path_expansion, only: expansion_t
-  use finer_solver, only: finer_t, rounding, worst_residual, what_residual_leaves
+  use finer_solver, only: expansion_t, finer_t, rounding, worst_residual, what_residual_leaves
   use represented_pressure, only: pressure_at_nodes
   implicit none
   private

@@ -10,10 +10,9 @@ module fit_run
   use experiment_request, only: numerics_t
   use fit_request, only: measurement_t, fit_t, unknown_t, of_model, of_contact_point, is_at_end
   use measured_curve, only: measured_t
-  use measured_jumps, only: find_jump
+  use measured_jumps, only: find_jump, find_far, off_baseline
   use measured_checks, only: check_measured, check_loads, other_order
   use noise, only: white_noise, rounding_of
-  use far_samples, only: find_far, off_baseline
   use fit_starts, only: character_t, character_of, starts_like
   use mending, only: too_much
   use path_model, only: path_model_t

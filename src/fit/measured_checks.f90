@@ -4,9 +4,8 @@ module measured_checks
   use kinds, only: wp
   use text, only: rounded
   use measured_curve, only: measured_t
-  use measured_jumps, only: measured_jump_t, find_jump
+  use measured_jumps, only: measured_jump_t, find_jump, off_baseline
   use noise, only: noise_t
-  use far_samples, only: off_baseline
   use fit_request, only: of_sensitivity, farthest_off
   use path_model, only: path_model_t
   use modelled_curve, only: modelled_curve_t

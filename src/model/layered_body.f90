@@ -6,7 +6,7 @@ module layered_body
   use linear_algebra, only: multiply_transposed
   use chebyshev, only: chebyshev_points, chebyshev_series, series_slope, series_integral, &
     power_series, power_value
-  use wave_quadrature, only: wave_rule
+  use quadrature, only: wave_rule
   use elastic_body, only: elastic_body_t
   use layered_surface, only: layered_surface_t
   implicit none
@@ -22,7 +22,7 @@ module layered_body
   !> Largest turn of a wave over a panel of waves, and numbers of nodes of a panel (`wave_rule`).
   real(wp), parameter :: swing = 16
   real(wp), parameter :: nodes(2) = 20
-  !> More panels than needed for layers within the limits of `layer_group`.
+  !> More panels than needed for layers within the limits of `bodies_group`.
   integer, parameter :: most_panels = 1000
   !> Largest size of the last coefficients of a series.
   real(wp), parameter :: resolved = 1.0e-13_wp

@@ -14,7 +14,7 @@
 !> line y = y0 + p t and s = s0 - (1 - p) cosh(y0/2) t. The two t are the unknowns.
 module poisson_boltzmann
   use kinds, only: wp
-  use elliptic, only: carlson_rf
+  use special_functions, only: carlson_rf
   implicit none
   private
   public :: surface_t, gap_state_t, far_state, solve_gap

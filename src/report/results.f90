@@ -24,8 +24,7 @@ module results
   use tables, only: table_t, cells
   use result_tables, only: columns_of
   use text, only: word_of
-  use curve_rows, only: columns_of_curve, curve_row
-  use profiles, only: columns_of_profiles, write_profile
+  use state_rows, only: columns_of_curve, curve_row, columns_of_profiles, write_profile
   use summary, only: summary_t, summary_text
   use progress, only: progress_t
   implicit none

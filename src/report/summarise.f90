@@ -12,7 +12,6 @@ module summarise
   use path_readings, only: path_readings_t
   use reported_place, only: place_t, of_h0, of_load
   use places, only: places_t, readings_t
-  use ending_text, only: text_of
   use problem_numbers, only: describe_problem
   use result_rows, only: rows
   use summary, only: summary_t
@@ -22,8 +21,8 @@ module summarise
   use fixed_load_rows, only: summarise_fixed_loads
   use regime_rows, only: summarise_regime
   use rate_entries, only: summarise_timed
-  use validity, only: judge_law, judge_extent, judge_layers
-  use quality_warnings, only: judge_resolution, judge_accuracy, judge_stopping
+  use quality_warnings, only: judge_law, judge_extent, judge_layers, judge_resolution, &
+    judge_accuracy, judge_stopping
   implicit none
   private
   public :: summary_of
@@ -157,7 +156,7 @@ contains
           ' m; the largest residual is '//rounded(branch%quality%residual)// &
           ' lengths of the force law')
       if (branch%ending%early()) &
-        call summary%fail_with(name//' ended early: '//trim(text_of(branch%ending)))
+        call summary%fail_with(name//' ended early: '//trim(branch%ending%message()))
     end subroutine tell_trouble
 
   end subroutine tell_branches
@@ -168,7 +167,7 @@ contains
     type(path_t), intent(in) :: path
     type(summary_t), intent(inout) :: summary
 
-    if (path%ending%early()) call summary%fail_with('path: '//trim(text_of(path%ending)))
+    if (path%ending%early()) call summary%fail_with('path: '//trim(path%ending%message()))
     if (path%fallen) call summary%warn('path: the bodies fall onto each other ' // &
       'under this law; the path ends there and has no state in contact')
     if (problem%law%rest_gap > 0) then

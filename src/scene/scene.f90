@@ -12,7 +12,7 @@ module scene
   use scene_problem, only: keys_of_model, take_model
   use curve_groups, only: cycle_keys, take_loading, take_unloading, path_keys, profiles_keys, &
     take_path, take_readings, take_regime, take_profiles, take_stability
-  use sensitivity_group, only: sensitivity_keys, take_sensitivity
+  use deck_family, only: sensitivity_keys, take_sensitivity
   use rate_groups, only: rate_keys, take_rates
   use theory_groups, only: theory_keys, take_theories
   use sweep_group, only: sweep_keys, take_sweep

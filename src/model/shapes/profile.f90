@@ -6,8 +6,7 @@ module profile
   use deck, only: deck_t
   use deck_keys, only: key_spec, text_value
   use data_table, only: data_table_t, read_columns
-  use cubic, only: spline
-  use interpolation, only: interval_of
+  use interpolation, only: spline, interval_of
   use quadrature, only: gauss_legendre
   use group_reading, only: require, check_decades, refuse_radius
   use shape, only: shape_t

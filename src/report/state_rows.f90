@@ -1,19 +1,70 @@
-!> Profiles of single states: separation, deformation, pressure and energy against r.
-module profiles
+!> Rows of states: the curve, one row for each equilibrium; profiles, separation, deformation,
+!> pressure and energy of one state against r.
+module state_rows
+  use records, only: record_t
+  use decimal, only: put_whole, longest_real
+  use tables, only: put_cells, table_t, cells
+  use result_tables, only: columns_of
   use kinds, only: wp
   use failure, only: failure_t
   use dimensionless_problem, only: problem_t
   use discretisation, only: discretisation_t, axis_row, first_node
   use elastic_operator, only: elastic_operator_t
   use contact_state, only: state_t
-  use tables, only: table_t, cells
-  use result_tables, only: columns_of
   use represented_pressure, only: pressure_at_nodes
   implicit none
   private
-  public :: columns_of_profiles, write_profile
+  public :: columns_of_curve, curve_row, columns_of_profiles, write_profile
 
 contains
+
+  !> The columns of the table: with those of stability if there are eigenvalues, and with the first
+  !> `of_drive` of those of a drive in time.
+  pure function columns_of_curve(eigenvalues, of_drive) result(columns)
+    logical, intent(in) :: eigenvalues
+    integer, intent(in) :: of_drive
+    character(len=96), allocatable :: columns(:), more(:)
+
+    columns = columns_of('curve.csv')
+    more = columns_of('curve.csv', 'with &stability')
+    if (eigenvalues) columns = [columns, more]
+    more = columns_of('curve.csv', 'with &drive')
+    columns = [columns, more(:of_drive)]
+  end function columns_of_curve
+
+  !> The row of a record, with columns of stability if the record has them.
+  pure function curve_row(record) result(text)
+    type(record_t), intent(in) :: record
+    character(len=:), allocatable :: text
+    character(len=len(record%branch) + 14*(longest_real + 1)) :: row
+    integer :: held
+
+    row(:len(record%branch)) = record%branch
+    held = len(record%branch)
+    call put_cells([record%h0, record%h_centre, record%displacement, record%load, &
+      record%contact_radius], row, held)
+    call put_count(record%stable, row, held)
+    call put_cells([record%residual], row, held)
+    call put_count(record%iterations, row, held)
+    call put_count(merge(1, 0, record%converged), row, held)
+    if (allocated(record%eigenvalue)) call put_cells([record%eigenvalue, record%local_criterion, &
+      record%axis_criterion], row, held)
+    if (allocated(record%time)) call put_cells([record%time], row, held)
+    if (allocated(record%z)) call put_cells([record%z], row, held)
+    text = row(:held)
+  end function curve_row
+
+  !> Adds an integer after a comma.
+  pure subroutine put_count(count, row, held)
+    integer, intent(in) :: count
+    character(len=*), intent(inout) :: row
+    integer, intent(inout) :: held
+    integer :: length
+
+    row(held + 1:held + 1) = ','
+    call put_whole(count, row(held + 2:), length)
+    held = held + 1 + length
+  end subroutine put_count
 
   !> The columns of the table.
   pure function columns_of_profiles(problem) result(columns)
@@ -92,4 +143,4 @@ contains
     deformation = -[rise(axis_row), rise(first_node:)]
   end function deformation_of_first
 
-end module profiles
+end module state_rows
