@@ -3,7 +3,7 @@
 module experiment
   use kinds, only: wp
   use dimensionless_problem, only: problem_t
-  use experiment_request, only: request_t, numerics_t
+  use experiment_request, only: request_t
   use numerics_choice, only: choice_t, choose, fixed_mesh
   use edge_locked, only: new_mesh_family
   use mesh_store, only: mesh_store_t
@@ -14,7 +14,7 @@ module experiment
   use fixed_stepper, only: fixed_stepper_t
   use rigid_bodies, only: run_rigid
   use stepped_branch, only: h0_schedule_t, run_branch
-  use path_demand, only: path_start, range_of
+  use path_demand, only: path_start
   use h0_schedule, only: path_plan, loading_plan, unloading_plan
   use experiment_result, only: experiment_result_t, enter_readings, enter_energy, enter_table
   use exact_path, only: trace_exactly
@@ -51,8 +51,6 @@ contains
     type(path_stepper_t), target :: along_path
     type(unique_stepper_t), target :: one_by_one
     type(fixed_stepper_t), target :: at_nodes
-    type(numerics_t) :: numerics
-    real(wp) :: low, high
     logical :: fixed
 
     if (.not. request%finds_states()) return
@@ -60,14 +58,7 @@ contains
       call run_driven(request, problem, observer, outcome, keeper)
       return
     end if
-    call range_of(request, problem, low, high)
-    numerics = request%numerics
-    ! Only a cycle is computed by mixing, or on a grid that is fixed in space.
-    if (.not. allocated(request%loading)) then
-      numerics%grid = 'auto'
-      if (numerics%method == 'mixing') numerics%method = 'auto'
-    end if
-    outcome%chosen = choose(numerics, problem, low, allocated(request%profiles))
+    outcome%chosen = choose(request, problem)
     if (problem%rigid) then
       call run_rigid(request, problem, observer, outcome)
       call conclude(outcome%places, outcome%error_estimate)
@@ -76,18 +67,13 @@ contains
     fixed = outcome%chosen%is_fixed()
     if (allocated(request%path) .or. .not. fixed) then
       if (problem%law%adhesion > 0) then
-        call run_with(along_path, request, problem, high, low, .not. fixed, observer, outcome, &
-          keeper, store)
-        if (allocated(request%sensitivity)) &
-          call rate_places(request%sensitivity, along_path, observer, outcome)
-        outcome%cost = along_path%cost
+        call run_with(along_path, request, problem, .not. fixed, observer, outcome, keeper, store)
       else
-        call run_with(one_by_one, request, problem, high, low, .not. fixed, observer, outcome, &
-          keeper, store)
+        call run_with(one_by_one, request, problem, .not. fixed, observer, outcome, keeper, store)
       end if
     end if
-    if (allocated(request%loading) .and. fixed) call run_with(at_nodes, request, problem, high, &
-      low, .true., observer, outcome, keeper)
+    if (allocated(request%loading) .and. fixed) &
+      call run_with(at_nodes, request, problem, .true., observer, outcome, keeper)
   end subroutine run_experiment
 
   !> Runs the drive in time. Rigid bodies are replaced by bodies that are too stiff for a noticeable
@@ -100,13 +86,11 @@ contains
     class(keeping_stepper_t), intent(in), optional :: keeper
     type(problem_t) :: driven
     type(journal_t), pointer :: journal
-    real(wp) :: low, high
 
     driven = problem
     driven%rigid = .false.
     if (problem%rigid) driven%coupling = unyielding
-    call range_of(request, driven, low, high)
-    outcome%chosen = choose(request%numerics, driven, low, .false.)
+    outcome%chosen = choose(request, driven)
     nullify (journal)
     if (present(keeper)) journal => keeper%journal
     allocate (outcome%timed)
@@ -115,14 +99,12 @@ contains
     if (outcome%timed%begun) outcome%error_estimate = outcome%timed%estimate
   end subroutine run_driven
 
-  !> Runs the path, and the cycle if `with_cycle` and the scene has one, with a stepper, for H0 from
-  !> high to low (law's lengths). A stepper on a mesh fixed in space runs the cycle only.
-  subroutine run_with(steps, request, problem, high, low, with_cycle, observer, outcome, keeper, &
-    store)
+  !> Runs the path, and the cycle if `with_cycle` and the scene has one, with a stepper. A stepper on
+  !> a mesh fixed in space runs the cycle only.
+  subroutine run_with(steps, request, problem, with_cycle, observer, outcome, keeper, store)
     class(stepper_t), intent(inout), target :: steps
     class(request_t), intent(in) :: request
     type(problem_t), intent(in) :: problem
-    real(wp), intent(in) :: high, low
     logical, intent(in) :: with_cycle
     class(observer_t), intent(inout) :: observer
     type(experiment_result_t), intent(inout) :: outcome
@@ -134,12 +116,12 @@ contains
 
     call prepare(steps, problem, outcome%chosen, request%numerics%accuracy)
     steps%cost = outcome%cost
-    call lay_out(steps, outcome%chosen, high, low, store)
+    call lay_out(steps, outcome%chosen, store)
     began = seconds()
     judged = steps%cost%estimate_seconds
     select type (steps)
     class is (path_stepper_t)
-      call trace_exactly(request, steps, high, low, observer, fine, outcome%places, store)
+      call trace_exactly(request, steps, outcome%chosen, observer, fine, outcome%places, store)
       outcome%left_out = steps%known%left_out
       if (allocated(request%path)) call run_path(request, steps, observer, outcome)
       if (request%reads_path()) then
@@ -147,7 +129,7 @@ contains
         call enter_readings(outcome%readings, outcome%places)
       end if
     class is (unique_stepper_t)
-      call fine%lay_out(steps, high, low, store)
+      call fine%lay_out(steps, outcome%chosen, store)
       ! There is one state for every h0, so h0 is stepped.
       if (allocated(request%path)) then
         allocate (outcome%stepped_path)
@@ -168,19 +150,23 @@ contains
       call enter_energy(steps%known, outcome, outcome%places)
       if (request%table) call enter_table(steps, outcome%readings, outcome%places)
     class is (fixed_stepper_t)
-      call fine%lay_out_fixed(steps, outcome%chosen, low)
+      call fine%lay_out_fixed(steps, outcome%chosen)
     end select
     call judge_places(fine, steps, outcome%places, .false.)
     call conclude(outcome%places, outcome%error_estimate)
     steps%cost%estimate_seconds = steps%cost%estimate_seconds + seconds() - began
+    select type (steps)
+    class is (path_stepper_t)
+      if (allocated(request%sensitivity)) &
+        call rate_places(request%sensitivity, steps, observer, outcome)
+    end select
     outcome%cost = steps%cost
   end subroutine run_with
 
-  !> Lays out the meshes of a stepper for H0 from high to low.
-  subroutine lay_out(steps, chosen, high, low, store)
+  !> Lays out the meshes of a stepper.
+  subroutine lay_out(steps, chosen, store)
     class(stepper_t), intent(inout) :: steps
     type(choice_t), intent(in) :: chosen
-    real(wp), intent(in) :: high, low
     type(mesh_store_t), intent(inout), target, optional :: store
     real(wp) :: began
 
@@ -191,10 +177,11 @@ contains
       steps%options%mixing = .false.
       ! Kernels are made by small products, and cases of a sweep make them at the same time.
       call use_threads_for(1)
-      steps%meshes = new_mesh_family(steps%problem, high, low, chosen%digits, store=store)
+      steps%meshes = new_mesh_family(steps%problem, chosen%high, chosen%low, chosen%digits, &
+        store=store)
     class default
       allocate (steps%meshes%grid(1))
-      steps%meshes%grid(1) = fixed_mesh(chosen, steps%problem, low)
+      steps%meshes%grid(1) = fixed_mesh(chosen, steps%problem)
     end select
     steps%cost%kernel_seconds = steps%cost%kernel_seconds + seconds() - began
     steps%cost%kernel_entries = steps%cost%kernel_entries + &

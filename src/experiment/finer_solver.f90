@@ -79,12 +79,11 @@ module finer_solver
 
 contains
 
-  !> Lays out meshes finer than the edge-locked ones of `steps`, for H0 from high to low. The meshes
-  !> of `steps` are unchanged.
-  subroutine lay_out(self, steps, high, low, store)
+  !> Lays out meshes finer than the edge-locked ones of `steps`, whose meshes are unchanged.
+  subroutine lay_out(self, steps, chosen, store)
     class(finer_t), intent(inout) :: self
     class(solver_t), intent(in) :: steps
-    real(wp), intent(in) :: high, low
+    type(choice_t), intent(in) :: chosen
     type(mesh_store_t), intent(inout), target, optional :: store
     integer :: k
 
@@ -94,22 +93,21 @@ contains
     self%margin = usual
     if (.not. steps%problem%law%edge_gap > 0 .or. any([(steps%meshes%has_short_panels(k), &
       k=1, size(steps%meshes%grid))])) self%margin = of_less_gained
-    self%meshes = new_mesh_family(steps%problem, high, low, &
+    self%meshes = new_mesh_family(steps%problem, chosen%high, chosen%low, &
       steps%meshes%digits + more_digits, shape_only=.true., coarser=steps%meshes)
     if (present(store)) self%store => store
   end subroutine lay_out
 
-  !> Lays out a mesh for one fixed in space, for H0 down to low: a finer one or, if this would be
-  !> too expensive, a coarser one.
-  subroutine lay_out_fixed(self, steps, chosen, low)
+  !> Lays out a mesh for one fixed in space: a finer one or, if this would be too expensive, a
+  !> coarser one.
+  subroutine lay_out_fixed(self, steps, chosen)
     class(finer_t), intent(inout) :: self
     class(solver_t), intent(in) :: steps
     type(choice_t), intent(in) :: chosen
-    real(wp), intent(in) :: low
 
     call self%take_over(steps)
     allocate (self%meshes%grid(1))
-    self%meshes%grid(1) = fixed_mesh(companion(chosen), steps%problem, low)
+    self%meshes%grid(1) = fixed_mesh(companion(chosen), steps%problem)
     self%margin = merge(of_fixed, of_coarser, &
       self%meshes%grid(1)%nodes > steps%meshes%grid(1)%nodes)
     self%cost%kernel_entries = self%cost%kernel_entries + self%meshes%grid(1)%kernel_entries()

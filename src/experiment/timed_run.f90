@@ -67,26 +67,27 @@ contains
     type(cost_t), intent(inout) :: cost
     integer, intent(out) :: nodes
     type(time_stepper_t) :: steps
-    type(motion_t) :: drive
-    type(pass_t) :: now, before, none
+    type(pass_t) :: now, before, blank
     real(wp) :: began, low
     integer :: pass, whole, i
     logical :: enough
 
-    call prepare(request, problem, chosen, steps, drive)
+    call prepare(request, problem, chosen, steps, blank%drive)
+    if (allocated(request%drive%time_step)) blank%time_step = request%drive%time_step
     began = seconds()
     ! With a spring the lowest h0 is that of the contact with the spring's load.
-    low = minval(drive%position)
+    low = minval(blank%drive%position)
     if (allocated(request%drive%stiffness)) low = &
       h0_in_contact(relaxed_problem(steps), 1.0_wp, steps%compliance, low)
     whole = 0
     do pass = 1, most_passes
-      before = none
+      before = blank
       if (whole > 0) before = now
-      now = none
-      call lay_out(request, drive, low, chosen, pass, observer, steps)
+      now = blank
+      now%number = pass
+      call lay_out(request, blank%drive, low, chosen, pass, observer, steps)
       steps%farthest = farthest/2**(pass - 1)
-      call go_through(request, drive, pass, before, steps, journal, observer, now)
+      call go_through(before, steps, journal, observer, now)
       if (now%result%lost) then
         ! Finer meshes may resolve the loss; otherwise the previous passes have their error
         ! estimates.
@@ -109,7 +110,7 @@ contains
     nodes = sum(steps%meshes%grid%nodes)
     do i = 1, now%held
       now%row(i)%time = now%row(i)%time + &
-        drive%began(findloc(names_of_ways == now%row(i)%branch, .true., 1))
+        blank%drive%began(findloc(names_of_ways == now%row(i)%branch, .true., 1))
       call observer%take(now%row(i), steps%problem, steps%meshes%grid(1), steps%before%state, &
         .false.)
     end do
@@ -191,11 +192,12 @@ contains
       if (relaxed%film_gap > 0) numerics%r_max = far_out*relaxed%lateral* &
         relaxed%shape%position_of(relaxed%film_gap)
       of_memory%grid = panels
-      call size_grid(of_memory, numerics, relaxed, low)
+      of_memory%low = low
+      call size_grid(of_memory, numerics, relaxed)
       of_memory%panel_over_feature = over_neck
       of_memory%panel_order = of_memory%panel_order + over_order + pass
       of_memory%nodes = most_nodes
-      grid = fixed_mesh(of_memory, relaxed, low)
+      grid = fixed_mesh(of_memory, relaxed)
       steps%material = new_material(grid, count(abs(grid%panel%right - grid%panel%left - &
         grid%panel(1)%right) <= 1.0e-9_wp*grid%panel(1)%right), left_out*request%numerics%accuracy)
       steps%cost%kernel_entries = steps%cost%kernel_entries + steps%material%kernel_entries()

@@ -16,6 +16,7 @@ module motion
     real(wp) :: began(3) = 0, lasts(3) = 0, position(0:3) = 0
   contains
     procedure :: at
+    procedure :: length_of
   end type motion_t
 
 contains
@@ -41,5 +42,13 @@ contains
     if (self%lasts(way) > 0) position = position + &
       (self%position(way - 1) - position)*(self%lasts(way) - time)/self%lasts(way)
   end function at
+
+  !> The distance between the ends of a way.
+  pure real(wp) function length_of(self, way)
+    class(motion_t), intent(in) :: self
+    integer, intent(in) :: way
+
+    length_of = abs(self%position(way) - self%position(way - 1))
+  end function length_of
 
 end module motion
