@@ -108,7 +108,7 @@ contains
     logical, intent(in) :: with_cycle
     class(observer_t), intent(inout) :: observer
     type(experiment_result_t), intent(inout) :: outcome
-    class(keeping_stepper_t), intent(inout), optional :: keeper
+    class(keeping_stepper_t), intent(inout), target, optional :: keeper
     type(mesh_store_t), intent(inout), target, optional :: store
     type(finer_t) :: fine
     type(branch_point_t) :: position
@@ -116,14 +116,14 @@ contains
 
     call prepare(steps, problem, outcome%chosen, request%numerics%accuracy)
     steps%cost = outcome%cost
-    call lay_out(steps, outcome%chosen, store)
+    call lay_out(outcome%chosen)
     began = seconds()
     judged = steps%cost%estimate_seconds
     select type (steps)
     class is (path_stepper_t)
       call trace_exactly(request, steps, outcome%chosen, observer, fine, outcome%places, store)
       outcome%left_out = steps%known%left_out
-      if (allocated(request%path)) call run_path(request, steps, observer, outcome)
+      if (allocated(request%path)) call run_path(steps)
       if (request%reads_path()) then
         call read_path(request, steps, observer, outcome%readings)
         call enter_readings(outcome%readings, outcome%places)
@@ -138,8 +138,7 @@ contains
       end if
     end select
     outcome%nodes = outcome%nodes + sum(steps%meshes%grid%nodes)
-    if (allocated(request%loading) .and. with_cycle) &
-      call run_cycle(request, steps, observer, outcome, keeper)
+    if (allocated(request%loading) .and. with_cycle) call run_cycle(steps)
     ! The time for judging folds and extrema is counted separately.
     steps%cost%solve_seconds = steps%cost%solve_seconds + seconds() - began - &
       (steps%cost%estimate_seconds - judged)
@@ -161,33 +160,100 @@ contains
         call rate_places(request%sensitivity, steps, observer, outcome)
     end select
     outcome%cost = steps%cost
+
+  contains
+
+    !> Lays out the meshes of a stepper.
+    subroutine lay_out(chosen)
+      type(choice_t), intent(in) :: chosen
+      real(wp) :: began
+
+      began = seconds()
+      select type (steps)
+      class is (locked_stepper_t)
+        ! The path is not solved by mixing.
+        steps%options%mixing = .false.
+        ! Kernels are made by small products, and cases of a sweep make them at the same time.
+        call use_threads_for(1)
+        steps%meshes = new_mesh_family(steps%problem, chosen%high, chosen%low, chosen%digits, &
+          store=store)
+      class default
+        allocate (steps%meshes%grid(1))
+        steps%meshes%grid(1) = fixed_mesh(chosen, steps%problem)
+      end select
+      steps%cost%kernel_seconds = steps%cost%kernel_seconds + seconds() - began
+      steps%cost%kernel_entries = steps%cost%kernel_entries + &
+        sum(steps%meshes%grid%kernel_entries())
+      call use_threads_for(maxval(steps%meshes%grid%nodes))
+    end subroutine lay_out
+
+    subroutine run_path(steps)
+      class(path_stepper_t), intent(inout) :: steps
+      real(wp), allocatable :: profiles(:), start
+
+      associate (law => steps%problem%law)
+        allocate (profiles(0))
+        if (allocated(request%profiles)) profiles = law%gap_of(request%profiles%h0)
+        allocate (outcome%path)
+        if (allocated(request%path%h0_start) .or. request%reads_path()) then
+          start = law%gap_of(path_start(request, steps%problem))
+          ! The path may have been traced farther than the part that is shown.
+          if (.not. allocated(request%path%h0_start)) start = max(start, steps%far_away())
+        end if
+        ! A start that is not allocated counts as absent.
+        call follow_path(steps, law%gap_of(request%path%h0_end), profiles, observer, outcome%path, &
+          outcome%places, start)
+      end associate
+    end subroutine run_path
+
+    !> Runs the loading, then an unloading from each turning point; a keeper stores the steps.
+    subroutine run_cycle(solving)
+      class(stepper_t), intent(inout), target :: solving
+      class(stepper_t), pointer :: steps
+      type(h0_schedule_t) :: plan
+      type(branch_point_t) :: position
+      type(branch_point_t), allocatable :: turning(:)
+      real(wp), allocatable :: from(:)
+      integer :: k
+
+      steps => solving
+      if (present(keeper)) then
+        call keeper%keep_steps_of(solving)
+        steps => keeper
+      end if
+      allocate (from(0))
+      if (allocated(request%unloading)) from = steps%problem%law%gap_of(request%unloading%from)
+      allocate (turning(size(from)))
+      allocate (outcome%loading)
+      plan = loading_plan(request, steps%problem%law, from)
+      call run_branch(steps, plan, .true., position, observer, outcome%loading, outcome%places, &
+        from, turning)
+      ! If the path has the jumps, they are exact.
+      if (allocated(outcome%loading%jump) .and. .not. outcome%places%has('jump_in')) &
+        call outcome%places%enter('jump_in', 1, outcome%loading%jump)
+      if (allocated(request%unloading)) allocate (outcome%unloading(size(from)))
+      do k = 1, size(from)
+        associate (branch => outcome%unloading(k), places => outcome%places)
+          if (allocated(turning(k)%state%gap)) then
+            position = turning(k)
+            plan = unloading_plan(request, steps%problem%law, k)
+            call run_branch(steps, plan, .false., position, observer, branch, places)
+          else
+            branch%ending%cause = turn_not_reached
+          end if
+          ! An argument that is not allocated counts as absent.
+          call places%enter('unload_max_tension', k, branch%lowest)
+          call places%enter('unload_jump_out', k, branch%jump)
+          if (allocated(branch%jump) .and. .not. places%has('jump_out')) &
+            call places%enter('jump_out', 1, branch%jump)
+        end associate
+      end do
+      if (.not. present(keeper)) return
+      solving%cost%states = solving%cost%states + keeper%cost%states
+      solving%cost%solve_seconds = solving%cost%solve_seconds + keeper%earlier_seconds
+    end subroutine run_cycle
+
   end subroutine run_with
-
-  !> Lays out the meshes of a stepper.
-  subroutine lay_out(steps, chosen, store)
-    class(stepper_t), intent(inout) :: steps
-    type(choice_t), intent(in) :: chosen
-    type(mesh_store_t), intent(inout), target, optional :: store
-    real(wp) :: began
-
-    began = seconds()
-    select type (steps)
-    class is (locked_stepper_t)
-      ! The path is not solved by mixing.
-      steps%options%mixing = .false.
-      ! Kernels are made by small products, and cases of a sweep make them at the same time.
-      call use_threads_for(1)
-      steps%meshes = new_mesh_family(steps%problem, chosen%high, chosen%low, chosen%digits, &
-        store=store)
-    class default
-      allocate (steps%meshes%grid(1))
-      steps%meshes%grid(1) = fixed_mesh(chosen, steps%problem)
-    end select
-    steps%cost%kernel_seconds = steps%cost%kernel_seconds + seconds() - began
-    steps%cost%kernel_entries = steps%cost%kernel_entries + &
-      sum(steps%meshes%grid%kernel_entries())
-    call use_threads_for(maxval(steps%meshes%grid%nodes))
-  end subroutine lay_out
 
   !> Sets the parts that both kinds of steppers have.
   subroutine prepare(steps, problem, chosen, accuracy)
@@ -201,78 +267,5 @@ contains
     ! Each halving solves a state, and a fixed grid has a larger error of a jump.
     steps%jump_tolerance = max(accuracy, 1.0e-4_wp)
   end subroutine prepare
-
-  subroutine run_path(request, steps, observer, outcome)
-    class(request_t), intent(in) :: request
-    class(path_stepper_t), intent(inout) :: steps
-    class(observer_t), intent(inout) :: observer
-    type(experiment_result_t), intent(inout) :: outcome
-    real(wp), allocatable :: profiles(:), start
-
-    associate (law => steps%problem%law)
-      allocate (profiles(0))
-      if (allocated(request%profiles)) profiles = law%gap_of(request%profiles%h0)
-      allocate (outcome%path)
-      if (allocated(request%path%h0_start) .or. request%reads_path()) then
-        start = law%gap_of(path_start(request, steps%problem))
-        ! The path may have been traced farther than the part that is shown.
-        if (.not. allocated(request%path%h0_start)) start = max(start, steps%far_away())
-      end if
-      ! A start that is not allocated counts as absent.
-      call follow_path(steps, law%gap_of(request%path%h0_end), profiles, observer, outcome%path, &
-        outcome%places, start)
-    end associate
-  end subroutine run_path
-
-  !> Runs the loading, then an unloading from each turning point; a keeper stores the steps.
-  subroutine run_cycle(request, solving, observer, outcome, keeper)
-    class(request_t), intent(in) :: request
-    class(stepper_t), intent(inout), target :: solving
-    class(observer_t), intent(inout) :: observer
-    type(experiment_result_t), intent(inout) :: outcome
-    class(keeping_stepper_t), intent(inout), target, optional :: keeper
-    class(stepper_t), pointer :: steps
-    type(h0_schedule_t) :: plan
-    type(branch_point_t) :: position
-    type(branch_point_t), allocatable :: turning(:)
-    real(wp), allocatable :: from(:)
-    integer :: k
-
-    steps => solving
-    if (present(keeper)) then
-      call keeper%keep_steps_of(solving)
-      steps => keeper
-    end if
-    allocate (from(0))
-    if (allocated(request%unloading)) from = steps%problem%law%gap_of(request%unloading%from)
-    allocate (turning(size(from)))
-    allocate (outcome%loading)
-    plan = loading_plan(request, steps%problem%law, from)
-    call run_branch(steps, plan, .true., position, observer, outcome%loading, outcome%places, &
-      from, turning)
-    ! If the path has the jumps, they are exact.
-    if (allocated(outcome%loading%jump) .and. .not. outcome%places%has('jump_in')) &
-      call outcome%places%enter('jump_in', 1, outcome%loading%jump)
-    if (allocated(request%unloading)) allocate (outcome%unloading(size(from)))
-    do k = 1, size(from)
-      associate (branch => outcome%unloading(k), places => outcome%places)
-        if (allocated(turning(k)%state%gap)) then
-          position = turning(k)
-          plan = unloading_plan(request, steps%problem%law, k)
-          call run_branch(steps, plan, .false., position, observer, branch, places)
-        else
-          branch%ending%cause = turn_not_reached
-        end if
-        ! An argument that is not allocated counts as absent.
-        call places%enter('unload_max_tension', k, branch%lowest)
-        call places%enter('unload_jump_out', k, branch%jump)
-        if (allocated(branch%jump) .and. .not. places%has('jump_out')) &
-          call places%enter('jump_out', 1, branch%jump)
-      end associate
-    end do
-    if (.not. present(keeper)) return
-    solving%cost%states = solving%cost%states + keeper%cost%states
-    solving%cost%solve_seconds = solving%cost%solve_seconds + keeper%earlier_seconds
-  end subroutine run_cycle
 
 end module experiment

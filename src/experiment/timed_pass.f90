@@ -79,11 +79,11 @@ contains
         if (allocated(steps%drainage)) then
           call step_drained(longest_part, steps, now)
         else if (before%held == 0) then
-          call choose_step(steps, now)
+          call choose_step()
         else
-          call halve_step(before, steps, now)
+          call halve_step()
         end if
-        call tell(now, listener)
+        call tell()
         call keep(journal, steps, now)
       end do
     end do
@@ -98,151 +98,144 @@ contains
     end associate
     now%ended = .true.
     call keep(journal, steps, now)
+
+  contains
+
+    !> A step of the first pass.
+    subroutine choose_step()
+      type(instant_t) :: from
+      real(wp) :: whole, end, moved, shortest, way_length
+
+      whole = now%drive%lasts(now%way)
+      shortest = max(1.0e-8_wp*whole, min(1.0e-5_wp*whole, 1.0e-4_wp*steps%creep%shortest()))
+      if (.not. now%step > 0) now%step = first_part*whole
+      ! Without adhesion, a long step may lead from a load of zero far into contact.
+      way_length = now%drive%length_of(now%way)
+      if (.not. steps%meshes%traceable .and. way_length > 0) now%step = min(now%step, &
+        longest_step(steps, now%at)*whole/way_length)
+      if (allocated(now%time_step)) now%step = 2*now%time_step
+      end = now%at%time + now%step
+      if (end + 0.01_wp*now%step > whole) end = whole
+      from = now%at
+      call go_to(end)
+      moved = missed(steps, from, now)
+      now%step = (now%at%time - from%time)*min(2.0_wp, max(0.3_wp, 0.9_wp/sqrt(moved)))
+      now%step = min(max(now%step, shortest), longest_part*whole)
+      if (now%held > most_steps) call lose(now)
+    end subroutine choose_step
+
+    !> Deviation of a step over the allowed deviation: below 1 the step may be longer, above 1 it
+    !> must be shorter.
+    real(wp) function missed(steps, from, now)
+      type(time_stepper_t), intent(in) :: steps
+      type(instant_t), intent(in) :: from
+      type(pass_t), intent(in) :: now
+      real(wp) :: line, unit
+
+      missed = 0.05_wp
+      ! Creeping bodies are stiffer than bodies at rest.
+      unit = now%load_unit
+      if (.not. steps%meshes%traceable) unit = max(unit, now%result%largest_load)
+      associate (r => now%recent)
+        if (now%recently < 3 .or. .not. r(1, 2) > r(1, 1)) then
+          missed = 1
+        else
+          line = r(2, 2) + (r(2, 2) - r(2, 1))*(r(1, 3) - r(1, 2))/(r(1, 2) - r(1, 1))
+          missed = max(missed, abs(r(2, 3) - line)/(bend*unit))
+        end if
+      end associate
+      ! Elastic bodies do not remember where their edge was.
+      if (size(steps%creep%time) == 0) return
+      if (from%mesh >= contact .and. now%at%mesh >= contact .and. steps%meshes%traceable) missed = &
+        max(missed, (abs(now%at%state%scale - from%state%scale)/ &
+        (edge_moves*steps%finest(from%state%scale)))**2)
+    end function missed
+
+    !> The unit of load for the choice of steps: a pull-off or, without adhesion, the load at rest
+    !> at the lowest position, which the largest load of the drive exceeds. Compared with it, the
+    !> loads of bodies far apart are small from the beginning, and steps are long there.
+    real(wp) function unit_of_load(drive, before, steps) result(unit)
+      type(motion_t), intent(in) :: drive
+      type(pass_t), intent(in) :: before
+      type(time_stepper_t), intent(inout) :: steps
+
+      unit = tiny(1.0_wp)
+      if (steps%meshes%traceable) then
+        unit = pi*steps%problem%law%adhesion
+      else if (before%held == 0) then
+        unit = max(unit, load_at_rest(steps, minval(drive%position)))
+      end if
+    end function unit_of_load
+
+    !> Takes the halves of a step of the previous pass.
+    subroutine halve_step()
+      do while (before%row(now%halved)%branch /= names_of_ways(now%way) .or. &
+        .not. before%row(now%halved)%time > now%at%time)
+        now%halved = now%halved + 1
+      end do
+      associate (end => before%row(now%halved)%time)
+        call go_to(0.5_wp*(now%at%time + end))
+        if (.not. now%result%lost) call go_to(end)
+      end associate
+    end subroutine halve_step
+
+    !> Moves to a time since the beginning of the way, in shorter steps where bodies move too far in
+    !> one step, and over instantaneous jumps.
+    subroutine go_to(time)
+      real(wp), intent(in) :: time
+      type(instant_t) :: next
+      real(wp) :: try, least, way_speed, when
+      logical :: done, smooth
+
+      way_speed = now%drive%length_of(now%way)/now%drive%lasts(now%way)
+      least = shortest_part*steps%creep%shortest()
+      if (way_speed > 0) least = min(least, shortest_way/way_speed)
+      ! Bodies that do not attract each other never jump.
+      if (.not. steps%meshes%traceable) least = shortest_way*least
+      do while (now%at%time < time)
+        try = min(now%longest, time - now%at%time)
+        if (now%at%time + 1.01_wp*try > time) try = time - now%at%time
+        when = min(now%at%time + try, time)
+        call steps%step(now%at, when, now%drive%at(now%way, when), next, done)
+        smooth = done
+        if (.not. done .and. steps%meshes%traceable) call step_along(steps, now%at, when, &
+          now%drive%at(now%way, when), now%inwards, steps%farthest, next, done)
+        if (done) then
+          call accept(steps, next, smooth, now)
+          now%since = now%since + 1
+          if (now%since > patience) now%longest = max(now%longest, 2*try)
+          cycle
+        end if
+        steps%cost%rejected_steps = steps%cost%rejected_steps + 1
+        now%longest = 0.5_wp*try
+        now%since = 0
+        if (now%longest > least .and. now%at%time + now%longest > now%at%time) cycle
+        try = min(max(now%longest, least), time - now%at%time)
+        when = min(now%at%time + try, time)
+        if (steps%meshes%traceable) call step_along(steps, now%at, when, now%drive%at(now%way, &
+          when), now%inwards, huge(1.0_wp), next, done)
+        if (.not. done .or. now%held > now%most .or. now%result%jumps > now%most_jumps) then
+          call lose(now)
+          return
+        end if
+        now%result%jumps = now%result%jumps + 1
+        now%recently = 0
+        call accept(steps, next, .false., now)
+        steps%before = now%at
+        now%longest = least
+        now%since = patience
+      end do
+    end subroutine go_to
+
+    !> Sends messages about the progress of a pass.
+    subroutine tell()
+      character(len=60) :: so_far
+
+      write (so_far, '(a, i0, a, i0, a)') 'drive, pass ', now%number, ': ', &
+        nint(100*(now%began + now%at%time)/(now%drive%began(3) + now%drive%lasts(3))), ' %'
+      call listener%hear(trim(so_far))
+    end subroutine tell
+
   end subroutine go_through
-
-  !> A step of the first pass.
-  subroutine choose_step(steps, now)
-    type(time_stepper_t), intent(inout) :: steps
-    type(pass_t), intent(inout) :: now
-    type(instant_t) :: from
-    real(wp) :: whole, end, moved, shortest, way_length
-
-    whole = now%drive%lasts(now%way)
-    shortest = max(1.0e-8_wp*whole, min(1.0e-5_wp*whole, 1.0e-4_wp*steps%creep%shortest()))
-    if (.not. now%step > 0) now%step = first_part*whole
-    ! Without adhesion, a long step may lead from a load of zero far into contact.
-    way_length = now%drive%length_of(now%way)
-    if (.not. steps%meshes%traceable .and. way_length > 0) now%step = min(now%step, &
-      longest_step(steps, now%at)*whole/way_length)
-    if (allocated(now%time_step)) now%step = 2*now%time_step
-    end = now%at%time + now%step
-    if (end + 0.01_wp*now%step > whole) end = whole
-    from = now%at
-    call go_to(end, steps, now)
-    moved = missed(steps, from, now)
-    now%step = (now%at%time - from%time)*min(2.0_wp, max(0.3_wp, 0.9_wp/sqrt(moved)))
-    now%step = min(max(now%step, shortest), longest_part*whole)
-    if (now%held > most_steps) call lose(now)
-  end subroutine choose_step
-
-  !> Deviation of a step over the allowed deviation: below 1 the step may be longer, above 1 it must
-  !> be shorter.
-  real(wp) function missed(steps, from, now)
-    type(time_stepper_t), intent(in) :: steps
-    type(instant_t), intent(in) :: from
-    type(pass_t), intent(in) :: now
-    real(wp) :: line, unit
-
-    missed = 0.05_wp
-    ! Creeping bodies are stiffer than bodies at rest.
-    unit = now%load_unit
-    if (.not. steps%meshes%traceable) unit = max(unit, now%result%largest_load)
-    associate (r => now%recent)
-      if (now%recently < 3 .or. .not. r(1, 2) > r(1, 1)) then
-        missed = 1
-      else
-        line = r(2, 2) + (r(2, 2) - r(2, 1))*(r(1, 3) - r(1, 2))/(r(1, 2) - r(1, 1))
-        missed = max(missed, abs(r(2, 3) - line)/(bend*unit))
-      end if
-    end associate
-    ! Elastic bodies do not remember where their edge was.
-    if (size(steps%creep%time) == 0) return
-    if (from%mesh >= contact .and. now%at%mesh >= contact .and. steps%meshes%traceable) missed = &
-      max(missed, (abs(now%at%state%scale - from%state%scale)/ &
-      (edge_moves*steps%finest(from%state%scale)))**2)
-  end function missed
-
-  !> The unit of load for the choice of steps: a pull-off or, without adhesion, the load at rest at
-  !> the lowest position, which the largest load of the drive exceeds. Compared with it, the loads
-  !> of bodies far apart are small from the beginning, and steps are long there.
-  real(wp) function unit_of_load(drive, before, steps) result(unit)
-    type(motion_t), intent(in) :: drive
-    type(pass_t), intent(in) :: before
-    type(time_stepper_t), intent(inout) :: steps
-
-    unit = tiny(1.0_wp)
-    if (steps%meshes%traceable) then
-      unit = pi*steps%problem%law%adhesion
-    else if (before%held == 0) then
-      unit = max(unit, load_at_rest(steps, minval(drive%position)))
-    end if
-  end function unit_of_load
-
-  !> Takes the halves of a step of the previous pass.
-  subroutine halve_step(before, steps, now)
-    type(pass_t), intent(in) :: before
-    type(time_stepper_t), intent(inout) :: steps
-    type(pass_t), intent(inout) :: now
-
-    do while (before%row(now%halved)%branch /= names_of_ways(now%way) .or. &
-      .not. before%row(now%halved)%time > now%at%time)
-      now%halved = now%halved + 1
-    end do
-    associate (end => before%row(now%halved)%time)
-      call go_to(0.5_wp*(now%at%time + end), steps, now)
-      if (.not. now%result%lost) call go_to(end, steps, now)
-    end associate
-  end subroutine halve_step
-
-  !> Moves to a time since the beginning of the way, in shorter steps where bodies move too far in one
-  !> step, and over instantaneous jumps.
-  subroutine go_to(time, steps, now)
-    real(wp), intent(in) :: time
-    type(time_stepper_t), intent(inout) :: steps
-    type(pass_t), intent(inout) :: now
-    type(instant_t) :: next
-    real(wp) :: try, least, way_speed, when
-    logical :: done, smooth
-
-    way_speed = now%drive%length_of(now%way)/now%drive%lasts(now%way)
-    least = shortest_part*steps%creep%shortest()
-    if (way_speed > 0) least = min(least, shortest_way/way_speed)
-    ! Bodies that do not attract each other never jump.
-    if (.not. steps%meshes%traceable) least = shortest_way*least
-    do while (now%at%time < time)
-      try = min(now%longest, time - now%at%time)
-      if (now%at%time + 1.01_wp*try > time) try = time - now%at%time
-      when = min(now%at%time + try, time)
-      call steps%step(now%at, when, now%drive%at(now%way, when), next, done)
-      smooth = done
-      if (.not. done .and. steps%meshes%traceable) call step_along(steps, now%at, when, &
-        now%drive%at(now%way, when), now%inwards, steps%farthest, next, done)
-      if (done) then
-        call accept(steps, next, smooth, now)
-        now%since = now%since + 1
-        if (now%since > patience) now%longest = max(now%longest, 2*try)
-        cycle
-      end if
-      steps%cost%rejected_steps = steps%cost%rejected_steps + 1
-      now%longest = 0.5_wp*try
-      now%since = 0
-      if (now%longest > least .and. now%at%time + now%longest > now%at%time) cycle
-      try = min(max(now%longest, least), time - now%at%time)
-      when = min(now%at%time + try, time)
-      if (steps%meshes%traceable) call step_along(steps, now%at, when, now%drive%at(now%way, when), &
-        now%inwards, huge(1.0_wp), next, done)
-      if (.not. done .or. now%held > now%most .or. now%result%jumps > now%most_jumps) then
-        call lose(now)
-        return
-      end if
-      now%result%jumps = now%result%jumps + 1
-      now%recently = 0
-      call accept(steps, next, .false., now)
-      steps%before = now%at
-      now%longest = least
-      now%since = patience
-    end do
-  end subroutine go_to
-
-  !> Sends messages about the progress of a pass.
-  subroutine tell(now, listener)
-    type(pass_t), intent(in) :: now
-    class(listener_t), intent(inout) :: listener
-    character(len=60) :: so_far
-
-    write (so_far, '(a, i0, a, i0, a)') 'drive, pass ', now%number, ': ', &
-      nint(100*(now%began + now%at%time)/(now%drive%began(3) + now%drive%lasts(3))), ' %'
-    call listener%hear(trim(so_far))
-  end subroutine tell
 
 end module timed_pass
