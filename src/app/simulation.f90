@@ -3,7 +3,7 @@ module simulation
   use kinds, only: wp, long
   use failure, only: failure_t, bad_input
   use build_info, only: version, compiler, blas, options
-  use dimensionless_problem, only: problem_t
+  use dimensionless_problem, only: problem_t, calm_gap
   use scene_groups, only: scene_t
   use text, only: brief
   use experiment_result, only: experiment_result_t
@@ -20,7 +20,11 @@ module simulation
   use blas_threads, only: thread_count
   use linear_algebra, only: claim_buffers
   use equilibrium, only: cost_t
-  use derived_tables, only: write_derived_tables, write_path_tables, write_sensitivities
+  use classical_rows, only: write_classical
+  use approximation_tables, only: write_approximations
+  use reading_rows, only: write_path_tables
+  use sensitivity_rows, only: write_sensitivities
+  use path_demand, only: path_start
   use stability_records, only: stability_recorder_t
   use summarise, only: summary_of
   use problem_numbers, only: describe_problem
@@ -81,7 +85,11 @@ contains
     call open_folder()
     if (allocated(error)) return
     call compute()
-    call write_derived_tables(scene, problem, results, summary)
+    if (allocated(scene%classical)) call write_classical(problem, scene%classical, &
+      path_start(scene, problem), results, summary)
+    ! Bodies are nearly undeformed only before the path comes to contact.
+    if (allocated(scene%approximations)) call write_approximations(problem, scene%approximations, &
+      max(path_start(scene, problem), problem%law%separation_of(calm_gap(problem))), results)
     if (allocated(scene%fit)) call fit_measured()
     call describe_program()
     call summary%set('wall_seconds', results%journal%earlier + seconds() - began)
@@ -192,13 +200,14 @@ contains
       else
         call run_experiment(scene, problem, results, outcome, keeper)
       end if
-      call write_path_tables(problem, outcome, results)
+      if (allocated(outcome%readings)) &
+        call write_path_tables(problem, outcome%readings, outcome%places, results)
       if (allocated(scene%sensitivity) .and. allocated(outcome%timed)) &
         call rate_drive(scene, keeper, results, outcome%timed)
       summary = summary_of(scene, problem, outcome)
       call recorder%warn(summary)
       if (allocated(scene%sensitivity)) &
-        call write_sensitivities(scene%sensitivity, problem, outcome, summary, results)
+        call write_sensitivities(scene%sensitivity%varied, problem, outcome, summary, results)
       cost = outcome%cost
       cost%factorisations = cost%factorisations + recorder%cost%factorisations
     end subroutine run_observed

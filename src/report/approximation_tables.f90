@@ -1,6 +1,8 @@
 !> The approximation of slowly varying deformation over the range of a scene, as rows of a table,
 !> and the jumps of approaching bodies in this approximation. SI units.
 module approximation_tables
+  ! The module with most dependencies is first: compiler note 12.
+  use results, only: results_t
   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
   use kinds, only: wp, nan
   use dimensionless_problem, only: problem_t
@@ -9,7 +11,6 @@ module approximation_tables
   use slow_jumps, only: slow_gap, at_h0, at_criterion, at_fold
   use scene_groups, only: range_t
   use result_rows, only: row_of
-  use results, only: results_t
   use summary, only: summary_t
   implicit none
   private
@@ -50,6 +51,7 @@ contains
     real(wp) :: start, nearest
     integer :: k
 
+    call results%begin_table('approximations.csv')
     start = from
     if (allocated(range%h0_start)) start = range%h0_start
     jumps = jumps_of(problem)

@@ -43,6 +43,7 @@ contains
     logical :: layered, any_row
     integer :: i
 
+    call results%begin_table('classical.csv')
     if (problem%rigid) then
       call summary%note('classical: rigid bodies have no displacement, and no theory has rows')
       return

@@ -17,8 +17,7 @@ module summarise
   use summary, only: summary_t
   use classical_rows, only: summarise_classical
   use approximation_tables, only: summarise_approximations
-  use device_rows, only: summarise_device
-  use fixed_load_rows, only: summarise_fixed_loads
+  use reading_rows, only: summarise_device, summarise_fixed_loads
   use regime_rows, only: summarise_regime
   use rate_entries, only: summarise_timed
   use quality_warnings, only: judge_law, judge_extent, judge_layers, judge_resolution, &
