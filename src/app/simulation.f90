@@ -221,7 +221,7 @@ contains
       integer :: i
 
       call family_of_fit(scene%deck, family, error)
-      call run_fit(scene%measured, scene%measurement, scene%fit, scene%numerics, family, &
+      call run_fit(scene%measured, scene%fit, scene%numerics, family, &
         widened(family), problem, results, outcome)
       call results%progress%finish()
       if (allocated(outcome%trouble)) then

@@ -99,8 +99,8 @@ contains
     if (outcome%timed%begun) outcome%error_estimate = outcome%timed%estimate
   end subroutine run_driven
 
-  !> Runs the path, and the cycle if `with_cycle` and the scene has one, with a stepper. A stepper on
-  !> a mesh fixed in space runs the cycle only.
+  !> Runs the path, and the cycle if `with_cycle` and the scene has one, with a stepper. A stepper
+  !> on a mesh fixed in space runs the cycle only.
   subroutine run_with(steps, request, problem, with_cycle, observer, outcome, keeper, store)
     class(stepper_t), intent(inout), target :: steps
     class(request_t), intent(in) :: request

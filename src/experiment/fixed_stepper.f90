@@ -73,7 +73,7 @@ contains
     logical :: slipped
 
     do
-      call step_until_slip(self, h0, position, event, slipped)
+      call step_until_slip(event)
       if (.not. slipped) exit
       if (.not. slip%jumped .or. event%jump_load < slip%jump_load) slip = event
     end do
@@ -83,81 +83,77 @@ contains
     event%jump_h0 = slip%jump_h0
     event%jump_load = slip%jump_load
     event%jump_uncertainty = slip%jump_uncertainty
+
+  contains
+
+    !> Moves to h0 or, slipped = .true., to the state in which the edge rests before h0.
+    subroutine step_until_slip(event)
+      type(step_result_t), intent(out) :: event
+      type(state_t) :: state, landed
+      real(wp) :: beyond
+      logical :: continues, arrived, stalled, has_landed
+
+      slipped = .false.
+      if (self%options%stop_on_change) then
+        call paper_step(event)
+        return
+      end if
+      call continue_to(self, h0, position, expected_at(self, h0, position), state, event, continues)
+      if (continues) then
+        call remember(position, state, 1, .false.)
+        return
+      end if
+      associate (before => position%state, mesh => self%meshes%grid(1), law => self%problem%law)
+        ! No contact is larger than the mesh.
+        if (law%adhesion > 0 .and. lost_in_rounding(self%problem, &
+          min(largest_radius(self%problem, h0, 0.0_wp), mesh%end))) then
+          event%ending%cause = beyond_rounding
+          return
+        end if
+        ! Many jumps of the edge in one step are not located individually.
+        has_landed = .not. self%options%mixing .and. abs(h0 - before%h0) > short_step .and. &
+          before%axis_gap < law%edge_gap .and. over_neck(self%problem, mesh%spacing) < fine_enough
+      end associate
+      if (has_landed) then
+        call land(self, h0, position%state, landed, event)
+        if (stays(self, position%state, landed, event)) then
+          call locate_jump(event, position%state, h0)
+          call remember(position, landed, 1, .false.)
+          return
+        end if
+        has_landed = event%converged
+      end if
+      call follow_to_end(self, h0, position, event, beyond, arrived, stalled)
+      if (arrived) return
+      if (stalled) then
+        ! The iteration does not follow the branch, and no jump was found: it is not known whether a
+        ! state at h0 is on this branch.
+        call land(self, h0, position%state, landed, event)
+        event%converged = .false.
+        call remember(position, landed, 1, .true.)
+        return
+      end if
+      if (.not. has_landed) call slip_to(self, beyond, h0, position, event, slipped)
+      if (.not. slipped) call jump_to(self, h0, beyond, has_landed, landed, position, event)
+    end subroutine step_until_slip
+
+    !> A step of the paper: h0 changes at constant separation, and the iteration continues until the
+    !> paper's rule is met. A change of deformation many times that of h0 counts as a jump, which is
+    !> located only to within the step.
+    subroutine paper_step(event)
+      type(step_result_t), intent(out) :: event
+      type(state_t) :: state
+
+      state = position%state
+      call self%solve(control_t(value=h0), state, event%converged)
+      associate (before => position%state)
+        event%jumped = event%converged .and. &
+          change(before, state) > max(1.0_wp, paper_jump*abs(h0 - before%h0))
+        call locate_jump(event, before, h0)
+      end associate
+      call remember(position, state, 1, event%jumped)
+    end subroutine paper_step
+
   end subroutine step_to
-
-  !> Moves to h0 or, slipped = .true., to the state in which the edge rests before h0.
-  subroutine step_until_slip(self, h0, position, event, slipped)
-    class(fixed_stepper_t), intent(inout) :: self
-    real(wp), intent(in) :: h0
-    type(branch_point_t), intent(inout) :: position
-    type(step_result_t), intent(out) :: event
-    logical, intent(out) :: slipped
-    type(state_t) :: state, landed
-    real(wp) :: beyond
-    logical :: continues, arrived, stalled, has_landed
-
-    slipped = .false.
-    if (self%options%stop_on_change) then
-      call paper_step(self, h0, position, event)
-      return
-    end if
-    call continue_to(self, h0, position, expected_at(self, h0, position), state, event, continues)
-    if (continues) then
-      call remember(position, state, 1, .false.)
-      return
-    end if
-    associate (before => position%state, mesh => self%meshes%grid(1), law => self%problem%law)
-      ! No contact is larger than the mesh.
-      if (law%adhesion > 0 .and. lost_in_rounding(self%problem, &
-        min(largest_radius(self%problem, h0, 0.0_wp), mesh%end))) then
-        event%ending%cause = beyond_rounding
-        return
-      end if
-      ! Many jumps of the edge in one step are not located individually.
-      has_landed = .not. self%options%mixing .and. abs(h0 - before%h0) > short_step .and. &
-        before%axis_gap < law%edge_gap .and. over_neck(self%problem, mesh%spacing) < fine_enough
-    end associate
-    if (has_landed) then
-      call land(self, h0, position%state, landed, event)
-      if (stays(self, position%state, landed, event)) then
-        call locate_jump(event, position%state, h0)
-        call remember(position, landed, 1, .false.)
-        return
-      end if
-      has_landed = event%converged
-    end if
-    call follow_to_end(self, h0, position, event, beyond, arrived, stalled)
-    if (arrived) return
-    if (stalled) then
-      ! The iteration does not follow the branch, and no jump was found: it is not known whether a
-      ! state at h0 is on this branch.
-      call land(self, h0, position%state, landed, event)
-      event%converged = .false.
-      call remember(position, landed, 1, .true.)
-      return
-    end if
-    if (.not. has_landed) call slip_to(self, beyond, h0, position, event, slipped)
-    if (.not. slipped) call jump_to(self, h0, beyond, has_landed, landed, position, event)
-  end subroutine step_until_slip
-
-  !> A step of the paper: h0 changes at constant separation, and the iteration continues until the
-  !> paper's rule is met. A change of deformation many times that of h0 counts as a jump, which is
-  !> located only to within the step.
-  subroutine paper_step(self, h0, position, event)
-    class(fixed_stepper_t), intent(inout) :: self
-    real(wp), intent(in) :: h0
-    type(branch_point_t), intent(inout) :: position
-    type(step_result_t), intent(out) :: event
-    type(state_t) :: state
-
-    state = position%state
-    call self%solve(control_t(value=h0), state, event%converged)
-    associate (before => position%state)
-      event%jumped = event%converged .and. &
-        change(before, state) > max(1.0_wp, paper_jump*abs(h0 - before%h0))
-      call locate_jump(event, before, h0)
-    end associate
-    call remember(position, state, 1, event%jumped)
-  end subroutine paper_step
 
 end module fixed_stepper

@@ -95,8 +95,8 @@ contains
       end if
       if (numerics%method == 'newton') options = newton_of(options)
     end associate
-    chosen%digits = digits_for(problem, largest_radius(problem, chosen%low, contact_level(problem)), &
-      numerics%accuracy, allocated(request%profiles))
+    chosen%digits = digits_for(problem, largest_radius(problem, chosen%low, &
+      contact_level(problem)), numerics%accuracy, allocated(request%profiles))
     if (numerics%grid == 'uniform') then
       chosen%grid = uniform
       chosen%because = 'the deck asks for it'

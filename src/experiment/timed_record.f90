@@ -73,8 +73,8 @@ module timed_record
   !> A pass and its rows, of which the first `kept` are in the journal. Their times are those since
   !> the beginning of a way.
   type, extends(tally_t) :: pass_t
-    !> The number of the pass, the motion of the drive, the length of steps [s] if the deck gives it,
-    !> and the present instant.
+    !> The number of the pass, the motion of the drive, the length of steps [s] if the deck gives
+    !> it, and the present instant.
     integer :: number = 1
     type(motion_t) :: drive
     real(wp), allocatable :: time_step

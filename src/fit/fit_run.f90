@@ -8,7 +8,7 @@ module fit_run
   use dimensionless_problem, only: problem_t
   use variation, only: problem_family_t
   use experiment_request, only: numerics_t
-  use fit_request, only: measurement_t, fit_t, unknown_t, of_model, of_contact_point, is_at_end
+  use fit_request, only: fit_t, unknown_t, of_model, of_contact_point, is_at_end
   use measured_curve, only: measured_t
   use measured_jumps, only: find_jump, find_far, off_baseline
   use measured_checks, only: check_measured, check_loads, other_order
@@ -58,13 +58,11 @@ module fit_run
 
 contains
 
-  !> Runs the fit. measured: the curve of `measurement`. family: the problems, whose parameters are
+  !> Runs the fit. family: the problems, whose parameters are
   !> the unknowns of the model. wider: the same family with the fixed numbers of the deck as further
   !> parameters. problem: the problem with the deck's values.
-  subroutine run_fit(measured, measurement, fit, numerics, family, wider, problem, listener, &
-    outcome)
+  subroutine run_fit(measured, fit, numerics, family, wider, problem, listener, outcome)
     type(measured_t), intent(in) :: measured
-    type(measurement_t), intent(in) :: measurement
     type(fit_t), intent(in) :: fit
     type(numerics_t), intent(in) :: numerics
     class(problem_family_t), intent(in) :: family, wider
@@ -110,7 +108,7 @@ contains
         rounded(outcome%fitted%value(i)) // '; remove it from parameters, or give a prior'
       return
     end do
-    call test_held(outcome%curve, outcome%fitted%value, measurement, numerics, wider, outcome%held)
+    call test_held(outcome%curve, outcome%fitted%value, numerics, wider, outcome%held)
     call listener%hear('fitting classical theories')
     call fit_theories()
 
@@ -124,10 +122,10 @@ contains
       curve%data%measured = measured
       curve%unknown = fit%unknown
       where (curve%unknown%role == of_contact_point) curve%unknown%scale = problem%length
-      curve%spring = measurement%spring_constant
-      curve%sensitivity = 1/measurement%spring_constant
-      if (allocated(measurement%sensitivity)) curve%sensitivity = measurement%sensitivity
-      if (allocated(measurement%contact_point)) curve%contact_point = measurement%contact_point
+      curve%spring = measured%spring_constant
+      curve%sensitivity = 1/measured%spring_constant
+      if (allocated(measured%sensitivity)) curve%sensitivity = measured%sensitivity
+      if (allocated(measured%contact_point)) curve%contact_point = measured%contact_point
       slope = 1/curve%sensitivity
       associate (data => curve%data%measured)
         call find_far(data, slope, curve%data%noise)

@@ -126,7 +126,8 @@ contains
     pure function this_line() result(line)
       character(len=:), allocatable :: line
 
-      line = table%source%part(first, first + scan(table%source%text(first:) // newline, newline) - 2)
+      line = table%source%part(first, first + scan(table%source%text(first:) // newline, newline) &
+        - 2)
     end function this_line
 
     !> The column of each wanted name or number; the names are in the line at position `start`.

@@ -12,14 +12,15 @@ module ending
     path_lost = 4, steps_lost = 5, fallen_before = 6, beyond_path = 7, nothing_afar = 8, &
     state_lost = 9, turn_not_reached = 10, not_kept = 11
   character(len=*), parameter :: messages(0:not_kept) = [character(len=100) :: '', &
-    'rigid bodies would touch: the law has no pressure at gaps so small (h0 <= 0, or far below it)', &
+    'rigid bodies would touch: the law has no pressure at gaps so small (h0 <= 0, or far ' // &
+      'below it)', &
     'adhesion is so strong that rounding hides the force law once the bodies are in contact', &
     'no stable equilibrium exists beyond this h0', &
     'the equilibrium path was lost: no step, however small, converged', &
     'no step, however small, converged', &
     'the bodies have jumped into contact before the h0 at which this branch starts', &
     'this h0 is beyond the path that was traced', &
-    'no equilibrium was found far from contact: after ', &
+    'no equilibrium was found far from contact: after', &
     'a state at a given h0 did not converge', &
     'loading did not reach the turning point', &
     'the results can no longer be written']

@@ -10,7 +10,7 @@ module classical_rows
   use maugis, only: maugis_t, new_maugis
   use transition_fits, only: fit_t, carpick_fit, pietrement_fit
   use theory_names, only: theories, hertz, jkr, dmt, maugis_dugdale, carpick, pietrement_troyon
-  use layered_contact, only: layered_contact_t, new_layered_contact, has_layers
+  use layered_contact, only: layered_contact_t, new_layered_contact, has_layers, of_load
   use scene_groups, only: range_t
   use results, only: results_t
   use summary, only: summary_t
@@ -126,7 +126,7 @@ contains
       if (.not. range%shown(theory)) return
       a = contact%radius_at(theory, delta/problem%length)
       if (.not. ieee_is_nan(a)) &
-        call add(theory, contact%load(theory, a)*problem%load, a*problem%lateral)
+        call add(theory, contact%value_of(of_load, theory, a)*problem%load, a*problem%lateral)
     end subroutine add_layered
 
     subroutine add(theory, load, contact_radius)
@@ -162,7 +162,7 @@ contains
     if (ieee_is_nan(a)) return
     homogeneous = hertz_like_load(problem, problem%shape%contact_radius(delta))
     call summary%set('effective_modulus', &
-      0.5_wp*problem%stiffness*contact%load(hertz, a)/homogeneous)
+      0.5_wp*problem%stiffness*contact%value_of(of_load, hertz, a)/homogeneous)
   end subroutine summarise_layered
 
   !> Adds numbers of Maugis-Dugdale theory with the law's surface energy and largest tension, and of

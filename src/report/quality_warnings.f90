@@ -13,9 +13,10 @@ module quality_warnings
   use scene_groups, only: scene_t
   use mending, only: too_much
   use experiment_result, only: experiment_result_t
+  use numerics_choice, only: edge_locked
   implicit none
   private
-  public :: judge_law, judge_extent, judge_layers, judge_resolution, judge_accuracy, judge_stopping
+  public :: judge_law, judge_run
 
   !> Parts of the radius that give a note and a warning (a parabola differs from a circle by a
   !> quarter of the square); pressure over stiffness, which is about the strain, that gives a
@@ -83,41 +84,162 @@ contains
       brief(error))
   end subroutine take_table_error
 
-  !> Checks the states of the experiments.
-  subroutine judge_extent(problem, quality, summary)
+  !> Checks the states of the experiments, and the accuracy of the numbers.
+  subroutine judge_run(scene, problem, outcome, quality, summary)
+    type(scene_t), intent(in) :: scene
     type(problem_t), intent(in) :: problem
-    type(quality_t), intent(in) :: quality
-    type(summary_t), intent(inout) :: summary
-    real(wp) :: strain
-
-    call judge_files(problem, quality, summary)
-    if (quality%contact_radius > 0) call judge(summary, 'contact_over_radius', &
-      problem%shape%slope(quality%contact_radius/problem%lateral)*problem%length/problem%lateral, &
-      'the slope at the contact''s edge', 'the model is for half-spaces with small slopes')
-    if (problem%rigid .or. .not. quality%pressure > 0) return
-    strain = quality%pressure*problem%pressure/problem%stiffness
-    call summary%set('pressure_over_stiffness', strain)
-    if (strain > strained) call summary%warn('beyond the model: the largest pressure is ' // &
-      rounded(strain) // ' of the stiffness; strains are no longer small')
-  end subroutine judge_extent
-
-  !> Warns of states beyond the points of a profile or before those of a table.
-  subroutine judge_files(problem, quality, summary)
-    type(problem_t), intent(in) :: problem
+    type(experiment_result_t), intent(in) :: outcome
     type(quality_t), intent(in) :: quality
     type(summary_t), intent(inout) :: summary
 
-    associate (law => problem%law, last => problem%shape%known_to)
-      if (quality%contact_radius/problem%lateral > last) call summary%warn('beyond the file ' // &
-        'of &shape: the contact reaches ' // rounded(quality%contact_radius) // ' m from the ' // &
-        'axis, the points ' // rounded(last*problem%lateral) // ' m; there the body goes on ' // &
-        'as a parabola')
-      if (.not. law%known_from > 0) return
-      if (quality%gap < law%gap_of(law%known_from)) call summary%warn('beyond the file of ' // &
-        '&tabulated: gaps are down to ' // rounded(law%separation_of(quality%gap)) // &
-        ' m, the points to ' // rounded(law%known_from) // ' m; below, the pressure is a power')
-    end associate
-  end subroutine judge_files
+    call judge_files()
+    call judge_extent()
+    call judge_layers()
+    if (.not. outcome%differentiated) &
+      call summary%fail_with('sensitivity: not all derivatives were found')
+    call judge_resolution(outcome%chosen%grid == edge_locked)
+    call judge_accuracy()
+    call judge_stopping()
+
+  contains
+
+    !> Whether slopes and strains are small.
+    subroutine judge_extent()
+      real(wp) :: strain
+
+      if (quality%contact_radius > 0) call judge(summary, 'contact_over_radius', &
+        problem%shape%slope(quality%contact_radius/problem%lateral)*problem%length/ &
+        problem%lateral, &
+        'the slope at the contact''s edge', 'the model is for half-spaces with small slopes')
+      if (problem%rigid .or. .not. quality%pressure > 0) return
+      strain = quality%pressure*problem%pressure/problem%stiffness
+      call summary%set('pressure_over_stiffness', strain)
+      if (strain > strained) call summary%warn('beyond the model: the largest pressure is ' // &
+        rounded(strain) // ' of the stiffness; strains are no longer small')
+    end subroutine judge_extent
+
+    !> Warns of states beyond the points of a profile or before those of a table.
+    subroutine judge_files()
+      associate (law => problem%law, last => problem%shape%known_to)
+        if (quality%contact_radius/problem%lateral > last) call summary%warn('beyond the file ' // &
+          'of &shape: the contact reaches ' // rounded(quality%contact_radius) // ' m from the ' &
+          // 'axis, the points ' // rounded(last*problem%lateral) // ' m; there the body goes on ' &
+          // 'as a parabola')
+        if (.not. law%known_from > 0) return
+        if (quality%gap < law%gap_of(law%known_from)) call summary%warn('beyond the file of ' // &
+          '&tabulated: gaps are down to ' // rounded(law%separation_of(quality%gap)) // &
+          ' m, the points to ' // rounded(law%known_from) // ' m; below, the pressure is a power')
+      end associate
+    end subroutine judge_files
+
+    !> Warns of layers thinner than the range of the force, of soft layers compressed by a part of
+    !> their thickness that is not small, and of strains below the top layer that are not small.
+    subroutine judge_layers()
+      real(wp) :: reach, strain
+      integer :: i
+
+      select type (body => problem%body)
+      type is (layered_body_t)
+        reach = range_of(problem)
+        do i = 1, 2
+          if (size(body%surface(i)%thickness) == 0) cycle
+          associate (thickness => body%surface(i)%thickness*problem%lateral)
+            if (minval(thickness) < reach) call summary%warn('beyond the model: a layer of ' // &
+              rounded(minval(thickness)) // ' m is thinner than the range of the force, ' // &
+              rounded(reach) // ' m; bulk elasticity does not hold for it')
+            if (body%bottom < 1 .and. quality%depth > strained*sum(thickness)) call summary%warn( &
+              'beyond the model: the bodies are pressed together by ' // &
+              rounded(quality%depth/sum(thickness)) // ' of the thickness of the layers; ' // &
+              'strains are no longer small')
+            strain = strain_below(body%surface(i), thickness, quality%load, &
+              quality%contact_radius)
+            if (strain > strained) call summary%warn('beyond the model: the strain below the ' // &
+              'top layer is about ' // rounded(strain) // ', which is not small')
+            exit
+          end associate
+        end do
+      end select
+    end subroutine judge_layers
+
+    !> Estimate of the largest strain below the top layer at a load [N] on a contact radius [m]:
+    !> stress over Young's modulus, if the load spreads at 45 degrees.
+    pure real(wp) function strain_below(surface, thickness, load, radius) result(strain)
+      type(layered_surface_t), intent(in) :: surface
+      real(wp), intent(in) :: thickness(:), load, radius
+      real(wp), allocatable :: young(:)
+      integer :: i
+
+      young = 2*surface%shear*(1 + surface%poisson)
+      if (.not. surface%on_rigid) young = [young, 2*surface%base_shear*(1 + surface%base_poisson)]
+      strain = 0
+      if (.not. radius > 0) return
+      do i = 2, size(young)
+        strain = max(strain, load/(pi*(radius + sum(thickness(:i - 1)))**2*young(i)))
+      end do
+    end function strain_below
+
+    !> Warns of a neck that is not resolved, with advice. locked: the mesh is locked to the edge.
+    subroutine judge_resolution(locked)
+      logical, intent(in) :: locked
+      character(len=:), allocatable :: advice
+      logical :: resolved
+
+      associate (spacing => quality%spacing)
+        if (.not. spacing > 0) return
+        resolved = spacing <= merge(resolved_locked, resolved_spacing, locked)
+        call summary%set('resolved', resolved)
+        if (resolved) return
+        if (locked) then
+          advice = '; ask for a higher accuracy'
+        else
+          advice = ', which is then pinned between them; use '// &
+            rounded(spacing/resolved_spacing)//' times as many nodes or grid = ''panels'''
+        end if
+        call summary%warn('under-resolved: nodes are '//rounded(spacing)// &
+          ' neck widths apart at the contact edge'//advice)
+      end associate
+    end subroutine judge_resolution
+
+    !> Warns if the numbers do not have the accuracy that the deck asks for, or on a grid of the
+    !> deck's choice if they are meaningless. Warns also of residuals that rounding keeps above the
+    !> tolerance, if they matter for displacements of the law's length.
+    subroutine judge_accuracy()
+      real(wp) :: enough
+
+      associate (tolerance => outcome%chosen%options%tolerance)
+        if (summary%is_true('converged') .and. .not. outcome%chosen%options%stop_on_change .and. &
+          quality%residual > max(tolerance, scene%numerics%accuracy, usual_residual)) &
+          call summary%warn('rounding leaves residuals of up to '//rounded(quality%residual)// &
+          ' lengths of the force law, above the tolerance of '//rounded(tolerance))
+      end associate
+      if (outcome%left_out > too_much*scene%numerics%accuracy) &
+        call summary%warn('the mesh does not resolve the force law: '//rounded(outcome%left_out)// &
+        ' of the load is left out between nodes; smoother forces are resolved')
+      if (.not. allocated(outcome%error_estimate)) return
+      enough = clearly*scene%numerics%accuracy
+      if (outcome%chosen%is_fixed()) enough = max(enough, meaningless)
+      if (outcome%error_estimate >= 1) then
+        call &
+          summary%warn('the error could not be estimated: a finer mesh has no such states, or '// &
+          'these did not converge; the numbers may mean nothing')
+      else if (outcome%error_estimate > enough) then
+        call summary%warn('the error is estimated as '//rounded(outcome%error_estimate)// &
+          ', above the accuracy of '//rounded(scene%numerics%accuracy)//' asked for')
+      end if
+    end subroutine judge_accuracy
+
+    !> Warns if the iteration stopped on a small change, and checks whether the equations hold
+    !> anyway.
+    subroutine judge_stopping()
+      if (.not. outcome%chosen%options%stop_on_change) return
+      call summary%warn('the iteration was stopped on a small change of the displacement, '// &
+        'which is not convergence: the largest residual left is '// &
+        rounded(quality%residual)//' lengths of the force law')
+      call summary%set('converged', .not. quality%early .and. &
+        quality%residual <= outcome%chosen%options%tolerance)
+    end subroutine judge_stopping
+
+  end subroutine judge_run
 
   !> Sets a length over the radius, or a slope, and warns if it is not small.
   subroutine judge(summary, key, part, what, why)
@@ -142,123 +264,5 @@ contains
     if (problem%law%edge_gap > 0 .and. problem%law%adhesion > 0) range_of = &
       problem%law%adhesion*problem%pressure*problem%length/largest_tension(problem)
   end function range_of
-
-  !> Warns of layers thinner than the range of the force, of soft layers compressed by a part of
-  !> their thickness that is not small, and of strains below the top layer that are not small.
-  subroutine judge_layers(problem, quality, summary)
-    type(problem_t), intent(in) :: problem
-    type(quality_t), intent(in) :: quality
-    type(summary_t), intent(inout) :: summary
-    real(wp) :: reach, strain
-    integer :: i
-
-    select type (body => problem%body)
-    type is (layered_body_t)
-      reach = range_of(problem)
-      do i = 1, 2
-        if (size(body%surface(i)%thickness) == 0) cycle
-        associate (thickness => body%surface(i)%thickness*problem%lateral)
-          if (minval(thickness) < reach) call summary%warn('beyond the model: a layer of ' // &
-            rounded(minval(thickness)) // ' m is thinner than the range of the force, ' // &
-            rounded(reach) // ' m; bulk elasticity does not hold for it')
-          if (body%bottom < 1 .and. quality%depth > strained*sum(thickness)) call summary%warn( &
-            'beyond the model: the bodies are pressed together by ' // &
-            rounded(quality%depth/sum(thickness)) // ' of the thickness of the layers; ' // &
-            'strains are no longer small')
-          strain = strain_below(body%surface(i), thickness, quality%load, &
-            quality%contact_radius)
-          if (strain > strained) call summary%warn('beyond the model: the strain below the ' // &
-            'top layer is about ' // rounded(strain) // ', which is not small')
-          exit
-        end associate
-      end do
-    end select
-  end subroutine judge_layers
-
-  !> Estimate of the largest strain below the top layer at a load [N] on a contact radius [m]:
-  !> stress over Young's modulus, if the load spreads at 45 degrees.
-  pure real(wp) function strain_below(surface, thickness, load, radius) result(strain)
-    type(layered_surface_t), intent(in) :: surface
-    real(wp), intent(in) :: thickness(:), load, radius
-    real(wp), allocatable :: young(:)
-    integer :: i
-
-    young = 2*surface%shear*(1 + surface%poisson)
-    if (.not. surface%on_rigid) young = [young, 2*surface%base_shear*(1 + surface%base_poisson)]
-    strain = 0
-    if (.not. radius > 0) return
-    do i = 2, size(young)
-      strain = max(strain, load/(pi*(radius + sum(thickness(:i - 1)))**2*young(i)))
-    end do
-  end function strain_below
-
-  !> Warns of a neck that is not resolved, with advice. locked: the mesh is locked to the edge.
-  subroutine judge_resolution(locked, quality, summary)
-    logical, intent(in) :: locked
-    type(quality_t), intent(in) :: quality
-    type(summary_t), intent(inout) :: summary
-    character(len=:), allocatable :: advice
-    logical :: resolved
-
-    associate (spacing => quality%spacing)
-      if (.not. spacing > 0) return
-      resolved = spacing <= merge(resolved_locked, resolved_spacing, locked)
-      call summary%set('resolved', resolved)
-      if (resolved) return
-      if (locked) then
-        advice = '; ask for a higher accuracy'
-      else
-        advice = ', which is then pinned between them; use '// &
-          rounded(spacing/resolved_spacing)//' times as many nodes or grid = ''panels'''
-      end if
-      call summary%warn('under-resolved: nodes are '//rounded(spacing)// &
-        ' neck widths apart at the contact edge'//advice)
-    end associate
-  end subroutine judge_resolution
-
-  !> Warns if the numbers do not have the accuracy that the deck asks for, or on a grid of the
-  !> deck's choice if they are meaningless. Warns also of residuals that rounding keeps above the
-  !> tolerance, if they matter for displacements of the law's length.
-  subroutine judge_accuracy(scene, outcome, quality, summary)
-    type(scene_t), intent(in) :: scene
-    type(experiment_result_t), intent(in) :: outcome
-    type(quality_t), intent(in) :: quality
-    type(summary_t), intent(inout) :: summary
-    real(wp) :: enough
-
-    associate (tolerance => outcome%chosen%options%tolerance)
-      if (summary%is_true('converged') .and. .not. outcome%chosen%options%stop_on_change .and. &
-        quality%residual > max(tolerance, scene%numerics%accuracy, usual_residual)) &
-        call summary%warn('rounding leaves residuals of up to '//rounded(quality%residual)// &
-        ' lengths of the force law, above the tolerance of '//rounded(tolerance))
-    end associate
-    if (outcome%left_out > too_much*scene%numerics%accuracy) &
-      call summary%warn('the mesh does not resolve the force law: '//rounded(outcome%left_out)// &
-      ' of the load is left out between nodes; smoother forces are resolved')
-    if (.not. allocated(outcome%error_estimate)) return
-    enough = clearly*scene%numerics%accuracy
-    if (outcome%chosen%is_fixed()) enough = max(enough, meaningless)
-    if (outcome%error_estimate >= 1) then
-      call summary%warn('the error could not be estimated: a finer mesh has no such states, or '// &
-        'these did not converge; the numbers may mean nothing')
-    else if (outcome%error_estimate > enough) then
-      call summary%warn('the error is estimated as '//rounded(outcome%error_estimate)// &
-        ', above the accuracy of '//rounded(scene%numerics%accuracy)//' asked for')
-    end if
-  end subroutine judge_accuracy
-
-  !> Warns if the iteration stopped on a small change, and checks whether the equations hold anyway.
-  subroutine judge_stopping(outcome, quality, summary)
-    type(experiment_result_t), intent(in) :: outcome
-    type(quality_t), intent(in) :: quality
-    type(summary_t), intent(inout) :: summary
-
-    if (.not. outcome%chosen%options%stop_on_change) return
-    call summary%warn('the iteration was stopped on a small change of the displacement, '// &
-      'which is not convergence: the largest residual left is '// &
-      rounded(quality%residual)//' lengths of the force law')
-    call summary%set('converged', .not. quality%early .and. &
-      quality%residual <= outcome%chosen%options%tolerance)
-  end subroutine judge_stopping
 
 end module quality_warnings

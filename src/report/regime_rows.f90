@@ -4,7 +4,7 @@ module regime_rows
   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
   use kinds, only: wp, pi, nan
   use dimensionless_problem, only: problem_t, surface_energy, largest_tension, tabor_parameter
-  use layered_contact, only: layered_contact_t, new_layered_contact, has_layers
+  use layered_contact, only: layered_contact_t, new_layered_contact, has_layers, of_displacement
   use theory_names, only: hertz, jkr
   use classical, only: hertz_radius_at_load, hertz_displacement, jkr_radius_at_load, &
     jkr_displacement, jkr_pull_off, dmt_radius_at_load, dmt_pull_off
@@ -143,7 +143,7 @@ contains
           says(:radius, i) = [0.0_wp, a*problem%lateral]
           if (theory == jkr) says(pull_off, i) = layered%pull_off()*problem%load
           if (.not. ieee_is_nan(a)) &
-            says(indentation, i) = layered%displacement(theory, a)*problem%length
+            says(indentation, i) = layered%value_of(of_displacement, theory, a)*problem%length
         end associate
       end do
     end function of_theories

@@ -20,8 +20,7 @@ module summarise
   use reading_rows, only: summarise_device, summarise_fixed_loads
   use regime_rows, only: summarise_regime
   use rate_entries, only: summarise_timed
-  use quality_warnings, only: judge_law, judge_extent, judge_layers, judge_resolution, &
-    judge_accuracy, judge_stopping
+  use quality_warnings, only: judge_law, judge_run
   implicit none
   private
   public :: summary_of
@@ -54,13 +53,7 @@ contains
     if (allocated(outcome%path)) call tell_path(outcome%path)
     if (allocated(outcome%readings)) call take_readings(outcome%readings, outcome%places)
     if (scene%regime) call summarise_regime(problem, outcome%places, summary)
-    call judge_extent(problem, quality, summary)
-    call judge_layers(problem, quality, summary)
-    if (.not. outcome%differentiated) &
-      call summary%fail_with('sensitivity: not all derivatives were found')
-    call judge_resolution(outcome%chosen%grid == edge_locked, quality, summary)
-    call judge_accuracy(scene, outcome, quality, summary)
-    call judge_stopping(outcome, quality, summary)
+    call judge_run(scene, problem, outcome, quality, summary)
 
   contains
 

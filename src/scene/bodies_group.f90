@@ -2,13 +2,13 @@
 module bodies_group
   use kinds, only: wp
   use deck_keys, only: key_spec, real_value, real_list, logical_value, word_value
-  use scene_groups, only: scene_t, bodies_t
+  use scene_groups, only: scene_t
   use text, only: brief
   use deck, only: deck_t
   use layered_surface, only: layered_surface_t
   implicit none
   private
-  public :: bodies_keys, take_bodies, layer_keys, layer_bears_all, take_layer, check_thinness
+  public :: bodies_keys, take_bodies, layer_keys, take_layer, check_thinness
 
   character(len=*), parameter :: one_way = 'give one of: stiffness; young and poisson; ' // &
     'rigid = .true.'
@@ -62,6 +62,7 @@ contains
     type(scene_t), intent(inout) :: scene
     real(wp), allocatable :: young(:), poisson(:)
     real(wp) :: compliance(2)
+    character(len=:), allocatable :: key
     integer :: ways
     logical :: pair
 
@@ -76,45 +77,30 @@ contains
       else if (ways == 0) then
         call deck%mistake('bodies', 'stiffness', 'missing; ' // one_way)
       else if (ways > 1) then
-        call deck%mistake('bodies', second_way(), 'more than one way to say how the bodies ' // &
-                          'deform; ' // one_way)
+        ! The message points at the last of the given ways in the order of the table.
+        key = 'poisson'
+        if (size(young) > 0) key = 'young'
+        if (bodies%rigid) key = 'rigid'
+        call deck%mistake('bodies', key, 'more than one way to say how the bodies deform; ' // &
+          one_way)
       else if (size(young) > 0 .and. size(poisson) == 0) then
         call deck%mistake('bodies', 'poisson', 'missing; young and poisson go together')
       else if (size(poisson) > 0 .and. size(young) == 0) then
         call deck%mistake('bodies', 'young', 'missing; young and poisson go together')
       else if (pair) then
-        bodies%young = spread_out(young)
-        bodies%poisson = spread_out(poisson)
+        ! A single value holds for both.
+        bodies%young = [young(1), young(size(young))]
+        bodies%poisson = [poisson(1), poisson(size(poisson))]
         ! The compliances (1-nu^2)/E add, and identical bodies that deform together as much have
         ! their mean; each body's part of the deformation is its compliance over this mean. The two
         ! may differ by any factor.
-        compliance = (1 - bodies%poisson)*(1 + bodies%poisson)/bodies%young
+        compliance = compliance_of(bodies%young, bodies%poisson)
         bodies%stiffness = 2/sum(compliance)
         bodies%share = bodies%stiffness*compliance
       else
         call deck%get('bodies', 'stiffness', bodies%stiffness)
       end if
     end associate
-
-  contains
-
-    !> The last of the given ways in the order of the table; the message points at it.
-    pure function second_way() result(key)
-      character(len=:), allocatable :: key
-
-      key = 'poisson'
-      if (size(young) > 0) key = 'young'
-      if (scene%bodies%rigid) key = 'rigid'
-    end function second_way
-
-    !> Values for both bodies; a single value holds for both.
-    pure function spread_out(list) result(both)
-      real(wp), intent(in) :: list(:)
-      real(wp) :: both(2)
-
-      both = [list(1), list(size(list))]
-    end function spread_out
-
   end subroutine take_bodies
 
   !> Whether only layers deform, so that &bodies need not say how the bodies do.
@@ -143,11 +129,11 @@ contains
       if (body /= 'both') &
         call deck%assume('layer', 'partner', trim(merge('rigid  ', 'elastic', bodies%rigid)))
       call deck%get('layer', 'partner', partner)
-      call check_layers(scene)
-      if (allocated(scene%deck%error)) return
       call deck%get('layer', 'thickness', coat%thickness)
       call deck%get('layer', 'young', young)
       call deck%get('layer', 'poisson', coat%poisson)
+      call check_layers(scene, coat%thickness, young, coat%poisson)
+      if (allocated(scene%deck%error)) return
       call join_alike(coat%thickness, young, coat%poisson)
       coat%shear = young/(2*(1 + coat%poisson))
       coat%on_rigid = word_is(deck, 'base', 'rigid')
@@ -155,7 +141,7 @@ contains
       allocate (bodies%surface(2))
       do i = 1, 2
         if (has_coat(i)) then
-          compliance(i) = (1 - coat%poisson(1))*(1 + coat%poisson(1))/young(1)
+          compliance(i) = compliance_of(young(1), coat%poisson(1))
           if (.not. coat%on_rigid) then
             coat%base_shear = bodies%young(i)/(2*(1 + bodies%poisson(i)))
             coat%base_poisson = bodies%poisson(i)
@@ -164,7 +150,10 @@ contains
         else
           allocate (bodies%surface(i)%thickness(0))
           compliance(i) = 0
-          if (partner == 'elastic') compliance(i) = compliance_of(bodies, i)
+          if (partner /= 'elastic') cycle
+          compliance(i) = 1/bodies%stiffness
+          if (allocated(bodies%young)) &
+            compliance(i) = compliance_of(bodies%young(i), bodies%poisson(i))
         end if
       end do
       bodies%stiffness = 2/sum(compliance)
@@ -200,25 +189,19 @@ contains
     end do
   end subroutine join_alike
 
-  !> (1-nu^2)/E of a body of &bodies.
-  pure real(wp) function compliance_of(bodies, i)
-    type(bodies_t), intent(in) :: bodies
-    integer, intent(in) :: i
+  !> (1-nu^2)/E.
+  elemental real(wp) function compliance_of(young, poisson)
+    real(wp), intent(in) :: young, poisson
 
-    compliance_of = 1/bodies%stiffness
-    if (allocated(bodies%young)) compliance_of = &
-      (1 - bodies%poisson(i))*(1 + bodies%poisson(i))/bodies%young(i)
+    compliance_of = (1 - poisson)*(1 + poisson)/young
   end function compliance_of
 
   !> Refuses keys that contradict each other or &bodies.
-  subroutine check_layers(scene)
+  subroutine check_layers(scene, thickness, young, poisson)
     type(scene_t), intent(inout) :: scene
-    real(wp), allocatable :: thickness(:), young(:), poisson(:)
+    real(wp), intent(in) :: thickness(:), young(:), poisson(:)
 
     associate (deck => scene%deck, bodies => scene%bodies)
-      call deck%get('layer', 'thickness', thickness)
-      call deck%get('layer', 'young', young)
-      call deck%get('layer', 'poisson', poisson)
       if (size(young) /= size(thickness)) call deck%mistake('layer', 'young', &
         brief(size(young)) // ' for ' // brief(size(thickness)) // &
         ' layers; give one value for each thickness, from the top down')

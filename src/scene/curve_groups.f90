@@ -9,7 +9,7 @@ module curve_groups
   implicit none
   private
   public :: cycle_keys, take_loading, take_unloading, path_keys, profiles_keys, take_path, &
-    take_readings, take_regime, take_profiles, take_stability, check_path, check_order
+    take_readings, take_regime, take_profiles, has_states, check_path, check_order
 
   !> Largest number of steps. A deck with more probably has a number in a wrong unit.
   integer, parameter :: most_steps = 10000000
@@ -216,13 +216,6 @@ contains
     end function reached
 
   end subroutine take_profiles
-
-  !> Reads &stability.
-  subroutine take_stability(scene)
-    type(scene_t), intent(inout) :: scene
-
-    scene%stability = has_states(scene, 'stability')
-  end subroutine take_stability
 
   !> Whether the deck has a group that shows states; refuses the group if there are no states.
   logical function has_states(scene, group)

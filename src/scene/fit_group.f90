@@ -58,11 +58,11 @@ contains
       end if
     end associate
     if (allocated(scene%deck%error)) return
-    allocate (scene%measurement, scene%measured, scene%fit)
+    allocate (scene%measured, scene%fit)
     call take_measurement(scene)
     if (.not. allocated(scene%deck%error)) call take_unknowns(scene)
     if (allocated(scene%deck%error)) return
-    call read_measured(scene%measurement, scene%measured, trouble)
+    call read_measured(scene%measured, trouble)
     if (allocated(trouble)) call scene%deck%mistake('measurement', 'file', &
       'the curve cannot be used: ' // trouble%message)
   end subroutine take_fit
@@ -130,7 +130,7 @@ contains
       if (allocated(scene%deck%error)) return
     end do
     if (.not. any(scene%fit%unknown%role == of_contact_point) .and. &
-      .not. allocated(scene%measurement%contact_point)) call scene%deck%mistake('fit', &
+      .not. allocated(scene%measured%contact_point)) call scene%deck%mistake('fit', &
       'parameters', 'the contact point is unknown: add measurement.contact_point here, or ' // &
       'give contact_point in &measurement')
     call take_bounds(scene%deck, scene%fit%unknown)
@@ -163,15 +163,15 @@ contains
     select case (unknown%name)
     case ('measurement.contact_point')
       unknown%role = of_contact_point
-      if (allocated(scene%measurement%contact_point)) &
-        unknown%value = scene%measurement%contact_point
+      if (allocated(scene%measured%contact_point)) &
+        unknown%value = scene%measured%contact_point
     case ('measurement.spring_constant')
       unknown%role = of_spring
-      unknown%value = scene%measurement%spring_constant
+      unknown%value = scene%measured%spring_constant
     case ('measurement.sensitivity')
       unknown%role = of_sensitivity
-      if (allocated(scene%measurement%sensitivity)) then
-        unknown%value = scene%measurement%sensitivity
+      if (allocated(scene%measured%sensitivity)) then
+        unknown%value = scene%measured%sensitivity
       else
         call scene%deck%mistake('fit', 'parameters', 'the signal is a force: &measurement has ' // &
           'no sensitivity')

@@ -50,7 +50,7 @@ contains
     character(len=:), allocatable :: names
     integer :: i
 
-    associate (deck => scene%deck, measurement => scene%measurement)
+    associate (deck => scene%deck, measurement => scene%measured)
       measurement%file = deck%path_of('measurement', 'file')
       call load_source(measurement%file, source, trouble, largest_table)
       if (allocated(trouble)) then
@@ -73,7 +73,12 @@ contains
       call deck%get_optional('measurement', 'sensitivity', measurement%sensitivity)
       call deck%get_optional('measurement', 'contact_point', measurement%contact_point)
       call deck%get('measurement', 'segment', measurement%segment)
-      call take_skipped(deck, measurement%skip)
+      call deck%get('measurement', 'skip', measurement%skip)
+      if (mod(size(measurement%skip), 2) == 1) then
+        call deck%mistake('measurement', 'skip', 'positions come in pairs: from and to')
+      else if (any(measurement%skip(1::2) > measurement%skip(2::2))) then
+        call deck%mistake('measurement', 'skip', 'the first of each pair must be the smaller')
+      end if
       call take_units(deck, measurement%unit)
       call deck%get_optional('fit', 'noise', scene%fit%noise)
     end associate
@@ -105,18 +110,5 @@ contains
       // 'volts needs sensitivity, the deflection of the spring for one volt, and a ' // &
       'deflection sensitivity = 1')
   end subroutine take_units
-
-  !> Reads the ranges of position that are left out.
-  subroutine take_skipped(deck, skip)
-    type(deck_t), intent(inout) :: deck
-    real(wp), allocatable, intent(out) :: skip(:)
-
-    call deck%get('measurement', 'skip', skip)
-    if (mod(size(skip), 2) == 1) then
-      call deck%mistake('measurement', 'skip', 'positions come in pairs: from and to')
-    else if (any(skip(1::2) > skip(2::2))) then
-      call deck%mistake('measurement', 'skip', 'the first of each pair must be the smaller')
-    end if
-  end subroutine take_skipped
 
 end module measurement_group

@@ -131,8 +131,8 @@ contains
           brief(bodies%stiffness) // ' Pa')
         compliance = [1/relaxed - 1/bodies%stiffness]
       end if
-      if (.not. allocated(scene%deck%error) .and. size(compliance) /= size(time)) call deck%mistake( &
-        'viscoelastic', 'retardation_time', 'has ' // brief(size(time)) // &
+      if (.not. allocated(scene%deck%error) .and. size(compliance) /= size(time)) call &
+        deck%mistake( 'viscoelastic', 'retardation_time', 'has ' // brief(size(time)) // &
         ' values for ' // brief(size(compliance)) // ' terms')
       if (allocated(scene%deck%error)) return
       scene%creep = creep_t(compliance*bodies%stiffness, time)

@@ -11,7 +11,7 @@ module scene
   use scene_groups, only: scene_t
   use scene_problem, only: keys_of_model, take_model
   use curve_groups, only: cycle_keys, take_loading, take_unloading, path_keys, profiles_keys, &
-    take_path, take_readings, take_regime, take_profiles, take_stability
+    take_path, take_readings, take_regime, take_profiles, has_states
   use deck_family, only: sensitivity_keys, take_sensitivity
   use rate_groups, only: rate_keys, take_rates
   use theory_groups, only: theory_keys, take_theories
@@ -96,7 +96,7 @@ contains
     call take_rates(scene)
     call take_profiles(scene)
     call take_theories(scene)
-    call take_stability(scene)
+    scene%stability = has_states(scene, 'stability')
     call take_sweep(scene)
     call take_numerics(scene)
     call take_fit(scene)

@@ -144,10 +144,10 @@ contains
     this%share = merge(share_of_spline, share_of_monotone, interpolation == 'spline')
     i = max(1, count(g <= end_of_lever*g(n)))
     this%tail_error = tail_error_of(g([i, n]), this%pressure(g([i, n])))
-    call take_scales(deck, this)
+    call take_scales()
     if (.not. decay_length > 0) this%tail_power = exponent
     this%breaks = g
-    call find_kinks(deck, this)
+    call find_kinks()
 
   contains
 
@@ -178,48 +178,43 @@ contains
       end if
     end function tail_error_of
 
+    !> Finds the points about which the error of the table is not small. At the others the
+    !> derivatives jump by so little that the nodes of a mesh need not know.
+    subroutine find_kinks()
+      real(wp), dimension(size(this%breaks) - 1) :: middle
+      real(wp) :: error(2, size(middle)), accuracy
+      logical :: rough(0:size(middle) + 1)
+
+      call deck%get('numerics', 'accuracy', accuracy)
+      associate (g => this%breaks, n => size(middle))
+        middle = (g(:n) + g(2:))/2
+        error = this%table_error(middle)
+        rough = .false.
+        rough(1:n) = error(1, :) > max(unnoticed*accuracy, least)* &
+          max(abs(this%pressure(middle)), middle*abs(this%slope(middle)))
+        this%kinks = pack(g, rough(0:n) .or. rough(1:))
+      end associate
+      if (size(this%kinks) == 0) deallocate (this%kinks)
+    end subroutine find_kinks
+
+    !> Sets the scales of the repulsion, which is a power before the first point.
+    subroutine take_scales()
+      if (.not. this%fine%power > 0) then
+        call deck%mistake('tabulated', 'file', 'the force does not grow towards the first gap, ' &
+          // 'so that it cannot be continued to smaller ones')
+        return
+      end if
+      ! For the ninth power these are the numbers of the Lennard-Jones law.
+      this%smallest_gap = 10.0_wp**(-min(12.0_wp, 110/(this%fine%power + 1)))
+      this%repulsion_length = 0.9_wp/max(this%fine%power, 1.0_wp)
+      this%closure_fraction = 2.7_wp/max(this%fine%power, 9.0_wp)
+      this%group = 'tabulated'
+      this%strength_key = 'file'
+      this%length_key = 'file'
+      this%has_units = .false.
+    end subroutine take_scales
+
   end subroutine take_table
-
-  !> Finds the points about which the error of the table is not small. At the others the derivatives
-  !> jump by so little that the nodes of a mesh need not know.
-  subroutine find_kinks(deck, this)
-    type(deck_t), intent(in) :: deck
-    type(tabulated_t), intent(inout) :: this
-    real(wp), dimension(size(this%breaks) - 1) :: middle
-    real(wp) :: error(2, size(middle)), accuracy
-    logical :: rough(0:size(middle) + 1)
-
-    call deck%get('numerics', 'accuracy', accuracy)
-    associate (g => this%breaks, n => size(middle))
-      middle = (g(:n) + g(2:))/2
-      error = this%table_error(middle)
-      rough = .false.
-      rough(1:n) = error(1, :) > max(unnoticed*accuracy, least)* &
-        max(abs(this%pressure(middle)), middle*abs(this%slope(middle)))
-      this%kinks = pack(g, rough(0:n) .or. rough(1:))
-    end associate
-    if (size(this%kinks) == 0) deallocate (this%kinks)
-  end subroutine find_kinks
-
-  !> Sets the scales of the repulsion, which is a power before the first point.
-  subroutine take_scales(deck, this)
-    type(deck_t), intent(inout) :: deck
-    type(tabulated_t), intent(inout) :: this
-
-    if (.not. this%fine%power > 0) then
-      call deck%mistake('tabulated', 'file', 'the force does not grow towards the first gap, ' // &
-        'so that it cannot be continued to smaller ones')
-      return
-    end if
-    ! For the ninth power these are the numbers of the Lennard-Jones law.
-    this%smallest_gap = 10.0_wp**(-min(12.0_wp, 110/(this%fine%power + 1)))
-    this%repulsion_length = 0.9_wp/max(this%fine%power, 1.0_wp)
-    this%closure_fraction = 2.7_wp/max(this%fine%power, 9.0_wp)
-    this%group = 'tabulated'
-    this%strength_key = 'file'
-    this%length_key = 'file'
-    this%has_units = .false.
-  end subroutine take_scales
 
   pure subroutine evaluate(self, quantity, gap, value)
     class(tabulated_t), intent(in) :: self
