@@ -91,7 +91,11 @@ contains
     if (allocated(scene%approximations)) call write_approximations(problem, scene%approximations, &
       max(path_start(scene, problem), problem%law%separation_of(calm_gap(problem))), results)
     if (allocated(scene%fit)) call fit_measured()
-    call describe_program()
+    call summary%set('version', version)
+    call summary%set('compiler', compiler)
+    call summary%set('blas', blas)
+    call summary%set('build_options', options)
+    call summary%set('threads', int(thread_count(), long))
     call summary%set('wall_seconds', results%journal%earlier + seconds() - began)
     call results%write_summary(summary, cost, scene%deck)
     call results%finish(error)
@@ -138,9 +142,8 @@ contains
         resume, error)
       if (allocated(error)) return
       if (out_dir == to_stream) return
-      if (.not. results%lock%is_held()) call &
-        destination%say('warning: folders cannot be locked '// &
-        'here; let no other run write into this one')
+      if (.not. results%lock%is_held()) call destination%say('warning: folders cannot be ' // &
+        'locked '// 'here; let no other run write into this one')
       if (results%journal%inherited > 0) then
         call destination%say('continuing a run that was interrupted after '// &
           duration(results%journal%earlier))
@@ -164,8 +167,7 @@ contains
       if (large_results(scene) /= '') call destination%say(large_results(scene))
       if (allocated(scene%sweep)) then
         call results%progress%start(scene%sweep%cases(), name, destination%quiet)
-        if (crew%workers > 0) &
-          call destination%say('processes that compute: '//brief(crew%workers))
+        if (crew%workers > 0) call destination%say('processes that compute: '//brief(crew%workers))
         call run_sweep(scene, crew, job, results, tally)
         cost = tally%cost
         summary = summary_of(scene, problem, outcome)
@@ -242,15 +244,6 @@ contains
         call destination%say('fit: ' // lines(i)%text)
       end do
     end subroutine fit_measured
-
-    !> Adds version, compiler, libraries and threads to the summary.
-    subroutine describe_program()
-      call summary%set('version', version)
-      call summary%set('compiler', compiler)
-      call summary%set('blas', blas)
-      call summary%set('build_options', options)
-      call summary%set('threads', int(thread_count(), long))
-    end subroutine describe_program
 
   end subroutine run_scene
 

@@ -65,8 +65,7 @@ contains
           accuracy = accuracy*10**(-more)
           meshes = new_mesh_family(steps%problem, chosen%high, chosen%low, meshes%digits + more, &
             store=store, fronts=meshes%fronts .and. .not. lost)
-          steps%cost%kernel_entries = steps%cost%kernel_entries + &
-            sum(meshes%grid%kernel_entries())
+          steps%cost%kernel_entries = steps%cost%kernel_entries + sum(meshes%grid%kernel_entries())
         end if
         call steps%know_path(chosen, allocated(request%path), accuracy, listener, demand)
         lost = known%ending%cause == path_lost

@@ -147,8 +147,7 @@ contains
     if (allocated(self%meshes%grid(mesh)%kernel)) return
     ! A pointer that is not associated counts as absent.
     call self%meshes%complete(mesh, self%store)
-    self%cost%kernel_entries = self%cost%kernel_entries + &
-      self%meshes%grid(mesh)%kernel_entries()
+    self%cost%kernel_entries = self%cost%kernel_entries + self%meshes%grid(mesh)%kernel_entries()
   end subroutine prepare
 
   !> Solves with the accuracy that an error estimate needs. found: the state is identified.

@@ -63,9 +63,8 @@ contains
     ! A single state is not enough for an extrapolation, and mixing starts as in the paper.
     if (self%options%mixing .or. position%held == 1) state = position%state
     call self%solve(control_t(value=h0), state, event%converged)
-    continues = event%converged .and. change(expected, state) <= &
-      0.5_wp*change(position%state, expected) + jump + merge(abs(h0 - position%state%h0), 0.0_wp, &
-      position%held == 1)
+    continues = event%converged .and. change(expected, state) <= 0.5_wp*change(position%state, &
+      expected) + jump + merge(abs(h0 - position%state%h0), 0.0_wp, position%held == 1)
   end subroutine continue_to
 
   !> The predicted state of a step to h0.

@@ -55,8 +55,7 @@ contains
     type(state_t) :: landed
 
     slipped = .false.
-    if (.not. position%state%axis_gap < self%problem%law%edge_gap .or. &
-      self%options%mixing) return
+    if (.not. position%state%axis_gap < self%problem%law%edge_gap .or. self%options%mixing) return
     call land(self, beyond, position%state, landed, event)
     slipped = stays(self, position%state, landed, event) .and. abs(beyond - h0) > 0.0_wp
     if (.not. slipped) return

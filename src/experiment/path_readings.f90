@@ -73,8 +73,7 @@ contains
         readings%solved = readings%solved .and. readings%prescribed%solved
       end if
     end associate
-    if (allocated(readings%loaded)) &
-      steps%cost%states = steps%cost%states + size(readings%loaded)
+    if (allocated(readings%loaded)) steps%cost%states = steps%cost%states + size(readings%loaded)
 
   contains
 

@@ -235,9 +235,8 @@ contains
     mesh = self%span%mesh
     associate (ends => self%span%ends, piece => self%known%piece(position%piece))
       s = self%span%at_h0(h0)
-      beside = abs(s - ends) < beside_fold*abs(ends(2) - ends(1)) .and. &
-        [piece%first_turns .and. i == piece%first%interval, &
-        piece%last_turns .and. i == piece%last%interval]
+      beside = abs(s - ends) < beside_fold*abs(ends(2) - ends(1)) .and. [piece%first_turns .and. i &
+        == piece%first%interval, piece%last_turns .and. i == piece%last%interval]
       if (.not. any(beside)) then
         call expect(self%solver_t, self%span, self%missed, h0, s, position, state)
         call self%attempt(h0, state, mesh, event)
@@ -247,8 +246,7 @@ contains
         end if
       end if
     end associate
-    if (.not. event%converged) &
-      call self%span%solve_at_h0(self%solver_t, h0, state, event%converged)
+    if (.not. event%converged) call self%span%solve_at_h0(self%solver_t, h0, state, event%converged)
     call remember(position, state, mesh, jumped, foretold=state%iterations == 1)
   end subroutine solve_on_piece
 

@@ -57,8 +57,7 @@ contains
       associate (place => places%place(i))
         if (place%judged .or. place%mesh == nowhere .or. .not. (all .or. place%read)) cycle
         wanted = dot_product(place%drive, place%at(:2))
-        if (place%after > 0) wanted = &
-          dot_product(place%drive, places%place(place%after)%fine(:2))
+        if (place%after > 0) wanted = dot_product(place%drive, places%place(place%after)%fine(:2))
         place%judged = .true.
         place%margin = fine%margin
         if (place%has_state()) place%at(of_radius) = &

@@ -6,8 +6,7 @@ module stepped_branch
   use stepper, only: stepper_t, branch_point_t, step_result_t
   use ending, only: ending_t
   use tension_search, only: tension_search_t
-  use reported_place, only: place_t, place_of_state, place_without_state, &
-    point_of_path, of_load
+  use reported_place, only: place_t, place_of_state, place_without_state, point_of_path, of_load
   use places, only: places_t
   use records, only: observer_t, record_t, quality_t, record_of, stable_yes, stable_unasked
   implicit none
@@ -100,8 +99,7 @@ contains
         call last%state%become(position%state)
         last%mesh = position%mesh
         branch%last_piece = position%piece
-        if (plan%profile(i)) &
-          call places%add('profiles', place_of_state(last%mesh, last%state))
+        if (plan%profile(i)) call places%add('profiles', place_of_state(last%mesh, last%state))
         if (position%piece == 0 .and. any(i == [1, (1 + size(plan%h0))/2])) &
           call places%add('samples', place_of_state(last%mesh, last%state))
       end if

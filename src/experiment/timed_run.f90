@@ -163,8 +163,7 @@ contains
       ! The memory uses the pressure at the nodes, which has half as many digits as its integrals.
       digits = chosen%digits
       if (allocated(request%creep) .or. allocated(request%fluid)) digits = 2*digits
-      if (allocated(steps%drainage)) &
-        relaxed%film_gap = high + farthest_pole(steps%drainage%fluid_t)
+      if (allocated(steps%drainage)) relaxed%film_gap = high + farthest_pole(steps%drainage%fluid_t)
       associate (meshes => steps%meshes)
         ! A drive inserts no meshes on the way of an edge to a rim.
         meshes = new_mesh_family(relaxed, high, low, &

@@ -27,12 +27,17 @@ contains
     type(fit_outcome_t), intent(in) :: outcome
     type(line_t), allocatable :: lines(:)
     logical :: stopped
-    integer :: i
+    integer :: i, k
 
     allocate (lines(0))
     associate (fitted => outcome%fitted, unknown => outcome%curve%unknown)
       do i = 1, size(fitted%value)
-        call doubt_reach(unknown(i), fitted%value(i))
+        if (.not. is_at_end(unknown(i), fitted%value(i))) cycle
+        call add(unknown(i)%name // ' ends at ' // rounded(fitted%value(i)) // ', the ' // &
+          trim(merge('largest ', 'smallest', fitted_of(unknown(i), fitted%value(i)) > 0)) // &
+          ' value that is tried, a factor of ' // rounded(exp(farthest_off)) // &
+          ' from the value in the deck: other values may fit better, and standard errors mean ' // &
+          'nothing; start nearer')
       end do
       ! Then the model may describe the data with other values.
       stopped = size(lines) > 0
@@ -45,7 +50,11 @@ contains
       if (.not. stopped) call doubt_held(outcome%held)
       do i = 1, size(fitted%value)
         call doubt_unknown(fitted, unknown(i), i)
-        call doubt_pairs(fitted, unknown, i)
+        do k = 1, i - 1
+          if (abs(fitted%correlation(i, k)) > alike) call add(unknown(k)%name // ' and ' // &
+            unknown(i)%name // ' cannot be told apart: their correlation is ' // &
+            rounded(fitted%correlation(i, k)) // '; fix one of them, or give a prior')
+        end do
       end do
       if (fitted%identifiable < lost) call add('these data do not determine some ' // &
         'combination of the parameters: identifiable = ' // rounded(fitted%identifiable))
@@ -55,18 +64,6 @@ contains
     call doubt_signal()
 
   contains
-
-    !> Doubt about an unknown that ends where the search may not go farther from the deck's value.
-    subroutine doubt_reach(unknown, value)
-      type(unknown_t), intent(in) :: unknown
-      real(wp), intent(in) :: value
-
-      if (.not. is_at_end(unknown, value)) return
-      call add(unknown%name // ' ends at ' // rounded(value) // ', the ' // trim(merge('largest ', &
-        'smallest', fitted_of(unknown, value) > 0)) // ' value that is tried, a factor of ' // &
-        rounded(exp(farthest_off)) // ' from the value in the deck: other values may fit ' // &
-        'better, and standard errors mean nothing; start nearer')
-    end subroutine doubt_reach
 
     !> Doubts about numbers that the deck holds fixed: the one that the data contradict most.
     subroutine doubt_held(held)
@@ -122,20 +119,6 @@ contains
         end if
       end associate
     end subroutine doubt_unknown
-
-    !> Doubts about unknown i and those before it: whether the data tell them apart.
-    subroutine doubt_pairs(fitted, unknown, i)
-      type(fitted_t), intent(in) :: fitted
-      type(unknown_t), intent(in) :: unknown(:)
-      integer, intent(in) :: i
-      integer :: k
-
-      do k = 1, i - 1
-        if (abs(fitted%correlation(i, k)) > alike) call add(unknown(k)%name // ' and ' // &
-          unknown(i)%name // ' cannot be told apart: their correlation is ' // &
-          rounded(fitted%correlation(i, k)) // '; fix one of them, or give a prior')
-      end do
-    end subroutine doubt_pairs
 
     !> Doubt about a retreat that ends before the bodies part: the model takes its end for a part of
     !> the baseline.

@@ -90,13 +90,11 @@ contains
       taken = sum(above)/parts - above([1, parts])
       sure = surely*maxval(error([1, parts]))
       if (all(taken < -sure)) then
-        trouble = 'a cycle would gain energy, as the adhesion is stronger on the way in than on ' &
-          // &
-          'the way out: the rows of the file are in reverse order, or approach and retreat are ' &
-          // 'exchanged in the third column'
-      else if (sum(taken) < 0.2_wp*sure .and. &
-        slope(2) > steep*stiffness + surely*slope_error(2) .and. &
-        abs(slope(1)) + surely*slope_error(1) < slope(2)/4) then
+        trouble = 'a cycle would gain energy, as the adhesion is stronger on the way in than ' // &
+          'on the way out: the rows of the file are in reverse order, or approach and retreat ' // &
+          'are exchanged in the third column'
+      else if (sum(taken) < 0.2_wp*sure .and. slope(2) > steep*stiffness + surely*slope_error(2) &
+        .and. abs(slope(1)) + surely*slope_error(1) < slope(2)/4) then
         trouble = 'the bodies press on each other at the largest distance of the base: approach ' &
           // 'and retreat are exchanged in the third column, or its rows are in reverse order'
       end if

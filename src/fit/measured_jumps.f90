@@ -215,9 +215,8 @@ contains
     farthest = maxval(position)
     limit = farthest - far_part*(farthest - minval(position))
     rough = rough_deviation(pack(measured%signal, measured%usable))
-    measured%usable = measured%usable .and. .not. stand_apart(measured%signal, &
-      merge(1, 2, measured%inward), measured%usable, apart*rough + &
-      bent*stiffness*steps_about(measured))
+    measured%usable = measured%usable .and. .not. stand_apart(measured%signal, merge(1, 2, &
+      measured%inward), measured%usable, apart*rough + bent*stiffness*steps_about(measured))
     do way = 1, 2
       associate (jump => find_jump(measured, rough, stiffness, way == 1))
         if (jump%before > 0) limit = max(limit, 0.5_wp*(measured%facing*jump%z + farthest))

@@ -50,9 +50,8 @@ contains
       do way = 1, 2
         if (curve%response%way(way)%main == 0 .or. .not. any(data%way == way)) cycle
         jump = jump_by_model(curve, value, baseline, left, way)
-        settled = settled .and. jump%before == data%jump(way)%before .and. &
-          jump%after == data%jump(way)%after .and. &
-          abs(jump%z - data%jump(way)%z) <= 0.1_wp*jump%uncertainty
+        settled = settled .and. jump%before == data%jump(way)%before .and. jump%after == &
+          data%jump(way)%after .and. abs(jump%z - data%jump(way)%z) <= 0.1_wp*jump%uncertainty
         data%jump(way) = jump
       end do
     end associate

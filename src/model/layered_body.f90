@@ -84,8 +84,7 @@ contains
       end do
       body%ends = [body%ends, merge(last, first + (last - first)/2**halved, halved == 0)]
       largest = max(largest, maxval(abs(series)))
-      body%series = reshape([body%series, power_series(series)], &
-        [degree + 1, size(body%ends) - 1])
+      body%series = reshape([body%series, power_series(series)], [degree + 1, size(body%ends) - 1])
       body%slope = reshape([body%slope, power_series(series_slope(series)*2/ &
         (body%ends(size(body%ends)) - first))], [degree + 1, size(body%ends) - 1])
       whole = series_integral(series)*(body%ends(size(body%ends)) - first)/2

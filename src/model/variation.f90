@@ -147,9 +147,8 @@ contains
       real(wp) :: most(size(value, 2))
 
       most = maxval(abs(value), 1)
-      agree = maxval(most) - minval(most) <= little*maxval(most) .and. &
-        maxval(abs(matmul(value, varied%weight - varied%coarser))) <= &
-        coarse*maxval(abs(matmul(value, varied%weight))) + &
+      agree = maxval(most) - minval(most) <= little*maxval(most) .and. maxval(abs(matmul(value, &
+        varied%weight - varied%coarser))) <= coarse*maxval(abs(matmul(value, varied%weight))) + &
         rounding*maxval(most)*sum(abs(varied%weight))
     end function agree
 

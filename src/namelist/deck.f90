@@ -62,8 +62,7 @@ contains
           if (deck%specs(row)%kind == ignored_group) cycle
           name = deck%source%part(found%entries(i)%name%first, found%entries(i)%name%last)
           call take_entry(found%entries(i), trim(deck%specs(row)%group), at, what)
-          if (allocated(what)) &
-            call report(trim(deck%specs(row)%group), lower(clip(name)), at, what)
+          if (allocated(what)) call report(trim(deck%specs(row)%group), lower(clip(name)), at, what)
         end associate
         if (mistakes == most_mistakes) return
       end do
@@ -89,9 +88,8 @@ contains
       word = lower(deck%source%part(name%first, name%last))
       row = deck%row_of(word, '')
       if (row == 0) then
-        what = 'unknown group "&' // clip(word) // '"' // &
-               guess(word, names_of(deck%specs, ''), '&') // '; groups are ' // &
-               listing(names_of(deck%specs, ''), '&', '')
+        what = 'unknown group "&' // clip(word) // '"' // guess(word, names_of(deck%specs, ''), &
+          '&') // '; groups are ' // listing(names_of(deck%specs, ''), '&', '')
       else if (deck%values(row)%status == given) then
         what = 'a second &' // word // '; the first is on line ' // &
           brief(deck%source%line_at(deck%values(row)%at))
@@ -126,9 +124,8 @@ contains
       else
         deck%values(row)%at = at
         deck%values(row)%status = given
-        call interpret(deck%source, deck%specs(row), &
-                       found%items(entry%first_item:entry%first_item + entry%n_items - 1), &
-                       deck%values(row), at, what)
+        call interpret(deck%source, deck%specs(row), found%items(entry%first_item:entry%first_item &
+          + entry%n_items - 1), deck%values(row), at, what)
         if (allocated(what)) what = what // '; allowed: ' // allowed(deck%specs(row))
       end if
     end subroutine take_entry

@@ -43,9 +43,8 @@ contains
     state%h0 = now%h0 + ahead*(now%h0 - before%h0)
     if (state%scale > 0.5_wp*now%scale) then
       associate (n => grid%nodes, x => grid%x)
-        state%gap = (1 + ahead)*(now%gap - shape%height(now%scale*x(:n))) - &
-          ahead*(before%gap - shape%height(before%scale*x(:n))) + &
-          shape%height(state%scale*x(:n))
+        state%gap = (1 + ahead)*(now%gap - shape%height(now%scale*x(:n))) - ahead*(before%gap - &
+          shape%height(before%scale*x(:n))) + shape%height(state%scale*x(:n))
       end associate
       if (.not. any(state%gap < 0.7_wp*now%gap)) return
     end if

@@ -150,8 +150,7 @@ contains
     type(results_t), intent(inout) :: results
     type(slow_state_t), intent(in) :: state
 
-    call results%row(trim(state%theory), [state%h0, state%displacement, state%load, &
-      nan])
+    call results%row(trim(state%theory), [state%h0, state%displacement, state%load, nan])
   end subroutine write_row
 
   !> Gaps on the axis, descending, from the gap at h0 = start to the gap at h0 = finish or to

@@ -80,8 +80,7 @@ contains
     type is (layered_body_t)
       ! The top layer has the modulus for short waves, the base that for long waves.
       call numbers%set('top_modulus', 0.5_wp*problem%stiffness)
-      if (body%bottom > 0) &
-        call numbers%set('bottom_modulus', 0.5_wp*problem%stiffness/body%bottom)
+      if (body%bottom > 0) call numbers%set('bottom_modulus', 0.5_wp*problem%stiffness/body%bottom)
     end select
     if (problem%law%rest_gap > 0) then
       call numbers%set('rest_gap', problem%law%separation_of(problem%law%rest_gap))

@@ -47,9 +47,8 @@ contains
     if (problem%law%caveat /= '') call summary%warn(trim(problem%law%caveat))
     if (problem%law%rest_gap > 0) then
       call take_table_error(problem, summary)
-      if (.not. surface_energy(problem) > 0) &
-        call summary%warn('contact is only metastable: the bodies have less energy apart, '// &
-        'and no classical theory applies')
+      if (.not. surface_energy(problem) > 0) call summary%warn('contact is only metastable: ' // &
+        'the bodies have less energy apart, '// 'and no classical theory applies')
     end if
     ! Other shapes than parabolas, circles and ellipses have no radius on the axis.
     if (abs(problem%shape%exponent - 2) > 0) return
@@ -74,8 +73,7 @@ contains
       error = of_well(2, 1)/max(abs(law%at(of_energy, law%rest_gap)), tiny(1.0_wp))
       if (law%edge_gap > 0) then
         of_edge = law%table_error([law%edge_gap])
-        error = max(error, &
-          of_edge(1, 1)/max(abs(law%at(of_pressure, law%edge_gap)), tiny(1.0_wp)))
+        error = max(error, of_edge(1, 1)/max(abs(law%at(of_pressure, law%edge_gap)), tiny(1.0_wp)))
       end if
     end associate
     call summary%set('table_error', error)
@@ -99,7 +97,12 @@ contains
       call summary%fail_with('sensitivity: not all derivatives were found')
     call judge_resolution(outcome%chosen%grid == edge_locked)
     call judge_accuracy()
-    call judge_stopping()
+    if (.not. outcome%chosen%options%stop_on_change) return
+    call summary%warn('the iteration was stopped on a small change of the displacement, '// &
+      'which is not convergence: the largest residual left is '// &
+      rounded(quality%residual)//' lengths of the force law')
+    call summary%set('converged', .not. quality%early .and. &
+      quality%residual <= outcome%chosen%options%tolerance)
 
   contains
 
@@ -151,8 +154,7 @@ contains
               'beyond the model: the bodies are pressed together by ' // &
               rounded(quality%depth/sum(thickness)) // ' of the thickness of the layers; ' // &
               'strains are no longer small')
-            strain = strain_below(body%surface(i), thickness, quality%load, &
-              quality%contact_radius)
+            strain = strain_below(body%surface(i), thickness, quality%load, quality%contact_radius)
             if (strain > strained) call summary%warn('beyond the model: the strain below the ' // &
               'top layer is about ' // rounded(strain) // ', which is not small')
             exit
@@ -219,25 +221,13 @@ contains
       enough = clearly*scene%numerics%accuracy
       if (outcome%chosen%is_fixed()) enough = max(enough, meaningless)
       if (outcome%error_estimate >= 1) then
-        call &
-          summary%warn('the error could not be estimated: a finer mesh has no such states, or '// &
-          'these did not converge; the numbers may mean nothing')
+        call summary%warn('the error could not be estimated: a finer mesh has no such states, ' // &
+          'or '// 'these did not converge; the numbers may mean nothing')
       else if (outcome%error_estimate > enough) then
         call summary%warn('the error is estimated as '//rounded(outcome%error_estimate)// &
           ', above the accuracy of '//rounded(scene%numerics%accuracy)//' asked for')
       end if
     end subroutine judge_accuracy
-
-    !> Warns if the iteration stopped on a small change, and checks whether the equations hold
-    !> anyway.
-    subroutine judge_stopping()
-      if (.not. outcome%chosen%options%stop_on_change) return
-      call summary%warn('the iteration was stopped on a small change of the displacement, '// &
-        'which is not convergence: the largest residual left is '// &
-        rounded(quality%residual)//' lengths of the force law')
-      call summary%set('converged', .not. quality%early .and. &
-        quality%residual <= outcome%chosen%options%tolerance)
-    end subroutine judge_stopping
 
   end subroutine judge_run
 

@@ -89,7 +89,8 @@ contains
 
       errors = of_theories(at_load)
       do k = 1, size(theories)
-        errors(:, k) = errors_of(errors(:, k), numbers, problem%radius)
+        errors(:, k) = [errors(:radius, k)/numbers(:radius), 1 + (errors(indentation, k) - &
+          numbers(indentation))*problem%radius/numbers(radius)**2] - 1
       end do
     end function all_errors
 
@@ -147,14 +148,6 @@ contains
         end associate
       end do
     end function of_theories
-
-    pure function errors_of(theory, solved, r) result(errors)
-      real(wp), intent(in) :: theory(3), solved(3), r
-      real(wp) :: errors(3)
-
-      errors = [theory(:radius)/solved(:radius), &
-        1 + (theory(indentation) - solved(indentation))*r/solved(radius)**2] - 1
-    end function errors_of
 
     !> Recommends the theory whose largest error is the smallest, and says why. A formula fitted to
     !> a theory can be nearer than the theory only by chance, and is not recommended here.

@@ -117,8 +117,7 @@ contains
       row = branch // ',' // cells([h0, r(j)*problem%lateral, problem%law%separation_of(gap(j)), &
         deformation(j)*problem%length, pressure(j)*problem%pressure, &
         energy(j)*problem%pressure*problem%length])
-      if (.not. alike(problem)) &
-        row = row // ',' // cells(each(j, :)*problem%length)
+      if (.not. alike(problem)) row = row // ',' // cells(each(j, :)*problem%length)
       call table%line(row, error)
       if (allocated(error)) return
     end do

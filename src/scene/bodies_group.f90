@@ -238,10 +238,9 @@ contains
     character(len=*), intent(in) :: key
     real(wp), intent(in) :: values(:)
 
-    if (maxval(values) > most_unlike*minval(values)) call scene%deck%mistake('layer', key, &
-      'from ' // brief(minval(values)) // ' to ' // brief(maxval(values)) // ' is more than a ' // &
-      'factor of ' // brief(most_unlike) // '; leave out layers so thin or soft, or make so ' // &
-      'stiff a body rigid')
+    if (maxval(values) > most_unlike*minval(values)) call scene%deck%mistake('layer', key, 'from ' &
+      // brief(minval(values)) // ' to ' // brief(maxval(values)) // ' is more than a factor of ' &
+      // brief(most_unlike) // '; leave out layers so thin or soft, or make so stiff a body rigid')
   end subroutine check_spread
 
   !> Whether a key of the group has this value.

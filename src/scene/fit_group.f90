@@ -147,8 +147,7 @@ contains
     associate (value => unknown%value)
       if (.not. unknown%in_log) then
         if (spec%low > -huge(1.0_wp)) unknown%lower = spec%low
-        if (spec%above > -huge(1.0_wp)) &
-          unknown%lower = spec%above + inside*abs(value - spec%above)
+        if (spec%above > -huge(1.0_wp)) unknown%lower = spec%above + inside*abs(value - spec%above)
       end if
       if (spec%high < huge(1.0_wp)) unknown%upper = spec%high
       if (spec%below < huge(1.0_wp)) unknown%upper = spec%below - inside*abs(spec%below - value)
@@ -163,8 +162,7 @@ contains
     select case (unknown%name)
     case ('measurement.contact_point')
       unknown%role = of_contact_point
-      if (allocated(scene%measured%contact_point)) &
-        unknown%value = scene%measured%contact_point
+      if (allocated(scene%measured%contact_point)) unknown%value = scene%measured%contact_point
     case ('measurement.spring_constant')
       unknown%role = of_spring
       unknown%value = scene%measured%spring_constant
@@ -177,9 +175,8 @@ contains
           'no sensitivity')
       end if
     case default
-      call scene%deck%mistake('fit', 'parameters', quoted(unknown%name) // &
-        ' cannot be fitted; of &measurement only contact_point, sensitivity and ' // &
-        'spring_constant can')
+      call scene%deck%mistake('fit', 'parameters', quoted(unknown%name) // ' cannot be ' // &
+        'fitted; of &measurement only contact_point, sensitivity and spring_constant can')
     end select
     unknown%in_log = unknown%role /= of_contact_point
     if (unknown%in_log .and. unknown%value > 0) unknown%scale = unknown%value

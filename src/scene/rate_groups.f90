@@ -40,9 +40,8 @@ module rate_groups
       otherwise='from accuracy, 1e-4 unless it is given'), &
     key_spec('viscoelastic', meaning='Bodies that creep; &bodies has the instantaneous ' // &
       'stiffness. Give stiffness_relaxed or compliance. Needs &drive.'), &
-    key_spec('viscoelastic', 'stiffness_relaxed', real_value, &
-      'Stiffness of bodies at rest, of a standard linear solid, at most the instantaneous one.', &
-      'Pa', above=0.0_wp), &
+    key_spec('viscoelastic', 'stiffness_relaxed', real_value, 'Stiffness of bodies at rest, ' // &
+      'of a standard linear solid, at most the instantaneous one.', 'Pa', above=0.0_wp), &
     key_spec('viscoelastic', 'compliance', real_list, 'Final contribution of each term to the ' // &
       'compliance (1-nu^2)/E.', '1/Pa', most=most_terms, above=0.0_wp), &
     key_spec('viscoelastic', 'retardation_time', real_list, 'Retardation time of each term, ' // &
@@ -126,9 +125,8 @@ contains
           'give one of: stiffness_relaxed; compliance')
       else if (allocated(relaxed)) then
         if (relaxed > bodies%stiffness .and. .not. bodies%rigid) call deck%mistake( &
-          'viscoelastic', 'stiffness_relaxed', &
-          brief(relaxed) // ' is above the instantaneous stiffness, ' // &
-          brief(bodies%stiffness) // ' Pa')
+          'viscoelastic', 'stiffness_relaxed', brief(relaxed) // &
+          ' is above the instantaneous stiffness, ' // brief(bodies%stiffness) // ' Pa')
         compliance = [1/relaxed - 1/bodies%stiffness]
       end if
       if (.not. allocated(scene%deck%error) .and. size(compliance) /= size(time)) call &

@@ -70,10 +70,9 @@ contains
     if (scene%shape%ends < huge(1.0_wp)) then
       call check_end(scene)
     else if (scene%law%tail_power <= 2/scene%shape%growth) then
-      call scene%deck%mistake('shape', 'kind', &
-        'the load has no limit: far out the gap grows as r^' // brief(scene%shape%growth) // &
-        ' and the pressure falls as its power -' // brief(scene%law%tail_power) // &
-        ', too slowly for the area there')
+      call scene%deck%mistake('shape', 'kind', 'the load has no limit: far out the gap grows ' // &
+        'as r^' // brief(scene%shape%growth) // ' and the pressure falls as its power -' // &
+        brief(scene%law%tail_power) // ', too slowly for the area there')
     end if
   end subroutine check_shape
 

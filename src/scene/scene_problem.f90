@@ -29,8 +29,7 @@ contains
     call take_bodies(scene)
     call take_layer(scene)
     call read_laws(scene%deck, scene%law)
-    if (allocated(scene%law)) &
-      call read_shapes(scene%deck, scene%law%length, scene%shape)
+    if (allocated(scene%law)) call read_shapes(scene%deck, scene%law%length, scene%shape)
     if (.not. allocated(scene%deck%error)) call check_thinness(scene)
   end subroutine take_model
 

@@ -70,8 +70,7 @@ contains
       if (.not. allocated(scene%deck%error)) call take_numbers(deck, sweep)
       if (allocated(scene%deck%error)) return
       if (product([(real(size(sweep%axis(i)%values), wp), i=1, size(sweep%axis))]) > most_cases) &
-        call deck%mistake('sweep', 'count', 'there are more than ' // brief(most_cases) // &
-        ' cases')
+        call deck%mistake('sweep', 'count', 'there are more than ' // brief(most_cases) // ' cases')
     end associate
   end subroutine take_sweep
 

@@ -69,9 +69,8 @@ contains
       name = lower(word_of(names, i))
       which = findloc(theories == name, .true., dim=1)
       if (which == 0) then
-        call scene%deck%mistake('classical', 'theories', quoted(clip(name)) // &
-          ' is not a theory' // guess(name, all_names(), '') // '; allowed: ' // &
-          listing(all_names(), '', ''))
+        call scene%deck%mistake('classical', 'theories', quoted(clip(name)) // ' is not a theory' &
+          // guess(name, all_names(), '') // '; allowed: ' // listing(all_names(), '', ''))
         return
       end if
       if (.not. (convex(which) .or. scene%shape%parabolic .and. &
@@ -108,8 +107,7 @@ contains
         call deck%assume(group, 'h0_start', scene%loading%h0_start)
         call deck%assume(group, 'h0_end', scene%loading%h0_end)
       else if (allocated(scene%path)) then
-        if (allocated(scene%path%h0_start)) &
-          call deck%assume(group, 'h0_start', scene%path%h0_start)
+        if (allocated(scene%path%h0_start)) call deck%assume(group, 'h0_start', scene%path%h0_start)
         call deck%assume(group, 'h0_end', scene%path%h0_end)
       else if (.not. deck%is_set(group, 'h0_start')) then
         call deck%mistake(group, 'h0_start', no_range)

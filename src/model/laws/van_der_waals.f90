@@ -27,9 +27,8 @@ module van_der_waals
       'repulsion such as &born beside it.'), &
     key_spec('van_der_waals', 'hamaker', real_value, 'Hamaker constant.', 'J', above=0.0_wp, &
       required=.true.), &
-    key_spec('van_der_waals', 'retardation_length', real_value, &
-      'Wavelength beyond which the attraction is retarded, about 100 nm.', 'm', above=0.0_wp, &
-      otherwise='no retardation')]
+    key_spec('van_der_waals', 'retardation_length', real_value, 'Wavelength beyond which the ' // &
+      'attraction is retarded, about 100 nm.', 'm', above=0.0_wp, otherwise='no retardation')]
 
 contains
 
