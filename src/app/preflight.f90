@@ -12,12 +12,11 @@ module preflight
   use scene, only: swept_scene
   use h0_schedule, only: states_planned
   use decimal, only: longest_real
-  use memory, only: available_memory
+  use machine, only: available_memory, thread_count, blas_buffers
   use files, only: free_disk, same_file
   use publication, only: result_files, summary_name
   use results, only: to_stream
   use case_columns, only: column_count
-  use blas_threads, only: thread_count, blas_buffers
   implicit none
   private
   public :: check_room, check_inputs, large_results

@@ -17,7 +17,7 @@ module simulation
   use sweep_case, only: sweep_tally_t
   use ranks, only: crew_t
   use preflight, only: check_room, large_results
-  use blas_threads, only: thread_count
+  use machine, only: thread_count
   use linear_algebra, only: claim_buffers
   use equilibrium, only: cost_t
   use classical_rows, only: write_classical

@@ -112,13 +112,11 @@ contains
         errors = [(places%place(i)%relative_error(.false.), i=1, size(places%place))]
         if (.not. maxval(errors) > accuracy .or. maxval(errors) > helped*before) return
         if (round == most_rounds) return
-        associate (known => steps%known)
-          ! Finer meshes do not help if the path was lost, since the finer path may end earlier; or
-          ! if nodes miss too much of the load, since this needs other panels. A collapse of bodies
-          ! without repulsion is not an early end.
-          if (known%ending%early() .and. .not. known%fallen .or. &
-            known%left_out > too_much*accuracy) return
-        end associate
+        ! Finer meshes do not help if the path was lost, since the finer path may end earlier; or
+        ! if nodes miss too much of the load, since this needs other panels. A collapse of bodies
+        ! without repulsion is not an early end.
+        if (steps%known%ending%early() .and. .not. steps%known%fallen .or. steps%known%left_out > &
+          too_much*accuracy) return
         before = maxval(errors)
         poor = [(any(places%place%mesh == mesh .and. errors > accuracy), mesh=1, size(renewed))]
         call steps%know_path_on(fine%meshes, poor, renewed)

@@ -27,7 +27,7 @@ module experiment
   use journal, only: journal_t
   use records, only: observer_t
   use clock, only: seconds
-  use blas_threads, only: use_threads_for
+  use machine, only: use_threads_for
   implicit none
   private
   public :: run_experiment, prepare
@@ -163,7 +163,6 @@ contains
 
   contains
 
-    !> Lays out the meshes of a stepper.
     subroutine lay_out(chosen)
       type(choice_t), intent(in) :: chosen
       real(wp) :: began

@@ -146,11 +146,9 @@ contains
 
       state = position%state
       call self%solve(control_t(value=h0), state, event%converged)
-      associate (before => position%state)
-        event%jumped = event%converged .and. &
-          change(before, state) > max(1.0_wp, paper_jump*abs(h0 - before%h0))
-        call locate_jump(event, before, h0)
-      end associate
+      event%jumped = event%converged .and. change(position%state, state) > max(1.0_wp, &
+        paper_jump*abs(h0 - position%state%h0))
+      call locate_jump(event, position%state, h0)
       call remember(position, state, 1, event%jumped)
     end subroutine paper_step
 

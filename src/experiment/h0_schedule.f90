@@ -60,10 +60,8 @@ contains
     class(force_law_t), intent(in) :: law
     real(wp), intent(in), optional :: also(:)
 
-    associate (loading => request%loading)
-      plan = schedule_of('loading', loading%h0_start, loading%h0_end, loading%h0_step, request, &
-        law, also)
-    end associate
+    plan = schedule_of('loading', request%loading%h0_start, request%loading%h0_end, &
+      request%loading%h0_step, request, law, also)
   end function loading_plan
 
   !> The plan of unloading k.
@@ -75,10 +73,8 @@ contains
 
     ! No function of deferred length, since cases of a sweep would share it: compiler note 4.
     write (name, '(a, i0)') 'unloading_', k
-    associate (unloading => request%unloading)
-      plan = schedule_of(trim(name), unloading%from(k), unloading%h0_end, unloading%h0_step, &
-        request, law)
-    end associate
+    plan = schedule_of(trim(name), request%unloading%from(k), request%unloading%h0_end, &
+      request%unloading%h0_step, request, law)
   end function unloading_plan
 
   !> Values of h0 [m] from start to finish by step, in either direction, with both ends, the h0 of

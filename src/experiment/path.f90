@@ -211,7 +211,6 @@ contains
     if (found) finish = place_of_row(steps, row)
   end subroutine find_finish
 
-  !> A row as a place.
   type(place_t) function place_of_row(steps, row) result(reported)
     type(path_stepper_t), intent(in) :: steps
     type(row_t), intent(in) :: row

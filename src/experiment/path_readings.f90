@@ -99,7 +99,6 @@ contains
       end do
     end subroutine find_loaded
 
-    !> Includes what tells of strains in these states.
     pure subroutine cover(states, problem, quality)
       type(path_state_t), intent(in) :: states(:)
       type(problem_t), intent(in) :: problem

@@ -239,7 +239,6 @@ contains
     place%left(of_h0) = 0
   end subroutine judge_at_h0
 
-  !> The guess for the state of a place on the finer mesh.
   pure type(state_t) function guess_of(own, fine, place) result(state)
     type(equations_t), intent(in) :: own
     type(finer_t), intent(in) :: fine

@@ -98,10 +98,8 @@ contains
     end do
     states = states + branch%states
     if (branch%states == 0) return
-    associate (n => branch%states)
-      branch%finish = place_at(problem, plan%h0(n))
-      call find_largest_tension(problem, plan%h0(:n), load(:n), branch)
-    end associate
+    branch%finish = place_at(problem, plan%h0(branch%states))
+    call find_largest_tension(problem, plan%h0(:branch%states), load(:branch%states), branch)
     call enter_ends(branch, fresh, places)
   end subroutine run_branch
 

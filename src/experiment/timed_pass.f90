@@ -5,8 +5,7 @@ module timed_pass
   use kinds, only: wp, pi
   use mesh_plan, only: contact
   use listener, only: listener_t
-  use motion, only: motion_t, names_of_ways
-  use time_instant, only: instant_t
+  use time_instant, only: motion_t, names_of_ways, instant_t
   use time_stepper, only: time_stepper_t
   use time_jump, only: step_along
   use rest, only: begin_at_rest, load_at_rest, longest_step
@@ -227,7 +226,6 @@ contains
       end do
     end subroutine go_to
 
-    !> Sends messages about the progress of a pass.
     subroutine tell()
       character(len=60) :: so_far
 

@@ -18,7 +18,7 @@ module timed_run
   use experiment_request, only: request_t, numerics_t
   use path_demand, only: h0_in_contact
   use creep, only: creep_t
-  use motion, only: new_motion, names_of_ways
+  use time_instant, only: new_motion, names_of_ways
   use time_stepper, only: time_stepper_t
   use material, only: new_material
   use solver_options, only: tightened
@@ -143,7 +143,6 @@ contains
       end if
     end subroutine prepare
 
-    !> The problem of the bodies at rest.
     type(problem_t) function relaxed_problem() result(relaxed)
       relaxed = steps%problem
       relaxed%coupling = steps%instant*steps%creep%relaxed()

@@ -5,7 +5,7 @@ module fit_doubts
   use text, only: brief, rounded, rounded_to
   use namelist_writer, only: line_t
   use fit_request, only: unknown_t, fitted_of, is_at_end, farthest_off
-  use lack_of_fit, only: lack_t, hardly_ever
+  use second_look, only: lack_t, hardly_ever
   use fit_errors, only: fitted_t
   use held_numbers, only: held_t
   use fit_run, only: fit_outcome_t

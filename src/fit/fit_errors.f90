@@ -5,7 +5,7 @@ module fit_errors
   use linear_algebra, only: singular_values
   use fit_request, only: unknown_t, fitted_of, value_by_fitted, farthest_off
   use curve_residuals, only: curve_residuals_t
-  use lack_of_fit, only: lack_t, lack_in
+  use second_look, only: lack_t, lack_in
   implicit none
   private
   public :: fitted_t, judge, widen, least_effect
@@ -109,7 +109,6 @@ contains
     fitted%jump_z = [(residuals%curve%jump_of(fitted%value, i), i=1, 2)]
   end subroutine judge
 
-  !> Sets the deviations to the larger ones of both sides.
   subroutine set_deviations(fitted, unknown)
     type(fitted_t), intent(inout) :: fitted
     type(unknown_t), intent(in) :: unknown(:)

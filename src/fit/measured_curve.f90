@@ -182,7 +182,6 @@ contains
     goes_back = sum(abs(mean(2:) - mean(:parts - 1))) > much*abs(mean(parts) - mean(1))
   end function goes_back
 
-  !> Means over the parts of a column.
   pure function means_of(number) result(mean)
     real(wp), intent(in) :: number(:)
     real(wp) :: mean(parts)

@@ -168,7 +168,6 @@ contains
     call find_rule(varied)
   end function along_path
 
-  !> Sets the weights for the offsets.
   subroutine find_rule(varied)
     type(variation_t), intent(inout) :: varied
     real(wp) :: one(size(varied%offset))

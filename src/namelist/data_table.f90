@@ -122,7 +122,6 @@ contains
       first = 0
     end subroutine next_row
 
-    !> The line at position `first`.
     pure function this_line() result(line)
       character(len=:), allocatable :: line
 

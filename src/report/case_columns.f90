@@ -8,7 +8,7 @@ module case_columns
   use deck_numbers, only: find_number
   use result_rows, only: row_t, rows, turning, spring, given_load, layered_regime, &
     of_carpick => carpick, of_troyon => pietrement_troyon
-  use theory_names, only: carpick, pietrement_troyon
+  use classical, only: carpick, pietrement_troyon
   use scene_groups, only: scene_t
   use summary, only: summary_t
   implicit none

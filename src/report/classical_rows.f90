@@ -4,11 +4,11 @@ module classical_rows
   use kinds, only: wp
   use dimensionless_problem, only: problem_t, surface_energy, largest_tension
   use classical, only: hertz_load_at_displacement, hertz_radius_at_displacement, &
-    jkr_load_at_displacement, jkr_radius_at_displacement, dmt_load_at_displacement
+    jkr_load_at_displacement, jkr_radius_at_displacement, dmt_load_at_displacement, theories, &
+    hertz, jkr, dmt, maugis_dugdale, carpick, pietrement_troyon
   use convex_contact, only: hertz_like_load, jkr_like_load, jkr_like_radius, detachment_radius
   use maugis, only: maugis_t, new_maugis
   use transition_fits, only: fit_t, carpick_fit, pietrement_fit
-  use theory_names, only: theories, hertz, jkr, dmt, maugis_dugdale, carpick, pietrement_troyon
   use layered_contact, only: layered_contact_t, new_layered_contact, has_layers, of_load
   use scene_groups, only: range_t
   use results, only: results_t

@@ -106,7 +106,6 @@ contains
     text = text // numbers('excess_width', [real(fitted%lack%width, wp)])
   end function of_fitted
 
-  !> The entries about numbers that were held.
   function of_held(held) result(text)
     type(held_t), intent(in) :: held(:)
     character(len=:), allocatable :: text

@@ -106,7 +106,6 @@ contains
 
   contains
 
-    !> Whether slopes and strains are small.
     subroutine judge_extent()
       real(wp) :: strain
 

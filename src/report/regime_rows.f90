@@ -5,8 +5,7 @@ module regime_rows
   use kinds, only: wp, pi, nan
   use dimensionless_problem, only: problem_t, surface_energy, largest_tension, tabor_parameter
   use layered_contact, only: layered_contact_t, new_layered_contact, has_layers, of_displacement
-  use theory_names, only: hertz, jkr
-  use classical, only: hertz_radius_at_load, hertz_displacement, jkr_radius_at_load, &
+  use classical, only: hertz, jkr, hertz_radius_at_load, hertz_displacement, jkr_radius_at_load, &
     jkr_displacement, jkr_pull_off, dmt_radius_at_load, dmt_pull_off
   use maugis, only: maugis_t, new_maugis
   use transition_fits, only: fit_t, carpick_fit, pietrement_fit

@@ -21,10 +21,9 @@ module results
   use journal, only: journal_t
   use run_identity, only: difference_between
   use text_file, only: output_t, partial
-  use tables, only: table_t, cells
+  use tables, only: table_t, cells, columns_of_curve, curve_row, columns_of_profiles, write_profile
   use result_tables, only: columns_of
   use text, only: word_of
-  use state_rows, only: columns_of_curve, curve_row, columns_of_profiles, write_profile
   use summary, only: summary_t, summary_text
   use progress, only: progress_t
   implicit none
@@ -336,7 +335,6 @@ contains
 
   end subroutine check_presence
 
-  !> Closes a table; the first error stays.
   subroutine finish_table(table, error)
     type(table_t), intent(inout) :: table
     type(failure_t), allocatable, intent(inout) :: error

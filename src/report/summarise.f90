@@ -92,7 +92,6 @@ contains
       end do
     end subroutine take_places
 
-    !> Adds further numbers and warnings of branches that are stepped in h0.
     subroutine tell_branches()
       integer :: k
 
@@ -138,7 +137,6 @@ contains
         call summary%fail_with(name//' ended early: '//trim(branch%ending%message()))
     end subroutine tell_trouble
 
-    !> Adds further numbers and warnings of the path.
     subroutine tell_path(path)
       type(path_t), intent(in) :: path
 
@@ -167,7 +165,6 @@ contains
         abs(path%lowest%at(of_h0) - place%at(of_h0)) <= 0
     end function is_lowest
 
-    !> Adds numbers that are read from the path.
     subroutine take_readings(readings, places)
       type(path_readings_t), intent(in) :: readings
       type(places_t), intent(in) :: places

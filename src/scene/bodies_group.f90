@@ -243,7 +243,6 @@ contains
       // brief(most_unlike) // '; leave out layers so thin or soft, or make so stiff a body rigid')
   end subroutine check_spread
 
-  !> Whether a key of the group has this value.
   pure logical function word_is(deck, key, word)
     type(deck_t), intent(in) :: deck
     character(len=*), intent(in) :: key, word

@@ -83,7 +83,6 @@ contains
     call new_deck_family(deck, own, family, error)
   end subroutine family_of_fit
 
-  !> Whether a key is in &measurement.
   pure logical function is_measured(name)
     character(len=*), intent(in) :: name
 

@@ -10,7 +10,7 @@ module scene_groups
   use layered_surface, only: layered_surface_t
   use fit_request, only: fit_t
   use measured_curve, only: measured_t
-  use theory_names, only: theories, usual
+  use classical, only: theories, usual
   implicit none
   private
   public :: scene_t, bodies_t, range_t, sweep_t, axis_t, case_file_t

@@ -2,7 +2,7 @@
 module theory_groups
   use text, only: clip, guess, listing, lower, quoted, word_count, word_of
   use deck_keys, only: key_spec, real_value, integer_value, names_value
-  use theory_names, only: convex, theories
+  use classical, only: convex, theories
   use scene_groups, only: scene_t, range_t
   use curve_groups, only: check_order
   implicit none

@@ -1,4 +1,5 @@
 !> The classical theories of elastic contact: Hertz, JKR, DMT. Maugis-Dugdale theory is in `maugis`.
+!> The theories that `&classical` shows have their names in decks and tables here.
 !>
 !> SI units and the paper's conventions: `radius` is R of h0(r) = h0 + r^2/(2R), `y` the stiffness
 !> E/(1-nu^2) of two identical bodies (twice the composite modulus E*), `gamma` the surface energy,
@@ -11,12 +12,20 @@ module classical
   use kinds, only: wp, pi, nan
   implicit none
   private
-  public :: hertz_load, hertz_displacement, hertz_load_at_displacement
-  public :: hertz_radius_at_load, hertz_radius_at_displacement, hertz_pressure, hertz_gap
-  public :: jkr_load, jkr_displacement, jkr_radius_at_load, jkr_radius_at_displacement
-  public :: jkr_load_at_displacement, jkr_pull_off, jkr_pull_off_fixed_displacement
-  public :: jkr_pressure, jkr_gap
-  public :: dmt_load, dmt_load_at_displacement, dmt_pull_off, dmt_radius_at_load
+  public :: hertz_load, hertz_displacement, hertz_load_at_displacement, hertz_radius_at_load, &
+    hertz_radius_at_displacement, hertz_pressure, hertz_gap, jkr_load, jkr_displacement, &
+    jkr_radius_at_load, jkr_radius_at_displacement, jkr_load_at_displacement, jkr_pull_off, &
+    jkr_pull_off_fixed_displacement, jkr_pressure, jkr_gap, dmt_load, dmt_load_at_displacement, &
+    dmt_pull_off, dmt_radius_at_load, theories, hertz, jkr, dmt, maugis_dugdale, carpick, &
+    pietrement_troyon, usual, convex
+
+  integer, parameter :: hertz = 1, jkr = 2, dmt = 3, maugis_dugdale = 4, carpick = 5, &
+    pietrement_troyon = 6
+  character(len=*), parameter :: theories(*) = [character(len=17) :: 'hertz', 'jkr', 'dmt', &
+    'maugis_dugdale', 'carpick', 'pietrement_troyon']
+  !> Theories shown by default; theories that hold for any convex shape and for layers.
+  logical, parameter :: usual(*) = [.true., .true., .true., .true., .false., .false.]
+  logical, parameter :: convex(*) = [.true., .true., .false., .false., .false., .false.]
 
 contains
 
@@ -217,4 +226,5 @@ contains
 
     root = max(x, 0.0_wp)**(1.0_wp/3.0_wp)
   end function cube_root
+
 end module classical

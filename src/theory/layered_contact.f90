@@ -15,7 +15,7 @@ module layered_contact
   use root_finding, only: bracket_t
   use dimensionless_problem, only: problem_t
   use layered_body, only: layered_body_t
-  use theory_names, only: hertz, jkr
+  use classical, only: hertz, jkr
   implicit none
   private
   public :: layered_contact_t, new_layered_contact, has_layers, of_load, of_displacement

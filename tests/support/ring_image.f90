@@ -74,7 +74,7 @@ module printing_observer
   use equilibrium, only: cost_t
   use stability, only: smallest_eigenvalue
   use records, only: observer_t, record_t
-  use state_rows, only: curve_row
+  use tables, only: curve_row
   implicit none
   private
   public :: printing_observer_t

@@ -74,7 +74,7 @@ GUARDS = {
     "hidden_folds": Guard("folds that a step passes over are looked for", "path_search",
         "if doubt held most_states", ("swap", "most_states", "0"),
         ("path/test_close_folds.py::test_folds_however_close_are_found",)),
-    "converged_column": Guard("a row that is no equilibrium says so", "state_rows",
+    "converged_column": Guard("a row that is no equilibrium says so", "tables",
         "merge converged", ("swap", "converged", ".true."), (STARVED,)),
     "unconverged_stable": Guard("a row that is no equilibrium is not stable", "stability_records",
         "if converged", ALWAYS, (UNCONVERGED_ROW,)),
