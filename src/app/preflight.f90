@@ -168,8 +168,8 @@ contains
       return
     end if
     bytes = states_planned(scene)*(row(of_curve) + kept)
-    if (allocated(scene%profiles)) then
-      bytes = bytes + size(scene%profiles%h0)*of_mesh*row(of_profile)
+    if (allocated(scene%profile_h0)) then
+      bytes = bytes + size(scene%profile_h0)*of_mesh*row(of_profile)
     end if
     if (allocated(scene%classical)) bytes = bytes + &
       count(scene%classical%shown)*real(scene%classical%count, wp)*row(of_theory)

@@ -204,12 +204,12 @@ contains
       end if
       if (allocated(outcome%readings)) &
         call write_path_tables(problem, outcome%readings, outcome%places, results)
-      if (allocated(scene%sensitivity) .and. allocated(outcome%timed)) &
+      if (allocated(scene%varied) .and. allocated(outcome%timed)) &
         call rate_drive(scene, keeper, results, outcome%timed)
       summary = summary_of(scene, problem, outcome)
       call recorder%warn(summary)
-      if (allocated(scene%sensitivity)) &
-        call write_sensitivities(scene%sensitivity%varied, problem, outcome, summary, results)
+      if (allocated(scene%varied)) &
+        call write_sensitivities(scene%varied, problem, outcome, summary, results)
       cost = outcome%cost
       cost%factorisations = cost%factorisations + recorder%cost%factorisations
     end subroutine run_observed

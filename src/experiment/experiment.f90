@@ -156,8 +156,8 @@ contains
     steps%cost%estimate_seconds = steps%cost%estimate_seconds + seconds() - began
     select type (steps)
     class is (path_stepper_t)
-      if (allocated(request%sensitivity)) &
-        call rate_places(request%sensitivity, steps, observer, outcome)
+      if (allocated(request%varied)) &
+        call rate_places(request%varied, steps, observer, outcome)
     end select
     outcome%cost = steps%cost
 
@@ -192,7 +192,7 @@ contains
 
       associate (law => steps%problem%law)
         allocate (profiles(0))
-        if (allocated(request%profiles)) profiles = law%gap_of(request%profiles%h0)
+        if (allocated(request%profile_h0)) profiles = law%gap_of(request%profile_h0)
         allocate (outcome%path)
         if (allocated(request%path%h0_start) .or. request%reads_path()) then
           start = law%gap_of(path_start(request, steps%problem))

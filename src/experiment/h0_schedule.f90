@@ -46,8 +46,8 @@ contains
         start = max(law%separation_of(far), finish + law%length)
       end if
       allocate (farther(0))
-      if (allocated(request%profiles)) &
-        farther = law%gap_of(pack(request%profiles%h0, request%profiles%h0 > start))
+      if (allocated(request%profile_h0)) &
+        farther = law%gap_of(pack(request%profile_h0, request%profile_h0 > start))
       plan = schedule_of('path', start, finish, abs(start - finish)/path_states, request, law, &
         farther)
     end associate
@@ -101,7 +101,7 @@ contains
       h0 = [h0, finish]
     end if
     allocate (profiles(0))
-    if (allocated(request%profiles)) profiles = request%profiles%h0
+    if (allocated(request%profile_h0)) profiles = request%profile_h0
     if (present(also)) then
       do i = 1, size(also)
         call include(h0, law%separation_of(also(i)))

@@ -96,7 +96,7 @@ contains
       if (numerics%method == 'newton') options = newton_of(options)
     end associate
     chosen%digits = digits_for(problem, largest_radius(problem, chosen%low, &
-      contact_level(problem)), numerics%accuracy, allocated(request%profiles))
+      contact_level(problem)), numerics%accuracy, allocated(request%profile_h0))
     if (numerics%grid == 'uniform') then
       chosen%grid = uniform
       chosen%because = 'the deck asks for it'

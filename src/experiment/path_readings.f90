@@ -65,7 +65,7 @@ contains
       readings%traced_from = path%point(path%undeformed + 1)%state%h0
       readings%undeformed_from = path%point(1)%state%h0
       if (allocated(request%device)) call run_device()
-      if (allocated(request%fixed_load)) call find_loaded(request%fixed_load%load/ &
+      if (allocated(request%fixed_loads)) call find_loaded(request%fixed_loads/ &
         steps%problem%load)
       if (request%table) then
         allocate (readings%prescribed)

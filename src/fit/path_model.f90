@@ -97,11 +97,11 @@ contains
     if (allocated(error)) return
     if (.not. problem%law%adhesion > 0) return
     request%numerics = self%numerics
-    allocate (request%path, request%device, request%fixed_load)
+    allocate (request%path, request%device)
     request%path%h0_end = problem%law%separation_of(problem%law%rest_gap)
     request%device%stiffness = [stiffness]
     request%device%z_start = farthest
-    request%fixed_load%load = [largest]
+    request%fixed_loads = [largest]
     chosen = choose(request, problem)
     call prepare(self%steps, problem, chosen, self%numerics%accuracy)
     self%steps%options%mixing = .false.

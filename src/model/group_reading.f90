@@ -29,8 +29,6 @@ contains
     character(len=*), intent(in) :: law
     character(len=:), allocatable :: name
 
-    is_law = .false.
-    if (.not. deck%has_group('force')) return
     call deck%get('force', 'law', name)
     is_law = name == law
   end function is_law
@@ -53,7 +51,6 @@ contains
     character(len=:), allocatable :: other
     integer :: i
 
-    if (.not. deck%has_group(group)) return
     call deck%get(group, by, other)
     if (other == choice) return
     do i = 1, size(rows)

@@ -26,15 +26,13 @@ module step_attraction
 
 contains
 
-  !> The law of a group whose keys `strength_key` [Pa] and `length_key` [m] give stress and range,
-  !> if the deck has the group.
+  !> The law of a group whose keys `strength_key` [Pa] and `length_key` [m] give stress and range.
   subroutine read_step(deck, group, strength_key, length_key, law)
     type(deck_t), intent(inout) :: deck
     character(len=*), intent(in) :: group, strength_key, length_key
     class(force_law_t), allocatable, intent(out) :: law
     real(wp) :: stress, range
 
-    if (.not. deck%has_group(group)) return
     call deck%get(group, strength_key, stress)
     call deck%get(group, length_key, range)
     call new_step(deck, group, strength_key, length_key, stress, range, law)

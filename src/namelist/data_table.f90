@@ -14,8 +14,7 @@ module data_table
     miscount
   implicit none
   private
-  public :: data_table_t, read_data_table, largest_table, read_columns
-  public :: is_header
+  public :: data_table_t, read_data_table, largest_table, read_columns, is_header
 
   !> The columns asked for, value(row, column), the position of each row in the file's text, and the
   !> number of columns in the file.

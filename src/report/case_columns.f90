@@ -166,7 +166,7 @@ contains
       if (allocated(scene%device)) &
         elements = count_of('stiffness', max(1, size(scene%device%stiffness)))
     case (given_load)
-      if (allocated(scene%fixed_load)) elements = count_of('load', size(scene%fixed_load%load))
+      if (allocated(scene%fixed_loads)) elements = count_of('load', size(scene%fixed_loads))
     end select
 
   contains

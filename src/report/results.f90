@@ -97,7 +97,7 @@ contains
     if (scene%has_curve() .and. .not. allocated(error)) then
       call self%begin(self%curve, 'curve.csv', columns_of_curve(scene%has_eigenvalues(), &
         scene%drive_columns()), error)
-      if (allocated(scene%profiles) .and. .not. allocated(error)) &
+      if (allocated(scene%profile_h0) .and. .not. allocated(error)) &
         call self%begin(self%shapes, 'profiles.csv', columns_of_profiles(problem), error)
     end if
     if (.not. allocated(error)) return

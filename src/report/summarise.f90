@@ -36,8 +36,8 @@ contains
 
     call summary%set('title', scene%title)
     call summary%set('converged', .true.)
-    if (allocated(scene%sensitivity) .and. .not. allocated(scene%drive)) then
-      call describe_problem(problem, summary, scene%sensitivity%varied)
+    if (allocated(scene%varied) .and. .not. allocated(scene%drive)) then
+      call describe_problem(problem, summary, scene%varied)
     else
       call describe_problem(problem, summary)
     end if
@@ -181,7 +181,7 @@ contains
         call summary%set('table_interpolation_error', &
           readings%table_interpolation_error*problem%load)
       end if
-      if (allocated(readings%loaded)) call summarise_fixed_loads(problem, scene%fixed_load%load, &
+      if (allocated(readings%loaded)) call summarise_fixed_loads(problem, scene%fixed_loads, &
         readings, places, summary)
     end subroutine take_readings
 

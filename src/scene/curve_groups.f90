@@ -165,8 +165,7 @@ contains
       end if
       if (deck%has_group('fixed_load')) then
         call check_path(scene, 'fixed_load')
-        allocate (scene%fixed_load)
-        call deck%get('fixed_load', 'load', scene%fixed_load%load)
+        call deck%get('fixed_load', 'load', scene%fixed_loads)
       end if
       scene%table = deck%has_group('table')
       if (scene%table) call check_path(scene, 'table')
@@ -190,12 +189,11 @@ contains
     integer :: i
 
     if (.not. has_states(scene, 'profiles')) return
-    allocate (scene%profiles)
-    call scene%deck%get('profiles', 'h0', scene%profiles%h0)
-    do i = 1, size(scene%profiles%h0)
+    call scene%deck%get('profiles', 'h0', scene%profile_h0)
+    do i = 1, size(scene%profile_h0)
       if (allocated(scene%drive)) exit
-      if (reached(scene%profiles%h0(i))) cycle
-      call scene%deck%mistake('profiles', 'h0', brief(scene%profiles%h0(i)) // &
+      if (reached(scene%profile_h0(i))) cycle
+      call scene%deck%mistake('profiles', 'h0', brief(scene%profile_h0(i)) // &
                               ' m is outside the range of &loading and &equilibrium_path')
       return
     end do

@@ -179,10 +179,9 @@ contains
       'not together with &sweep' // why)
     if (allocated(scene%deck%error) .and. .not. driven) return
     call scene%deck%get('sensitivity', 'parameters', keys)
-    allocate (scene%sensitivity)
-    allocate (scene%sensitivity%varied(word_count(keys)))
+    allocate (scene%varied(word_count(keys)))
     do i = 1, word_count(keys)
-      associate (varied => scene%sensitivity%varied(i))
+      associate (varied => scene%varied(i))
         if (driven) then
           call take_number(scene%deck, lower(word_of(keys, i)), varied%parameter, trouble)
         else

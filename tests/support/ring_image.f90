@@ -145,10 +145,10 @@ program ring_image
   if (allocated(error)) error stop 'the deck is wrong'
   problem = problem_of(scene)
   call give_body(problem)
-  if (allocated(scene%sensitivity)) then
-    do j = 1, size(scene%sensitivity%varied)
-      do k = 1, size(scene%sensitivity%varied(j)%problem)
-        call give_body(scene%sensitivity%varied(j)%problem(k))
+  if (allocated(scene%varied)) then
+    do j = 1, size(scene%varied)
+      do k = 1, size(scene%varied(j)%problem)
+        call give_body(scene%varied(j)%problem(k))
       end do
     end do
   end if

@@ -23,14 +23,13 @@ module born
 
 contains
 
-  !> The law, if the deck has its group.
+  !> The law of its group.
   subroutine read_law(deck, law)
     type(deck_t), intent(inout) :: deck
     class(force_law_t), allocatable, intent(out) :: law
     type(power_pair_t) :: this
     real(wp) :: hamaker
 
-    if (.not. deck%has_group('born')) return
     if (.not. (deck%is_set('born', 'hamaker') .or. deck%has_group('van_der_waals'))) then
       call deck%mistake('born', 'hamaker', 'missing; give it, or &van_der_waals with this '// &
         'constant')

@@ -33,7 +33,7 @@ module capillary
 
 contains
 
-  !> The law, if the deck has its group.
+  !> The law of its group.
   subroutine read_law(deck, law)
     type(deck_t), intent(inout) :: deck
     class(force_law_t), allocatable, intent(out) :: law
@@ -43,7 +43,6 @@ contains
     real(wp) :: tension, radius, humidity, volume, temperature
     character(len=:), allocatable :: key
 
-    if (.not. deck%has_group('capillary')) return
     call deck%get('capillary', 'surface_tension', tension)
     call deck%get('capillary', 'contact_angle', angles)
     if (size(angles) == 0) angles = [0.0_wp]

@@ -68,7 +68,7 @@ module double_layer
 
 contains
 
-  !> The law, if the deck has its group.
+  !> The law of its group.
   subroutine read_law(deck, law)
     type(deck_t), intent(inout) :: deck
     class(force_law_t), allocatable, intent(out) :: law
@@ -77,7 +77,6 @@ contains
     real(wp) :: osmotic
     logical :: solved
 
-    if (.not. deck%has_group('double_layer')) return
     call deck%get('double_layer', 'model', model)
     this%model = linear
     if (model == 'superposition') this%model = superposition

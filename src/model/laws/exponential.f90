@@ -30,7 +30,7 @@ module exponential
 
 contains
 
-  !> The law, if the deck has its group.
+  !> The law of its group.
   subroutine read_law(deck, law)
     type(deck_t), intent(inout) :: deck
     class(force_law_t), allocatable, intent(out) :: law
@@ -63,7 +63,6 @@ contains
     logical :: of_energy
     integer :: i, n
 
-    if (.not. deck%has_group(group)) return
     of_energy = deck%is_set(group, 'energy')
     if (of_energy .eqv. deck%is_set(group, 'pressure')) then
       call deck%mistake(group, 'energy', 'give either energy or pressure')

@@ -32,14 +32,13 @@ module morse
 
 contains
 
-  !> The law, if the deck has its group.
+  !> The law of its group.
   subroutine read_law(deck, law)
     type(deck_t), intent(inout) :: deck
     class(force_law_t), allocatable, intent(out) :: law
     type(morse_t) :: this
     real(wp) :: surface_energy, z0, decay_length
 
-    if (.not. deck%has_group('morse')) return
     call deck%get('morse', 'surface_energy', surface_energy)
     call deck%get('morse', 'z0', z0)
     call deck%get('morse', 'decay_length', decay_length)

@@ -38,7 +38,7 @@ module steric
 
 contains
 
-  !> The law, if the deck has its group.
+  !> The law of its group.
   subroutine read_law(deck, law)
     type(deck_t), intent(inout) :: deck
     class(force_law_t), allocatable, intent(out) :: law
@@ -47,7 +47,6 @@ contains
     real(wp) :: thickness, density, temperature
     integer :: sides
 
-    if (.not. deck%has_group('steric')) return
     call deck%get('steric', 'model', model)
     call deck%get('steric', 'brush_thickness', thickness)
     call deck%get('steric', 'grafting_density', density)

@@ -33,14 +33,13 @@ module structural
 
 contains
 
-  !> The law, if the deck has its group. A negative amplitude is a positive one with another phase.
+  !> The law of its group. A negative amplitude is a positive one with another phase.
   subroutine read_law(deck, law)
     type(deck_t), intent(inout) :: deck
     class(force_law_t), allocatable, intent(out) :: law
     type(structural_t) :: this
     real(wp) :: amplitude, period
 
-    if (.not. deck%has_group('structural')) return
     call deck%get('structural', 'amplitude', amplitude)
     call deck%get('structural', 'period', period)
     call deck%get('structural', 'decay_length', this%length)

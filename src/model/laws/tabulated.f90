@@ -53,7 +53,7 @@ module tabulated
 
 contains
 
-  !> The law, if the deck has its group.
+  !> The law of its group.
   subroutine read_law(deck, law)
     type(deck_t), intent(inout) :: deck
     class(force_law_t), allocatable, intent(out) :: law
@@ -61,7 +61,6 @@ contains
     type(failure_t), allocatable :: trouble
     type(data_table_t) :: table
 
-    if (.not. deck%has_group('tabulated')) return
     if (deck%is_set('tabulated', 'tail_exponent') .eqv. &
         deck%is_set('tabulated', 'tail_decay_length')) then
       call deck%mistake('tabulated', 'tail_exponent', 'give tail_exponent or ' // &

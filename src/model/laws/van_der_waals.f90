@@ -32,14 +32,13 @@ module van_der_waals
 
 contains
 
-  !> The law, if the deck has its group. It has no characteristic length.
+  !> The law of its group. It has no characteristic length.
   subroutine read_law(deck, law)
     type(deck_t), intent(inout) :: deck
     class(force_law_t), allocatable, intent(out) :: law
     type(van_der_waals_t) :: this
     real(wp) :: hamaker, wavelength
 
-    if (.not. deck%has_group('van_der_waals')) return
     call deck%get('van_der_waals', 'hamaker', hamaker)
     this%length = nanometre
     this%has_length = .false.
