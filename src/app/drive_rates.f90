@@ -36,7 +36,7 @@ contains
     logical :: found
     integer :: i, j
 
-    associate (varied => scene%sensitivity%varied)
+    associate (varied => scene%varied)
       allocate (rate(size(varied), numbers))
       change = min(largest, scene%numerics%accuracy**(1.0_wp/3))
       do j = 1, size(varied)

@@ -8,17 +8,15 @@ module preflight
   use dimensionless_problem, only: problem_t
   use numerics_choice, only: choice_t, choose, companion
   use edge_locked, only: mesh_family_t, new_mesh_family
-  use path_demand, only: range_of
   use scene_problem, only: problem_of
   use scene, only: swept_scene
   use h0_schedule, only: states_planned
   use decimal, only: longest_real
-  use memory, only: available_memory
+  use machine, only: available_memory, thread_count, blas_buffers
   use files, only: free_disk, same_file
   use publication, only: result_files, summary_name
   use results, only: to_stream
   use case_columns, only: column_count
-  use blas_threads, only: thread_count, blas_buffers
   implicit none
   private
   public :: check_room, check_inputs, large_results
@@ -130,19 +128,18 @@ contains
     type(choice_t) :: chosen, other
     type(mesh_family_t) :: meshes
     real(wp), allocatable :: of_meshes(:)
-    real(wp) :: low, high, digits, entries, matrices
+    real(wp) :: digits, entries, matrices
 
     bytes = 0
     nodes = 0
     if (.not. scene%finds_states()) return
     problem = problem_of(scene)
     if (problem%rigid) return
-    call range_of(scene, problem, low, high)
-    chosen = choose(scene%numerics, problem, low, allocated(scene%profiles))
+    chosen = choose(scene, problem)
     entries = 0
     if (allocated(scene%path) .or. .not. chosen%is_fixed()) then
       digits = min(chosen%digits, few_digits)
-      meshes = new_mesh_family(problem, high, low, digits, shape_only=.true.)
+      meshes = new_mesh_family(problem, chosen%high, chosen%low, digits, shape_only=.true.)
       of_meshes = chosen%digits/digits*meshes%grid%nodes
       nodes = ceiling(maxval(of_meshes))
       ! Kernels, one factorisation and another for a fold, and about half as much again for the
@@ -171,8 +168,8 @@ contains
       return
     end if
     bytes = states_planned(scene)*(row(of_curve) + kept)
-    if (allocated(scene%profiles)) then
-      bytes = bytes + size(scene%profiles%h0)*of_mesh*row(of_profile)
+    if (allocated(scene%profile_h0)) then
+      bytes = bytes + size(scene%profile_h0)*of_mesh*row(of_profile)
     end if
     if (allocated(scene%classical)) bytes = bytes + &
       count(scene%classical%shown)*real(scene%classical%count, wp)*row(of_theory)

@@ -3,7 +3,7 @@ module simulation
   use kinds, only: wp, long
   use failure, only: failure_t, bad_input
   use build_info, only: version, compiler, blas, options
-  use dimensionless_problem, only: problem_t
+  use dimensionless_problem, only: problem_t, calm_gap
   use scene_groups, only: scene_t
   use text, only: brief
   use experiment_result, only: experiment_result_t
@@ -17,10 +17,14 @@ module simulation
   use sweep_case, only: sweep_tally_t
   use ranks, only: crew_t
   use preflight, only: check_room, large_results
-  use blas_threads, only: thread_count
+  use machine, only: thread_count
   use linear_algebra, only: claim_buffers
   use equilibrium, only: cost_t
-  use derived_tables, only: write_derived_tables, write_path_tables, write_sensitivities
+  use classical_rows, only: write_classical
+  use approximation_tables, only: write_approximations
+  use reading_rows, only: write_path_tables
+  use sensitivity_rows, only: write_sensitivities
+  use path_demand, only: path_start
   use stability_records, only: stability_recorder_t
   use summarise, only: summary_of
   use problem_numbers, only: describe_problem
@@ -59,7 +63,7 @@ contains
     logical, intent(out) :: converged
     type(failure_t), allocatable, intent(out) :: error
     type(destination_t) :: destination
-    type(results_t) :: results
+    type(results_t), target :: results
     type(problem_t) :: problem
     type(summary_t) :: summary
     type(cost_t) :: cost
@@ -72,18 +76,26 @@ contains
     if (out_dir == to_stream) then
       destination%folder = 'snapin'
     else
-      call take_up_earlier(scene, destination, resume, finished, converged, error)
+      call take_up_earlier()
       if (finished .or. allocated(error)) return
     end if
     call check_room(scene, out_dir, error)
     if (allocated(error)) return
     problem = problem_of(scene)
-    call open_folder(scene, problem, out_dir, destination, resume, results, error)
+    call open_folder()
     if (allocated(error)) return
-    call compute(scene, problem, destination, crew, job, results, summary, cost)
-    call write_derived_tables(scene, problem, results, summary)
-    if (allocated(scene%fit)) call fit_measured(scene, problem, destination, results, summary)
-    call describe_program(summary)
+    call compute()
+    if (allocated(scene%classical)) call write_classical(problem, scene%classical, &
+      path_start(scene, problem), results, summary)
+    ! Bodies are nearly undeformed only before the path comes to contact.
+    if (allocated(scene%approximations)) call write_approximations(problem, scene%approximations, &
+      max(path_start(scene, problem), problem%law%separation_of(calm_gap(problem))), results)
+    if (allocated(scene%fit)) call fit_measured()
+    call summary%set('version', version)
+    call summary%set('compiler', compiler)
+    call summary%set('blas', blas)
+    call summary%set('build_options', options)
+    call summary%set('threads', int(thread_count(), long))
     call summary%set('wall_seconds', results%journal%earlier + seconds() - began)
     call results%write_summary(summary, cost, scene%deck)
     call results%finish(error)
@@ -93,182 +105,146 @@ contains
     end if
     call tell(scene, destination, summary, cost)
     converged = summary%is_true('converged')
-  end subroutine run_scene
 
-  !> Completes an interrupted replacement of results. With `resume` and a finished run in the
-  !> folder, finished = .true., and there is nothing to compute; converged is that of the finished
-  !> run.
-  subroutine take_up_earlier(scene, destination, resume, finished, converged, error)
-    type(scene_t), intent(in) :: scene
-    type(destination_t), intent(in) :: destination
-    logical, intent(in) :: resume
-    logical, intent(out) :: finished, converged
-    type(failure_t), allocatable, intent(out) :: error
-    logical :: mended
+  contains
 
-    finished = .false.
-    converged = .false.
-    call mend(destination%folder, mended, error)
-    if (allocated(error)) return
-    if (mended) call destination%say('installed the results that an interrupted run had completed')
-    if (file_exists(journal_of(destination%folder))) return
-    if (.not. resume) return
-    call find_finished(destination%folder, scene%deck%resolved(), finished, converged)
-    if (finished) then
-      call destination%say('complete since an earlier run; nothing to do')
-      if (.not. converged) call destination%say('its summary says what failed')
-    else
-      call destination%say('no interrupted run to continue; starting from the beginning')
-    end if
-  end subroutine take_up_earlier
+    !> Completes an interrupted replacement of results. With `resume` and a finished run in the
+    !> folder, finished = .true., and there is nothing to compute; converged is that of the finished
+    !> run.
+    subroutine take_up_earlier()
+      logical :: mended
 
-  !> Locks the folder for this run and begins its tables.
-  subroutine open_folder(scene, problem, folder, destination, resume, results, error)
-    type(scene_t), intent(in) :: scene
-    type(problem_t), intent(in) :: problem
-    character(len=*), intent(in) :: folder
-    type(destination_t), intent(in) :: destination
-    logical, intent(in) :: resume
-    type(results_t), intent(inout) :: results
-    type(failure_t), allocatable, intent(out) :: error
-    logical :: left_over
+      finished = .false.
+      converged = .false.
+      call mend(destination%folder, mended, error)
+      if (allocated(error)) return
+      if (mended) call &
+        destination%say('installed the results that an interrupted run had completed')
+      if (file_exists(journal_of(destination%folder))) return
+      if (.not. resume) return
+      call find_finished(destination%folder, scene%deck%resolved(), finished, converged)
+      if (finished) then
+        call destination%say('complete since an earlier run; nothing to do')
+        if (.not. converged) call destination%say('its summary says what failed')
+      else
+        call destination%say('no interrupted run to continue; starting from the beginning')
+      end if
+    end subroutine take_up_earlier
 
-    left_over = file_exists(journal_of(folder))
-    call results%open(folder, scene, version, problem, &
-      ! Each case of a sweep has one thread, so that the number of threads does not matter.
-      identity_of(scene%deck%resolved(), merge(0, thread_count(), allocated(scene%sweep))), &
-      resume, error)
-    if (allocated(error)) return
-    if (folder == to_stream) return
-    if (.not. results%lock%is_held()) call destination%say('warning: folders cannot be locked '// &
-      'here; let no other run write into this one')
-    if (results%journal%inherited > 0) then
-      call destination%say('continuing a run that was interrupted after '// &
-        duration(results%journal%earlier))
-    else if (left_over .and. resume) then
-      call destination%say('the interrupted run left nothing to continue; ' // &
-        'starting from the beginning')
-    else if (left_over) then
-      call destination%say('starting over; --resume continues an interrupted run of the same deck')
-    end if
-  end subroutine open_folder
+    !> Locks the folder for this run and begins its tables.
+    subroutine open_folder()
+      logical :: left_over
 
-  !> Runs the experiments or the sweep; their records go into the results.
-  subroutine compute(scene, problem, destination, crew, job, results, summary, cost)
-    type(scene_t), intent(in) :: scene
-    type(problem_t), intent(in) :: problem
-    type(destination_t), intent(in) :: destination
-    type(crew_t), intent(in) :: crew
-    integer, intent(in) :: job
-    type(results_t), intent(inout), target :: results
-    type(summary_t), intent(out) :: summary
-    type(cost_t), intent(out) :: cost
-    type(experiment_result_t) :: outcome
-    character(len=:), allocatable :: name, left_out
-    type(sweep_tally_t) :: tally
+      left_over = file_exists(journal_of(out_dir))
+      call results%open(out_dir, scene, version, problem, &
+        ! Each case of a sweep has one thread, so that the number of threads does not matter.
+        identity_of(scene%deck%resolved(), merge(0, thread_count(), allocated(scene%sweep))), &
+        resume, error)
+      if (allocated(error)) return
+      if (out_dir == to_stream) return
+      if (.not. results%lock%is_held()) call destination%say('warning: folders cannot be ' // &
+        'locked '// 'here; let no other run write into this one')
+      if (results%journal%inherited > 0) then
+        call destination%say('continuing a run that was interrupted after '// &
+          duration(results%journal%earlier))
+      else if (left_over .and. resume) then
+        call destination%say('the interrupted run left nothing to continue; ' // &
+          'starting from the beginning')
+      else if (left_over) then
+        call &
+          destination%say('starting over; --resume continues an interrupted run of the same deck')
+      end if
+    end subroutine open_folder
 
-    name = destination%folder(index(destination%folder, '/', .true.) + 1:)
-    if (.not. problem%rigid) call claim_buffers()
-    if (large_results(scene) /= '') call destination%say(large_results(scene))
-    if (allocated(scene%sweep)) then
-      call results%progress%start(scene%sweep%cases(), name, destination%quiet)
-      if (crew%workers > 0) &
-        call destination%say('processes that compute: '//brief(crew%workers))
-      call run_sweep(scene, crew, job, results, tally)
-      cost = tally%cost
+    !> Runs the experiments or the sweep; their records go into the results.
+    subroutine compute()
+      type(experiment_result_t) :: outcome
+      character(len=:), allocatable :: name, left_out
+      type(sweep_tally_t) :: tally
+
+      name = destination%folder(index(destination%folder, '/', .true.) + 1:)
+      if (.not. problem%rigid) call claim_buffers()
+      if (large_results(scene) /= '') call destination%say(large_results(scene))
+      if (allocated(scene%sweep)) then
+        call results%progress%start(scene%sweep%cases(), name, destination%quiet)
+        if (crew%workers > 0) call destination%say('processes that compute: '//brief(crew%workers))
+        call run_sweep(scene, crew, job, results, tally)
+        cost = tally%cost
+        summary = summary_of(scene, problem, outcome)
+        if (tally%failed > 0) call summary%fail_with(brief(tally%failed)//' of '// &
+          brief(scene%sweep%cases())// &
+          ' cases failed: their rows in sweep.csv say converged = 0, and why')
+        if (tally%warned > 0) call summary%warn(brief(tally%warned)//' of '// &
+          brief(scene%sweep%cases())//' cases gave a warning; the first, case '// &
+          brief(tally%first_warned)//': '//trim(tally%warning))
+        left_out = groups_left_out(scene)
+        if (left_out /= '') call summary%note('sweep: no number in sweep.csv comes from '// &
+          left_out//'; run a case alone to see states')
+      else
+        call results%progress%start(states_planned(scene), name, destination%quiet)
+        call run_observed()
+      end if
+    end subroutine compute
+
+    !> Runs the experiments. Each state goes into the results, with its eigenvalue if the scene asks
+    !> for it, and each step into the journal.
+    subroutine run_observed()
+      type(experiment_result_t) :: outcome
+      type(stability_recorder_t) :: recorder
+      type(resumable_stepper_t) :: keeper
+
+      keeper%journal => results%journal
+      if (scene%has_eigenvalues()) then
+        recorder%next => results
+        recorder%journal => results%journal
+        recorder%accuracy = scene%numerics%accuracy
+        call run_experiment(scene, problem, recorder, outcome, keeper)
+      else
+        call run_experiment(scene, problem, results, outcome, keeper)
+      end if
+      if (allocated(outcome%readings)) &
+        call write_path_tables(problem, outcome%readings, outcome%places, results)
+      if (allocated(scene%varied) .and. allocated(outcome%timed)) &
+        call rate_drive(scene, keeper, results, outcome%timed)
       summary = summary_of(scene, problem, outcome)
-      if (tally%failed > 0) call summary%fail_with(brief(tally%failed)//' of '// &
-        brief(scene%sweep%cases())// &
-        ' cases failed: their rows in sweep.csv say converged = 0, and why')
-      if (tally%warned > 0) call summary%warn(brief(tally%warned)//' of '// &
-        brief(scene%sweep%cases())//' cases gave a warning; the first, case '// &
-        brief(tally%first_warned)//': '//trim(tally%warning))
-      left_out = groups_left_out(scene)
-      if (left_out /= '') call summary%note('sweep: no number in sweep.csv comes from '// &
-        left_out//'; run a case alone to see states')
-    else
-      call results%progress%start(states_planned(scene), name, destination%quiet)
-      call run_observed(scene, problem, results, summary, cost)
-    end if
-  end subroutine compute
+      call recorder%warn(summary)
+      if (allocated(scene%varied)) &
+        call write_sensitivities(scene%varied, problem, outcome, summary, results)
+      cost = outcome%cost
+      cost%factorisations = cost%factorisations + recorder%cost%factorisations
+    end subroutine run_observed
 
-  !> Runs the experiments. Each state goes into the results, with its eigenvalue if the scene asks
-  !> for it, and each step into the journal.
-  subroutine run_observed(scene, problem, results, summary, cost)
-    type(scene_t), intent(in) :: scene
-    type(problem_t), intent(in) :: problem
-    type(results_t), intent(inout), target :: results
-    type(summary_t), intent(out) :: summary
-    type(cost_t), intent(out) :: cost
-    type(experiment_result_t) :: outcome
-    type(stability_recorder_t) :: recorder
-    type(resumable_stepper_t) :: keeper
+    !> Makes the fit of &fit, its files and messages; without a fit the summary says why.
+    subroutine fit_measured()
+      type(deck_family_t) :: family
+      type(fit_outcome_t) :: outcome
+      type(failure_t), allocatable :: error
+      type(line_t), allocatable :: lines(:)
+      integer :: i
 
-    keeper%journal => results%journal
-    if (scene%has_eigenvalues()) then
-      recorder%next => results
-      recorder%journal => results%journal
-      recorder%accuracy = scene%numerics%accuracy
-      call run_experiment(scene, problem, recorder, outcome, keeper)
-    else
-      call run_experiment(scene, problem, results, outcome, keeper)
-    end if
-    call write_path_tables(problem, outcome, results)
-    if (allocated(scene%sensitivity) .and. allocated(outcome%timed)) &
-      call rate_drive(scene, keeper, results, outcome%timed)
-    summary = summary_of(scene, problem, outcome)
-    call recorder%warn(summary)
-    if (allocated(scene%sensitivity)) &
-      call write_sensitivities(scene%sensitivity, problem, outcome, summary, results)
-    cost = outcome%cost
-    cost%factorisations = cost%factorisations + recorder%cost%factorisations
-  end subroutine run_observed
+      call family_of_fit(scene%deck, family, error)
+      call run_fit(scene%measured, scene%fit, scene%numerics, family, &
+        widened(family), problem, results, outcome)
+      call results%progress%finish()
+      if (allocated(outcome%trouble)) then
+        call summary%fail_with('no fit: ' // outcome%trouble)
+        return
+      end if
+      call results%begin_table('fit.csv')
+      call write_fit_rows(outcome, results)
+      call results%write_text('fit.nml', fit_text(outcome, scene%title))
+      if (allocated(outcome%problem)) call describe_problem(outcome%problem, summary)
+      lines = doubts_of(outcome)
+      if (.not. outcome%fitted%found) call summary%set('converged', .false.)
+      do i = 1, size(lines)
+        call summary%warn('fit: ' // lines(i)%text)
+      end do
+      lines = fit_words(outcome)
+      do i = 1, size(lines)
+        call destination%say('fit: ' // lines(i)%text)
+      end do
+    end subroutine fit_measured
 
-  !> Makes the fit of &fit, its files and messages; without a fit the summary says why.
-  subroutine fit_measured(scene, problem, destination, results, summary)
-    type(scene_t), intent(in) :: scene
-    type(problem_t), intent(in) :: problem
-    type(destination_t), intent(in) :: destination
-    type(results_t), intent(inout) :: results
-    type(summary_t), intent(inout) :: summary
-    type(deck_family_t) :: family
-    type(fit_outcome_t) :: outcome
-    type(failure_t), allocatable :: error
-    type(line_t), allocatable :: lines(:)
-    integer :: i
-
-    call family_of_fit(scene%deck, family, error)
-    call run_fit(scene%measured, scene%measurement, scene%fit, scene%numerics, family, &
-      widened(family), problem, results, outcome)
-    call results%progress%finish()
-    if (allocated(outcome%trouble)) then
-      call summary%fail_with('no fit: ' // outcome%trouble)
-      return
-    end if
-    call results%begin_table('fit.csv')
-    call write_fit_rows(outcome, results)
-    call results%write_text('fit.nml', fit_text(outcome, scene%title))
-    if (allocated(outcome%problem)) call describe_problem(outcome%problem, summary)
-    lines = doubts_of(outcome)
-    if (.not. outcome%fitted%found) call summary%set('converged', .false.)
-    do i = 1, size(lines)
-      call summary%warn('fit: ' // lines(i)%text)
-    end do
-    lines = fit_words(outcome)
-    do i = 1, size(lines)
-      call destination%say('fit: ' // lines(i)%text)
-    end do
-  end subroutine fit_measured
-
-  !> Adds version, compiler, libraries and threads to the summary.
-  subroutine describe_program(summary)
-    type(summary_t), intent(inout) :: summary
-
-    call summary%set('version', version)
-    call summary%set('compiler', compiler)
-    call summary%set('blas', blas)
-    call summary%set('build_options', options)
-    call summary%set('threads', int(thread_count(), long))
-  end subroutine describe_program
+  end subroutine run_scene
 
 end module simulation

@@ -10,14 +10,13 @@ program snapin
   use c_library, only: c_prepare, c_end_with_parent
   use files, only: read_standard_input
   use results, only: to_stream
-  use blas_threads, only: begin_with_one_thread
-  use result_listing, only: write_result_listing
-  use command_line, only: options_t, read_command_line, stem_of, write_help, write_usage
+  use machine, only: begin_with_one_thread
+  use result_tables, only: write_result_listing
+  use command_line, only: options_t, read_command_line, stem_of, write_help, write_usage, own_rank
   use simulation, only: run_scene
   use sweeps, only: work_on_sweeps
   use dispatch, only: dismiss
   use ranks, only: crew_t
-  use launch, only: own_rank
   use preflight, only: check_room, check_inputs, large_results
   use build_info, only: version, compiler, blas, options_of_build => options
   implicit none
@@ -149,7 +148,6 @@ contains
     call dismiss(crew)
   end function run_decks
 
-  !> The folder of the results of a deck.
   function folder_of(i) result(folder)
     integer, intent(in) :: i
     character(len=:), allocatable :: folder
@@ -169,7 +167,6 @@ contains
     write (unit, '(a)', iostat=status) text
   end subroutine print_line
 
-  !> Ends the program.
   subroutine leave(status)
     integer, intent(in) :: status
     integer :: trouble

@@ -153,7 +153,6 @@ contains
     self%warning = case%warning
   end subroutine add
 
-  !> The total cost of two cases.
   pure type(cost_t) function sum_of(a, b) result(total)
     type(cost_t), intent(in) :: a, b
 

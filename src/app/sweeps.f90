@@ -13,7 +13,7 @@ module sweeps
   use mesh_store, only: mesh_store_t
   use byte_record, only: byte_record_t
   use results, only: results_t
-  use blas_threads, only: thread_count
+  use machine, only: thread_count
   use ranks, only: crew_t
   use dispatch, only: foreman_t, worker_t, hand_out, work_through
   implicit none

@@ -1,5 +1,5 @@
-/* J0 from the series of bessel.f90. The compiler makes a version for each width of registers; which
-   one is called is decided when the program starts. */
+/* J0 from the series of special_functions.f90. The compiler makes a version for each width of
+   registers; which one is called is decided when the program starts. */
 #include <math.h>
 
 #if defined(__x86_64__) && defined(__gnu_linux__) && defined(__has_attribute)
@@ -11,7 +11,7 @@
 #define FOR_EACH_WIDTH
 #endif
 
-/* Degrees of the series, as in bessel.f90. */
+/* Degrees of the series, as in special_functions.f90. */
 enum { DEGREE_NEAR = 14, DEGREE_FAR = 8, DEGREE_COSINE = 7 };
 
 static inline double power_series(int degree, const double *coefficient, double x) {

@@ -1,5 +1,6 @@
-!> How a procedure reports that it failed. Every fallible procedure ends its argument list with
-!> `type(failure_t), allocatable, intent(out) :: error`; unallocated on return means success.
+!> How a procedure reports that it failed. A fallible procedure ends its argument list with
+!> `type(failure_t), allocatable, intent(out) :: error`; unallocated on return means success. An
+!> object that is filled by many procedures, such as a deck or results, keeps the failure itself.
 module failure
   implicit none
   private

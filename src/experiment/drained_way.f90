@@ -4,8 +4,6 @@ module drained_way
   use kinds, only: wp, pi
   use mesh_plan, only: approach
   use next_mesh, only: radius_for
-  use motion, only: motion_t
-  use experiment_request, only: request_t
   use time_instant, only: instant_t
   use time_stepper, only: time_stepper_t
   use timed_record, only: pass_t, accept, lose
@@ -38,36 +36,33 @@ contains
   !> steps. Therefore each pass chooses its own steps, half as long as those of the previous pass.
   !> Steps follow the motion and are at most `longest_part` of a way. If the deck gives the step, it
   !> is shortened only if it does not converge.
-  subroutine step_drained(request, drive, way, pass, longest_part, steps, at, now)
-    class(request_t), intent(in) :: request
-    type(motion_t), intent(in) :: drive
-    integer, intent(in) :: way, pass
+  subroutine step_drained(longest_part, steps, now)
     real(wp), intent(in) :: longest_part
     type(time_stepper_t), intent(inout) :: steps
-    type(instant_t), intent(inout) :: at
     type(pass_t), intent(inout) :: now
     type(instant_t) :: next
-    real(wp) :: shorter, longest, when, off, taken, least, farthest
+    real(wp) :: shorter, longest, when, off, taken, least, farthest, whole
     logical :: follows, done, jumped
 
-    shorter = 0.5_wp**(pass - 2)
-    follows = .not. allocated(request%drive%time_step)
-    longest = shorter*longest_part*drive%lasts(way)
-    if (.not. follows) longest = shorter*request%drive%time_step
-    if (.not. now%step > 0) now%step = shorter*first_drained*drive%lasts(way)
-    least = roundings*spacing(max(at%time, now%step))
-    when = at%time + now%step
-    if (when + 0.01_wp*now%step > drive%lasts(way)) when = drive%lasts(way)
-    taken = when - at%time
+    whole = now%drive%lasts(now%way)
+    shorter = 0.5_wp**(now%number - 2)
+    follows = .not. allocated(now%time_step)
+    longest = shorter*longest_part*whole
+    if (.not. follows) longest = shorter*now%time_step
+    if (.not. now%step > 0) now%step = shorter*first_drained*whole
+    least = roundings*spacing(max(now%at%time, now%step))
+    when = now%at%time + now%step
+    if (when + 0.01_wp*now%step > whole) when = whole
+    taken = when - now%at%time
     farthest = steps%farthest
     ! Motion within the rounding of the time is not resolved.
     if (taken <= 2*least) steps%farthest = unfollowed
-    call steps%step(at, when, drive%at(way, when), next, done)
+    call steps%step(now%at, when, now%drive%at(now%way, when), next, done)
     steps%farthest = farthest
     off = 1/longer**2
-    if (done .and. follows) off = max(off, missed(steps, at, next, now)/shorter**2)
+    if (done .and. follows) off = max(off, missed(steps, next, now)/shorter**2)
     ! The deviation from a line is not known yet.
-    if (done .and. at%since_turn < 2) off = 1
+    if (done .and. now%at%since_turn < 2) off = 1
     ! If shorter steps do not reduce the deviation, the load jumps, as where the drive turns.
     jumped = done .and. off >= rejected .and. now%missed > 0 .and. off > no_less*now%missed
     if (jumped) then
@@ -76,37 +71,37 @@ contains
     end if
     now%missed = 0
     if (done .and. (off < rejected .or. taken <= 2*least)) then
-      call accept(steps, next, taken > 2*least .and. .not. jumped, at, now)
+      call accept(steps, next, taken > 2*least .and. .not. jumped, now)
       now%step = min(longest, taken*min(longer, max(least_ratio, 0.9_wp/sqrt(off))))
-      if (now%held > now%most) call lose(at, now)
+      if (now%held > now%most) call lose(now)
     else
       steps%cost%rejected_steps = steps%cost%rejected_steps + 1
       if (done) now%missed = off
       now%step = taken*merge(max(least_ratio, 0.7_wp/sqrt(off)), 0.3_wp, done)
-      if (.not. done .and. taken <= least) call lose(at, now)
+      if (.not. done .and. taken <= least) call lose(now)
     end if
     now%step = max(now%step, least)
   end subroutine step_drained
 
   !> Deviation of a step over the allowed deviation: below 1 the step may be longer, above 1 it must
   !> be shorter.
-  real(wp) function missed(steps, at, next, now)
+  real(wp) function missed(steps, next, now)
     type(time_stepper_t), intent(in) :: steps
-    type(instant_t), intent(in) :: at, next
+    type(instant_t), intent(in) :: next
     type(pass_t), intent(in) :: now
     real(wp) :: ahead, unit, radius, finest
 
-    radius = merge(at%state%scale, huge(1.0_wp), at%mesh > approach)
+    radius = merge(now%at%state%scale, huge(1.0_wp), now%at%mesh > approach)
     finest = steps%finest(radius)
-    if (at%mesh > approach) finest = max(finest, part_of_radius*radius)
-    missed = (moved(steps, at, next)/(edge_moves*finest))**2
+    if (now%at%mesh > approach) finest = max(finest, part_of_radius*radius)
+    missed = (moved(steps, now%at, next)/(edge_moves*finest))**2
     ! The difference between two meshes at one state is not a motion, and shorter steps do not
     ! reduce it.
-    if (at%since_turn < 2 .or. next%mesh /= at%mesh) return
-    ahead = (next%time - at%time)/(at%time - steps%before%time)
+    if (now%at%since_turn < 2 .or. next%mesh /= now%at%mesh) return
+    ahead = (next%time - now%at%time)/(now%at%time - steps%before%time)
     unit = max(now%result%largest_load, abs(next%state%load), tiny(1.0_wp), &
       pi*steps%problem%law%adhesion)
-    associate (before => steps%before%state, last => at%state, new => next%state)
+    associate (before => steps%before%state, last => now%at%state, new => next%state)
       missed = max(missed, abs(new%load - last%load - ahead*(last%load - before%load))/ &
         (bend*unit), abs(new%axis_gap - last%axis_gap - ahead*(last%axis_gap - &
         before%axis_gap))/(bend_of_gap*abs(last%axis_gap)))

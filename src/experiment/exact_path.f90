@@ -16,6 +16,7 @@ module exact_path
   use path_end, only: demand_t
   use tracing, only: longest
   use experiment_request, only: request_t
+  use numerics_choice, only: choice_t
   use path_demand, only: demand_of
   use path, only: find_finish
   use places, only: places_t
@@ -40,12 +41,12 @@ module exact_path
 contains
 
   !> Traces the path on steps%meshes, or on others if it is lost or has folds that finer meshes do
-  !> not have. h0: law's lengths; fine: judges places of the path; places: the judged places; store:
+  !> not have. fine: judges places of the path; places: the judged places; store:
   !> of meshes.
-  subroutine trace_exactly(request, steps, h0_high, h0_low, listener, fine, places, store)
+  subroutine trace_exactly(request, steps, chosen, listener, fine, places, store)
     class(request_t), intent(in) :: request
     class(path_stepper_t), intent(inout), target :: steps
-    real(wp), intent(in) :: h0_high, h0_low
+    type(choice_t), intent(in) :: chosen
     class(listener_t), intent(inout) :: listener
     type(finer_t), intent(out) :: fine
     type(places_t), intent(out) :: places
@@ -62,19 +63,18 @@ contains
         if (attempt > 0) then
           more = merge(0.0_wp, more_digits, lost .and. meshes%fronts)
           accuracy = accuracy*10**(-more)
-          meshes = new_mesh_family(steps%problem, h0_high, h0_low, meshes%digits + more, &
+          meshes = new_mesh_family(steps%problem, chosen%high, chosen%low, meshes%digits + more, &
             store=store, fronts=meshes%fronts .and. .not. lost)
-          steps%cost%kernel_entries = steps%cost%kernel_entries + &
-            sum(meshes%grid%kernel_entries())
+          steps%cost%kernel_entries = steps%cost%kernel_entries + sum(meshes%grid%kernel_entries())
         end if
-        call steps%know_path(h0_high, h0_low, allocated(request%path), accuracy, listener, demand)
+        call steps%know_path(chosen, allocated(request%path), accuracy, listener, demand)
         lost = known%ending%cause == path_lost
         ! A path of too many states would have as many again.
         last = attempt == most_attempts .or. known%path%held >= longest .or. &
           meshes%digits + more_digits > most_digits
       end associate
       if (lost .and. .not. last) cycle
-      call fine%lay_out(steps, h0_high, h0_low, store)
+      call fine%lay_out(steps, chosen, store)
       call make_exact(request, steps, fine, places)
       if (last .or. .not. allocated(places%place)) exit
       if (all(places%place%known)) exit
@@ -112,13 +112,11 @@ contains
         errors = [(places%place(i)%relative_error(.false.), i=1, size(places%place))]
         if (.not. maxval(errors) > accuracy .or. maxval(errors) > helped*before) return
         if (round == most_rounds) return
-        associate (known => steps%known)
-          ! Finer meshes do not help if the path was lost, since the finer path may end earlier; or
-          ! if nodes miss too much of the load, since this needs other panels. A collapse of bodies
-          ! without repulsion is not an early end.
-          if (known%ending%early() .and. .not. known%fallen .or. &
-            known%left_out > too_much*accuracy) return
-        end associate
+        ! Finer meshes do not help if the path was lost, since the finer path may end earlier; or
+        ! if nodes miss too much of the load, since this needs other panels. A collapse of bodies
+        ! without repulsion is not an early end.
+        if (steps%known%ending%early() .and. .not. steps%known%fallen .or. steps%known%left_out > &
+          too_much*accuracy) return
         before = maxval(errors)
         poor = [(any(places%place%mesh == mesh .and. errors > accuracy), mesh=1, size(renewed))]
         call steps%know_path_on(fine%meshes, poor, renewed)

@@ -3,7 +3,7 @@
 module experiment
   use kinds, only: wp
   use dimensionless_problem, only: problem_t
-  use experiment_request, only: request_t, numerics_t
+  use experiment_request, only: request_t
   use numerics_choice, only: choice_t, choose, fixed_mesh
   use edge_locked, only: new_mesh_family
   use mesh_store, only: mesh_store_t
@@ -14,12 +14,11 @@ module experiment
   use fixed_stepper, only: fixed_stepper_t
   use rigid_bodies, only: run_rigid
   use stepped_branch, only: h0_schedule_t, run_branch
-  use path_demand, only: path_start, range_of
+  use path_demand, only: path_start
   use h0_schedule, only: path_plan, loading_plan, unloading_plan
-  use experiment_result, only: experiment_result_t
+  use experiment_result, only: experiment_result_t, enter_readings, enter_energy, enter_table
   use exact_path, only: trace_exactly
   use finer_solver, only: finer_t
-  use outcome_places, only: enter_readings, enter_energy, enter_table
   use place_errors, only: judge_places, conclude
   use place_rates, only: rate_places
   use path, only: follow_path
@@ -28,7 +27,7 @@ module experiment
   use journal, only: journal_t
   use records, only: observer_t
   use clock, only: seconds
-  use blas_threads, only: use_threads_for
+  use machine, only: use_threads_for
   implicit none
   private
   public :: run_experiment, prepare
@@ -52,8 +51,6 @@ contains
     type(path_stepper_t), target :: along_path
     type(unique_stepper_t), target :: one_by_one
     type(fixed_stepper_t), target :: at_nodes
-    type(numerics_t) :: numerics
-    real(wp) :: low, high
     logical :: fixed
 
     if (.not. request%finds_states()) return
@@ -61,14 +58,7 @@ contains
       call run_driven(request, problem, observer, outcome, keeper)
       return
     end if
-    call range_of(request, problem, low, high)
-    numerics = request%numerics
-    ! Only a cycle is computed by mixing, or on a grid that is fixed in space.
-    if (.not. allocated(request%loading)) then
-      numerics%grid = 'auto'
-      if (numerics%method == 'mixing') numerics%method = 'auto'
-    end if
-    outcome%chosen = choose(numerics, problem, low, allocated(request%profiles))
+    outcome%chosen = choose(request, problem)
     if (problem%rigid) then
       call run_rigid(request, problem, observer, outcome)
       call conclude(outcome%places, outcome%error_estimate)
@@ -77,18 +67,13 @@ contains
     fixed = outcome%chosen%is_fixed()
     if (allocated(request%path) .or. .not. fixed) then
       if (problem%law%adhesion > 0) then
-        call run_with(along_path, request, problem, high, low, .not. fixed, observer, outcome, &
-          keeper, store)
-        if (allocated(request%sensitivity)) &
-          call rate_places(request%sensitivity, along_path, observer, outcome)
-        outcome%cost = along_path%cost
+        call run_with(along_path, request, problem, .not. fixed, observer, outcome, keeper, store)
       else
-        call run_with(one_by_one, request, problem, high, low, .not. fixed, observer, outcome, &
-          keeper, store)
+        call run_with(one_by_one, request, problem, .not. fixed, observer, outcome, keeper, store)
       end if
     end if
-    if (allocated(request%loading) .and. fixed) call run_with(at_nodes, request, problem, high, &
-      low, .true., observer, outcome, keeper)
+    if (allocated(request%loading) .and. fixed) &
+      call run_with(at_nodes, request, problem, .true., observer, outcome, keeper)
   end subroutine run_experiment
 
   !> Runs the drive in time. Rigid bodies are replaced by bodies that are too stiff for a noticeable
@@ -101,13 +86,11 @@ contains
     class(keeping_stepper_t), intent(in), optional :: keeper
     type(problem_t) :: driven
     type(journal_t), pointer :: journal
-    real(wp) :: low, high
 
     driven = problem
     driven%rigid = .false.
     if (problem%rigid) driven%coupling = unyielding
-    call range_of(request, driven, low, high)
-    outcome%chosen = choose(request%numerics, driven, low, .false.)
+    outcome%chosen = choose(request, driven)
     nullify (journal)
     if (present(keeper)) journal => keeper%journal
     allocate (outcome%timed)
@@ -116,18 +99,16 @@ contains
     if (outcome%timed%begun) outcome%error_estimate = outcome%timed%estimate
   end subroutine run_driven
 
-  !> Runs the path, and the cycle if `with_cycle` and the scene has one, with a stepper, for H0 from
-  !> high to low (law's lengths). A stepper on a mesh fixed in space runs the cycle only.
-  subroutine run_with(steps, request, problem, high, low, with_cycle, observer, outcome, keeper, &
-    store)
+  !> Runs the path, and the cycle if `with_cycle` and the scene has one, with a stepper. A stepper
+  !> on a mesh fixed in space runs the cycle only.
+  subroutine run_with(steps, request, problem, with_cycle, observer, outcome, keeper, store)
     class(stepper_t), intent(inout), target :: steps
     class(request_t), intent(in) :: request
     type(problem_t), intent(in) :: problem
-    real(wp), intent(in) :: high, low
     logical, intent(in) :: with_cycle
     class(observer_t), intent(inout) :: observer
     type(experiment_result_t), intent(inout) :: outcome
-    class(keeping_stepper_t), intent(inout), optional :: keeper
+    class(keeping_stepper_t), intent(inout), target, optional :: keeper
     type(mesh_store_t), intent(inout), target, optional :: store
     type(finer_t) :: fine
     type(branch_point_t) :: position
@@ -135,20 +116,20 @@ contains
 
     call prepare(steps, problem, outcome%chosen, request%numerics%accuracy)
     steps%cost = outcome%cost
-    call lay_out(steps, outcome%chosen, high, low, store)
+    call lay_out(outcome%chosen)
     began = seconds()
     judged = steps%cost%estimate_seconds
     select type (steps)
     class is (path_stepper_t)
-      call trace_exactly(request, steps, high, low, observer, fine, outcome%places, store)
+      call trace_exactly(request, steps, outcome%chosen, observer, fine, outcome%places, store)
       outcome%left_out = steps%known%left_out
-      if (allocated(request%path)) call run_path(request, steps, observer, outcome)
+      if (allocated(request%path)) call run_path(steps)
       if (request%reads_path()) then
         call read_path(request, steps, observer, outcome%readings)
         call enter_readings(outcome%readings, outcome%places)
       end if
     class is (unique_stepper_t)
-      call fine%lay_out(steps, high, low, store)
+      call fine%lay_out(steps, outcome%chosen, store)
       ! There is one state for every h0, so h0 is stepped.
       if (allocated(request%path)) then
         allocate (outcome%stepped_path)
@@ -157,8 +138,7 @@ contains
       end if
     end select
     outcome%nodes = outcome%nodes + sum(steps%meshes%grid%nodes)
-    if (allocated(request%loading) .and. with_cycle) &
-      call run_cycle(request, steps, observer, outcome, keeper)
+    if (allocated(request%loading) .and. with_cycle) call run_cycle(steps)
     ! The time for judging folds and extrema is counted separately.
     steps%cost%solve_seconds = steps%cost%solve_seconds + seconds() - began - &
       (steps%cost%estimate_seconds - judged)
@@ -169,39 +149,110 @@ contains
       call enter_energy(steps%known, outcome, outcome%places)
       if (request%table) call enter_table(steps, outcome%readings, outcome%places)
     class is (fixed_stepper_t)
-      call fine%lay_out_fixed(steps, outcome%chosen, low)
+      call fine%lay_out_fixed(steps, outcome%chosen)
     end select
     call judge_places(fine, steps, outcome%places, .false.)
     call conclude(outcome%places, outcome%error_estimate)
     steps%cost%estimate_seconds = steps%cost%estimate_seconds + seconds() - began
-    outcome%cost = steps%cost
-  end subroutine run_with
-
-  !> Lays out the meshes of a stepper for H0 from high to low.
-  subroutine lay_out(steps, chosen, high, low, store)
-    class(stepper_t), intent(inout) :: steps
-    type(choice_t), intent(in) :: chosen
-    real(wp), intent(in) :: high, low
-    type(mesh_store_t), intent(inout), target, optional :: store
-    real(wp) :: began
-
-    began = seconds()
     select type (steps)
-    class is (locked_stepper_t)
-      ! The path is not solved by mixing.
-      steps%options%mixing = .false.
-      ! Kernels are made by small products, and cases of a sweep make them at the same time.
-      call use_threads_for(1)
-      steps%meshes = new_mesh_family(steps%problem, high, low, chosen%digits, store=store)
-    class default
-      allocate (steps%meshes%grid(1))
-      steps%meshes%grid(1) = fixed_mesh(chosen, steps%problem, low)
+    class is (path_stepper_t)
+      if (allocated(request%varied)) &
+        call rate_places(request%varied, steps, observer, outcome)
     end select
-    steps%cost%kernel_seconds = steps%cost%kernel_seconds + seconds() - began
-    steps%cost%kernel_entries = steps%cost%kernel_entries + &
-      sum(steps%meshes%grid%kernel_entries())
-    call use_threads_for(maxval(steps%meshes%grid%nodes))
-  end subroutine lay_out
+    outcome%cost = steps%cost
+
+  contains
+
+    subroutine lay_out(chosen)
+      type(choice_t), intent(in) :: chosen
+      real(wp) :: began
+
+      began = seconds()
+      select type (steps)
+      class is (locked_stepper_t)
+        ! The path is not solved by mixing.
+        steps%options%mixing = .false.
+        ! Kernels are made by small products, and cases of a sweep make them at the same time.
+        call use_threads_for(1)
+        steps%meshes = new_mesh_family(steps%problem, chosen%high, chosen%low, chosen%digits, &
+          store=store)
+      class default
+        allocate (steps%meshes%grid(1))
+        steps%meshes%grid(1) = fixed_mesh(chosen, steps%problem)
+      end select
+      steps%cost%kernel_seconds = steps%cost%kernel_seconds + seconds() - began
+      steps%cost%kernel_entries = steps%cost%kernel_entries + &
+        sum(steps%meshes%grid%kernel_entries())
+      call use_threads_for(maxval(steps%meshes%grid%nodes))
+    end subroutine lay_out
+
+    subroutine run_path(steps)
+      class(path_stepper_t), intent(inout) :: steps
+      real(wp), allocatable :: profiles(:), start
+
+      associate (law => steps%problem%law)
+        allocate (profiles(0))
+        if (allocated(request%profile_h0)) profiles = law%gap_of(request%profile_h0)
+        allocate (outcome%path)
+        if (allocated(request%path%h0_start) .or. request%reads_path()) then
+          start = law%gap_of(path_start(request, steps%problem))
+          ! The path may have been traced farther than the part that is shown.
+          if (.not. allocated(request%path%h0_start)) start = max(start, steps%far_away())
+        end if
+        ! A start that is not allocated counts as absent.
+        call follow_path(steps, law%gap_of(request%path%h0_end), profiles, observer, outcome%path, &
+          outcome%places, start)
+      end associate
+    end subroutine run_path
+
+    !> Runs the loading, then an unloading from each turning point; a keeper stores the steps.
+    subroutine run_cycle(solving)
+      class(stepper_t), intent(inout), target :: solving
+      class(stepper_t), pointer :: steps
+      type(h0_schedule_t) :: plan
+      type(branch_point_t) :: position
+      type(branch_point_t), allocatable :: turning(:)
+      real(wp), allocatable :: from(:)
+      integer :: k
+
+      steps => solving
+      if (present(keeper)) then
+        call keeper%keep_steps_of(solving)
+        steps => keeper
+      end if
+      allocate (from(0))
+      if (allocated(request%unloading)) from = steps%problem%law%gap_of(request%unloading%from)
+      allocate (turning(size(from)))
+      allocate (outcome%loading)
+      plan = loading_plan(request, steps%problem%law, from)
+      call run_branch(steps, plan, .true., position, observer, outcome%loading, outcome%places, &
+        from, turning)
+      ! If the path has the jumps, they are exact.
+      if (allocated(outcome%loading%jump) .and. .not. outcome%places%has('jump_in')) &
+        call outcome%places%enter('jump_in', 1, outcome%loading%jump)
+      if (allocated(request%unloading)) allocate (outcome%unloading(size(from)))
+      do k = 1, size(from)
+        associate (branch => outcome%unloading(k), places => outcome%places)
+          if (allocated(turning(k)%state%gap)) then
+            position = turning(k)
+            plan = unloading_plan(request, steps%problem%law, k)
+            call run_branch(steps, plan, .false., position, observer, branch, places)
+          else
+            branch%ending%cause = turn_not_reached
+          end if
+          ! An argument that is not allocated counts as absent.
+          call places%enter('unload_max_tension', k, branch%lowest)
+          call places%enter('unload_jump_out', k, branch%jump)
+          if (allocated(branch%jump) .and. .not. places%has('jump_out')) &
+            call places%enter('jump_out', 1, branch%jump)
+        end associate
+      end do
+      if (.not. present(keeper)) return
+      solving%cost%states = solving%cost%states + keeper%cost%states
+      solving%cost%solve_seconds = solving%cost%solve_seconds + keeper%earlier_seconds
+    end subroutine run_cycle
+
+  end subroutine run_with
 
   !> Sets the parts that both kinds of steppers have.
   subroutine prepare(steps, problem, chosen, accuracy)
@@ -215,78 +266,5 @@ contains
     ! Each halving solves a state, and a fixed grid has a larger error of a jump.
     steps%jump_tolerance = max(accuracy, 1.0e-4_wp)
   end subroutine prepare
-
-  subroutine run_path(request, steps, observer, outcome)
-    class(request_t), intent(in) :: request
-    class(path_stepper_t), intent(inout) :: steps
-    class(observer_t), intent(inout) :: observer
-    type(experiment_result_t), intent(inout) :: outcome
-    real(wp), allocatable :: profiles(:), start
-
-    associate (law => steps%problem%law)
-      allocate (profiles(0))
-      if (allocated(request%profiles)) profiles = law%gap_of(request%profiles%h0)
-      allocate (outcome%path)
-      if (allocated(request%path%h0_start) .or. request%reads_path()) then
-        start = law%gap_of(path_start(request, steps%problem))
-        ! The path may have been traced farther than the part that is shown.
-        if (.not. allocated(request%path%h0_start)) start = max(start, steps%far_away())
-      end if
-      ! A start that is not allocated counts as absent.
-      call follow_path(steps, law%gap_of(request%path%h0_end), profiles, observer, outcome%path, &
-        outcome%places, start)
-    end associate
-  end subroutine run_path
-
-  !> Runs the loading, then an unloading from each turning point; a keeper stores the steps.
-  subroutine run_cycle(request, solving, observer, outcome, keeper)
-    class(request_t), intent(in) :: request
-    class(stepper_t), intent(inout), target :: solving
-    class(observer_t), intent(inout) :: observer
-    type(experiment_result_t), intent(inout) :: outcome
-    class(keeping_stepper_t), intent(inout), target, optional :: keeper
-    class(stepper_t), pointer :: steps
-    type(h0_schedule_t) :: plan
-    type(branch_point_t) :: position
-    type(branch_point_t), allocatable :: turning(:)
-    real(wp), allocatable :: from(:)
-    integer :: k
-
-    steps => solving
-    if (present(keeper)) then
-      call keeper%keep_steps_of(solving)
-      steps => keeper
-    end if
-    allocate (from(0))
-    if (allocated(request%unloading)) from = steps%problem%law%gap_of(request%unloading%from)
-    allocate (turning(size(from)))
-    allocate (outcome%loading)
-    plan = loading_plan(request, steps%problem%law, from)
-    call run_branch(steps, plan, .true., position, observer, outcome%loading, outcome%places, &
-      from, turning)
-    ! If the path has the jumps, they are exact.
-    if (allocated(outcome%loading%jump) .and. .not. outcome%places%has('jump_in')) &
-      call outcome%places%enter('jump_in', 1, outcome%loading%jump)
-    if (allocated(request%unloading)) allocate (outcome%unloading(size(from)))
-    do k = 1, size(from)
-      associate (branch => outcome%unloading(k), places => outcome%places)
-        if (allocated(turning(k)%state%gap)) then
-          position = turning(k)
-          plan = unloading_plan(request, steps%problem%law, k)
-          call run_branch(steps, plan, .false., position, observer, branch, places)
-        else
-          branch%ending%cause = turn_not_reached
-        end if
-        ! An argument that is not allocated counts as absent.
-        call places%enter('unload_max_tension', k, branch%lowest)
-        call places%enter('unload_jump_out', k, branch%jump)
-        if (allocated(branch%jump) .and. .not. places%has('jump_out')) &
-          call places%enter('jump_out', 1, branch%jump)
-      end associate
-    end do
-    if (.not. present(keeper)) return
-    solving%cost%states = solving%cost%states + keeper%cost%states
-    solving%cost%solve_seconds = solving%cost%solve_seconds + keeper%earlier_seconds
-  end subroutine run_cycle
 
 end module experiment

@@ -8,8 +8,7 @@ module experiment_request
   use creep, only: creep_t
   implicit none
   private
-  public :: request_t, loading_t, unloading_t, path_range_t, profiles_t, numerics_t, device_t, &
-    fixed_load_t, sensitivity_t, drive_request_t, fluid_request_t
+  public :: request_t, numerics_t
 
   !> &loading [m]: h0_start > h0_end, h0_step > 0.
   type :: loading_t
@@ -28,26 +27,11 @@ module experiment_request
     real(wp) :: h0_end = 0
   end type path_range_t
 
-  !> &profiles: the h0 [m] of the profiles.
-  type :: profiles_t
-    real(wp), allocatable :: h0(:)
-  end type profiles_t
-
   !> &device: stiffness of each spring [N/m], 0 for a dead load; an empty list: h0 is prescribed.
   !> Start and turning position of the drive [m]; not allocated: the ends of the known path.
   type :: device_t
     real(wp), allocatable :: stiffness(:), z_start, z_end
   end type device_t
-
-  !> &fixed_load: the loads [N].
-  type :: fixed_load_t
-    real(wp), allocatable :: load(:)
-  end type fixed_load_t
-
-  !> &sensitivity: the parameters, each with its varied problems.
-  type :: sensitivity_t
-    type(variation_t), allocatable :: varied(:)
-  end type sensitivity_t
 
   !> &drive: velocity [m/s], positions [m], dwell [s]; if given, the stiffness of a spring [N/m] and
   !> the time step [s].
@@ -74,10 +58,11 @@ module experiment_request
     type(loading_t), allocatable :: loading
     type(unloading_t), allocatable :: unloading
     type(path_range_t), allocatable :: path
-    type(profiles_t), allocatable :: profiles
+    !> &profiles: the h0 [m] of the profiles. &fixed_load: the loads [N].
+    real(wp), allocatable :: profile_h0(:), fixed_loads(:)
     type(device_t), allocatable :: device
-    type(fixed_load_t), allocatable :: fixed_load
-    type(sensitivity_t), allocatable :: sensitivity
+    !> &sensitivity: the parameters, each with its varied problems.
+    type(variation_t), allocatable :: varied(:)
     type(drive_request_t), allocatable :: drive
     !> &viscoelastic: the bodies' memory; not allocated: they have none.
     type(creep_t), allocatable :: creep
@@ -104,8 +89,8 @@ contains
   pure logical function reads_path(self)
     class(request_t), intent(in) :: self
 
-    reads_path = allocated(self%device) .or. allocated(self%fixed_load) .or. &
-      allocated(self%sensitivity) .or. self%table
+    reads_path = allocated(self%device) .or. allocated(self%fixed_loads) .or. &
+      allocated(self%varied) .or. self%table
   end function reads_path
 
 end module experiment_request

@@ -1,4 +1,6 @@
-!> Results of the experiments of a scene, in the units of `dimensionless_problem`.
+!> Results of the experiments of a scene, in the units of `dimensionless_problem`. The places of the
+!> path's readings are entered into their table under the names in `result_rows`: of drives, given
+!> loads, energies, and a table of stable states, which is judged at some of its rows.
 module experiment_result
   use kinds, only: wp
   use numerics_choice, only: choice_t
@@ -10,9 +12,16 @@ module experiment_result
   use places, only: places_t
   use path_readings, only: path_readings_t
   use timed_record, only: timed_result_t
+  use path_tangent, only: h0_alone => of_h0, load_alone => of_load
+  use known_path, only: known_path_t, folds_of_cycle
+  use curve_states, only: path_state_t
+  use driven_pieces, only: state_driven
+  use device, only: driven_t, leg_t, states_on
+  use path_stepper, only: path_stepper_t
+  use reported_place, only: place_t, point_of_path, place_on_curve, of_h0
   implicit none
   private
-  public :: experiment_result_t
+  public :: experiment_result_t, enter_readings, enter_energy, enter_table
 
   type :: experiment_result_t
     type(choice_t) :: chosen
@@ -34,6 +43,12 @@ module experiment_result
     procedure :: quality
   end type experiment_result_t
 
+  !> Numbers of each drive that may not exist.
+  character(len=*), parameter :: of_each_way(*) = [character(len=18) :: 'device_jump_in', &
+    'device_landing_in', 'device_jump_out', 'device_landing_out']
+  !> Number of rows of a leg of a table that are judged.
+  integer, parameter :: judged_rows = 16
+
 contains
 
   !> The quality of the rows of all experiments together.
@@ -53,5 +68,135 @@ contains
       call quality%join(self%unloading(k)%quality, self%unloading(k)%ending)
     end do
   end function quality
+
+  !> Enters the readings of the path: jumps and energies of drives, states under given loads.
+  subroutine enter_readings(readings, places)
+    type(path_readings_t), intent(in) :: readings
+    type(places_t), intent(inout) :: places
+    integer :: i
+
+    if (allocated(readings%device)) then
+      do i = 1, size(readings%device)
+        call enter_driven(i, readings%device(i), places)
+      end do
+    end if
+    if (.not. allocated(readings%loaded)) return
+    do i = 1, size(readings%loaded)
+      call places%enter('fixed_load', i, place_on_curve(readings%loaded(i)%state, load_alone))
+    end do
+  end subroutine enter_readings
+
+  !> Enters all jumps of drive i, the first jump of each direction, and the energy of the jumps.
+  subroutine enter_driven(i, driven, places)
+    integer, intent(in) :: i
+    type(driven_t), intent(in) :: driven
+    type(places_t), intent(inout) :: places
+    type(place_t), allocatable :: before, after
+    character(len=3) :: way
+    integer :: k
+
+    call places%enter('device_energy', i, factor=0.0_wp)
+    do k = 1, size(driven%jump)
+      associate (jump => driven%jump(k), drive => driven%drive%weights)
+        before = place_on_curve(jump%before, drive)
+        ! The turn of the drive, or the fold of h0 before it.
+        before%turn_of = merge(drive, h0_alone, abs(dot_product(drive, jump%before%slopes)) <= &
+          abs(dot_product(h0_alone, jump%before%slopes)))
+        if (allocated(after)) deallocate (after)
+        if (jump%landed) then
+          after = place_on_curve(jump%after, drive)
+          call places%keep(before, after%after)
+          call places%enter('device_energy', i, before)
+          call places%enter('device_energy', i, after, -1.0_wp)
+        else
+          call places%enter('device_energy', i)
+        end if
+        ! If `after` is not allocated, it counts as absent.
+        call places%add('jump_before', before)
+        call places%add('jump_after', after)
+        way = merge('in ', 'out', jump%inward)
+        if (places%has('device_jump_' // way, i)) cycle
+        call places%enter('device_jump_' // way, i, before)
+        call places%enter('device_landing_' // way, i, after)
+      end associate
+    end do
+    do k = 1, size(of_each_way)
+      if (.not. places%has(of_each_way(k), i)) call places%enter(of_each_way(k), i)
+    end do
+  end subroutine enter_driven
+
+  !> Enters the energy that a cycle dissipates: for a path from large separation through all its
+  !> jumps, or for a loading and the first unloading that end on the outermost piece, where they
+  !> began.
+  subroutine enter_energy(known, outcome, places)
+    type(known_path_t), intent(in) :: known
+    type(experiment_result_t), intent(in) :: outcome
+    type(places_t), intent(inout) :: places
+    integer, allocatable :: fold(:)
+    real(wp) :: lowest
+    integer :: turned, i
+
+    turned = 0
+    lowest = -huge(1.0_wp)
+    if (allocated(outcome%path)) then
+      if (outcome%path%first_piece == 1 .and. allocated(outcome%path%finish)) then
+        turned = outcome%path%last_piece
+        lowest = outcome%path%finish%at(of_h0)
+      end if
+    else if (allocated(outcome%loading) .and. allocated(outcome%unloading)) then
+      associate (there => outcome%loading, back => outcome%unloading(1))
+        if (there%first_piece == 1 .and. back%last_piece == 1) turned = back%first_piece
+      end associate
+    end if
+    if (turned < 2) return
+    fold = folds_of_cycle(known, turned, lowest)
+    do i = 1, size(fold)
+      call places%enter('energy_lost', 1, point_of_path(fold(i)))
+      call places%enter('energy_lost', 1, point_of_path(fold(i), landing=.true.), -1.0_wp)
+    end do
+  end subroutine enter_energy
+
+  !> Enters rows of the table as places.
+  subroutine enter_table(steps, readings, places)
+    class(path_stepper_t), intent(inout) :: steps
+    type(path_readings_t), intent(inout) :: readings
+    type(places_t), intent(inout) :: places
+    type(path_state_t), allocatable :: nodes(:)
+    integer :: i, k, row, last
+
+    if (.not. allocated(readings%prescribed)) return
+    do i = 1, size(readings%prescribed%leg)
+      nodes = states_on(readings%node, readings%prescribed%leg(i))
+      nodes = nodes(2:size(nodes) - 1)
+      if (size(nodes) < 2) cycle
+      last = 0
+      do k = 1, judged_rows
+        row = 1 + (k - 1)*(size(nodes) - 2)/(judged_rows - 1)
+        if (row == last) cycle
+        last = row
+        call places%add('table', place_on_curve(nodes(row), h0_alone))
+        call hold(readings%prescribed%leg(i), nodes(row), nodes(row + 1))
+      end do
+    end do
+
+  contains
+
+    !> Compares the interpolation with the state in the middle between a row and the next.
+    subroutine hold(leg, row, next)
+      type(leg_t), intent(in) :: leg
+      type(path_state_t), intent(in) :: row, next
+      type(path_state_t) :: state
+
+      associate (driven => readings%prescribed, width => next%h0 - row%h0)
+        if (.not. abs(width) > 0) return
+        call state_driven(steps%solver_t, steps%known%path, driven%drive, &
+          driven%piece(leg%piece), 0.5_wp*(row%h0 + next%h0), state)
+        if (state%converged) readings%table_interpolation_error = &
+          max(readings%table_interpolation_error, abs(state%load - 0.5_wp*(row%load + next%load) - &
+          width/8*(row%slopes(2)/row%slopes(1) - next%slopes(2)/next%slopes(1))))
+      end associate
+    end subroutine hold
+
+  end subroutine enter_table
 
 end module experiment_result

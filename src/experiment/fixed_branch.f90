@@ -63,9 +63,8 @@ contains
     ! A single state is not enough for an extrapolation, and mixing starts as in the paper.
     if (self%options%mixing .or. position%held == 1) state = position%state
     call self%solve(control_t(value=h0), state, event%converged)
-    continues = event%converged .and. change(expected, state) <= &
-      0.5_wp*change(position%state, expected) + jump + merge(abs(h0 - position%state%h0), 0.0_wp, &
-      position%held == 1)
+    continues = event%converged .and. change(expected, state) <= 0.5_wp*change(position%state, &
+      expected) + jump + merge(abs(h0 - position%state%h0), 0.0_wp, position%held == 1)
   end subroutine continue_to
 
   !> The predicted state of a step to h0.
@@ -110,13 +109,13 @@ contains
     beyond = h0
     arrived = .false.
     at_fold = .false.
-    call linearise(self, position%state, ahead)
+    call linearise(position%state)
     allowed = max(few_states, int(min(most_cubes/real(self%meshes%grid(1)%nodes, wp)**3, 1.0e3_wp)))
     do states = 1, allowed
       if (.not. step > self%jump_tolerance) return
       next = position%state%h0 + sense*step
       if (abs(h0 - position%state%h0) <= 1.1_wp*step) next = h0
-      call try_step(self, next, position, ahead, state, event, continues)
+      call try_step(next)
       if (.not. continues) then
         beyond = next
         step = step/3
@@ -133,33 +132,50 @@ contains
       at_fold = ahead%distance < near_fold*self%jump_tolerance
     end do
     if (step > self%jump_tolerance) beyond = h0
+
+  contains
+
+    !> Takes a step to h0 from a position, predicted from the fold or by extrapolation.
+    subroutine try_step(h0)
+      real(wp), intent(in) :: h0
+      type(state_t) :: expected
+
+      if (ahead%foreseen) then
+        expected = towards_fold(position%state, ahead%rate, h0, ahead%distance)
+      else
+        expected = expected_at(self, h0, position)
+      end if
+      call continue_to(self, h0, position, expected, state, event, continues)
+      ahead%before = ahead%determinant
+      if (.not. continues .or. self%options%mixing) return
+      ahead%foreseen = ahead%regular
+      call linearise(state)
+      ahead%foreseen = ahead%foreseen .and. ahead%regular
+      ! A state beyond the fold would be on the unstable branch.
+      if (ahead%regular) continues = determinant_sign(self%frozen%factors) > 0
+    end subroutine try_step
+
+    !> dH/dH0 along the branch at a state, and the logarithm of the Jacobian's determinant, if the
+    !> Jacobian is regular; not for mixing, which has no derivatives. The factorisation is kept for
+    !> the next solution.
+    subroutine linearise(state)
+      type(state_t), intent(in) :: state
+      type(control_t) :: control
+
+      ahead%determinant = 0
+      ahead%regular = .false.
+      if (self%options%mixing) return
+      control%value = state%h0
+      call freeze(self%equations_t, control, state, self%frozen)
+      self%frozen%excess = 0
+      ahead%regular = self%frozen%factors%valid
+      if (.not. ahead%regular) return
+      ahead%determinant = log_determinant(self%frozen%factors)
+      ahead%rate = -control_derivative(self%equations_t, control, state)
+      call solve(self%frozen%factors, ahead%rate)
+    end subroutine linearise
+
   end subroutine follow
-
-  !> Takes a step to h0 from a position, predicted from the fold or by extrapolation.
-  subroutine try_step(self, h0, position, ahead, state, event, continues)
-    class(stepper_t), intent(inout) :: self
-    real(wp), intent(in) :: h0
-    type(branch_point_t), intent(in) :: position
-    type(outlook_t), intent(inout) :: ahead
-    type(state_t), intent(out) :: state
-    type(step_result_t), intent(inout) :: event
-    logical, intent(out) :: continues
-    type(state_t) :: expected
-
-    if (ahead%foreseen) then
-      expected = towards_fold(position%state, ahead%rate, h0, ahead%distance)
-    else
-      expected = expected_at(self, h0, position)
-    end if
-    call continue_to(self, h0, position, expected, state, event, continues)
-    ahead%before = ahead%determinant
-    if (.not. continues .or. self%options%mixing) return
-    ahead%foreseen = ahead%regular
-    call linearise(self, state, ahead)
-    ahead%foreseen = ahead%foreseen .and. ahead%regular
-    ! A state beyond the fold would be on the unstable branch.
-    if (ahead%regular) continues = determinant_sign(self%frozen%factors) > 0
-  end subroutine try_step
 
   !> Predicts a fold after a step, and chooses the next step; left: the remaining distance to h0.
   pure subroutine foresee(self, left, tolerance, step)
@@ -195,28 +211,6 @@ contains
     self%trusted = .true.
     self%distance = huge(1.0_wp)
   end subroutine forget
-
-  !> dH/dH0 along the branch at a state, and the logarithm of the Jacobian's determinant, if the
-  !> Jacobian is regular; not for mixing, which has no derivatives. The factorisation is kept for
-  !> the next solution.
-  subroutine linearise(self, state, ahead)
-    class(stepper_t), intent(inout) :: self
-    type(state_t), intent(in) :: state
-    type(outlook_t), intent(inout) :: ahead
-    type(control_t) :: control
-
-    ahead%determinant = 0
-    ahead%regular = .false.
-    if (self%options%mixing) return
-    control%value = state%h0
-    call freeze(self%equations_t, control, state, self%frozen)
-    self%frozen%excess = 0
-    ahead%regular = self%frozen%factors%valid
-    if (.not. ahead%regular) return
-    ahead%determinant = log_determinant(self%frozen%factors)
-    ahead%rate = -control_derivative(self%equations_t, control, state)
-    call solve(self%frozen%factors, ahead%rate)
-  end subroutine linearise
 
   !> Largest difference between the deformations of two states.
   pure real(wp) function change(a, b)

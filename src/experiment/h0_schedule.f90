@@ -46,8 +46,8 @@ contains
         start = max(law%separation_of(far), finish + law%length)
       end if
       allocate (farther(0))
-      if (allocated(request%profiles)) &
-        farther = law%gap_of(pack(request%profiles%h0, request%profiles%h0 > start))
+      if (allocated(request%profile_h0)) &
+        farther = law%gap_of(pack(request%profile_h0, request%profile_h0 > start))
       plan = schedule_of('path', start, finish, abs(start - finish)/path_states, request, law, &
         farther)
     end associate
@@ -60,10 +60,8 @@ contains
     class(force_law_t), intent(in) :: law
     real(wp), intent(in), optional :: also(:)
 
-    associate (loading => request%loading)
-      plan = schedule_of('loading', loading%h0_start, loading%h0_end, loading%h0_step, request, &
-        law, also)
-    end associate
+    plan = schedule_of('loading', request%loading%h0_start, request%loading%h0_end, &
+      request%loading%h0_step, request, law, also)
   end function loading_plan
 
   !> The plan of unloading k.
@@ -75,10 +73,8 @@ contains
 
     ! No function of deferred length, since cases of a sweep would share it: compiler note 4.
     write (name, '(a, i0)') 'unloading_', k
-    associate (unloading => request%unloading)
-      plan = schedule_of(trim(name), unloading%from(k), unloading%h0_end, unloading%h0_step, &
-        request, law)
-    end associate
+    plan = schedule_of(trim(name), request%unloading%from(k), request%unloading%h0_end, &
+      request%unloading%h0_step, request, law)
   end function unloading_plan
 
   !> Values of h0 [m] from start to finish by step, in either direction, with both ends, the h0 of
@@ -105,7 +101,7 @@ contains
       h0 = [h0, finish]
     end if
     allocate (profiles(0))
-    if (allocated(request%profiles)) profiles = request%profiles%h0
+    if (allocated(request%profile_h0)) profiles = request%profile_h0
     if (present(also)) then
       do i = 1, size(also)
         call include(h0, law%separation_of(also(i)))

@@ -6,7 +6,8 @@ module numerics_choice
   use linear_mesh, only: new_uniform_grid, new_panel_grid, graded_ends
   use mesh_digits, only: digits_for
   use contact_scales, only: largest_radius, contact_level, smallest_feature
-  use experiment_request, only: numerics_t
+  use experiment_request, only: request_t, numerics_t
+  use path_demand, only: range_of
   use solver_options, only: solver_options_t, newton_of
   implicit none
   private
@@ -20,6 +21,8 @@ module numerics_choice
     'uniform', 'panels']
 
   type :: choice_t
+    !> The range of H0 of the experiment, law's lengths.
+    real(wp) :: low = 0, high = 0
     integer :: grid = unchosen
     !> The name of the iteration in results, and the reason for the grid.
     character(len=:), allocatable :: method, because
@@ -45,13 +48,13 @@ module numerics_choice
 
 contains
 
-  !> The choice for H0 down to h0_low (law's lengths); profiles: some are requested.
-  type(choice_t) function choose(numerics, problem, h0_low, profiles) result(chosen)
-    type(numerics_t), intent(in) :: numerics
+  !> The choice for an experiment.
+  type(choice_t) function choose(request, problem) result(chosen)
+    class(request_t), intent(in) :: request
     type(problem_t), intent(in) :: problem
-    real(wp), intent(in) :: h0_low
-    logical, intent(in) :: profiles
+    type(numerics_t) :: numerics
 
+    call range_of(request, problem, chosen%low, chosen%high)
     if (problem%rigid) then
       chosen%grid = no_grid
       chosen%method = 'integral'
@@ -59,6 +62,12 @@ contains
       if (problem%shape%parabolic) chosen%because = &
         'the bodies are rigid: their load is 2 pi R times the energy per area at h0'
       return
+    end if
+    numerics = request%numerics
+    ! Only a cycle is computed by mixing, or on a grid that is fixed in space.
+    if (.not. allocated(request%loading)) then
+      numerics%grid = 'auto'
+      if (numerics%method == 'mixing') numerics%method = 'auto'
     end if
     chosen%method = numerics%method
     if (numerics%method == 'auto') chosen%method = 'anderson'
@@ -86,8 +95,8 @@ contains
       end if
       if (numerics%method == 'newton') options = newton_of(options)
     end associate
-    chosen%digits = digits_for(problem, largest_radius(problem, h0_low, contact_level(problem)), &
-      numerics%accuracy, profiles)
+    chosen%digits = digits_for(problem, largest_radius(problem, chosen%low, &
+      contact_level(problem)), numerics%accuracy, allocated(request%profile_h0))
     if (numerics%grid == 'uniform') then
       chosen%grid = uniform
       chosen%because = 'the deck asks for it'
@@ -103,21 +112,20 @@ contains
       if (.not. problem%law%adhesion > 0) &
         chosen%because = 'panels scaled with the contact converge spectrally'
     end if
-    if (chosen%is_fixed()) call size_grid(chosen, numerics, problem, h0_low)
+    if (chosen%is_fixed()) call size_grid(chosen, numerics, problem)
   end function choose
 
   !> Chooses nodes and extent of a grid that is fixed in space.
-  subroutine size_grid(chosen, numerics, problem, h0_low)
+  subroutine size_grid(chosen, numerics, problem)
     type(choice_t), intent(inout) :: chosen
     type(numerics_t), intent(in) :: numerics
     type(problem_t), intent(in) :: problem
-    real(wp), intent(in) :: h0_low
     real(wp) :: widest, feature
 
     ! For a relative accuracy of load and displacement.
     chosen%panel_order = min(16, max(6, nint(4.6_wp - 0.8_wp*log10(numerics%accuracy))))
     if (allocated(numerics%panel_order)) chosen%panel_order = numerics%panel_order
-    widest = largest_radius(problem, h0_low, contact_level(problem))
+    widest = largest_radius(problem, chosen%low, contact_level(problem))
     feature = smallest_feature(problem, widest)
     chosen%extent = 1.5_wp*widest + 8
     if (allocated(numerics%r_max)) chosen%extent = numerics%r_max/problem%lateral
@@ -137,10 +145,9 @@ contains
 
   !> The mesh of a fixed grid: equal spacing, or equal panels up to the largest contact radius and
   !> panels of doubling size beyond.
-  type(discretisation_t) function fixed_mesh(chosen, problem, h0_low) result(mesh)
+  type(discretisation_t) function fixed_mesh(chosen, problem) result(mesh)
     type(choice_t), intent(in) :: chosen
     type(problem_t), intent(in) :: problem
-    real(wp), intent(in) :: h0_low
     real(wp) :: widest, finest
     real(wp), allocatable :: outer(:)
     integer :: count, j
@@ -149,7 +156,7 @@ contains
       mesh = new_uniform_grid(chosen%nodes, chosen%extent, elastic=.true.)
       return
     end if
-    widest = min(largest_radius(problem, h0_low, contact_level(problem)), chosen%extent)
+    widest = min(largest_radius(problem, chosen%low, contact_level(problem)), chosen%extent)
     finest = chosen%panel_over_feature*smallest_feature(problem, widest)
     ! At most as many nodes as a uniform grid would have.
     count = ceiling(min(widest/finest, real(max(1, chosen%nodes/chosen%panel_order), wp)))

@@ -67,20 +67,19 @@ contains
       if (i == first) path%first_piece = piece_of(steps%known, i)
       row%profile = any(abs(profiles - row%state%h0) <= 0)
       ! Where the path passes to another mesh, two points exist on both.
-      if (i == first .or. steps%known%path%comes_from_before(i)) &
-        call take(steps, row, observer, path, places)
+      if (i == first .or. steps%known%path%comes_from_before(i)) call take(row)
       if (i == last .and. .not. ends_between) exit
       if (.not. steps%known%path%point(i)%leads_on) cycle
       until = h0_end
       if (i < last) until = steps%known%path%point(i + 1)%state%h0
       call rows_between(steps, i, row%state%h0, until, widest, profiles, between)
       do k = 1, size(between)
-        call take(steps, between(k), observer, path, places)
+        call take(between(k))
       end do
       if (i < last) cycle
       row = row_at_h0(steps, i, h0_end)
       row%profile = any(abs(profiles - h0_end) <= 0)
-      call take(steps, row, observer, path, places)
+      call take(row)
     end do
     ! The tension is largest at an extremum or an end. States with which the path passes to another
     ! mesh do not count: their errors would decide.
@@ -89,44 +88,97 @@ contains
       call lower(path, reported)
       if (row%modes == 0) path%finish = reported
     end if
-    call enter_ends(path, places)
+    call enter_ends()
     path%last_piece = piece_of(steps%known, last)
     steps%cost%states = steps%cost%states + path%states
+
+  contains
+
+    !> Enters the largest tension and the end of a path.
+    subroutine enter_ends()
+      type(place_t) :: fall
+
+      if (allocated(path%lowest)) then
+        call places%enter('path_tension', 1, path%lowest)
+        call places%enter_tension(path%lowest)
+      end if
+      if (.not. allocated(path%finish)) return
+      if (path%fallen) then
+        ! The end of a collapse has no error, since it is on no mesh.
+        fall%at = path%finish%at
+        call places%enter('end', 1, fall)
+      else
+        call places%enter('path_end', 1, path%finish)
+        call places%enter('end', 1, path%finish)
+      end if
+    end subroutine enter_ends
+
+    !> The first point after which the path reaches h0; the number after the last point if it never
+    !> does.
+    pure integer function first_crossing(path, h0) result(i)
+      type(traced_path_t), intent(in) :: path
+      real(wp), intent(in) :: h0
+
+      do i = path%undeformed + 1, path%held - 1
+        if (path%point(i)%leads_on .and. path%point(i)%state%h0 >= h0 .and. &
+          path%point(i + 1)%state%h0 <= h0) return
+      end do
+      i = path%held + 1
+    end function first_crossing
+
+    !> The stable piece on which the path continues from point i; 0 if it is unstable there.
+    pure integer function piece_of(known, i) result(k)
+      type(known_path_t), intent(in) :: known
+      integer, intent(in) :: i
+
+      do k = size(known%piece), 1, -1
+        if (i >= known%piece(k)%first%interval .and. i <= known%piece(k)%last%interval + 1) return
+      end do
+    end function piece_of
+
+    !> Gives a row to the observer and stores its reported places. Folds are exact.
+    subroutine take(row)
+      type(row_t), intent(in) :: row
+      type(place_t) :: reported
+      type(record_t) :: record
+
+      associate (grid => steps%meshes%grid(row%mesh), state => row%state)
+        record = record_of('path', steps%problem, grid, state, &
+          merge(stable_yes, stable_no, row%modes == 0), row%converged)
+        call path%quality%cover(record, steps%problem, grid, state, &
+          steps%meshes%in_contact(row%mesh))
+        call observer%take(record, steps%problem, grid, state, row%profile)
+        path%states = path%states + 1
+      end associate
+      if (.not. row%converged) then
+        if (.not. path%ending%early()) path%ending%cause = state_lost
+        return
+      end if
+      if (row%for_curve) return
+      reported = place_of_row(steps, row)
+      if (row%profile) call places%add('profiles', reported)
+      if (path%states == 1) then
+        path%lowest = reported
+        path%start = reported
+      end if
+      if (row%point == 0) return
+      associate (point => steps%known%path%point(row%point))
+        if (point%load_extremum) then
+          call places%add('load_folds', reported)
+          call lower(path, reported)
+        end if
+        if (.not. point%fold) return
+        ! A part of the path may begin with another fold.
+        if (path%first_piece == 1 .and. .not. places%has('folds')) &
+          call places%enter('jump_in', 1, reported)
+        call places%add('folds', reported)
+        call places%forget('jump_out')
+        if (point%modes == 0) call places%enter('jump_out', 1, reported)
+        path%unstable_after = [path%unstable_after, point%modes]
+      end associate
+    end subroutine take
+
   end subroutine follow_path
-
-  !> Enters the largest tension and the end of a path.
-  subroutine enter_ends(path, places)
-    type(path_t), intent(in) :: path
-    type(places_t), intent(inout) :: places
-    type(place_t) :: fall
-
-    if (allocated(path%lowest)) then
-      call places%enter('path_tension', 1, path%lowest)
-      call places%enter_tension(path%lowest)
-    end if
-    if (.not. allocated(path%finish)) return
-    if (path%fallen) then
-      ! The end of a collapse has no error, since it is on no mesh.
-      fall%at = path%finish%at
-      call places%enter('end', 1, fall)
-    else
-      call places%enter('path_end', 1, path%finish)
-      call places%enter('end', 1, path%finish)
-    end if
-  end subroutine enter_ends
-
-  !> The first point after which the path reaches h0; the number after the last point if it never
-  !> does.
-  pure integer function first_crossing(path, h0) result(i)
-    type(traced_path_t), intent(in) :: path
-    real(wp), intent(in) :: h0
-
-    do i = path%undeformed + 1, path%held - 1
-      if (path%point(i)%leads_on .and. path%point(i)%state%h0 >= h0 .and. &
-        path%point(i + 1)%state%h0 <= h0) return
-    end do
-    i = path%held + 1
-  end function first_crossing
 
   !> The last point before the innermost stable equilibrium at h0_end; ends_between: the end is
   !> between this point and the next one.
@@ -159,17 +211,6 @@ contains
     if (found) finish = place_of_row(steps, row)
   end subroutine find_finish
 
-  !> The stable piece on which the path continues from point i; 0 if it is unstable there.
-  pure integer function piece_of(known, i) result(k)
-    type(known_path_t), intent(in) :: known
-    integer, intent(in) :: i
-
-    do k = size(known%piece), 1, -1
-      if (i >= known%piece(k)%first%interval .and. i <= known%piece(k)%last%interval + 1) return
-    end do
-  end function piece_of
-
-  !> A row as a place.
   type(place_t) function place_of_row(steps, row) result(reported)
     type(path_stepper_t), intent(in) :: steps
     type(row_t), intent(in) :: row
@@ -192,51 +233,5 @@ contains
       path%lowest = place
     end if
   end subroutine lower
-
-  !> Gives a row to the observer and stores its reported places. Folds are exact.
-  subroutine take(steps, row, observer, path, places)
-    type(path_stepper_t), intent(in) :: steps
-    type(row_t), intent(in) :: row
-    class(observer_t), intent(inout) :: observer
-    type(path_t), intent(inout) :: path
-    type(places_t), intent(inout) :: places
-    type(place_t) :: reported
-    type(record_t) :: record
-
-    associate (grid => steps%meshes%grid(row%mesh), state => row%state)
-      record = record_of('path', steps%problem, grid, state, &
-        merge(stable_yes, stable_no, row%modes == 0), row%converged)
-      call path%quality%cover(record, steps%problem, grid, state, &
-        steps%meshes%in_contact(row%mesh))
-      call observer%take(record, steps%problem, grid, state, row%profile)
-      path%states = path%states + 1
-    end associate
-    if (.not. row%converged) then
-      if (.not. path%ending%early()) path%ending%cause = state_lost
-      return
-    end if
-    if (row%for_curve) return
-    reported = place_of_row(steps, row)
-    if (row%profile) call places%add('profiles', reported)
-    if (path%states == 1) then
-      path%lowest = reported
-      path%start = reported
-    end if
-    if (row%point == 0) return
-    associate (point => steps%known%path%point(row%point))
-      if (point%load_extremum) then
-        call places%add('load_folds', reported)
-        call lower(path, reported)
-      end if
-      if (.not. point%fold) return
-      ! A part of the path may begin with another fold.
-      if (path%first_piece == 1 .and. .not. places%has('folds')) &
-        call places%enter('jump_in', 1, reported)
-      call places%add('folds', reported)
-      call places%forget('jump_out')
-      if (point%modes == 0) call places%enter('jump_out', 1, reported)
-      path%unstable_after = [path%unstable_after, point%modes]
-    end associate
-  end subroutine take
 
 end module path

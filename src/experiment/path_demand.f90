@@ -32,8 +32,8 @@ contains
     if (.not. allocated(request%path)) return
     if (allocated(request%path%h0_start)) then
       start = request%path%h0_start
-    else if (allocated(request%profiles)) then
-      start = max(start, maxval(request%profiles%h0))
+    else if (allocated(request%profile_h0)) then
+      start = max(start, maxval(request%profile_h0))
     end if
   end function path_start
 
@@ -84,9 +84,9 @@ contains
     demand%by_h0 = [real(wp) ::]
     demand%by_load = [real(wp) ::]
     demand%until = [real(wp) ::]
-    if (allocated(request%fixed_load)) then
-      do i = 1, size(request%fixed_load%load)
-        call add(0.0_wp, 1.0_wp, -max(request%fixed_load%load(i)/problem%load, 0.0_wp))
+    if (allocated(request%fixed_loads)) then
+      do i = 1, size(request%fixed_loads)
+        call add(0.0_wp, 1.0_wp, -max(request%fixed_loads(i)/problem%load, 0.0_wp))
       end do
     end if
     if (.not. allocated(request%device)) return
@@ -135,9 +135,9 @@ contains
         end associate
       end do
     end if
-    if (.not. allocated(request%fixed_load)) return
-    do i = 1, size(request%fixed_load%load)
-      load = request%fixed_load%load(i)/problem%load
+    if (.not. allocated(request%fixed_loads)) return
+    do i = 1, size(request%fixed_loads)
+      load = request%fixed_loads(i)/problem%load
       if (abs(load) > 0) farthest = max(farthest, gap_of_load(problem, load))
     end do
   end function farthest_wanted

@@ -64,102 +64,96 @@ contains
       readings%node = states_of_points(steps%solver_t, path)
       readings%traced_from = path%point(path%undeformed + 1)%state%h0
       readings%undeformed_from = path%point(1)%state%h0
-      if (allocated(request%device)) call run_device(request, steps, readings)
-      if (allocated(request%fixed_load)) call find_loaded(request%fixed_load%load/ &
-        steps%problem%load, steps, readings)
+      if (allocated(request%device)) call run_device()
+      if (allocated(request%fixed_loads)) call find_loaded(request%fixed_loads/ &
+        steps%problem%load)
       if (request%table) then
         allocate (readings%prescribed)
-        call drive_between(request, steps, drive_t(), readings%prescribed)
+        call drive_between(drive_t(), readings%prescribed)
         readings%solved = readings%solved .and. readings%prescribed%solved
       end if
     end associate
-    if (allocated(readings%loaded)) &
-      steps%cost%states = steps%cost%states + size(readings%loaded)
-  end subroutine read_path
+    if (allocated(readings%loaded)) steps%cost%states = steps%cost%states + size(readings%loaded)
 
-  !> &fixed_load: finds all equilibria under each load.
-  subroutine find_loaded(load, steps, readings)
-    real(wp), intent(in) :: load(:)
-    class(path_stepper_t), intent(inout) :: steps
-    type(path_readings_t), intent(inout) :: readings
-    type(path_state_t), allocatable :: states(:)
-    type(loaded_state_t) :: one
-    integer :: i, k
-    logical :: solved
+  contains
 
-    allocate (readings%loaded(0))
-    do i = 1, size(load)
-      call states_where(steps%solver_t, steps%known%path, of_load, load(i), states, solved)
-      call cover(states, steps%problem, readings%quality)
-      readings%solved = readings%solved .and. solved
-      do k = 1, size(states)
-        ! On the path followed inward, h0 decreases where states are stable at fixed h0.
-        one = loaded_state_t(i, load(i), states(k), &
-          states(k)%modes == 0 .and. states(k)%slopes(2) > 0)
-        readings%loaded = [readings%loaded, one]
-      end do
-    end do
-  end subroutine find_loaded
+    !> &fixed_load: finds all equilibria under each load.
+    subroutine find_loaded(load)
+      real(wp), intent(in) :: load(:)
+      type(path_state_t), allocatable :: states(:)
+      type(loaded_state_t) :: one
+      integer :: i, k
+      logical :: solved
 
-  !> Includes what tells of strains in these states.
-  pure subroutine cover(states, problem, quality)
-    type(path_state_t), intent(in) :: states(:)
-    type(problem_t), intent(in) :: problem
-    type(quality_t), intent(inout) :: quality
-    integer :: i
-
-    do i = 1, size(states)
-      call quality%cover_extent(states(i)%radius*problem%lateral, &
-        problem%law%separation_of(states(i)%h0), states(i)%load*problem%load, states(i)%state)
-    end do
-  end subroutine cover
-
-  !> &device: moves one drive for each stiffness, or one at prescribed h0.
-  subroutine run_device(request, steps, readings)
-    class(request_t), intent(in) :: request
-    class(path_stepper_t), intent(inout) :: steps
-    type(path_readings_t), intent(inout) :: readings
-    real(wp), allocatable :: stiffness(:)
-    integer :: i, k
-
-    associate (device => request%device, problem => steps%problem)
-      stiffness = device%stiffness
-      ! Without springs h0 is prescribed, as by a spring that does not yield.
-      if (size(stiffness) == 0) stiffness = [ieee_value(1.0_wp, ieee_positive_inf)]
-      allocate (readings%device(size(stiffness)))
-      do i = 1, size(stiffness)
-        call drive_between(request, steps, &
-          through_spring(stiffness(i)*problem%length/problem%load), readings%device(i), &
-          device%z_start, device%z_end)
-        readings%device(i)%stiffness = stiffness(i)
-        readings%solved = readings%solved .and. readings%device(i)%solved
-        ! The path goes on beyond the states of the drive, as far as its last step happened to go.
-        do k = 1, size(readings%device(i)%leg)
-          call cover(states_on(readings%node, readings%device(i)%leg(k)), problem, readings%quality)
+      allocate (readings%loaded(0))
+      do i = 1, size(load)
+        call states_where(steps%solver_t, steps%known%path, of_load, load(i), states, solved)
+        call cover(states, steps%problem, readings%quality)
+        readings%solved = readings%solved .and. solved
+        do k = 1, size(states)
+          ! On the path followed inward, h0 decreases where states are stable at fixed h0.
+          one = loaded_state_t(i, load(i), states(k), &
+            states(k)%modes == 0 .and. states(k)%slopes(2) > 0)
+          readings%loaded = [readings%loaded, one]
         end do
       end do
-    end associate
-  end subroutine run_device
+    end subroutine find_loaded
 
-  !> Drives the bodies between positions [m]; a dead load has no positions.
-  subroutine drive_between(request, steps, drive, driven, z_start, z_end)
-    class(request_t), intent(in) :: request
-    class(path_stepper_t), intent(inout) :: steps
-    type(drive_t), intent(in) :: drive
-    type(driven_t), intent(out) :: driven
-    real(wp), allocatable, intent(in), optional :: z_start, z_end
-    real(wp), allocatable :: start, finish
+    pure subroutine cover(states, problem, quality)
+      type(path_state_t), intent(in) :: states(:)
+      type(problem_t), intent(in) :: problem
+      type(quality_t), intent(inout) :: quality
+      integer :: i
 
-    associate (law => steps%problem%law)
-      if (present(z_start) .and. drive%weights(1) > 0) then
-        if (allocated(z_start)) start = law%gap_of(z_start)
-        if (allocated(z_end)) finish = law%gap_of(z_end)
-      end if
-      call drive_bodies(steps%solver_t, steps%known%path, drive, &
-        law%gap_of(request%path%h0_end), start, finish, driven)
-      ! The states at the ends of the legs.
-      steps%cost%states = steps%cost%states + 2*size(driven%leg)
-    end associate
-  end subroutine drive_between
+      do i = 1, size(states)
+        call quality%cover_extent(states(i)%radius*problem%lateral, &
+          problem%law%separation_of(states(i)%h0), states(i)%load*problem%load, states(i)%state)
+      end do
+    end subroutine cover
+
+    !> &device: moves one drive for each stiffness, or one at prescribed h0.
+    subroutine run_device()
+      real(wp), allocatable :: stiffness(:)
+      integer :: i, k
+
+      associate (device => request%device, problem => steps%problem)
+        stiffness = device%stiffness
+        ! Without springs h0 is prescribed, as by a spring that does not yield.
+        if (size(stiffness) == 0) stiffness = [ieee_value(1.0_wp, ieee_positive_inf)]
+        allocate (readings%device(size(stiffness)))
+        do i = 1, size(stiffness)
+          call drive_between(through_spring(stiffness(i)*problem%length/problem%load), &
+            readings%device(i), device%z_start, device%z_end)
+          readings%device(i)%stiffness = stiffness(i)
+          readings%solved = readings%solved .and. readings%device(i)%solved
+          ! The path goes on beyond the states of the drive, as far as its last step happened to go.
+          do k = 1, size(readings%device(i)%leg)
+            call cover(states_on(readings%node, readings%device(i)%leg(k)), problem, &
+              readings%quality)
+          end do
+        end do
+      end associate
+    end subroutine run_device
+
+    !> Drives the bodies between positions [m]; a dead load has no positions.
+    subroutine drive_between(drive, driven, z_start, z_end)
+      type(drive_t), intent(in) :: drive
+      type(driven_t), intent(out) :: driven
+      real(wp), allocatable, intent(in), optional :: z_start, z_end
+      real(wp), allocatable :: start, finish
+
+      associate (law => steps%problem%law)
+        if (present(z_start) .and. drive%weights(1) > 0) then
+          if (allocated(z_start)) start = law%gap_of(z_start)
+          if (allocated(z_end)) finish = law%gap_of(z_end)
+        end if
+        call drive_bodies(steps%solver_t, steps%known%path, drive, &
+          law%gap_of(request%path%h0_end), start, finish, driven)
+        ! The states at the ends of the legs.
+        steps%cost%states = steps%cost%states + 2*size(driven%leg)
+      end associate
+    end subroutine drive_between
+
+  end subroutine read_path
 
 end module path_readings

@@ -15,6 +15,7 @@ module path_stepper
   use path_span, only: path_span_t, new_path_span
   use prediction, only: missed_t, expect
   use path_end, only: demand_t
+  use numerics_choice, only: choice_t
   use tracing, only: trace, trace_again
   use mending, only: left_on_path
   use edge_locked, only: mesh_family_t
@@ -51,13 +52,14 @@ module path_stepper
 
 contains
 
-  !> Traces the path from h0_high, or from where the bodies hardly deform, until it is stable at
-  !> h0_low; into_contact: until the bodies are also in contact; accuracy, demand: see
+  !> Traces the path from chosen%high, or from where the bodies hardly deform, until it is stable at
+  !> chosen%low; into_contact: until the bodies are also in contact; accuracy, demand: see
   !> `trace`; with `demand` the points define a smooth curve. To be called before the first step.
   !> The listener receives messages about the progress.
-  subroutine know_path(self, h0_high, h0_low, into_contact, accuracy, listener, demand)
+  subroutine know_path(self, chosen, into_contact, accuracy, listener, demand)
     class(path_stepper_t), intent(inout) :: self
-    real(wp), intent(in) :: h0_high, h0_low, accuracy
+    type(choice_t), intent(in) :: chosen
+    real(wp), intent(in) :: accuracy
     logical, intent(in) :: into_contact
     class(listener_t), intent(inout) :: listener
     type(demand_t), intent(in), optional :: demand
@@ -67,9 +69,9 @@ contains
 
     self%known = nothing
     call self%operator%forget()
-    call self%begin_afar(h0_high, position, event)
+    call self%begin_afar(chosen%high, position, event)
     if (.not. event%ending%early()) then
-      call trace(self%solver_t, position%state, h0_low, into_contact, accuracy, listener, &
+      call trace(self%solver_t, position%state, chosen%low, into_contact, accuracy, listener, &
         self%known, demand)
       call know_pieces(self%solver_t, self%known)
     else
@@ -233,9 +235,8 @@ contains
     mesh = self%span%mesh
     associate (ends => self%span%ends, piece => self%known%piece(position%piece))
       s = self%span%at_h0(h0)
-      beside = abs(s - ends) < beside_fold*abs(ends(2) - ends(1)) .and. &
-        [piece%first_turns .and. i == piece%first%interval, &
-        piece%last_turns .and. i == piece%last%interval]
+      beside = abs(s - ends) < beside_fold*abs(ends(2) - ends(1)) .and. [piece%first_turns .and. i &
+        == piece%first%interval, piece%last_turns .and. i == piece%last%interval]
       if (.not. any(beside)) then
         call expect(self%solver_t, self%span, self%missed, h0, s, position, state)
         call self%attempt(h0, state, mesh, event)
@@ -245,8 +246,7 @@ contains
         end if
       end if
     end associate
-    if (.not. event%converged) &
-      call self%span%solve_at_h0(self%solver_t, h0, state, event%converged)
+    if (.not. event%converged) call self%span%solve_at_h0(self%solver_t, h0, state, event%converged)
     call remember(position, state, mesh, jumped, foretold=state%iterations == 1)
   end subroutine solve_on_piece
 

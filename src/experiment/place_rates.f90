@@ -11,7 +11,6 @@ module place_rates
   use place_sensitivity, only: local_t, find_local, local_undeformed, at_fixed, at_extremum
   use reported_place, only: place_t, drive_weights, of_h0, nowhere
   use path_stepper, only: path_stepper_t
-  use experiment_request, only: sensitivity_t
   use experiment_result, only: experiment_result_t
   implicit none
   private
@@ -25,19 +24,19 @@ contains
 
   !> Differentiates all places at which numbers are read, and the curve. A place comes after the
   !> place from which its jump started.
-  subroutine rate_places(sensitivity, steps, listener, outcome)
-    type(sensitivity_t), intent(in) :: sensitivity
+  subroutine rate_places(parameters, steps, listener, outcome)
+    type(variation_t), intent(in) :: parameters(:)
     class(path_stepper_t), intent(inout) :: steps
     class(listener_t), intent(inout) :: listener
     type(experiment_result_t), intent(inout) :: outcome
     ! The first is the path's coordinate.
-    type(variation_t) :: varied(size(sensitivity%varied) + 1)
-    real(wp) :: wanted(size(sensitivity%varied))
+    type(variation_t) :: varied(size(parameters) + 1)
+    real(wp) :: wanted(size(parameters))
     logical :: found
     integer :: i
 
     call listener%hear('differentiating')
-    varied(2:) = sensitivity%varied
+    varied(2:) = parameters
     if (allocated(outcome%readings)) then
       if (outcome%readings%solved) then
         call rates_along(steps%equations_t, steps%known%path, varied(2:), &

@@ -81,10 +81,9 @@ contains
     type(place_t), intent(in) :: one, other
 
     is_same = one%point == other%point .and. (one%landing .eqv. other%landing)
-    if (is_same .and. one%point == 0) is_same = one%mesh == other%mesh .and. &
-      one%after == other%after .and. (one%searched .eqv. other%searched) .and. &
-      all(abs([one%at(:of_load), one%drive, one%turn_of] - &
-      [other%at(:of_load), other%drive, other%turn_of]) <= 0)
+    if (is_same .and. one%point == 0) is_same = one%mesh == other%mesh .and. one%after == &
+      other%after .and. (one%searched .eqv. other%searched) .and. all(abs([one%at(:of_load), &
+      one%drive, one%turn_of] - [other%at(:of_load), other%drive, other%turn_of]) <= 0)
   end function is_same
 
   !> Adds a term to an element of a number: `factor` times the quantity at a place. Without a place

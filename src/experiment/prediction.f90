@@ -148,10 +148,8 @@ contains
     end if
     n = size(position%past(1)%gap)
     if (self%held == position%held) then
-      associate (last => self%held)
-        if (all(self%number(:last) == position%past_number(:last) .and. &
-          abs(self%state_h0(:last) - position%h0(:last)) <= 0)) return
-      end associate
+      if (all(self%number(:self%held) == position%past_number(:self%held) .and. &
+        abs(self%state_h0(:self%held) - position%h0(:self%held)) <= 0)) return
     end if
     if (allocated(self%gap)) then
       if (size(self%gap, 1) /= n) deallocate (self%gap)

@@ -9,8 +9,7 @@ module records
   use ending, only: ending_t
   implicit none
   private
-  public :: record_t, observer_t, record_of, quality_t
-  public :: stable_yes, stable_no, stable_unasked
+  public :: record_t, observer_t, record_of, quality_t, stable_yes, stable_no, stable_unasked
 
   !> Values of the column `stable`.
   integer, parameter :: stable_yes = 1, stable_no = 0, stable_unasked = -1

@@ -51,18 +51,14 @@ module result_rows
       'strength of exponential repulsion, (39) of the paper at h0 = 0', always), &
     row_t('top_modulus', 'Pa', 'with &layer: E* of half-spaces of the top layers', layer), &
     row_t('bottom_modulus', 'Pa', 'with &layer: E* of the half-spaces below the layers', layer), &
-    row_t('effective_modulus', 'Pa', &
-      'with &layer and &classical: E* of half-spaces with the load of hertz_layered by Hertz', &
-      layer), &
-    row_t('surface_energy', 'J/m^2', &
-      'surface energy of the force law: the depth of its minimum, or its energy at contact', &
-      always), &
-    row_t('work_of_adhesion', 'J/m^2', &
-      'energy needed to separate unit area from contact; negative: contact is metastable', &
-      forces), &
-    row_t('table_error', '', &
-      'estimated relative error of work_of_adhesion and pull-off from the points of a table', &
-      tabulated), &
+    row_t('effective_modulus', 'Pa', 'with &layer and &classical: E* of half-spaces with the ' // &
+      'load of hertz_layered by Hertz', layer), &
+    row_t('surface_energy', 'J/m^2', 'surface energy of the force law: the depth of its ' // &
+      'minimum, or its energy at contact', always), &
+    row_t('work_of_adhesion', 'J/m^2', 'energy needed to separate unit area from contact; ' // &
+      'negative: contact is metastable', forces), &
+    row_t('table_error', '', 'estimated relative error of work_of_adhesion and pull-off from ' // &
+      'the points of a table', tabulated), &
     row_t('rest_gap', 'm', 'smallest separation without force', forces), &
     row_t('edge_gap', 'm', 'separation of largest tension', forces), &
     row_t('cohesive_stress', 'Pa', 'largest tension', forces), &
@@ -93,9 +89,8 @@ module result_rows
       place='jump_in', quantity=of_load, error=judged), &
     row_t('jump_in_uncertainty', 'm', &
       'on a fixed grid: uncertainty of jump_in_h0, plus or minus'), &
-    row_t('jump_out_h0', 'm', &
-      'h0 at which the retreating bodies jump apart, in the first unloading with a jump', always, &
-      place='jump_out', quantity=of_h0, error=judged), &
+    row_t('jump_out_h0', 'm', 'h0 at which the retreating bodies jump apart, in the first ' // &
+      'unloading with a jump', always, place='jump_out', quantity=of_h0, error=judged), &
     row_t('jump_out_load', 'N', 'load just before the bodies jump apart', always, &
       place='jump_out', quantity=of_load, error=judged), &
     row_t('jump_out_uncertainty', 'm', &
@@ -105,9 +100,8 @@ module result_rows
       list=.true., place='unload_max_tension', quantity=of_tension, error=judged), &
     row_t('unload_max_tension_h0', 'm', 'h0 at the largest tension of each unloading', &
       list=.true., place='unload_max_tension', quantity=of_h0, error=judged), &
-    row_t('unload_jump_out_h0', 'm', &
-      'h0 at which the bodies jump apart in each unloading', turning, list=.true., &
-      place='unload_jump_out', quantity=of_h0, error=judged), &
+    row_t('unload_jump_out_h0', 'm', 'h0 at which the bodies jump apart in each unloading', &
+      turning, list=.true., place='unload_jump_out', quantity=of_h0, error=judged), &
     row_t('folds_h0', 'm', 'h0 of all folds of the path, in order', list=.true., &
       place='folds', quantity=of_h0, error=judged), &
     row_t('folds_load', 'N', 'load at every fold of the path', list=.true., &
@@ -145,9 +139,8 @@ module result_rows
       place='device_jump_out', quantity=of_load, error=judged), &
     row_t('device_jump_out_load_after', 'N', 'load just after this jump', spring, list=.true., &
       place='device_landing_out', quantity=of_load, error=judged), &
-    row_t('device_energy_lost', 'J', &
-      'energy lost in all jumps of each cycle, bodies and spring', spring, list=.true., &
-      place='device_energy', quantity=of_energy, error=judged), &
+    row_t('device_energy_lost', 'J', 'energy lost in all jumps of each cycle, bodies and spring', &
+      spring, list=.true., place='device_energy', quantity=of_energy, error=judged), &
     row_t('device_cycle_energy', 'J', &
       'the energy lost as the area between approach and retreat', list=.true., error=judged), &
     row_t('device_energy_uncertainty', 'J', 'difference of these two, or the error of either', &
@@ -164,18 +157,16 @@ module result_rows
     row_t('fixed_load_contact_radius', 'm', 'its contact radius', given_load, list=.true., &
       error=judged), &
     row_t('table_load_error', 'N', 'largest estimated error of a load in table.csv', table), &
-    row_t('table_interpolation_error', 'N', &
-      'largest error of a load between the rows, by cubic polynomials with their slopes', &
-      table), &
+    row_t('table_interpolation_error', 'N', 'largest error of a load between the rows, by ' // &
+      'cubic polynomials with their slopes', table), &
     row_t('regime_tabor', '', 'Tabor''s parameter with the length of the law', regime), &
     row_t('regime_tabor_range', '', &
       'Tabor''s parameter with the range, surface energy over largest tension', regime), &
     row_t('regime_maugis_lambda', '', 'Maugis'' parameter', regime), &
     row_t('regime_load_number', '', &
       'load of the last state over pi times surface energy times radius', regime, error=judged), &
-    row_t('regime_error_hertz', '', &
-      'errors of Hertz theory: pull-off, contact radius, indentation over a^2/R', list=.true., &
-      error=judged), &
+    row_t('regime_error_hertz', '', 'errors of Hertz theory: pull-off, contact radius, ' // &
+      'indentation over a^2/R', list=.true., error=judged), &
     row_t('regime_error_jkr', '', 'the same for JKR theory', list=.true., error=judged), &
     row_t('regime_error_dmt', '', 'the same for DMT theory', list=.true., error=judged), &
     row_t('regime_error_maugis', '', 'the same for Maugis-Dugdale theory', list=.true., &
@@ -194,10 +185,8 @@ module result_rows
     row_t('regime_worst_maugis', '', 'the same for Maugis-Dugdale theory', regime), &
     row_t('regime_worst_hertz_layered', '', 'the same for Hertz theory of layers', &
       layered_regime), &
-    row_t('regime_worst_jkr_layered', '', 'the same for JKR theory of layers', &
-      layered_regime), &
-    row_t('regime_worst_pietrement', '', 'the same for Pietrement and Troyon''s formula', &
-      regime), &
+    row_t('regime_worst_jkr_layered', '', 'the same for JKR theory of layers', layered_regime), &
+    row_t('regime_worst_pietrement', '', 'the same for Pietrement and Troyon''s formula', regime), &
     row_t('regime_theory', '', 'recommended theory: 1 Hertz, 2 JKR, 3 DMT, 4 Maugis, 5 and 6 ' // &
       'Hertz and JKR of layers, 0 none', regime), &
     row_t('regime_recommended', '', 'theory with the smallest of the largest errors, or none'), &
@@ -205,17 +194,15 @@ module result_rows
     row_t('regime_formula', '', 'of jkr, dmt, carpick and pietrement the nearest in pull-off ' // &
       'and contact radius'), &
     row_t('regime_formula_error', '', 'the larger of its errors in these two', regime), &
-    row_t('end_h0', 'm', &
-      'h0 of the last equilibrium of the loading; without a loading, of the path', always, &
-      place='end', quantity=of_h0), &
+    row_t('end_h0', 'm', 'h0 of the last equilibrium of the loading; without a loading, of ' // &
+      'the path', always, place='end', quantity=of_h0), &
     row_t('end_displacement', 'm', 'displacement of the last equilibrium', always, &
       place='end', quantity=of_displacement, error=judged), &
     row_t('end_load', 'N', 'load of the last equilibrium', always, &
       place='end', quantity=of_load, error=judged), &
-    row_t('profiles_error', '', &
-      'error of each profile: of gaps over the larger of gap and law''s length; of pressures ' // &
-      'over the largest', &
-      list=.true., place='profiles', quantity=of_profile), &
+    row_t('profiles_error', '', 'error of each profile: of gaps over the larger of gap and ' // &
+      'law''s length; of pressures over the largest', list=.true., place='profiles', &
+      quantity=of_profile), &
     row_t('jump_criterion_29_h0', 'm', &
       'h0 at which approaching bodies first violate (29)', approximations), &
     row_t('jump_criterion_29_load', 'N', 'load at this h0', approximations), &
@@ -260,8 +247,7 @@ module result_rows
     row_t('pressure_evaluations', '', &
       'number of evaluations of a force or of its slope', group=in_cost), &
     row_t('operator_products', '', 'number of products with a kernel matrix', group=in_cost), &
-    row_t('operator_columns', '', &
-      'number of columns in these products', group=in_cost), &
+    row_t('operator_columns', '', 'number of columns in these products', group=in_cost), &
     row_t('factorisations', '', 'number of Jacobians factorised', group=in_cost), &
     row_t('rejected_steps', '', &
       'number of steps rejected by iterations and by the path', group=in_cost)]

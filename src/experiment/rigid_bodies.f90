@@ -47,13 +47,13 @@ contains
     began = seconds()
     if (allocated(request%path)) then
       allocate (outcome%stepped_path)
-      call run_branch(problem, path_plan(request, problem%law, calm_gap(problem)), .true., &
-        observer, outcome%places, outcome%cost%states, outcome%stepped_path)
+      call run_branch(path_plan(request, problem%law, calm_gap(problem)), .true., outcome%places, &
+        outcome%cost%states, outcome%stepped_path)
     end if
     if (allocated(request%loading)) then
       allocate (outcome%loading)
-      call run_branch(problem, loading_plan(request, problem%law), .true., observer, &
-        outcome%places, outcome%cost%states, outcome%loading)
+      call run_branch(loading_plan(request, problem%law), .true., outcome%places, &
+        outcome%cost%states, outcome%loading)
     end if
     if (allocated(request%unloading)) then
       allocate (outcome%unloading(size(request%unloading%from)))
@@ -62,8 +62,8 @@ contains
           if (problem%law%gap_of(request%unloading%from(k)) < problem%law%smallest_gap) then
             branch%ending%cause = turn_not_reached
           else
-            call run_branch(problem, unloading_plan(request, problem%law, k), .false., observer, &
-              outcome%places, outcome%cost%states, branch)
+            call run_branch(unloading_plan(request, problem%law, k), .false., outcome%places, &
+              outcome%cost%states, branch)
           end if
           call outcome%places%enter('unload_max_tension', k, branch%lowest)
           call outcome%places%enter('unload_jump_out', k)
@@ -71,82 +71,176 @@ contains
       end do
     end if
     outcome%cost%solve_seconds = seconds() - began
-  end subroutine run_rigid
 
-  !> Runs one branch through plan%h0, as far as the law has a pressure.
-  subroutine run_branch(problem, plan, fresh, observer, places, states, branch)
-    type(problem_t), intent(in) :: problem
-    type(h0_schedule_t), intent(in) :: plan
-    logical, intent(in) :: fresh
-    class(observer_t), intent(inout) :: observer
-    type(places_t), intent(inout) :: places
-    integer(long), intent(inout) :: states
-    type(branch_t), intent(out) :: branch
-    real(wp), allocatable :: load(:)
-    integer :: i
+  contains
 
-    allocate (load(size(plan%h0)))
-    do i = 1, size(plan%h0)
-      if (plan%h0(i) < problem%law%smallest_gap) then
-        branch%ending%cause = touching
-        exit
+    !> Runs one branch through plan%h0, as far as the law has a pressure.
+    subroutine run_branch(plan, fresh, places, states, branch)
+      type(h0_schedule_t), intent(in) :: plan
+      logical, intent(in) :: fresh
+      type(places_t), intent(inout) :: places
+      integer(long), intent(inout) :: states
+      type(branch_t), intent(out) :: branch
+      real(wp), allocatable :: load(:)
+      integer :: i
+
+      allocate (load(size(plan%h0)))
+      do i = 1, size(plan%h0)
+        if (plan%h0(i) < problem%law%smallest_gap) then
+          branch%ending%cause = touching
+          exit
+        end if
+        load(i) = load_undeformed(problem, plan%h0(i))
+        call show(plan, i, load(i))
+        if (plan%profile(i)) call places%add('profiles', place_at(plan%h0(i)))
+        branch%states = i
+      end do
+      states = states + branch%states
+      if (branch%states == 0) return
+      branch%finish = place_at(plan%h0(branch%states))
+      call find_largest_tension(plan%h0(:branch%states), load(:branch%states), branch)
+      call enter_ends(branch, fresh, places)
+    end subroutine run_branch
+
+    !> Gives step i of a branch to the observer, with positions if its profile is requested.
+    subroutine show(plan, i, load)
+      type(h0_schedule_t), intent(in) :: plan
+      integer, intent(in) :: i
+      real(wp), intent(in) :: load
+      type(discretisation_t) :: grid
+      type(state_t) :: state
+      type(record_t) :: record
+
+      record%branch = plan%name
+      associate (h0 => plan%h0(i))
+        record%h0 = problem%law%separation_of(h0)
+        record%contact_radius = problem%lateral*contact_radius(h0)
+        grid%x = positions(h0, plan%profile(i))
+        grid%nodes = size(grid%x)
+        state = undeformed_state(problem%shape, grid, h0, 1.0_wp)
+        state%pressure = problem%law%pressure(state%gap)
+      end associate
+      record%h_centre = record%h0
+      record%load = load*problem%load
+      record%stable = merge(stable_yes, stable_unasked, plan%unique)
+      state%load = load
+      state%residual = 0
+      call observer%take(record, problem, grid, state, plan%profile(i))
+    end subroutine show
+
+    !> Positions of a profile, lateral units: those of the sampled gaps, up to the end of the body.
+    !> Empty unless `wanted`.
+    pure function positions(h0, wanted) result(r)
+      real(wp), intent(in) :: h0
+      logical, intent(in) :: wanted
+      real(wp), allocatable :: r(:), gap(:)
+
+      allocate (r(0))
+      if (.not. wanted) return
+      gap = gaps_between(problem%law, h0, h0 + far_out*max(1.0_wp, abs(h0)))
+      r = problem%shape%position_of(gap(2:) - h0)
+      r = pack(r, r <= problem%shape%ends)
+    end function positions
+
+    !> Finds the largest tension over the range of h0; load: at the h0 of the branch. Not allocated
+    !> if there is no attraction.
+    pure subroutine find_largest_tension(h0, load, branch)
+      real(wp), intent(in) :: h0(:), load(:)
+      type(branch_t), intent(inout) :: branch
+      type(place_t) :: found, of_rows
+      real(wp), allocatable :: gap(:)
+      integer :: k, i
+
+      gap = gaps_between(problem%law, minval(h0), maxval(h0))
+      k = minloc([(load_undeformed(problem, gap(i)), i=1, size(gap))], 1)
+      found = lowest_about(gap(k), gap(max(1, k - 1)), gap(min(size(gap), k + 1)))
+      k = minloc(load, 1)
+      if (load(k) < found%at(of_load) - found%left(of_load)) then
+        of_rows = lowest_about(h0(k), h0(max(1, k - 1)), h0(min(size(h0), k + 1)))
+        if (of_rows%at(of_load) < found%at(of_load)) found = of_rows
       end if
-      load(i) = load_undeformed(problem, plan%h0(i))
-      call show(problem, plan, i, load(i), observer)
-      if (plan%profile(i)) call places%add('profiles', place_at(problem, plan%h0(i)))
-      branch%states = i
-    end do
-    states = states + branch%states
-    if (branch%states == 0) return
-    associate (n => branch%states)
-      branch%finish = place_at(problem, plan%h0(n))
-      call find_largest_tension(problem, plan%h0(:n), load(:n), branch)
-    end associate
-    call enter_ends(branch, fresh, places)
-  end subroutine run_branch
+      if (found%at(of_load) < 0) branch%lowest = found
+    end subroutine find_largest_tension
 
-  !> Gives step i of a branch to the observer, with positions if its profile is requested.
-  subroutine show(problem, plan, i, load, observer)
-    type(problem_t), intent(in) :: problem
-    type(h0_schedule_t), intent(in) :: plan
-    integer, intent(in) :: i
-    real(wp), intent(in) :: load
-    class(observer_t), intent(inout) :: observer
-    type(discretisation_t) :: grid
-    type(state_t) :: state
-    type(record_t) :: record
+    !> The lowest load near a state, between two values of h0 with higher loads, one of which may be
+    !> that of the state: at a root of the derivative, or at the end of the range.
+    pure type(place_t) function lowest_about(h0, before, after) result(found)
+      real(wp), intent(in) :: h0, before, after
+      type(root_search_t) :: search
+      type(measured_t) :: slope
+      real(wp) :: low, high, slopes(2), place, shift, curvature
 
-    record%branch = plan%name
-    associate (h0 => plan%h0(i))
-      record%h0 = problem%law%separation_of(h0)
-      record%contact_radius = problem%lateral*contact_radius(problem, h0)
-      grid%x = positions(problem, h0, plan%profile(i))
-      grid%nodes = size(grid%x)
-      state = undeformed_state(problem%shape, grid, h0, 1.0_wp)
-      state%pressure = problem%law%pressure(state%gap)
-    end associate
-    record%h_centre = record%h0
-    record%load = load*problem%load
-    record%stable = merge(stable_yes, stable_unasked, plan%unique)
-    state%load = load
-    state%residual = 0
-    call observer%take(record, problem, grid, state, plan%profile(i))
-  end subroutine show
+      low = min(before, after)
+      high = max(before, after)
+      slopes = [load_slope_undeformed(problem, low), load_slope_undeformed(problem, high)]
+      found = place_at(h0)
+      if (.not. (slopes(1) < 0 .and. slopes(2) > 0)) then
+        ! A minimum between neighbours that was not resolved.
+        if (low < h0 .and. h0 < high) then
+          found%left(of_h0) = high - low
+          found%left(of_radius) = radius_error(h0, high - low)
+        end if
+        return
+      end if
+      search = new_root_search(low, slopes(1), high, slopes(2))
+      do while (search%is_open())
+        place = search%place()
+        call search%note(place, load_slope_undeformed(problem, place))
+      end do
+      found = place_at(search%root)
+      slope = measured_slope(problem, search%root)
+      shift = apart*(high - low)
+      curvature = (load_slope_undeformed(problem, search%root + shift) - &
+        load_slope_undeformed(problem, search%root - shift))/(2*shift)
+      found%left(of_h0) = min(high - low, given_error(search%root) + &
+        (slope%error + abs(slope%value))/max(curvature, tiny(1.0_wp)))
+      found%left(of_radius) = radius_error(search%root, found%left(of_h0))
+    end function lowest_about
 
-  !> Positions of a profile, lateral units: those of the sampled gaps, up to the end of the body.
-  !> Empty unless `wanted`.
-  pure function positions(problem, h0, wanted) result(r)
-    type(problem_t), intent(in) :: problem
-    real(wp), intent(in) :: h0
-    logical, intent(in) :: wanted
-    real(wp), allocatable :: r(:), gap(:)
+    !> The place of a state, with its error: that of the integral and that due to the rounding of
+    !> h0.
+    pure type(place_t) function place_at(h0) result(reported)
+      real(wp), intent(in) :: h0
+      type(measured_t) :: load
 
-    allocate (r(0))
-    if (.not. wanted) return
-    gap = gaps_between(problem%law, h0, h0 + far_out*max(1.0_wp, abs(h0)))
-    r = problem%shape%position_of(gap(2:) - h0)
-    r = pack(r, r <= problem%shape%ends)
-  end function positions
+      load = measured_load(problem, h0)
+      reported%at(of_h0) = h0
+      reported%at(of_load) = load%value
+      reported%at(of_radius) = contact_radius(h0)
+      reported%fine = reported%at
+      reported%left(of_load) = load%error + rounding*abs(load%value) + &
+        given_error(h0)*abs(load_slope_undeformed(problem, h0))
+      reported%left(of_radius) = radius_error(h0, given_error(h0))
+      reported%profile = rounding
+      reported%judged = .true.
+    end function place_at
+
+    !> Contact radius, lateral units; 0 without contact.
+    pure real(wp) function contact_radius(h0) result(radius)
+      real(wp), intent(in) :: h0
+
+      radius = 0
+      associate (level => contact_level_of(problem))
+        if (h0 < level) radius = problem%shape%position_of(level - h0)
+      end associate
+    end function contact_radius
+
+    !> Error of the contact radius due to an error of h0, and to rounding.
+    pure real(wp) function radius_error(h0, off)
+      real(wp), intent(in) :: h0, off
+
+      radius_error = contact_radius(h0 - off) - contact_radius(h0 + off) + &
+        rounding*contact_radius(h0)
+    end function radius_error
+
+    !> Rounding error of an h0 that is given in metres.
+    pure real(wp) function given_error(h0)
+      real(wp), intent(in) :: h0
+
+      given_error = rounding*max(1.0_wp, abs(h0), abs(problem%law%origin/problem%length))
+    end function given_error
+
+  end subroutine run_rigid
 
   !> Gaps between two gaps, with both ends, so close that a law is unlikely to have two extrema
   !> between neighbours.
@@ -186,108 +280,5 @@ contains
     end function next
 
   end function gaps_between
-
-  !> Finds the largest tension over the range of h0; load: at the h0 of the branch. Not allocated if
-  !> there is no attraction.
-  pure subroutine find_largest_tension(problem, h0, load, branch)
-    type(problem_t), intent(in) :: problem
-    real(wp), intent(in) :: h0(:), load(:)
-    type(branch_t), intent(inout) :: branch
-    type(place_t) :: found, of_rows
-    real(wp), allocatable :: gap(:)
-    integer :: k, i
-
-    gap = gaps_between(problem%law, minval(h0), maxval(h0))
-    k = minloc([(load_undeformed(problem, gap(i)), i=1, size(gap))], 1)
-    found = lowest_about(problem, gap(k), gap(max(1, k - 1)), gap(min(size(gap), k + 1)))
-    k = minloc(load, 1)
-    if (load(k) < found%at(of_load) - found%left(of_load)) then
-      of_rows = lowest_about(problem, h0(k), h0(max(1, k - 1)), h0(min(size(h0), k + 1)))
-      if (of_rows%at(of_load) < found%at(of_load)) found = of_rows
-    end if
-    if (found%at(of_load) < 0) branch%lowest = found
-  end subroutine find_largest_tension
-
-  !> The lowest load near a state, between two values of h0 with higher loads, one of which may be
-  !> that of the state: at a root of the derivative, or at the end of the range.
-  pure type(place_t) function lowest_about(problem, h0, before, after) result(found)
-    type(problem_t), intent(in) :: problem
-    real(wp), intent(in) :: h0, before, after
-    type(root_search_t) :: search
-    type(measured_t) :: slope
-    real(wp) :: low, high, slopes(2), place, shift, curvature
-
-    low = min(before, after)
-    high = max(before, after)
-    slopes = [load_slope_undeformed(problem, low), load_slope_undeformed(problem, high)]
-    found = place_at(problem, h0)
-    if (.not. (slopes(1) < 0 .and. slopes(2) > 0)) then
-      ! A minimum between neighbours that was not resolved.
-      if (low < h0 .and. h0 < high) then
-        found%left(of_h0) = high - low
-        found%left(of_radius) = radius_error(problem, h0, high - low)
-      end if
-      return
-    end if
-    search = new_root_search(low, slopes(1), high, slopes(2))
-    do while (search%is_open())
-      place = search%place()
-      call search%note(place, load_slope_undeformed(problem, place))
-    end do
-    found = place_at(problem, search%root)
-    slope = measured_slope(problem, search%root)
-    shift = apart*(high - low)
-    curvature = (load_slope_undeformed(problem, search%root + shift) - &
-      load_slope_undeformed(problem, search%root - shift))/(2*shift)
-    found%left(of_h0) = min(high - low, given_error(problem, search%root) + &
-      (slope%error + abs(slope%value))/max(curvature, tiny(1.0_wp)))
-    found%left(of_radius) = radius_error(problem, search%root, found%left(of_h0))
-  end function lowest_about
-
-  !> The place of a state, with its error: that of the integral and that due to the rounding of h0.
-  pure type(place_t) function place_at(problem, h0) result(reported)
-    type(problem_t), intent(in) :: problem
-    real(wp), intent(in) :: h0
-    type(measured_t) :: load
-
-    load = measured_load(problem, h0)
-    reported%at(of_h0) = h0
-    reported%at(of_load) = load%value
-    reported%at(of_radius) = contact_radius(problem, h0)
-    reported%fine = reported%at
-    reported%left(of_load) = load%error + rounding*abs(load%value) + &
-      given_error(problem, h0)*abs(load_slope_undeformed(problem, h0))
-    reported%left(of_radius) = radius_error(problem, h0, given_error(problem, h0))
-    reported%profile = rounding
-    reported%judged = .true.
-  end function place_at
-
-  !> Contact radius, lateral units; 0 without contact.
-  pure real(wp) function contact_radius(problem, h0) result(radius)
-    type(problem_t), intent(in) :: problem
-    real(wp), intent(in) :: h0
-
-    radius = 0
-    associate (level => contact_level_of(problem))
-      if (h0 < level) radius = problem%shape%position_of(level - h0)
-    end associate
-  end function contact_radius
-
-  !> Error of the contact radius due to an error of h0, and to rounding.
-  pure real(wp) function radius_error(problem, h0, off)
-    type(problem_t), intent(in) :: problem
-    real(wp), intent(in) :: h0, off
-
-    radius_error = contact_radius(problem, h0 - off) - contact_radius(problem, h0 + off) + &
-      rounding*contact_radius(problem, h0)
-  end function radius_error
-
-  !> Rounding error of an h0 that is given in metres.
-  pure real(wp) function given_error(problem, h0)
-    type(problem_t), intent(in) :: problem
-    real(wp), intent(in) :: h0
-
-    given_error = rounding*max(1.0_wp, abs(h0), abs(problem%law%origin/problem%length))
-  end function given_error
 
 end module rigid_bodies

@@ -6,8 +6,7 @@ module stepped_branch
   use stepper, only: stepper_t, branch_point_t, step_result_t
   use ending, only: ending_t
   use tension_search, only: tension_search_t
-  use reported_place, only: place_t, place_of_state, place_without_state, &
-    point_of_path, of_load
+  use reported_place, only: place_t, place_of_state, place_without_state, point_of_path, of_load
   use places, only: places_t
   use records, only: observer_t, record_t, quality_t, record_of, stable_yes, stable_unasked
   implicit none
@@ -85,7 +84,7 @@ contains
         call steps%step_to(plan%h0(i), position, event)
       end if
       steps%cost%states = steps%cost%states + 1
-      call note(branch, position, event, plan%h0(i))
+      call note(plan%h0(i))
       call search%note_jump(event)
       if (event%ending%early()) exit
       associate (state => position%state)
@@ -100,8 +99,7 @@ contains
         call last%state%become(position%state)
         last%mesh = position%mesh
         branch%last_piece = position%piece
-        if (plan%profile(i)) &
-          call places%add('profiles', place_of_state(last%mesh, last%state))
+        if (plan%profile(i)) call places%add('profiles', place_of_state(last%mesh, last%state))
         if (position%piece == 0 .and. any(i == [1, (1 + size(plan%h0))/2])) &
           call places%add('samples', place_of_state(last%mesh, last%state))
       end if
@@ -119,6 +117,44 @@ contains
       branch%lowest%searched = .true.
     end if
     call enter_ends(branch, fresh, places)
+
+  contains
+
+    !> Records the first jump, the largest tension and what did not converge.
+    subroutine note(h0)
+      real(wp), intent(in) :: h0
+
+      if (event%jumped .and. .not. allocated(branch%jump)) then
+        branch%jump = place_without_state(event%jump_h0, event%jump_load)
+        branch%jump%point = event%fold
+        branch%jump_uncertainty = event%jump_uncertainty
+      end if
+      if (allocated(event%lowest)) call lower()
+      branch%ending = event%ending
+      if (event%ending%early()) return
+      branch%states = branch%states + 1
+      if (.not. event%converged) then
+        if (branch%unconverged == 0) branch%first_unconverged = h0
+        branch%unconverged = branch%unconverged + 1
+      end if
+    end subroutine note
+
+    !> Replaces the branch's largest tension by that of a step on a known path if it is larger.
+    subroutine lower()
+      associate (lowest => event%lowest)
+        if (.not. lowest%load < 0) return
+        if (allocated(branch%lowest)) then
+          if (lowest%load >= branch%lowest%at(of_load)) return
+        end if
+        if (lowest%point == 0) then
+          branch%lowest = place_of_state(position%mesh, position%state)
+        else
+          branch%lowest = point_of_path(lowest%point, landing=lowest%landing)
+          branch%lowest%at(of_load) = lowest%load
+        end if
+      end associate
+    end subroutine lower
+
   end subroutine run_branch
 
   !> Enters the largest tension and the last state of a branch; fresh: of a new experiment.
@@ -132,47 +168,5 @@ contains
     if (fresh) call places%forget('end')
     call places%add(merge('end    ', 'samples', fresh), branch%finish)
   end subroutine enter_ends
-
-  !> Records the first jump, the largest tension and what did not converge.
-  subroutine note(branch, position, event, h0)
-    type(branch_t), intent(inout) :: branch
-    type(branch_point_t), intent(in) :: position
-    type(step_result_t), intent(in) :: event
-    real(wp), intent(in) :: h0
-
-    if (event%jumped .and. .not. allocated(branch%jump)) then
-      branch%jump = place_without_state(event%jump_h0, event%jump_load)
-      branch%jump%point = event%fold
-      branch%jump_uncertainty = event%jump_uncertainty
-    end if
-    if (allocated(event%lowest)) call lower(branch, position, event)
-    branch%ending = event%ending
-    if (event%ending%early()) return
-    branch%states = branch%states + 1
-    if (.not. event%converged) then
-      if (branch%unconverged == 0) branch%first_unconverged = h0
-      branch%unconverged = branch%unconverged + 1
-    end if
-  end subroutine note
-
-  !> Replaces the branch's largest tension by that of a step on a known path if it is larger.
-  subroutine lower(branch, position, event)
-    type(branch_t), intent(inout) :: branch
-    type(branch_point_t), intent(in) :: position
-    type(step_result_t), intent(in) :: event
-
-    associate (lowest => event%lowest)
-      if (.not. lowest%load < 0) return
-      if (allocated(branch%lowest)) then
-        if (lowest%load >= branch%lowest%at(of_load)) return
-      end if
-      if (lowest%point == 0) then
-        branch%lowest = place_of_state(position%mesh, position%state)
-      else
-        branch%lowest = point_of_path(lowest%point, landing=lowest%landing)
-        branch%lowest%at(of_load) = lowest%load
-      end if
-    end associate
-  end subroutine lower
 
 end module stepped_branch

@@ -156,7 +156,6 @@ contains
     position%number = position%number + 1
   end subroutine move_to
 
-  !> Removes a state of the past.
   pure subroutine forget(position, which)
     type(branch_point_t), intent(inout) :: position
     integer, intent(in) :: which

@@ -191,8 +191,7 @@ contains
         if (event%jumped) next = event%jump_h0
         if (next < best%state%h0) low = next
         if (next > best%state%h0) high = next
-        if ((next - best%state%h0)*(stretch%after - stretch%before) > 0) &
-          call self%note_jump(event)
+        if ((next - best%state%h0)*(stretch%after - stretch%before) > 0) call self%note_jump(event)
         cycle
       end if
       h0 = [h0, next]

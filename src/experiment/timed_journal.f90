@@ -6,10 +6,9 @@ module timed_journal
   use byte_record, only: byte_record_t
   use journal, only: journal_t, of_drive
   use elastic_operator, only: elastic_operator_t
-  use motion, only: names_of_ways
+  use time_instant, only: names_of_ways, instant_t
   use records, only: record_t
   use state_records, only: pass_state, pass_cost
-  use time_instant, only: instant_t
   use time_stepper, only: time_stepper_t
   use timed_record, only: pass_t, tally_t, make_room, lose
   implicit none
@@ -21,11 +20,10 @@ module timed_journal
 
 contains
 
-  !> Stores a pass at an instant if it has ended, or has `every` new rows.
-  subroutine keep(journal, steps, at, now)
+  !> Stores a pass if it has ended, or has `every` new rows.
+  subroutine keep(journal, steps, now)
     type(journal_t), pointer, intent(in) :: journal
     type(time_stepper_t), intent(inout) :: steps
-    type(instant_t), intent(inout) :: at
     type(pass_t), intent(inout) :: now
     type(byte_record_t) :: record
 
@@ -35,18 +33,17 @@ contains
     steps%operator = elastic_operator_t()
     if (associated(journal)) then
       call record%pass(of_drive)
-      call pass_drive(record, steps, at, now)
+      call pass_drive(record, steps, now)
       call journal%append(record)
-      if (allocated(journal%trouble)) call lose(at, now)
+      if (allocated(journal%trouble)) call lose(now)
     end if
     now%kept = now%held
   end subroutine keep
 
   !> Restores a pass from an earlier run; `now` has no rows if the run stored none.
-  subroutine recall(journal, steps, at, now)
+  subroutine recall(journal, steps, now)
     type(journal_t), pointer, intent(in) :: journal
     type(time_stepper_t), intent(inout) :: steps
-    type(instant_t), intent(inout) :: at
     type(pass_t), intent(inout) :: now
     type(byte_record_t) :: record
     logical :: found
@@ -54,17 +51,16 @@ contains
     do while (associated(journal) .and. .not. now%ended)
       call journal%next_of(of_drive, record, found)
       if (.not. found .or. allocated(journal%trouble)) exit
-      call pass_drive(record, steps, at, now)
+      call pass_drive(record, steps, now)
       now%kept = now%held
       if (record%exhausted) call journal%reject()
     end do
   end subroutine recall
 
   !> Packs everything that determines the rest of a pass, and its rows since the last record.
-  subroutine pass_drive(record, steps, at, now)
+  subroutine pass_drive(record, steps, now)
     type(byte_record_t), intent(inout) :: record
     type(time_stepper_t), intent(inout) :: steps
-    type(instant_t), intent(inout) :: at
     type(pass_t), intent(inout) :: now
     type(tally_t) :: tally
     integer(long) :: words(storage_size(tally)/storage_size(0_long))
@@ -78,7 +74,7 @@ contains
       call pass_row(record, now%row(k))
     end do
     now%tally_t = tally
-    call pass_instant(record, at)
+    call pass_instant(record, now%at)
     call pass_instant(record, steps%before)
     call record%pass(steps%made_for)
     call pass_cost(record, steps%cost)

@@ -4,8 +4,7 @@ module timed_record
   use equilibrium, only: holds
   use mesh_plan, only: approach
   use records, only: record_t, quality_t, record_of, stable_unasked
-  use motion, only: names_of_ways
-  use time_instant, only: instant_t
+  use time_instant, only: motion_t, names_of_ways, instant_t
   use time_stepper, only: time_stepper_t
   implicit none
   private
@@ -73,6 +72,12 @@ module timed_record
   !> A pass and its rows, of which the first `kept` are in the journal. Their times are those since
   !> the beginning of a way.
   type, extends(tally_t) :: pass_t
+    !> The number of the pass, the motion of the drive, the length of steps [s] if the deck gives
+    !> it, and the present instant.
+    integer :: number = 1
+    type(motion_t) :: drive
+    real(wp), allocatable :: time_step
+    type(instant_t) :: at
     type(record_t), allocatable :: row(:)
     integer :: kept = 0
   end type pass_t
@@ -83,56 +88,55 @@ module timed_record
 contains
 
   !> Marks the pass as lost: there were too many steps or jumps, or no further state was found.
-  subroutine lose(at, now)
-    type(instant_t), intent(in) :: at
+  subroutine lose(now)
     type(pass_t), intent(inout) :: now
 
     now%result%lost = .true.
     now%result%too_many = now%held > now%most .or. now%result%jumps > now%most_jumps
-    now%result%lost_at = now%began + at%time
+    now%result%lost_at = now%began + now%at%time
   end subroutine lose
 
   !> Makes the next instant the present one. smooth: there was no jump; otherwise the change of the
   !> bodies' energy that dashpots have not dissipated is dissipated in the jump.
-  subroutine accept(steps, next, smooth, at, now)
+  subroutine accept(steps, next, smooth, now)
     type(time_stepper_t), intent(inout) :: steps
     type(instant_t), intent(in) :: next
     logical, intent(in) :: smooth
-    type(instant_t), intent(inout) :: at
     type(pass_t), intent(inout) :: now
     real(wp) :: work, nearer
 
-    work = -0.5_wp*(at%state%load + next%state%load)*(next%position - at%position)
-    ! Where a drive turns, the load of a fluid jumps.
-    if (allocated(steps%drainage) .and. at%since_turn == 0) &
-      work = -next%state%load*(next%position - at%position)
-    now%work = now%work + work
-    if (smooth) then
-      now%inside = now%inside + next%dissipated
-    else
-      now%inside = now%inside + work + steps%energy(at) - steps%energy(next)
-    end if
-    nearer = (at%state%axis_gap - next%state%axis_gap)/abs(at%state%axis_gap)
-    if (min(at%mesh, next%mesh) > approach) nearer = next%state%scale/at%state%scale - 1
-    if (abs(nearer) > moves) now%inwards = nearer > 0
-    steps%before = at
-    at = next
-    call take_row(at, now)
-    call note(steps, at, now)
+    associate (at => now%at)
+      work = -0.5_wp*(at%state%load + next%state%load)*(next%position - at%position)
+      ! Where a drive turns, the load of a fluid jumps.
+      if (allocated(steps%drainage) .and. at%since_turn == 0) &
+        work = -next%state%load*(next%position - at%position)
+      now%work = now%work + work
+      if (smooth) then
+        now%inside = now%inside + next%dissipated
+      else
+        now%inside = now%inside + work + steps%energy(at) - steps%energy(next)
+      end if
+      nearer = (at%state%axis_gap - next%state%axis_gap)/abs(at%state%axis_gap)
+      if (min(at%mesh, next%mesh) > approach) nearer = next%state%scale/at%state%scale - 1
+      if (abs(nearer) > moves) now%inwards = nearer > 0
+    end associate
+    steps%before = now%at
+    now%at = next
+    call take_row(now)
+    call note(steps, now)
   end subroutine accept
 
   !> Stores the last three loads, and the largest tension: that of the parabola through them if the
   !> load in the middle is the lowest.
-  subroutine take_row(at, now)
-    type(instant_t), intent(in) :: at
+  subroutine take_row(now)
     type(pass_t), intent(inout) :: now
     real(wp) :: slope(2), curvature, away, least, h0
 
     now%recent(:, :2) = now%recent(:, 2:)
-    now%recent(:, 3) = [at%time, at%state%load, at%state%h0]
+    now%recent(:, 3) = [now%at%time, now%at%state%load, now%at%state%h0]
     now%recently = min(3, now%recently + 1)
-    least = at%state%load
-    h0 = at%state%h0
+    least = now%recent(2, 3)
+    h0 = now%recent(3, 3)
     associate (t => now%recent(1, :), f => now%recent(2, :), h => now%recent(3, :))
       if (now%recently == 3 .and. f(2) < min(f(1), f(3)) .and. t(3) > t(2) .and. t(2) > t(1)) then
         slope = (f(2:) - f(:2))/(t(2:) - t(:2))
@@ -150,16 +154,15 @@ contains
   end subroutine take_row
 
   !> Adds an instant to the rows, and its quality to that of the pass.
-  subroutine note(steps, at, now)
+  subroutine note(steps, now)
     type(time_stepper_t), intent(in) :: steps
-    type(instant_t), intent(in) :: at
     type(pass_t), intent(inout) :: now
     integer :: k
 
     call make_room(now, 1)
     now%held = now%held + 1
     associate (row => now%row(now%held), result => now%result, problem => steps%problem, &
-      grid => steps%meshes%grid(at%mesh))
+      at => now%at, grid => steps%meshes%grid(now%at%mesh))
       row = record_of(trim(names_of_ways(now%way)), problem, grid, at%state, stable_unasked, &
         holds(problem, steps%options%tolerance, at%state))
       row%time = at%time

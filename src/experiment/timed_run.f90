@@ -11,7 +11,6 @@ module timed_run
   use mesh_digits, only: most_digits
   use records, only: observer_t
   use journal, only: journal_t
-  use listener, only: listener_t
   use path_stepper, only: path_stepper_t
   use stepper, only: branch_point_t, step_result_t
   use tracing, only: trace, tracing_t
@@ -19,7 +18,7 @@ module timed_run
   use experiment_request, only: request_t, numerics_t
   use path_demand, only: h0_in_contact
   use creep, only: creep_t
-  use motion, only: motion_t, new_motion, names_of_ways
+  use time_instant, only: new_motion, names_of_ways
   use time_stepper, only: time_stepper_t
   use material, only: new_material
   use solver_options, only: tightened
@@ -67,26 +66,27 @@ contains
     type(cost_t), intent(inout) :: cost
     integer, intent(out) :: nodes
     type(time_stepper_t) :: steps
-    type(motion_t) :: drive
-    type(pass_t) :: now, before, none
+    type(pass_t) :: now, before, blank
     real(wp) :: began, low
     integer :: pass, whole, i
     logical :: enough
 
-    call prepare(request, problem, chosen, steps, drive)
+    call prepare()
+    if (allocated(request%drive%time_step)) blank%time_step = request%drive%time_step
     began = seconds()
     ! With a spring the lowest h0 is that of the contact with the spring's load.
-    low = minval(drive%position)
+    low = minval(blank%drive%position)
     if (allocated(request%drive%stiffness)) low = &
-      h0_in_contact(relaxed_problem(steps), 1.0_wp, steps%compliance, low)
+      h0_in_contact(relaxed_problem(), 1.0_wp, steps%compliance, low)
     whole = 0
     do pass = 1, most_passes
-      before = none
+      before = blank
       if (whole > 0) before = now
-      now = none
-      call lay_out(request, drive, low, chosen, pass, observer, steps)
+      now = blank
+      now%number = pass
+      call lay_out()
       steps%farthest = farthest/2**(pass - 1)
-      call go_through(request, drive, pass, before, steps, journal, observer, now)
+      call go_through(before, steps, journal, observer, now)
       if (now%result%lost) then
         ! Finer meshes may resolve the loss; otherwise the previous passes have their error
         ! estimates.
@@ -109,129 +109,116 @@ contains
     nodes = sum(steps%meshes%grid%nodes)
     do i = 1, now%held
       now%row(i)%time = now%row(i)%time + &
-        drive%began(findloc(names_of_ways == now%row(i)%branch, .true., 1))
+        blank%drive%began(findloc(names_of_ways == now%row(i)%branch, .true., 1))
       call observer%take(now%row(i), steps%problem, steps%meshes%grid(1), steps%before%state, &
         .false.)
     end do
     steps%cost%states = now%held
     steps%cost%solve_seconds = seconds() - began
     cost = steps%cost
+
+  contains
+
+    !> Sets the stepper of the problem, and the motion.
+    subroutine prepare()
+      associate (asked => request%drive, law => problem%law)
+        steps%problem = problem
+        steps%instant = problem%coupling
+        steps%creep = creep_t([real(wp) ::], [real(wp) ::])
+        if (allocated(request%creep)) steps%creep = request%creep
+        steps%options = chosen%options
+        steps%options%mixing = .false.
+        if (allocated(asked%stiffness)) &
+          steps%compliance = problem%load/(asked%stiffness*problem%length)
+        blank%drive = new_motion(asked%velocity/problem%length, law%gap_of(asked%z_start), &
+          law%gap_of(asked%z_turn), asked%dwell, law%gap_of(asked%z_end))
+      end associate
+      if (allocated(request%fluid)) then
+        ! Rates are differences over short steps.
+        steps%options = tightened(steps%options)
+        allocate (steps%drainage)
+        steps%drainage%strength = 12*request%fluid%viscosity*problem%lateral**2/ &
+          (problem%length**2*problem%pressure)
+        steps%drainage%slip = request%fluid%slip/problem%length
+      end if
+    end subroutine prepare
+
+    type(problem_t) function relaxed_problem() result(relaxed)
+      relaxed = steps%problem
+      relaxed%coupling = steps%instant*steps%creep%relaxed()
+    end function relaxed_problem
+
+    !> Lays out meshes for relaxed bodies, whose neck is the narrowest, with more digits in each
+    !> pass; and for the memory panels fixed in space, with one more node each.
+    subroutine lay_out()
+      type(problem_t) :: relaxed
+      type(numerics_t) :: numerics
+      type(choice_t) :: of_memory
+      type(discretisation_t) :: grid
+      real(wp) :: digits, high
+
+      relaxed = relaxed_problem()
+      high = maxval(blank%drive%position)
+      ! The memory uses the pressure at the nodes, which has half as many digits as its integrals.
+      digits = chosen%digits
+      if (allocated(request%creep) .or. allocated(request%fluid)) digits = 2*digits
+      if (allocated(steps%drainage)) relaxed%film_gap = high + farthest_pole(steps%drainage%fluid_t)
+      associate (meshes => steps%meshes)
+        ! A drive inserts no meshes on the way of an edge to a rim.
+        meshes = new_mesh_family(relaxed, high, low, &
+          min(most_digits, digits + more_digits*(pass - 1)), further=.false.)
+        if (any(meshes%waits)) call fit_to_path(relaxed, high)
+        if (allocated(steps%drainage)) call steps%drainage%lay_out(meshes%grid)
+        call steps%frozen%forget()
+        steps%cost%kernel_entries = steps%cost%kernel_entries + sum(meshes%grid%kernel_entries())
+        if (.not. allocated(request%creep)) return
+        numerics = request%numerics
+        if (relaxed%film_gap > 0) numerics%r_max = far_out*relaxed%lateral* &
+          relaxed%shape%position_of(relaxed%film_gap)
+        of_memory%grid = panels
+        of_memory%low = low
+        call size_grid(of_memory, numerics, relaxed)
+        of_memory%panel_over_feature = over_neck
+        of_memory%panel_order = of_memory%panel_order + over_order + pass
+        of_memory%nodes = most_nodes
+        grid = fixed_mesh(of_memory, relaxed)
+        steps%material = new_material(grid, count(abs(grid%panel%right - grid%panel%left - &
+          grid%panel(1)%right) <= 1.0e-9_wp*grid%panel(1)%right), &
+          left_out*request%numerics%accuracy)
+        steps%cost%kernel_entries = steps%cost%kernel_entries + steps%material%kernel_entries()
+      end associate
+    end subroutine lay_out
+
+    !> Lays out the meshes on the path of relaxed bodies, for the gaps of its states, as laws with a
+    !> step or waves need it. Meshes that the path does not reach are laid out without seen gaps.
+    subroutine fit_to_path(relaxed, high)
+      type(problem_t), intent(in) :: relaxed
+      real(wp), intent(in) :: high
+      type(path_stepper_t) :: at_rest
+      type(branch_point_t) :: afar
+      type(step_result_t) :: event
+      type(tracing_t) :: traced
+      integer :: k
+
+      at_rest%problem = relaxed
+      at_rest%options = steps%options
+      at_rest%cost = steps%cost
+      at_rest%meshes = steps%meshes
+      at_rest%meshes%grows = .false.
+      ! Without the pieces of the path and their landings, which `know_path` solves too.
+      call at_rest%begin_afar(high, afar, event)
+      if (.not. event%ending%early()) call trace(at_rest%solver_t, afar%state, low, .true., &
+        request%numerics%accuracy, observer, traced)
+      steps%meshes = at_rest%meshes
+      steps%cost = at_rest%cost
+      associate (meshes => steps%meshes)
+        do k = 1, size(meshes%grid)
+          if (meshes%waits(k)) call meshes%renew(k, meshes%shape_for(relaxed, k))
+        end do
+      end associate
+    end subroutine fit_to_path
+
   end subroutine run_timed
-
-  !> Sets the stepper of the problem, and the motion.
-  subroutine prepare(request, problem, chosen, steps, drive)
-    class(request_t), intent(in) :: request
-    type(problem_t), intent(in) :: problem
-    type(choice_t), intent(in) :: chosen
-    type(time_stepper_t), intent(out) :: steps
-    type(motion_t), intent(out) :: drive
-    associate (asked => request%drive, law => problem%law)
-      steps%problem = problem
-      steps%instant = problem%coupling
-      steps%creep = creep_t([real(wp) ::], [real(wp) ::])
-      if (allocated(request%creep)) steps%creep = request%creep
-      steps%options = chosen%options
-      steps%options%mixing = .false.
-      if (allocated(asked%stiffness)) &
-        steps%compliance = problem%load/(asked%stiffness*problem%length)
-      drive = new_motion(asked%velocity/problem%length, law%gap_of(asked%z_start), &
-        law%gap_of(asked%z_turn), asked%dwell, law%gap_of(asked%z_end))
-    end associate
-    if (allocated(request%fluid)) then
-      ! Rates are differences over short steps.
-      steps%options = tightened(steps%options)
-      allocate (steps%drainage)
-      steps%drainage%strength = 12*request%fluid%viscosity*problem%lateral**2/ &
-        (problem%length**2*problem%pressure)
-      steps%drainage%slip = request%fluid%slip/problem%length
-    end if
-  end subroutine prepare
-
-  !> The problem of the bodies at rest.
-  type(problem_t) function relaxed_problem(steps) result(relaxed)
-    type(time_stepper_t), intent(in) :: steps
-
-    relaxed = steps%problem
-    relaxed%coupling = steps%instant*steps%creep%relaxed()
-  end function relaxed_problem
-
-  !> Lays out meshes for relaxed bodies, whose neck is the narrowest, with more digits in each pass;
-  !> and for the memory panels fixed in space, with one more node each.
-  subroutine lay_out(request, drive, low, chosen, pass, listener, steps)
-    class(request_t), intent(in) :: request
-    type(motion_t), intent(in) :: drive
-    real(wp), intent(in) :: low
-    type(choice_t), intent(in) :: chosen
-    integer, intent(in) :: pass
-    class(listener_t), intent(inout) :: listener
-    type(time_stepper_t), intent(inout) :: steps
-    type(problem_t) :: relaxed
-    type(numerics_t) :: numerics
-    type(choice_t) :: of_memory
-    type(discretisation_t) :: grid
-    real(wp) :: digits
-
-    relaxed = relaxed_problem(steps)
-    ! The memory uses the pressure at the nodes, which has half as many digits as its integrals.
-    digits = chosen%digits
-    if (allocated(request%creep) .or. allocated(request%fluid)) digits = 2*digits
-    if (allocated(steps%drainage)) relaxed%film_gap = maxval(drive%position) + &
-      farthest_pole(steps%drainage%fluid_t)
-    associate (meshes => steps%meshes)
-      ! A drive inserts no meshes on the way of an edge to a rim.
-      meshes = new_mesh_family(relaxed, maxval(drive%position), low, &
-        min(most_digits, digits + more_digits*(pass - 1)), further=.false.)
-      if (any(meshes%waits)) call fit_to_path(relaxed, maxval(drive%position), low, &
-        request%numerics%accuracy, listener, steps)
-      if (allocated(steps%drainage)) call steps%drainage%lay_out(meshes%grid)
-      call steps%frozen%forget()
-      steps%cost%kernel_entries = steps%cost%kernel_entries + sum(meshes%grid%kernel_entries())
-      if (.not. allocated(request%creep)) return
-      numerics = request%numerics
-      if (relaxed%film_gap > 0) numerics%r_max = far_out*relaxed%lateral* &
-        relaxed%shape%position_of(relaxed%film_gap)
-      of_memory%grid = panels
-      call size_grid(of_memory, numerics, relaxed, low)
-      of_memory%panel_over_feature = over_neck
-      of_memory%panel_order = of_memory%panel_order + over_order + pass
-      of_memory%nodes = most_nodes
-      grid = fixed_mesh(of_memory, relaxed, low)
-      steps%material = new_material(grid, count(abs(grid%panel%right - grid%panel%left - &
-        grid%panel(1)%right) <= 1.0e-9_wp*grid%panel(1)%right), left_out*request%numerics%accuracy)
-      steps%cost%kernel_entries = steps%cost%kernel_entries + steps%material%kernel_entries()
-    end associate
-  end subroutine lay_out
-
-  !> Lays out the meshes on the path of relaxed bodies, for the gaps of its states, as laws with a
-  !> step or waves need it. Meshes that the path does not reach are laid out without seen gaps.
-  subroutine fit_to_path(relaxed, high, low, accuracy, listener, steps)
-    type(problem_t), intent(in) :: relaxed
-    real(wp), intent(in) :: high, low, accuracy
-    class(listener_t), intent(inout) :: listener
-    type(time_stepper_t), intent(inout) :: steps
-    type(path_stepper_t) :: at_rest
-    type(branch_point_t) :: afar
-    type(step_result_t) :: event
-    type(tracing_t) :: traced
-    integer :: k
-
-    at_rest%problem = relaxed
-    at_rest%options = steps%options
-    at_rest%cost = steps%cost
-    at_rest%meshes = steps%meshes
-    at_rest%meshes%grows = .false.
-    ! Without the pieces of the path and their landings, which `know_path` solves too.
-    call at_rest%begin_afar(high, afar, event)
-    if (.not. event%ending%early()) call trace(at_rest%solver_t, afar%state, low, .true., &
-      accuracy, listener, traced)
-    steps%meshes = at_rest%meshes
-    steps%cost = at_rest%cost
-    associate (meshes => steps%meshes)
-      do k = 1, size(meshes%grid)
-        if (meshes%waits(k)) call meshes%renew(k, meshes%shape_for(relaxed, k))
-      end do
-    end associate
-  end subroutine fit_to_path
 
   !> Sets the errors of a pass from its differences to the previous pass.
   subroutine compare(accuracy, before, now)

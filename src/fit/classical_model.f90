@@ -52,26 +52,19 @@ contains
     if (.not. found) return
     allocate (response%branch(2))
     unknowns = merge(size(value), 0, with_rates)
-    call set_apart(widest, unknowns, response%branch(1))
+    associate (apart => response%branch(1))
+      ! Separate bodies have no load. h0 falls linearly from beyond all distances.
+      allocate (apart%h0(4, 1), apart%load(4, 1), apart%h0_rate(unknowns, 2, 1), &
+        apart%load_rate(unknowns, 2, 1), source=0.0_wp)
+      apart%h0(:, 1) = widest*[1, 0, -1, -1]
+      apart%turns_last = .true.
+    end associate
     call set_in_contact(self, number, turn, widest, unknowns, response%branch(2))
     call response%branch(1)%close(stiffness)
     call response%branch(2)%close(stiffness)
     response%way(inward) = way_t([1, 2], [0.0_wp, -huge(1.0_wp)], 1, .false.)
     response%way(outward) = way_t([2, 1], [response%branch(2)%position(1), huge(1.0_wp)], 1)
   end subroutine respond
-
-  !> The branch of separate bodies: no load.
-  subroutine set_apart(widest, unknowns, branch)
-    real(wp), intent(in) :: widest
-    integer, intent(in) :: unknowns
-    type(branch_t), intent(inout) :: branch
-
-    allocate (branch%h0(4, 1), branch%load(4, 1), branch%h0_rate(unknowns, 2, 1), &
-      branch%load_rate(unknowns, 2, 1), source=0.0_wp)
-    ! h0 falls linearly from beyond all distances.
-    branch%h0(:, 1) = widest*[1, 0, -1, -1]
-    branch%turns_last = .true.
-  end subroutine set_apart
 
   !> The branch in contact, from the turn of the position inward. Panels become longer as the
   !> contact grows.

@@ -48,14 +48,14 @@ contains
     call find_candidates(residuals, start, value, cost)
     fitted%has_curve = size(cost) > 0
     if (.not. fitted%has_curve) return
-    call search_from(residuals, cost, value, left, found)
+    call search_from()
     do i = 1, merge(most_looks, 1, renew)
       k = minloc(left, 1)
       if (.not. left(k) < huge(left)) exit
       trial = residuals
       other = fitted_t(has_curve=.true., found=found(k))
       other%value = value(:, k)
-      if (renew) call settle(trial, keep_noise, other)
+      if (renew) call settle(trial, other)
       call judge(trial, other)
       if (i == 1 .or. other%is_better_than(fitted)) then
         fitted = other
@@ -66,77 +66,70 @@ contains
       where (left < (1 + apart)*left(k)) left = huge(left)
     end do
     ! Of a model that does not describe the data, residuals tell neither errors nor better values.
-    if (renew .and. allocated(fitted%effect) .and. fitted%lack%is_noise()) &
-      call examine(residuals, keep_noise, curve, fitted)
+    if (renew .and. allocated(fitted%effect) .and. fitted%lack%is_noise()) call examine()
+
+  contains
+
+    !> Examines the residuals some standard errors away from the best values. If smaller residuals
+    !> are found there, the search goes on from them.
+    subroutine examine()
+      type(fitted_t) :: other
+      real(wp), allocatable :: better(:)
+      real(wp) :: left
+      integer :: look
+
+      do look = 1, most_looks
+        residuals%curve = curve
+        call widen(residuals, fitted, better)
+        if (.not. allocated(better)) return
+        other = fitted_t(has_curve=.true., value=better)
+        residuals%curve = curve
+        call search(residuals, other%value, left, other%found)
+        call settle(residuals, other)
+        call judge(residuals, other)
+        if (.not. other%is_better_than(fitted)) exit
+        fitted = other
+        curve = residuals%curve
+      end do
+      residuals%curve = curve
+      call widen(residuals, fitted)
+    end subroutine examine
+
+    !> Searches from the candidates with the smallest sums of squares, `cost`, and replaces them by
+    !> the minima found. left: the sums of squares there; huge without a search.
+    subroutine search_from()
+      integer :: i, k, freedom
+
+      freedom = residuals%rows() - size(value, 1) - residuals%curve%data%baseline_numbers()
+      allocate (left(size(cost)), source=huge(1.0_wp))
+      allocate (found(size(cost)), source=.false.)
+      do i = 1, min(most_fits, size(cost))
+        k = minloc(cost, 1)
+        cost(k) = huge(cost)
+        call search(residuals, value(:, k), left(k), found(k))
+        if (found(k) .and. left(k) < freedom + 3*sqrt(2.0_wp*freedom)) return
+        if (count(left < (1 + same)*minval(left)) == enough) return
+      end do
+    end subroutine search_from
+
+    !> Finds noise, outliers and jumps by the model and fits again, until nothing changes.
+    subroutine settle(residuals, fitted)
+      type(curve_residuals_t), intent(inout) :: residuals
+      type(fitted_t), intent(inout) :: fitted
+      real(wp) :: left
+      logical :: done
+      integer :: round
+
+      do round = 1, most_rounds
+        call residuals%curve%ask(fitted%value, .false., done)
+        if (.not. done) return
+        call look_again(residuals%curve, fitted%value, keep_noise, done)
+        if (done) return
+        call search(residuals, fitted%value, left, fitted%found)
+      end do
+    end subroutine settle
+
   end subroutine fit_curve
-
-  !> Examines the residuals some standard errors away from the best values. If smaller residuals are
-  !> found there, the search goes on from them.
-  subroutine examine(residuals, keep_noise, curve, fitted)
-    type(curve_residuals_t), intent(inout) :: residuals
-    logical, intent(in) :: keep_noise
-    type(modelled_curve_t), intent(inout) :: curve
-    type(fitted_t), intent(inout) :: fitted
-    type(fitted_t) :: other
-    real(wp), allocatable :: better(:)
-    real(wp) :: left
-    integer :: look
-
-    do look = 1, most_looks
-      residuals%curve = curve
-      call widen(residuals, fitted, better)
-      if (.not. allocated(better)) return
-      other = fitted_t(has_curve=.true., value=better)
-      residuals%curve = curve
-      call search(residuals, other%value, left, other%found)
-      call settle(residuals, keep_noise, other)
-      call judge(residuals, other)
-      if (.not. other%is_better_than(fitted)) exit
-      fitted = other
-      curve = residuals%curve
-    end do
-    residuals%curve = curve
-    call widen(residuals, fitted)
-  end subroutine examine
-
-  !> Searches from the candidates with the smallest sums of squares, `cost`, and replaces them by
-  !> the minima found. left: the sums of squares there; huge without a search.
-  subroutine search_from(residuals, cost, value, left, found)
-    type(curve_residuals_t), intent(inout) :: residuals
-    real(wp), intent(inout) :: cost(:), value(:, :)
-    real(wp), allocatable, intent(out) :: left(:)
-    logical, allocatable, intent(out) :: found(:)
-    integer :: i, k, freedom
-
-    freedom = residuals%rows() - size(value, 1) - residuals%curve%data%baseline_numbers()
-    allocate (left(size(cost)), source=huge(1.0_wp))
-    allocate (found(size(cost)), source=.false.)
-    do i = 1, min(most_fits, size(cost))
-      k = minloc(cost, 1)
-      cost(k) = huge(cost)
-      call search(residuals, value(:, k), left(k), found(k))
-      if (found(k) .and. left(k) < freedom + 3*sqrt(2.0_wp*freedom)) return
-      if (count(left < (1 + same)*minval(left)) == enough) return
-    end do
-  end subroutine search_from
-
-  !> Finds noise, outliers and jumps by the model and fits again, until nothing changes.
-  subroutine settle(residuals, keep_noise, fitted)
-    type(curve_residuals_t), intent(inout) :: residuals
-    logical, intent(in) :: keep_noise
-    type(fitted_t), intent(inout) :: fitted
-    real(wp) :: left
-    logical :: done
-    integer :: round
-
-    do round = 1, most_rounds
-      call residuals%curve%ask(fitted%value, .false., done)
-      if (.not. done) return
-      call look_again(residuals%curve, fitted%value, keep_noise, done)
-      if (done) return
-      call search(residuals, fitted%value, left, fitted%found)
-    end do
-  end subroutine settle
 
   !> Candidates with their sums of squares: each column of `start`, at its best contact points.
   subroutine find_candidates(residuals, start, value, cost)

@@ -153,10 +153,8 @@ contains
     if (.not. self%curve%response%way(way)%foretold) return
     residual = missed
     if (self%curve%response%way(way)%main == 0) return
-    associate (data => self%curve%data)
-      residual = data%measured%facing*(self%curve%jump_of(value, way) - data%jump(way)%z)/ &
-        data%jump(way)%uncertainty
-    end associate
+    residual = self%curve%data%measured%facing*(self%curve%jump_of(value, way) - &
+      self%curve%data%jump(way)%z)/self%curve%data%jump(way)%uncertainty
   end function jump_residual
 
 end module curve_residuals

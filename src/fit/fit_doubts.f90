@@ -5,7 +5,7 @@ module fit_doubts
   use text, only: brief, rounded, rounded_to
   use namelist_writer, only: line_t
   use fit_request, only: unknown_t, fitted_of, is_at_end, farthest_off
-  use lack_of_fit, only: lack_t, hardly_ever
+  use second_look, only: lack_t, hardly_ever
   use fit_errors, only: fitted_t
   use held_numbers, only: held_t
   use fit_run, only: fit_outcome_t
@@ -27,194 +27,168 @@ contains
     type(fit_outcome_t), intent(in) :: outcome
     type(line_t), allocatable :: lines(:)
     logical :: stopped
-    integer :: i
+    integer :: i, k
 
     allocate (lines(0))
     associate (fitted => outcome%fitted, unknown => outcome%curve%unknown)
       do i = 1, size(fitted%value)
-        call doubt_reach(unknown(i), fitted%value(i), lines)
+        if (.not. is_at_end(unknown(i), fitted%value(i))) cycle
+        call add(unknown(i)%name // ' ends at ' // rounded(fitted%value(i)) // ', the ' // &
+          trim(merge('largest ', 'smallest', fitted_of(unknown(i), fitted%value(i)) > 0)) // &
+          ' value that is tried, a factor of ' // rounded(exp(farthest_off)) // &
+          ' from the value in the deck: other values may fit better, and standard errors mean ' // &
+          'nothing; start nearer')
       end do
       ! Then the model may describe the data with other values.
       stopped = size(lines) > 0
-      if (.not. fitted%found) call add(lines, 'the search ended before it found the best values')
-      if (.not. outcome%resolved) call add(lines, 'the meshes do not resolve the force law, ' // &
+      if (.not. fitted%found) call add('the search ended before it found the best values')
+      if (.not. outcome%resolved) call add('the meshes do not resolve the force law, ' // &
         'and the model is not exact; smoother forces are resolved')
-      if (.not. fitted%lack%is_noise()) call add(lines, what_is_left(fitted%lack) // &
+      if (.not. fitted%lack%is_noise()) call add(what_is_left(fitted%lack) // &
         ' times what noise leaves (' // rounded(fitted%lack%excess) // ' standard ' // &
         'deviations more)' // not_described(:merge(0, len(not_described), stopped)))
       ! The noise that rounding makes at least may be too large too.
       associate (data => outcome%curve%data)
         if (fitted%lack%excess < -hardly_ever .and. data%noise%deviation > data%least_noise) &
-          call add(lines, what_is_left(fitted%lack) // ' times what the noise of the deck ' // &
+          call add(what_is_left(fitted%lack) // ' times what the noise of the deck ' // &
           'leaves: the noise is smaller, and the standard errors are larger than the true errors')
       end associate
-      if (.not. stopped) call doubt_held(outcome%held, lines)
+      if (.not. stopped) call doubt_held(outcome%held)
       do i = 1, size(fitted%value)
-        call doubt_unknown(fitted, unknown(i), i, lines)
-        call doubt_pairs(fitted, unknown, i, lines)
+        call doubt_unknown(fitted, unknown(i), i)
+        do k = 1, i - 1
+          if (abs(fitted%correlation(i, k)) > alike) call add(unknown(k)%name // ' and ' // &
+            unknown(i)%name // ' cannot be told apart: their correlation is ' // &
+            rounded(fitted%correlation(i, k)) // '; fix one of them, or give a prior')
+        end do
       end do
-      if (fitted%identifiable < lost) call add(lines, 'these data do not determine some ' // &
+      if (fitted%identifiable < lost) call add('these data do not determine some ' // &
         'combination of the parameters: identifiable = ' // rounded(fitted%identifiable))
     end associate
-    if (.not. stopped) call doubt_jumps(outcome, lines)
-    call doubt_end(outcome, lines)
-    call doubt_signal(outcome, lines)
-  end function doubts_of
+    if (.not. stopped) call doubt_jumps()
+    call doubt_end()
+    call doubt_signal()
 
-  !> Doubt about an unknown that ends where the search may not go farther from the deck's value.
-  subroutine doubt_reach(unknown, value, lines)
-    type(unknown_t), intent(in) :: unknown
-    real(wp), intent(in) :: value
-    type(line_t), allocatable, intent(inout) :: lines(:)
+  contains
 
-    if (.not. is_at_end(unknown, value)) return
-    call add(lines, unknown%name // ' ends at ' // rounded(value) // ', the ' // &
-      trim(merge('largest ', 'smallest', fitted_of(unknown, value) > 0)) // &
-      ' value that is tried, a factor of ' // rounded(exp(farthest_off)) // &
-      ' from the value in the deck: other values may fit ' // &
-      'better, and standard errors mean nothing; start nearer')
-  end subroutine doubt_reach
+    !> Doubts about numbers that the deck holds fixed: the one that the data contradict most.
+    subroutine doubt_held(held)
+      type(held_t), intent(in) :: held(:)
+      integer :: i
 
-  !> Doubts about numbers that the deck holds fixed: the one that the data contradict most.
-  subroutine doubt_held(held, lines)
-    type(held_t), intent(in) :: held(:)
-    type(line_t), allocatable, intent(inout) :: lines(:)
-    integer :: i
+      if (size(held) == 0) return
+      i = maxloc(abs(held%asked), 1)
+      if (abs(held(i)%asked) <= hardly_ever) return
+      call add('the data ask for a ' // trim(merge('larger ', 'smaller', held(i)%asked > 0)) // &
+        ' ' // held(i)%name // ' than the deck has (' // rounded(abs(held(i)%asked)) // &
+        ' standard deviations)' // not_described)
+    end subroutine doubt_held
 
-    if (size(held) == 0) return
-    i = maxloc(abs(held%asked), 1)
-    if (abs(held(i)%asked) <= hardly_ever) return
-    call add(lines, 'the data ask for a ' // trim(merge('larger ', 'smaller', &
-      held(i)%asked > 0)) // ' ' // held(i)%name // ' than the deck has (' // &
-      rounded(abs(held(i)%asked)) // ' standard deviations)' // not_described)
-  end subroutine doubt_held
+    !> The quantity that was compared with the noise, in words: samples or means over neighbours.
+    function what_is_left(lack) result(words)
+      type(lack_t), intent(in) :: lack
+      character(len=:), allocatable :: words
 
-  !> The quantity that was compared with the noise, in words: samples or means over neighbours.
-  function what_is_left(lack) result(words)
-    type(lack_t), intent(in) :: lack
-    character(len=:), allocatable :: words
+      words = 'the residual is '
+      if (lack%width > 1) words = 'the residual, on average over ' // &
+        rounded(real(lack%width, wp)) // ' neighbours, is '
+      words = words // rounded(lack%times)
+    end function what_is_left
 
-    words = 'the residual is '
-    if (lack%width > 1) words = 'the residual, on average over ' // &
-      rounded(real(lack%width, wp)) // ' neighbours, is '
-    words = words // rounded(lack%times)
-  end function what_is_left
+    !> Doubts about unknown i alone: a large error, a bound within the error.
+    subroutine doubt_unknown(fitted, unknown, i)
+      type(fitted_t), intent(in) :: fitted
+      type(unknown_t), intent(in) :: unknown
+      integer, intent(in) :: i
+      character(len=:), allocatable :: way
 
-  !> Doubts about unknown i alone: a large error, a bound within the error.
-  subroutine doubt_unknown(fitted, unknown, i, lines)
-    type(fitted_t), intent(in) :: fitted
-    type(unknown_t), intent(in) :: unknown
-    integer, intent(in) :: i
-    type(line_t), allocatable, intent(inout) :: lines(:)
-    character(len=:), allocatable :: way
-
-    associate (deviation => fitted%fitted_deviation(i))
-      if (unknown%in_log .and. deviation > farthest_off) then
-        call add(lines, 'the data do not determine ' // unknown%name // '; fix it, or give a prior')
-      else if (unknown%in_log .and. deviation > vague) then
-        way = 'larger or smaller'
-        if (fitted%side(1, i) <= vague) way = 'larger'
-        if (fitted%side(2, i) <= vague) way = 'smaller'
-        call add(lines, 'the data hardly determine ' // unknown%name // ': it may be ' // way // &
-          ' by a factor of ' // rounded(exp(deviation)))
-      end if
-    end associate
-    associate (low => fitted%end_of(i, unknown, -1.0_wp), high => fitted%end_of(i, unknown, 1.0_wp))
-      if (allocated(unknown%lower)) then
-        if (low <= unknown%lower) call add(lines, unknown%name // ': its 68 % interval ' // &
-          'touches lower = ' // rounded(unknown%lower) // ', so that this bound decides')
-      end if
-      if (allocated(unknown%upper)) then
-        if (high >= unknown%upper) call add(lines, unknown%name // ': its 68 % interval ' // &
-          'touches upper = ' // rounded(unknown%upper) // ', so that this bound decides')
-      end if
-    end associate
-  end subroutine doubt_unknown
-
-  !> Doubts about unknown i and those before it: whether the data tell them apart.
-  subroutine doubt_pairs(fitted, unknown, i, lines)
-    type(fitted_t), intent(in) :: fitted
-    type(unknown_t), intent(in) :: unknown(:)
-    integer, intent(in) :: i
-    type(line_t), allocatable, intent(inout) :: lines(:)
-    integer :: k
-
-    do k = 1, i - 1
-      if (abs(fitted%correlation(i, k)) > alike) call add(lines, unknown(k)%name // ' and ' // &
-        unknown(i)%name // ' cannot be told apart: their correlation is ' // &
-        rounded(fitted%correlation(i, k)) // '; fix one of them, or give a prior')
-    end do
-  end subroutine doubt_pairs
-
-  !> Doubt about a retreat that ends before the bodies part: the model takes its end for a part of
-  !> the baseline.
-  subroutine doubt_end(outcome, lines)
-    type(fit_outcome_t), intent(in) :: outcome
-    type(line_t), allocatable, intent(inout) :: lines(:)
-    real(wp) :: below
-
-    associate (data => outcome%curve%data)
-      if (.not. (any(data%way == 1) .and. any(data%way == 2))) return
-      below = open_end(data%measured, data%noise)
-      if (below > 0) call add(lines, 'the retreat ends below the approach by ' // &
-        rounded(below/data%noise%deviation) // ' times the noise: if the bodies have not ' // &
-        'parted there, measure farther, or fit segment = ''approach''; if the baseline ' // &
-        'drifts, correct it')
-    end associate
-  end subroutine doubt_end
-
-  !> Doubt about a signal that stays at its end, as that of a detector at the end of its range.
-  subroutine doubt_signal(outcome, lines)
-    type(fit_outcome_t), intent(in) :: outcome
-    type(line_t), allocatable, intent(inout) :: lines(:)
-    integer :: first, last
-    real(wp) :: step
-
-    associate (data => outcome%curve%data)
-      call find_saturated(data%measured, data%noise, first, last)
-      if (last == 0) return
-      associate (z => data%measured%z(first:last))
-        step = (maxval(z) - minval(z))/(size(z) - 1)
-        call add(lines, 'the signal is ' // rounded(data%measured%signal(last)) // ' in ' // &
-          brief(size(z)) // ' samples in a row, and nowhere beyond: if the detector was at ' // &
-          'the end of its range, leave them out, skip = ' // &
-          rounded_to(minval(z) - step/2, step/10) // ', ' // &
-          rounded_to(maxval(z) + step/2, step/10))
-      end associate
-    end associate
-  end subroutine doubt_signal
-
-  !> Doubts about jumps of the data that the model does not have there.
-  subroutine doubt_jumps(outcome, lines)
-    type(fit_outcome_t), intent(in) :: outcome
-    type(line_t), allocatable, intent(inout) :: lines(:)
-    character(len=8), parameter :: ways(2) = ['approach', 'retreat ']
-    real(wp) :: off
-    integer :: i
-
-    do i = 1, 2
-      associate (jump => outcome%curve%data%jump(i))
-        if (jump%before == 0) cycle
-        off = abs(outcome%fitted%jump_z(i) - jump%z)
-        if (.not. off < huge(1.0_wp)) then
-          call add(lines, 'on the ' // trim(ways(i)) // ' the data jump and the model does ' // &
-            'not' // not_described)
-        else if (off > far*jump%uncertainty) then
-          call add(lines, 'on the ' // trim(ways(i)) // ' the data jump at z = ' // &
-            rounded(jump%z) // ' m and the model ' // rounded(off) // ' m from there (' // &
-            rounded(off/jump%uncertainty) // ' standard deviations)' // not_described)
+      associate (deviation => fitted%fitted_deviation(i))
+        if (unknown%in_log .and. deviation > farthest_off) then
+          call add('the data do not determine ' // unknown%name // '; fix it, or give a prior')
+        else if (unknown%in_log .and. deviation > vague) then
+          way = 'larger or smaller'
+          if (fitted%side(1, i) <= vague) way = 'larger'
+          if (fitted%side(2, i) <= vague) way = 'smaller'
+          call add('the data hardly determine ' // unknown%name // ': it may be ' // way // &
+            ' by a factor of ' // rounded(exp(deviation)))
         end if
       end associate
-    end do
-  end subroutine doubt_jumps
+      associate (low => fitted%end_of(i, unknown, -1.0_wp), high => fitted%end_of(i, unknown, &
+        1.0_wp))
+        if (allocated(unknown%lower)) then
+          if (low <= unknown%lower) call add(unknown%name // ': its 68 % interval ' // &
+            'touches lower = ' // rounded(unknown%lower) // ', so that this bound decides')
+        end if
+        if (allocated(unknown%upper)) then
+          if (high >= unknown%upper) call add(unknown%name // ': its 68 % interval ' // &
+            'touches upper = ' // rounded(unknown%upper) // ', so that this bound decides')
+        end if
+      end associate
+    end subroutine doubt_unknown
 
-  subroutine add(lines, text)
-    type(line_t), allocatable, intent(inout) :: lines(:)
-    character(len=*), intent(in) :: text
-    type(line_t) :: line
+    !> Doubt about a retreat that ends before the bodies part: the model takes its end for a part of
+    !> the baseline.
+    subroutine doubt_end()
+      real(wp) :: below
 
-    line%text = text
-    lines = [lines, line]
-  end subroutine add
+      associate (data => outcome%curve%data)
+        if (.not. (any(data%way == 1) .and. any(data%way == 2))) return
+        below = open_end(data%measured, data%noise)
+        if (below > 0) call add('the retreat ends below the approach by ' // &
+          rounded(below/data%noise%deviation) // ' times the noise: if the bodies have not ' // &
+          'parted there, measure farther, or fit segment = ''approach''; if the baseline ' // &
+          'drifts, correct it')
+      end associate
+    end subroutine doubt_end
+
+    !> Doubt about a signal that stays at its end, as that of a detector at the end of its range.
+    subroutine doubt_signal()
+      integer :: first, last
+      real(wp) :: step
+
+      associate (data => outcome%curve%data)
+        call find_saturated(data%measured, data%noise, first, last)
+        if (last == 0) return
+        associate (z => data%measured%z(first:last))
+          step = (maxval(z) - minval(z))/(size(z) - 1)
+          call add('the signal is ' // rounded(data%measured%signal(last)) // ' in ' // &
+            brief(size(z)) // ' samples in a row, and nowhere beyond: if the detector was at ' // &
+            'the end of its range, leave them out, skip = ' // rounded_to(minval(z) - step/2, &
+            step/10) // ', ' // rounded_to(maxval(z) + step/2, step/10))
+        end associate
+      end associate
+    end subroutine doubt_signal
+
+    !> Doubts about jumps of the data that the model does not have there.
+    subroutine doubt_jumps()
+      character(len=8), parameter :: ways(2) = ['approach', 'retreat ']
+      real(wp) :: off
+      integer :: i
+
+      do i = 1, 2
+        associate (jump => outcome%curve%data%jump(i))
+          if (jump%before == 0) cycle
+          off = abs(outcome%fitted%jump_z(i) - jump%z)
+          if (.not. off < huge(1.0_wp)) then
+            call add('on the ' // trim(ways(i)) // ' the data jump and the model does ' // 'not' &
+              // not_described)
+          else if (off > far*jump%uncertainty) then
+            call add('on the ' // trim(ways(i)) // ' the data jump at z = ' // rounded(jump%z) // &
+              ' m and the model ' // rounded(off) // ' m from there (' // &
+              rounded(off/jump%uncertainty) // ' standard deviations)' // not_described)
+          end if
+        end associate
+      end do
+    end subroutine doubt_jumps
+
+    subroutine add(text)
+      character(len=*), intent(in) :: text
+      type(line_t) :: line
+
+      line%text = text
+      lines = [lines, line]
+    end subroutine add
+
+  end function doubts_of
 
 end module fit_doubts

@@ -5,7 +5,7 @@ module fit_errors
   use linear_algebra, only: singular_values
   use fit_request, only: unknown_t, fitted_of, value_by_fitted, farthest_off
   use curve_residuals, only: curve_residuals_t
-  use lack_of_fit, only: lack_t, lack_in
+  use second_look, only: lack_t, lack_in
   implicit none
   private
   public :: fitted_t, judge, widen, least_effect
@@ -109,7 +109,6 @@ contains
     fitted%jump_z = [(residuals%curve%jump_of(fitted%value, i), i=1, 2)]
   end subroutine judge
 
-  !> Sets the deviations to the larger ones of both sides.
   subroutine set_deviations(fitted, unknown)
     type(fitted_t), intent(inout) :: fitted
     type(unknown_t), intent(in) :: unknown(:)
@@ -142,7 +141,7 @@ contains
           far = min(out_to*fitted%side(way, j), room)
           ! The bound decides, and not the data.
           if (far < fitted%side(way, j)) exit
-          call go_to(residuals, fitted, j, merge(far, -far, way == 2), value, rise, found)
+          call go_to(j, merge(far, -far, way == 2))
           if (.not. found) then
             value = fitted%value
             room = 0.5_wp*far
@@ -152,7 +151,7 @@ contains
             better = value
             return
           end if
-          call widen_others(residuals%curve%unknown, fitted, j, value, rise)
+          call widen_others(residuals%curve%unknown, j)
           if (rise > (1 - lacking)*(far/fitted%side(way, j))**2) exit
           ! A rise that has ended would make this step endless.
           fitted%side(way, j) = min(2*fitted%side(way, j), far/sqrt(max(rise, tiny(rise))))
@@ -160,95 +159,91 @@ contains
       end do
     end do
     call set_deviations(fitted, residuals%curve%unknown)
-  end subroutine widen
 
-  !> Widens the errors of numbers other than j at values with a known rise. On a curved valley a
-  !> number may move far with number j, where it finds no way by its own derivatives.
-  pure subroutine widen_others(unknown, fitted, j, value, rise)
-    type(unknown_t), intent(in) :: unknown(:)
-    type(fitted_t), intent(inout) :: fitted
-    integer, intent(in) :: j
-    real(wp), intent(in) :: value(:), rise
-    real(wp) :: moved
-    integer :: k, way
+  contains
 
-    if (rise > out_to**2) return
-    do k = 1, size(value)
-      if (k == j) cycle
-      moved = fitted_of(unknown(k), value(k)) - fitted_of(unknown(k), fitted%value(k))
-      way = merge(2, 1, moved > 0)
-      if (rise < (1 - lacking)*(moved/fitted%side(way, k))**2) fitted%side(way, k) = &
-        max(fitted%side(way, k), abs(moved)/sqrt(max(rise, 1.0_wp)))
-    end do
-  end subroutine widen_others
+    !> Widens the errors of numbers other than j at values with a known rise. On a curved valley a
+    !> number may move far with number j, where it finds no way by its own derivatives.
+    subroutine widen_others(unknown, j)
+      type(unknown_t), intent(in) :: unknown(:)
+      integer, intent(in) :: j
+      real(wp) :: moved
+      integer :: k, way
 
-  !> Moves fitted number j by `far` from its best value, and the others to the smallest sum of
-  !> squares there, which is `rise` above the best. value: on entry where the last step ended.
-  subroutine go_to(residuals, fitted, j, far, value, rise, found)
-    type(curve_residuals_t), intent(inout) :: residuals
-    type(fitted_t), intent(in) :: fitted
-    integer, intent(in) :: j
-    real(wp), intent(in) :: far
-    real(wp), intent(inout) :: value(:)
-    real(wp), intent(out) :: rise
-    logical, intent(out) :: found
-    real(wp) :: residual(size(fitted%by_fitted, 1)), trial(size(value)), next
-    real(wp), dimension(size(value)) :: now, best, move, gradient
-    integer :: k
-
-    associate (unknown => residuals%curve%unknown, c => fitted%covariance)
-      best = fitted_of(unknown, fitted%value)
-      now = fitted_of(unknown, value)
-      now = now + c(:, j)/c(j, j)*(best(j) + far - now(j))
-      rise = huge(rise)
-      do k = 0, corrections
-        trial = within_bounds(unknown, now)
-        found = abs(fitted_of(unknown(j), trial(j)) - now(j)) <= 1.0e-9_wp*abs(far)
-        if (found) call residuals%residuals_of(trial, residual, found)
-        if (.not. found) exit
-        next = sum(residual**2) - fitted%chi_squared
-        if (.not. next < rise) exit
-        rise = next
-        value = trial
-        ! The step of Gauss and Newton with number j fixed, by the derivatives at the best values.
-        gradient = matmul(residual, fitted%by_fitted)
-        move = matmul(c, gradient)
-        move = move - c(:, j)*move(j)/c(j, j)
-        if (dot_product(move, gradient) < lacking) exit
-        now = fitted_of(unknown, trial) - move
+      if (rise > out_to**2) return
+      do k = 1, size(value)
+        if (k == j) cycle
+        moved = fitted_of(unknown(k), value(k)) - fitted_of(unknown(k), fitted%value(k))
+        way = merge(2, 1, moved > 0)
+        if (rise < (1 - lacking)*(moved/fitted%side(way, k))**2) fitted%side(way, k) = &
+          max(fitted%side(way, k), abs(moved)/sqrt(max(rise, 1.0_wp)))
       end do
-      found = rise < huge(rise)
-    end associate
-  end subroutine go_to
+    end subroutine widen_others
 
-  !> How far a fitted number may move upward or downward from its best value.
-  pure real(wp) function room_for(unknown, value, upward) result(room)
-    type(unknown_t), intent(in) :: unknown
-    real(wp), intent(in) :: value
-    logical, intent(in) :: upward
-    real(wp), parameter :: within = 1 - 1.0e-6_wp
-    real(wp) :: sign, u
+    !> Moves fitted number j by `far` from its best value, and the others to the smallest sum of
+    !> squares there, which is `rise` above the best. value: on entry where the last step ended.
+    subroutine go_to(j, far)
+      integer, intent(in) :: j
+      real(wp), intent(in) :: far
+      real(wp) :: residual(size(fitted%by_fitted, 1)), trial(size(value)), next
+      real(wp), dimension(size(value)) :: now, best, move, gradient
+      integer :: k
 
-    sign = merge(1, -1, upward)
-    u = fitted_of(unknown, value)
-    room = huge(room)
-    if (unknown%in_log) room = farthest_off - sign*u
-    if (upward .and. allocated(unknown%upper)) &
-      room = min(room, fitted_of(unknown, unknown%upper) - u)
-    if (.not. upward .and. allocated(unknown%lower)) &
-      room = min(room, u - fitted_of(unknown, unknown%lower))
-    room = within*room
-  end function room_for
+      associate (unknown => residuals%curve%unknown, c => fitted%covariance)
+        best = fitted_of(unknown, fitted%value)
+        now = fitted_of(unknown, value)
+        now = now + c(:, j)/c(j, j)*(best(j) + far - now(j))
+        rise = huge(rise)
+        do k = 0, corrections
+          trial = within_bounds(unknown, now)
+          found = abs(fitted_of(unknown(j), trial(j)) - now(j)) <= 1.0e-9_wp*abs(far)
+          if (found) call residuals%residuals_of(trial, residual, found)
+          if (.not. found) exit
+          next = sum(residual**2) - fitted%chi_squared
+          if (.not. next < rise) exit
+          rise = next
+          value = trial
+          ! The step of Gauss and Newton with number j fixed, by the derivatives at the best values.
+          gradient = matmul(residual, fitted%by_fitted)
+          move = matmul(c, gradient)
+          move = move - c(:, j)*move(j)/c(j, j)
+          if (dot_product(move, gradient) < lacking) exit
+          now = fitted_of(unknown, trial) - move
+        end do
+        found = rise < huge(rise)
+      end associate
+    end subroutine go_to
 
-  !> The values of fitted numbers, moved to the nearest bound if they are beyond it.
-  elemental real(wp) function within_bounds(unknown, u) result(value)
-    type(unknown_t), intent(in) :: unknown
-    real(wp), intent(in) :: u
+    !> How far a fitted number may move upward or downward from its best value.
+    pure real(wp) function room_for(unknown, value, upward) result(room)
+      type(unknown_t), intent(in) :: unknown
+      real(wp), intent(in) :: value
+      logical, intent(in) :: upward
+      real(wp), parameter :: within = 1 - 1.0e-6_wp
+      real(wp) :: sign, u
 
-    value = unknown%origin + unknown%scale*u
-    if (unknown%in_log) value = unknown%scale*exp(u)
-    value = bounded(unknown, value)
-  end function within_bounds
+      sign = merge(1, -1, upward)
+      u = fitted_of(unknown, value)
+      room = huge(room)
+      if (unknown%in_log) room = farthest_off - sign*u
+      if (upward .and. allocated(unknown%upper)) &
+        room = min(room, fitted_of(unknown, unknown%upper) - u)
+      if (.not. upward .and. allocated(unknown%lower)) &
+        room = min(room, u - fitted_of(unknown, unknown%lower))
+      room = within*room
+    end function room_for
+
+    !> The values of fitted numbers, moved to the nearest bound if they are beyond it.
+    elemental real(wp) function within_bounds(unknown, u) result(value)
+      type(unknown_t), intent(in) :: unknown
+      real(wp), intent(in) :: u
+
+      value = unknown%origin + unknown%scale*u
+      if (unknown%in_log) value = unknown%scale*exp(u)
+      value = bounded(unknown, value)
+    end function within_bounds
+
+  end subroutine widen
 
   elemental real(wp) function bounded(unknown, value)
     type(unknown_t), intent(in) :: unknown

@@ -7,8 +7,7 @@ module fit_request
   implicit none
   private
   public :: measurement_t, fit_t, unknown_t, of_model, of_contact_point, of_sensitivity, &
-    of_spring, free_of, value_of, fitted_of, value_by_free, value_by_fitted, farthest_off, &
-    is_at_end
+    of_spring, free_of, value_of, fitted_of, value_by_free, value_by_fitted, farthest_off, is_at_end
 
   !> &measurement [SI]. sensitivity: of a signal in volts; not allocated: the signal is the force.
   type :: measurement_t

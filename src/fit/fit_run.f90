@@ -6,14 +6,13 @@ module fit_run
   use failure, only: failure_t
   use listener, only: listener_t
   use dimensionless_problem, only: problem_t
-  use problem_family, only: problem_family_t
+  use variation, only: problem_family_t
   use experiment_request, only: numerics_t
-  use fit_request, only: measurement_t, fit_t, unknown_t, of_model, of_contact_point, is_at_end
+  use fit_request, only: fit_t, unknown_t, of_model, of_contact_point, is_at_end
   use measured_curve, only: measured_t
-  use measured_jumps, only: find_jump
+  use measured_jumps, only: find_jump, find_far, off_baseline
   use measured_checks, only: check_measured, check_loads, other_order
   use noise, only: white_noise, rounding_of
-  use far_samples, only: find_far, off_baseline
   use fit_starts, only: character_t, character_of, starts_like
   use mending, only: too_much
   use path_model, only: path_model_t
@@ -59,13 +58,11 @@ module fit_run
 
 contains
 
-  !> Runs the fit. measured: the curve of `measurement`. family: the problems, whose parameters are
+  !> Runs the fit. family: the problems, whose parameters are
   !> the unknowns of the model. wider: the same family with the fixed numbers of the deck as further
   !> parameters. problem: the problem with the deck's values.
-  subroutine run_fit(measured, measurement, fit, numerics, family, wider, problem, listener, &
-    outcome)
+  subroutine run_fit(measured, fit, numerics, family, wider, problem, listener, outcome)
     type(measured_t), intent(in) :: measured
-    type(measurement_t), intent(in) :: measurement
     type(fit_t), intent(in) :: fit
     type(numerics_t), intent(in) :: numerics
     class(problem_family_t), intent(in) :: family, wider
@@ -77,12 +74,12 @@ contains
     real(wp), allocatable :: start(:, :)
     integer :: i
 
-    call take_curve(measured, measurement, fit, problem, curve, outcome%trouble)
+    call take_curve(outcome%trouble)
     if (allocated(outcome%trouble)) return
     call listener%hear('fitting the path')
     allocate (model%family, source=family)
     model%numerics = numerics
-    call starts_like(likely_characters(curve, problem), family, curve%unknown, start)
+    call starts_like(likely_characters(), family, curve%unknown, start)
     call fit_curve(curve, model, start, .true., allocated(fit%noise), outcome%fitted)
     outcome%resolved = model%left_out <= too_much*model%numerics%accuracy
     outcome%curve = curve
@@ -111,188 +108,182 @@ contains
         rounded(outcome%fitted%value(i)) // '; remove it from parameters, or give a prior'
       return
     end do
-    call test_held(outcome%curve, outcome%fitted%value, measurement, numerics, wider, outcome%held)
+    call test_held(outcome%curve, outcome%fitted%value, numerics, wider, outcome%held)
     call listener%hear('fitting classical theories')
-    call fit_theories(outcome, problem, family)
-  end subroutine run_fit
+    call fit_theories()
 
-  !> Makes the curve to fit: the samples, their noise and jumps, and the unknowns.
-  subroutine take_curve(measured, measurement, fit, problem, curve, trouble)
-    type(measured_t), intent(in) :: measured
-    type(measurement_t), intent(in) :: measurement
-    type(fit_t), intent(in) :: fit
-    type(problem_t), intent(in) :: problem
-    type(modelled_curve_t), intent(inout) :: curve
-    character(len=:), allocatable, intent(out) :: trouble
-    real(wp) :: slope
+  contains
 
-    curve%data%measured = measured
-    curve%unknown = fit%unknown
-    where (curve%unknown%role == of_contact_point) curve%unknown%scale = problem%length
-    curve%spring = measurement%spring_constant
-    curve%sensitivity = 1/measurement%spring_constant
-    if (allocated(measurement%sensitivity)) curve%sensitivity = measurement%sensitivity
-    if (allocated(measurement%contact_point)) curve%contact_point = measurement%contact_point
-    slope = 1/curve%sensitivity
-    associate (data => curve%data%measured)
-      call find_far(data, slope, curve%data%noise)
-      curve%data%least_noise = least_noise*maxval(abs(data%signal))
-      if (allocated(fit%noise)) then
-        curve%data%noise = white_noise(fit%noise)
-      else
-        curve%data%least_noise = max(curve%data%least_noise, rounding_of(data%signal))
-      end if
-      if (curve%data%noise%deviation < curve%data%least_noise) &
-        curve%data%noise = white_noise(curve%data%least_noise)
-      call check_measured(data, curve%data%noise, slope, trouble)
-      if (.not. allocated(trouble)) call check_loads(curve, trouble)
-      if (allocated(trouble)) return
-      curve%data%jump = [find_jump(data, curve%data%noise%deviation, slope, .true.), &
-        find_jump(data, curve%data%noise%deviation, slope, .false.)]
-      curve%largest = beyond*max(maxval(data%signal, data%usable) - level_of(data), &
-        maxval(off_baseline(data), data%usable))
-    end associate
-    call curve%data%take(1)
-    if (size(curve%data%sample) < 2*size(curve%unknown) + 4) &
-      trouble = 'too few samples for so many parameters'
-  end subroutine take_curve
+    !> Makes the curve to fit: the samples, their noise and jumps, and the unknowns.
+    subroutine take_curve(trouble)
+      character(len=:), allocatable, intent(out) :: trouble
+      real(wp) :: slope
 
-  !> The mean of the far samples.
-  pure real(wp) function level_of(data) result(level)
-    type(measured_t), intent(in) :: data
+      curve%data%measured = measured
+      curve%unknown = fit%unknown
+      where (curve%unknown%role == of_contact_point) curve%unknown%scale = problem%length
+      curve%spring = measured%spring_constant
+      curve%sensitivity = 1/measured%spring_constant
+      if (allocated(measured%sensitivity)) curve%sensitivity = measured%sensitivity
+      if (allocated(measured%contact_point)) curve%contact_point = measured%contact_point
+      slope = 1/curve%sensitivity
+      associate (data => curve%data%measured)
+        call find_far(data, slope, curve%data%noise)
+        curve%data%least_noise = least_noise*maxval(abs(data%signal))
+        if (allocated(fit%noise)) then
+          curve%data%noise = white_noise(fit%noise)
+        else
+          curve%data%least_noise = max(curve%data%least_noise, rounding_of(data%signal))
+        end if
+        if (curve%data%noise%deviation < curve%data%least_noise) &
+          curve%data%noise = white_noise(curve%data%least_noise)
+        call check_measured(data, curve%data%noise, slope, trouble)
+        if (.not. allocated(trouble)) call check_loads(curve, trouble)
+        if (allocated(trouble)) return
+        curve%data%jump = [find_jump(data, curve%data%noise%deviation, slope, .true.), &
+          find_jump(data, curve%data%noise%deviation, slope, .false.)]
+        curve%largest = beyond*max(maxval(data%signal, data%usable) - level_of(data), &
+          maxval(off_baseline(data), data%usable))
+      end associate
+      call curve%data%take(1)
+      if (size(curve%data%sample) < 2*size(curve%unknown) + 4) &
+        trouble = 'too few samples for so many parameters'
+    end subroutine take_curve
 
-    associate (far => data%far .and. data%usable)
-      level = sum(data%signal, far)/max(1, count(far))
-    end associate
-  end function level_of
+    !> Likely works of adhesion, stiffnesses and ranges of force: from the pull-off below the mean
+    !> of the baseline and below its slope, and from JKR and DMT fits, each with the range of the
+    !> deck's force and with others.
+    function likely_characters() result(likely)
+      type(character_t), allocatable :: likely(:)
+      type(character_t) :: own, new
+      type(classical_model_t), target :: model
+      type(modelled_curve_t) :: few
+      type(fitted_t) :: fitted
+      real(wp) :: start(2 + size(curve%unknown), size(factors)), pull_off(2)
+      integer :: i, k
 
-  !> Likely works of adhesion, stiffnesses and ranges of force: from the pull-off below the mean of
-  !> the baseline and below its slope, and from JKR and DMT fits, each with the range of the deck's
-  !> force and with others.
-  function likely_characters(curve, problem) result(likely)
-    type(modelled_curve_t), intent(in) :: curve
-    type(problem_t), intent(in) :: problem
-    type(character_t), allocatable :: likely(:)
-    type(character_t) :: own, new
-    type(classical_model_t), target :: model
-    type(modelled_curve_t) :: few
-    type(fitted_t) :: fitted
-    real(wp) :: start(2 + size(curve%unknown), size(factors)), pull_off(2)
-    integer :: i, k
-
-    allocate (likely(0))
-    own = character_of(problem)
-    if (.not. own%work > 0) return
-    do k = 1, size(works)
-      new = own
-      new%work = own%work*works(k)
-      likely = [likely, new]
-    end do
-    associate (data => curve%data%measured)
-      pull_off = -[minval(data%signal, data%usable) - level_of(data), &
-        minval(off_baseline(data), data%usable)]
-    end associate
-    do i = size(pull_off), 1, -1
-      own%work = pull_off(i)*curve%spring*curve%sensitivity/(1.5_wp*pi*problem%radius)
-      if (own%work > 0) likely = [likely, own]
-    end do
-    if (size(likely) == size(works)) return
-    own = likely(size(likely))
-    model%radius = problem%radius
-    few = curve
-    few%data%noise = white_noise(curve%data%noise%deviation)
-    call few%data%take(max(1, size(curve%data%sample)/few_samples))
-    do i = 1, 2
-      if (.not. problem%shape%parabolic) exit
-      model%theory = theories(i)
-      call take_unknowns(few, curve, model, own)
-      do k = 1, size(factors)
-        start(:size(few%unknown), k) = few%unknown%value
-        start(2, k) = own%stiffness*factors(k)
-      end do
-      call fit_curve(few, model, start(:size(few%unknown), :), .false., .true., fitted)
-      if (.not. allocated(fitted%effect)) cycle
-      new = character_t(fitted%value(1), fitted%value(2), own%range)
-      likely = [likely, new]
-      do k = 1, size(ranges)
-        new%range = own%range*ranges(k)
+      allocate (likely(0))
+      own = character_of(problem)
+      if (.not. own%work > 0) return
+      do k = 1, size(works)
+        new = own
+        new%work = own%work*works(k)
         likely = [likely, new]
       end do
-    end do
-    do k = 1, size(factors)
-      new = own
-      new%stiffness = own%stiffness*factors(k)
-      likely = [likely, new]
-    end do
-  end function likely_characters
+      associate (data => curve%data%measured)
+        pull_off = -[minval(data%signal, data%usable) - level_of(data), &
+          minval(off_baseline(data), data%usable)]
+      end associate
+      do i = size(pull_off), 1, -1
+        own%work = pull_off(i)*curve%spring*curve%sensitivity/(1.5_wp*pi*problem%radius)
+        if (own%work > 0) likely = [likely, own]
+      end do
+      if (size(likely) == size(works)) return
+      own = likely(size(likely))
+      model%radius = problem%radius
+      few = curve
+      few%data%noise = white_noise(curve%data%noise%deviation)
+      call few%data%take(max(1, size(curve%data%sample)/few_samples))
+      do i = 1, 2
+        if (.not. problem%shape%parabolic) exit
+        model%theory = theories(i)
+        call take_unknowns(few, curve, model, own)
+        do k = 1, size(factors)
+          start(:size(few%unknown), k) = few%unknown%value
+          start(2, k) = own%stiffness*factors(k)
+        end do
+        call fit_curve(few, model, start(:size(few%unknown), :), .false., .true., fitted)
+        if (.not. allocated(fitted%effect)) cycle
+        new = character_t(fitted%value(1), fitted%value(2), own%range)
+        likely = [likely, new]
+        do k = 1, size(ranges)
+          new%range = own%range*ranges(k)
+          likely = [likely, new]
+        end do
+      end do
+      do k = 1, size(factors)
+        new = own
+        new%stiffness = own%stiffness*factors(k)
+        likely = [likely, new]
+      end do
+    end function likely_characters
 
-  !> Sets the unknowns of a theory and those of the measurement.
-  subroutine take_unknowns(curve, measured, model, start)
-    type(modelled_curve_t), intent(inout) :: curve
-    type(modelled_curve_t), intent(in) :: measured
-    type(classical_model_t), intent(inout) :: model
-    type(character_t), intent(in) :: start
-    type(unknown_t) :: unknown(2)
+    !> Fits JKR, DMT and Maugis-Dugdale theory to the same curve, if the bodies are parabolas. The
+    !> work of adhesion is unknown if the deck fits a number of a force, the stiffness if it fits
+    !> one of the bodies.
+    subroutine fit_theories()
+      type(classical_model_t), target :: model
+      type(modelled_curve_t) :: curve
+      type(problem_t) :: final
+      type(failure_t), allocatable :: error
+      real(wp), allocatable :: start(:, :)
+      logical :: elastic(size(family%parameter))
+      integer :: i
 
-    model%work = start%work
-    model%stiffness = start%stiffness
-    model%range = start%range
-    unknown(1) = unknown_of('work_of_adhesion', model%work)
-    unknown(2) = unknown_of('stiffness', model%stiffness)
-    curve%unknown = [pack(unknown, [model%finds_work, model%finds_stiffness]), &
-      pack(measured%unknown, measured%unknown%role /= of_model)]
-  end subroutine take_unknowns
+      allocate (outcome%theory(0))
+      call family%pose(pack(outcome%fitted%value, outcome%curve%unknown%role == of_model), final, &
+        error)
+      if (allocated(error)) return
+      outcome%problem = final
+      if (.not. problem%shape%parabolic .or. .not. final%law%work > 0) return
+      if (.not. final%body%is_homogeneous()) return
+      elastic = [(index(family%parameter(i)%name, 'bodies.') == 1 .and. &
+        family%parameter(i)%name /= 'bodies.radius', i=1, size(elastic))]
+      model%radius = final%radius
+      model%finds_stiffness = any(elastic)
+      model%finds_work = .not. all(elastic)
+      curve = outcome%curve
+      call take_unknowns(curve, outcome%curve, model, character_of(final))
+      deallocate (outcome%theory)
+      allocate (outcome%theory(size(theories)))
+      start = reshape([pack(curve%unknown%value, curve%unknown%role == of_model), &
+        pack(outcome%fitted%value, outcome%curve%unknown%role /= of_model)], [size(curve%unknown), &
+        1])
+      do i = 1, size(theories)
+        model%theory = theories(i)
+        outcome%theory(i)%theory = theories(i)
+        outcome%theory(i)%unknown = curve%unknown
+        call fit_curve(curve, model, start, .false., .true., outcome%theory(i)%fitted)
+      end do
+    end subroutine fit_theories
 
-  !> Fits JKR, DMT and Maugis-Dugdale theory to the same curve, if the bodies are parabolas. The
-  !> work of adhesion is unknown if the deck fits a number of a force, the stiffness if it fits one
-  !> of the bodies.
-  subroutine fit_theories(outcome, problem, family)
-    type(fit_outcome_t), intent(inout), target :: outcome
-    type(problem_t), intent(in) :: problem
-    class(problem_family_t), intent(in) :: family
-    type(classical_model_t), target :: model
-    type(modelled_curve_t) :: curve
-    type(problem_t) :: final
-    type(failure_t), allocatable :: error
-    real(wp), allocatable :: start(:, :)
-    logical :: elastic(size(family%parameter))
-    integer :: i
+    !> Sets the unknowns of a theory and those of the measurement.
+    subroutine take_unknowns(curve, measured, model, start)
+      type(modelled_curve_t), intent(inout) :: curve
+      type(modelled_curve_t), intent(in) :: measured
+      type(classical_model_t), intent(inout) :: model
+      type(character_t), intent(in) :: start
+      type(unknown_t) :: unknown(2)
 
-    allocate (outcome%theory(0))
-    call family%pose(pack(outcome%fitted%value, outcome%curve%unknown%role == of_model), final, &
-      error)
-    if (allocated(error)) return
-    outcome%problem = final
-    if (.not. problem%shape%parabolic .or. .not. final%law%work > 0) return
-    if (.not. final%body%is_homogeneous()) return
-    elastic = [(index(family%parameter(i)%name, 'bodies.') == 1 .and. &
-      family%parameter(i)%name /= 'bodies.radius', i=1, size(elastic))]
-    model%radius = final%radius
-    model%finds_stiffness = any(elastic)
-    model%finds_work = .not. all(elastic)
-    curve = outcome%curve
-    call take_unknowns(curve, outcome%curve, model, character_of(final))
-    deallocate (outcome%theory)
-    allocate (outcome%theory(size(theories)))
-    start = reshape([pack(curve%unknown%value, curve%unknown%role == of_model), &
-      pack(outcome%fitted%value, outcome%curve%unknown%role /= of_model)], [size(curve%unknown), 1])
-    do i = 1, size(theories)
-      model%theory = theories(i)
-      outcome%theory(i)%theory = theories(i)
-      outcome%theory(i)%unknown = curve%unknown
-      call fit_curve(curve, model, start, .false., .true., outcome%theory(i)%fitted)
-    end do
-  end subroutine fit_theories
+      model%work = start%work
+      model%stiffness = start%stiffness
+      model%range = start%range
+      unknown(1) = unknown_of('work_of_adhesion', model%work)
+      unknown(2) = unknown_of('stiffness', model%stiffness)
+      curve%unknown = [pack(unknown, [model%finds_work, model%finds_stiffness]), &
+        pack(measured%unknown, measured%unknown%role /= of_model)]
+    end subroutine take_unknowns
 
-  !> A positive unknown of a theory.
-  type(unknown_t) function unknown_of(name, value) result(unknown)
-    character(len=*), intent(in) :: name
-    real(wp), intent(in) :: value
+    !> The mean of the far samples.
+    pure real(wp) function level_of(data) result(level)
+      type(measured_t), intent(in) :: data
 
-    unknown%name = name
-    unknown%in_log = .true.
-    unknown%value = value
-    unknown%scale = value
-  end function unknown_of
+      associate (far => data%far .and. data%usable)
+        level = sum(data%signal, far)/max(1, count(far))
+      end associate
+    end function level_of
+
+    !> A positive unknown of a theory.
+    type(unknown_t) function unknown_of(name, value) result(unknown)
+      character(len=*), intent(in) :: name
+      real(wp), intent(in) :: value
+
+      unknown%name = name
+      unknown%in_log = .true.
+      unknown%value = value
+      unknown%scale = value
+    end function unknown_of
+
+  end subroutine run_fit
 
 end module fit_run

@@ -5,7 +5,7 @@ module fit_starts
   use failure, only: failure_t
   use linear_algebra, only: factorisation_t, factorise, solve
   use dimensionless_problem, only: problem_t, surface_energy, largest_tension
-  use problem_family, only: problem_family_t
+  use variation, only: problem_family_t
   use fit_request, only: unknown_t, of_model
   implicit none
   private
@@ -52,18 +52,18 @@ contains
 
     n = size(unknown)
     start = reshape(unknown%value, [n, 1])
-    call traits(family, unknown, unknown%value, own, found)
+    call traits(unknown%value, own)
     if (.not. found) return
     by = 0
     do k = 1, n
       if (unknown(k)%role /= of_model .or. .not. unknown(k)%in_log) cycle
       varied = unknown%value
       varied(k) = varied(k)*exp(change)
-      call traits(family, unknown, varied, other, found)
+      call traits(varied, other)
       if (found) by(:, k) = (other - own)/change
     end do
     do i = 1, size(wanted)
-      call move_to(wanted(i), family, unknown, own, by, value, found)
+      call move_to(wanted(i))
       if (.not. found) cycle
       new = .true.
       do k = 1, size(start, 2)
@@ -71,72 +71,68 @@ contains
       end do
       if (new) start = reshape([start, value], [n, size(start, 2) + 1])
     end do
+
+  contains
+
+    !> Finds the values nearest to the deck's, in their logarithms, whose problem has the wanted
+    !> character. own: the traits of the deck's problem. by: their derivatives, which each step
+    !> updates (Broyden, 1965).
+    subroutine move_to(wanted)
+      type(character_t), intent(in) :: wanted
+      type(factorisation_t) :: square
+      real(wp) :: now(3), next(3), missing(3), slope(3, size(unknown)), step(size(unknown)), low, &
+        high
+      integer :: i, k
+
+      value = unknown%value
+      now = own
+      slope = by
+      do i = 1, steps
+        missing = logarithms(wanted) - now
+        square%lu = matmul(slope, transpose(slope))
+        do k = 1, 3
+          square%lu(k, k) = square%lu(k, k) + damping
+        end do
+        call factorise(square)
+        found = square%valid
+        if (.not. found) return
+        call solve(square, missing)
+        step = max(-2.0_wp, min(2.0_wp, matmul(missing, slope)))
+        do k = 1, size(unknown)
+          if (.not. unknown(k)%in_log) cycle
+          low = unknown(k)%value*exp(-farthest)
+          high = unknown(k)%value*exp(farthest)
+          if (allocated(unknown(k)%lower)) low = max(low, unknown(k)%lower)
+          if (allocated(unknown(k)%upper)) high = min(high, unknown(k)%upper)
+          step(k) = log(max(low, min(high, value(k)*exp(step(k))))/value(k))
+        end do
+        value = value*exp(step)
+        if (maxval(abs(step)) <= near) return
+        call traits(value, next)
+        if (.not. found) return
+        do k = 1, 3
+          slope(k, :) = slope(k, :) + &
+            (next(k) - now(k) - dot_product(slope(k, :), step))*step/sum(step**2)
+        end do
+        now = next
+      end do
+    end subroutine move_to
+
+    !> The traits, logarithms of the character, for values of the unknowns.
+    subroutine traits(value, trait)
+      real(wp), intent(in) :: value(:)
+      real(wp), intent(out) :: trait(3)
+      type(problem_t) :: problem
+      type(failure_t), allocatable :: error
+
+      trait = 0
+      call family%pose(pack(value, unknown%role == of_model), problem, error)
+      found = .not. allocated(error)
+      if (found) found = surface_energy(problem) > 0
+      if (found) trait = logarithms(character_of(problem))
+    end subroutine traits
+
   end subroutine starts_like
-
-  !> Finds the values nearest to the deck's, in their logarithms, whose problem has the wanted
-  !> character. own: the traits of the deck's problem. by: their derivatives, which each step
-  !> updates (Broyden, 1965).
-  subroutine move_to(wanted, family, unknown, own, by, value, found)
-    type(character_t), intent(in) :: wanted
-    class(problem_family_t), intent(in) :: family
-    type(unknown_t), intent(in) :: unknown(:)
-    real(wp), intent(in) :: own(3), by(:, :)
-    real(wp), intent(out) :: value(:)
-    logical, intent(out) :: found
-    type(factorisation_t) :: square
-    real(wp) :: now(3), next(3), missing(3), slope(3, size(unknown)), step(size(unknown)), low, high
-    integer :: i, k
-
-    value = unknown%value
-    now = own
-    slope = by
-    do i = 1, steps
-      missing = logarithms(wanted) - now
-      square%lu = matmul(slope, transpose(slope))
-      do k = 1, 3
-        square%lu(k, k) = square%lu(k, k) + damping
-      end do
-      call factorise(square)
-      found = square%valid
-      if (.not. found) return
-      call solve(square, missing)
-      step = max(-2.0_wp, min(2.0_wp, matmul(missing, slope)))
-      do k = 1, size(unknown)
-        if (.not. unknown(k)%in_log) cycle
-        low = unknown(k)%value*exp(-farthest)
-        high = unknown(k)%value*exp(farthest)
-        if (allocated(unknown(k)%lower)) low = max(low, unknown(k)%lower)
-        if (allocated(unknown(k)%upper)) high = min(high, unknown(k)%upper)
-        step(k) = log(max(low, min(high, value(k)*exp(step(k))))/value(k))
-      end do
-      value = value*exp(step)
-      if (maxval(abs(step)) <= near) return
-      call traits(family, unknown, value, next, found)
-      if (.not. found) return
-      do k = 1, 3
-        slope(k, :) = slope(k, :) + &
-          (next(k) - now(k) - dot_product(slope(k, :), step))*step/sum(step**2)
-      end do
-      now = next
-    end do
-  end subroutine move_to
-
-  !> The traits, logarithms of the character, for values of the unknowns.
-  subroutine traits(family, unknown, value, trait, found)
-    class(problem_family_t), intent(in) :: family
-    type(unknown_t), intent(in) :: unknown(:)
-    real(wp), intent(in) :: value(:)
-    real(wp), intent(out) :: trait(3)
-    logical, intent(out) :: found
-    type(problem_t) :: problem
-    type(failure_t), allocatable :: error
-
-    trait = 0
-    call family%pose(pack(value, unknown%role == of_model), problem, error)
-    found = .not. allocated(error)
-    if (found) found = surface_energy(problem) > 0
-    if (found) trait = logarithms(character_of(problem))
-  end subroutine traits
 
   pure function logarithms(character) result(trait)
     type(character_t), intent(in) :: character

@@ -5,11 +5,9 @@
 !> share.
 module held_numbers
   use kinds, only: wp
-  use fit_request, only: measurement_t, unknown_t, of_model, of_contact_point, of_sensitivity, &
-    of_spring
+  use fit_request, only: unknown_t, of_model, of_contact_point, of_sensitivity, of_spring
   use failure, only: failure_t
-  use problem_family, only: problem_family_t
-  use variation, only: variation_t, vary, to_search
+  use variation, only: problem_family_t, variation_t, vary, to_search
   use experiment_request, only: numerics_t
   use modelled_curve, only: modelled_curve_t
   use curve_residuals, only: curve_residuals_t
@@ -33,10 +31,9 @@ contains
   !> Tests all numbers that are held. curve, value: the fit. wider: the family of the fit with the
   !> deck's other positive numbers as further parameters. Numbers that the unknowns compensate
   !> completely, or that cannot be varied, are left out.
-  subroutine test_held(curve, value, measurement, numerics, wider, held)
+  subroutine test_held(curve, value, numerics, wider, held)
     type(modelled_curve_t), intent(in) :: curve
     real(wp), intent(in) :: value(:)
-    type(measurement_t), intent(in) :: measurement
     type(numerics_t), intent(in) :: numerics
     class(problem_family_t), intent(in) :: wider
     type(held_t), allocatable, intent(out) :: held(:)
@@ -54,7 +51,7 @@ contains
     call keep_variable(pack(value, curve%unknown%role == of_model), model%family)
     model%numerics = numerics
     residuals%curve = curve
-    call add_held(model%family, curve, allocated(measurement%sensitivity), residuals%curve%unknown)
+    call add_held(model%family, curve, residuals%curve%unknown)
     all_values = [value, residuals%curve%unknown(n + 1:)%value]
     call residuals%curve%use_model(model)
     allocate (residual(residuals%rows()), jacobian(residuals%rows(), size(all_values)))
@@ -100,10 +97,9 @@ contains
   end subroutine keep_variable
 
   !> Appends the numbers that are held to the unknowns: of the model and of the measurement.
-  subroutine add_held(family, curve, has_detector, unknown)
+  subroutine add_held(family, curve, unknown)
     class(problem_family_t), intent(in) :: family
     type(modelled_curve_t), intent(in) :: curve
-    logical, intent(in) :: has_detector
     type(unknown_t), allocatable, intent(inout) :: unknown(:)
     integer :: i
 
@@ -111,7 +107,8 @@ contains
       call add(family%parameter(i)%name, of_model, family%parameter(i)%value)
     end do
     call add('measurement.spring_constant', of_spring, curve%spring)
-    if (has_detector) call add('measurement.sensitivity', of_sensitivity, curve%sensitivity)
+    if (allocated(curve%data%measured%sensitivity)) &
+      call add('measurement.sensitivity', of_sensitivity, curve%sensitivity)
     call add('measurement.contact_point', of_contact_point, curve%contact_point)
 
   contains

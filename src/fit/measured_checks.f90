@@ -4,9 +4,8 @@ module measured_checks
   use kinds, only: wp
   use text, only: rounded
   use measured_curve, only: measured_t
-  use measured_jumps, only: measured_jump_t, find_jump
+  use measured_jumps, only: measured_jump_t, find_jump, off_baseline
   use noise, only: noise_t
-  use far_samples, only: off_baseline
   use fit_request, only: of_sensitivity, farthest_off
   use path_model, only: path_model_t
   use modelled_curve, only: modelled_curve_t
@@ -43,9 +42,9 @@ contains
         'contact into the forces; check that columns names the signal'
       return
     end if
-    call check_ways(measured, noise, stiffness, trouble)
+    call check_ways()
     if (allocated(trouble)) return
-    call nearest(measured, left, near, before, travel)
+    call nearest()
     if (near >= 0 .or. near >= before) then
       ! Backwards in time a contact lies at the far end, and seems pressed relative to its line.
       jump = jumps_in(left)
@@ -74,40 +73,32 @@ contains
         find_jump(other, noise%deviation, stiffness, .false.)]
     end function jumps_in
 
-  end subroutine check_measured
+    !> Sets `trouble` if approach and retreat are exchanged. A cycle dissipates energy: between its
+    !> ends, where the ways meet, the approach lies above the retreat, for any baseline. If the
+    !> difference is within the noise, a contact at the far end decides.
+    subroutine check_ways()
+      real(wp) :: position(size(measured%z)), above(parts), error(parts), slope(2), slope_error(2)
+      real(wp) :: taken(2), sure
 
-  !> Sets `trouble` if approach and retreat are exchanged. A cycle dissipates energy: between its
-  !> ends, where the ways meet, the approach lies above the retreat, for any baseline. If the
-  !> difference is within the noise, a contact at the far end decides.
-  subroutine check_ways(measured, noise, stiffness, trouble)
-    type(measured_t), intent(in) :: measured
-    type(noise_t), intent(in) :: noise
-    real(wp), intent(in) :: stiffness
-    character(len=:), allocatable, intent(inout) :: trouble
-    real(wp) :: position(size(measured%z)), above(parts), error(parts), slope(2), slope_error(2)
-    real(wp) :: taken(2), sure
-
-    if (.not. (any(measured%inward) .and. .not. all(measured%inward))) return
-    position = measured%facing*measured%z
-    call compare_ways(measured, noise, above, error)
-    call slope_at(position, slope(1), slope_error(1))
-    call slope_at(-position, slope(2), slope_error(2))
-    ! The signal has the opposite sign: both ends bend down.
-    if (sum(slope) < 0) return
-    taken = sum(above)/parts - above([1, parts])
-    sure = surely*maxval(error([1, parts]))
-    if (all(taken < -sure)) then
-      trouble = 'a cycle would gain energy, as the adhesion is stronger on the way in than on ' // &
-        'the way out: the rows of the file are in reverse order, or approach and retreat are ' // &
-        'exchanged in the third column'
-    else if (sum(taken) < 0.2_wp*sure .and. &
-      slope(2) > steep*stiffness + surely*slope_error(2) .and. &
-      abs(slope(1)) + surely*slope_error(1) < slope(2)/4) then
-      trouble = 'the bodies press on each other at the largest distance of the base: approach ' // &
-        'and retreat are exchanged in the third column, or its rows are in reverse order'
-    end if
-
-  contains
+      if (.not. (any(measured%inward) .and. .not. all(measured%inward))) return
+      position = measured%facing*measured%z
+      call compare_ways(measured, noise, above, error)
+      call slope_at(position, slope(1), slope_error(1))
+      call slope_at(-position, slope(2), slope_error(2))
+      ! The signal has the opposite sign: both ends bend down.
+      if (sum(slope) < 0) return
+      taken = sum(above)/parts - above([1, parts])
+      sure = surely*maxval(error([1, parts]))
+      if (all(taken < -sure)) then
+        trouble = 'a cycle would gain energy, as the adhesion is stronger on the way in than ' // &
+          'on the way out: the rows of the file are in reverse order, or approach and retreat ' // &
+          'are exchanged in the third column'
+      else if (sum(taken) < 0.2_wp*sure .and. slope(2) > steep*stiffness + surely*slope_error(2) &
+        .and. abs(slope(1)) + surely*slope_error(1) < slope(2)/4) then
+        trouble = 'the bodies press on each other at the largest distance of the base: approach ' &
+          // 'and retreat are exchanged in the third column, or its rows are in reverse order'
+      end if
+    end subroutine check_ways
 
     !> Minus the slope of the signal at the samples with the smallest `place`.
     pure subroutine slope_at(place, slope, error)
@@ -124,7 +115,23 @@ contains
       error = noise%long_deviation()/sqrt(squares)
     end subroutine slope_at
 
-  end subroutine check_ways
+    !> The mean residual of the samples nearest to the other body, that of as many before them, and
+    !> the distance between the two groups.
+    subroutine nearest()
+      real(wp) :: position(size(left)), low, width
+      logical :: mask(size(left))
+
+      position = measured%facing*measured%z
+      low = minval(position)
+      width = nearest_part*(maxval(position) - low)
+      mask = measured%usable .and. position <= low + width
+      near = sum(left, mask)/max(1, count(mask))
+      mask = measured%usable .and. position > low + width .and. position <= low + 2*width
+      before = sum(left, mask)/max(1, count(mask))
+      travel = width
+    end subroutine nearest
+
+  end subroutine check_measured
 
   !> Height of the approach above the retreat in each part of the travel, nearest first, without
   !> their common slope; zeros where one of them has no samples.
@@ -207,25 +214,6 @@ contains
       if (first == 0) last = 0
     end associate
   end subroutine find_saturated
-
-  !> The mean residual of the samples nearest to the other body, that of as many before them, and
-  !> the distance between the two groups.
-  pure subroutine nearest(measured, left, near, before, travel)
-    type(measured_t), intent(in) :: measured
-    real(wp), intent(in) :: left(:)
-    real(wp), intent(out) :: near, before, travel
-    real(wp) :: position(size(left)), low, width
-    logical :: mask(size(left))
-
-    position = measured%facing*measured%z
-    low = minval(position)
-    width = nearest_part*(maxval(position) - low)
-    mask = measured%usable .and. position <= low + width
-    near = sum(left, mask)/max(1, count(mask))
-    mask = measured%usable .and. position > low + width .and. position <= low + 2*width
-    before = sum(left, mask)/max(1, count(mask))
-    travel = width
-  end subroutine nearest
 
   !> Sets `trouble` if the load falls more than the spring permits. As h0 grows with the position of
   !> the base, the load falls by the stiffness of the spring times the travel at most, for any

@@ -1,5 +1,5 @@
-!> A measured force curve: the deflection of a spring, or the force, while its base moves to the
-!> other body and back.
+!> A measured force curve (`measurement_t`): the deflection of a spring, or the force, while its
+!> base moves to the other body and back.
 module measured_curve
   use kinds, only: wp
   use noise, only: median_of
@@ -13,7 +13,7 @@ module measured_curve
   !> Samples in the order of the file, the approach first. The contact point is the z at which
   !> undeformed bodies under a relaxed spring would touch. The position of the drive (`drive_t`) is
   !> facing*(z - contact point); facing is 1 if z falls towards the other body, else -1.
-  type :: measured_t
+  type, extends(measurement_t) :: measured_t
     real(wp), allocatable :: z(:), signal(:)
     logical, allocatable :: inward(:)
     real(wp) :: facing = 1
@@ -46,20 +46,19 @@ contains
     outlier = .not. (self%usable .or. self%skipped)
   end function outlier
 
-  !> Reads the curve of `request` from its file. A third column has the way of each sample: 0
+  !> Reads the samples of a curve from its file. A third column has the way of each sample: 0
   !> approach, 1 retreat. Without it the ways are separated at the turn of z.
-  subroutine read_measured(request, measured, error)
-    type(measurement_t), intent(in) :: request
-    type(measured_t), intent(out) :: measured
+  subroutine read_measured(measured, error)
+    type(measured_t), intent(inout) :: measured
     type(failure_t), allocatable, intent(out) :: error
     type(data_table_t) :: table
     logical, allocatable :: wanted(:)
     integer :: i
 
-    call read_data_table(request%file, request%columns, table, error)
+    call read_data_table(measured%file, measured%columns, table, error)
     if (allocated(error)) return
-    table%value(:, 1) = table%value(:, 1)*request%unit(1)
-    table%value(:, 2) = table%value(:, 2)*request%unit(2)
+    table%value(:, 1) = table%value(:, 1)*measured%unit(1)
+    table%value(:, 2) = table%value(:, 2)*measured%unit(2)
     associate (z => table%value(:, 1), signal => table%value(:, 2))
       if (size(z) < fewest) then
         call fail(error, bad_input, table%source%file // ': a curve needs 20 samples or more')
@@ -67,7 +66,7 @@ contains
       end if
       call check_columns(table%source%file, z, signal, error)
       if (allocated(error)) return
-      if (size(request%columns) > 2) then
+      if (size(measured%columns) > 2) then
         do i = 1, size(z)
           if (any(abs(table%value(i, 3) - [0, 1]) <= 0)) cycle
           call table%source%complain(table%place(i), &
@@ -76,13 +75,13 @@ contains
         end do
         measured%inward = nint(table%value(:, 3)) == 0
       else
-        measured%inward = before_turn(z, request%segment)
+        measured%inward = before_turn(z, measured%segment)
       end if
       ! A row that repeats the one before it tells nothing new.
       wanted = [.true., (abs(z(i) - z(i - 1)) > 0 .or. abs(signal(i) - signal(i - 1)) > 0 .or. &
         (measured%inward(i) .neqv. measured%inward(i - 1)), i=2, size(z))]
-      if (request%segment == 'approach') wanted = wanted .and. measured%inward
-      if (request%segment == 'retreat') wanted = wanted .and. .not. measured%inward
+      if (measured%segment == 'approach') wanted = wanted .and. measured%inward
+      if (measured%segment == 'retreat') wanted = wanted .and. .not. measured%inward
       measured%z = [pack(z, measured%inward .and. wanted), &
         pack(z, wanted .and. .not. measured%inward)]
       measured%signal = [pack(signal, measured%inward .and. wanted), &
@@ -90,8 +89,8 @@ contains
       measured%inward = [pack(measured%inward, measured%inward .and. wanted), &
         pack(measured%inward, wanted .and. .not. measured%inward)]
     end associate
-    measured%skipped = [(any(measured%z(i) >= request%skip(1::2) .and. &
-      measured%z(i) <= request%skip(2::2)), i=1, size(measured%z))]
+    measured%skipped = [(any(measured%z(i) >= measured%skip(1::2) .and. &
+      measured%z(i) <= measured%skip(2::2)), i=1, size(measured%z))]
     measured%usable = .not. measured%skipped
     call find_facing(table%source%file, measured, error)
   end subroutine read_measured
@@ -183,7 +182,6 @@ contains
     goes_back = sum(abs(mean(2:) - mean(:parts - 1))) > much*abs(mean(parts) - mean(1))
   end function goes_back
 
-  !> Means over the parts of a column.
   pure function means_of(number) result(mean)
     real(wp), intent(in) :: number(:)
     real(wp) :: mean(parts)

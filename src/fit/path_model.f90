@@ -6,8 +6,7 @@ module path_model
   use interpolation, only: hermite_t, polynomial_weights
   use listener, only: listener_t
   use dimensionless_problem, only: problem_t
-  use problem_family, only: problem_family_t
-  use variation, only: variation_t, vary, to_search
+  use variation, only: problem_family_t, variation_t, vary, to_search
   use edge_locked, only: new_mesh_family
   use mesh_store, only: mesh_store_t
   use path_tangent, only: of_h0, of_load
@@ -18,7 +17,7 @@ module path_model
   use experiment_request, only: request_t, numerics_t
   use experiment, only: prepare
   use numerics_choice, only: choice_t, choose
-  use path_demand, only: demand_of, range_of
+  use path_demand, only: demand_of
   use path_stepper, only: path_stepper_t
   use force_model, only: force_model_t, response_t, branch_t, inward, outward
   implicit none
@@ -87,7 +86,6 @@ contains
     type(listener_t) :: silent
     type(failure_t), allocatable :: error
     real(wp), allocatable :: anywhere
-    real(wp) :: low, high
 
     self%value = value
     self%stiffness = stiffness
@@ -99,22 +97,23 @@ contains
     if (allocated(error)) return
     if (.not. problem%law%adhesion > 0) return
     request%numerics = self%numerics
-    allocate (request%path, request%device, request%fixed_load)
+    allocate (request%path, request%device)
     request%path%h0_end = problem%law%separation_of(problem%law%rest_gap)
     request%device%stiffness = [stiffness]
     request%device%z_start = farthest
-    request%fixed_load%load = [largest]
-    call range_of(request, problem, low, high)
-    chosen = choose(self%numerics, problem, low, .false.)
+    request%fixed_loads = [largest]
+    chosen = choose(request, problem)
     call prepare(self%steps, problem, chosen, self%numerics%accuracy)
     self%steps%options%mixing = .false.
-    self%steps%meshes = new_mesh_family(problem, high, low, chosen%digits, store=self%store)
-    call self%steps%know_path(high, low, .true., self%numerics%accuracy, silent, &
+    self%steps%meshes = new_mesh_family(problem, chosen%high, chosen%low, chosen%digits, &
+      store=self%store)
+    call self%steps%know_path(chosen, .true., self%numerics%accuracy, silent, &
       demand_of(request, problem))
     self%left_out = self%steps%known%left_out
     if (.not. self%steps%known%path%held > 1) return
     call drive_bodies(self%steps%solver_t, self%steps%known%path, &
-      through_spring(stiffness*problem%length/problem%load), low, anywhere, anywhere, self%driven)
+      through_spring(stiffness*problem%length/problem%load), chosen%low, anywhere, anywhere, &
+      self%driven)
     self%solved = self%driven%solved .and. self%driven%caught .and. size(self%driven%leg) > 1
   end subroutine solve_trial
 

@@ -1,5 +1,6 @@
-!> A second examination of the data with a fitted model: residuals show noise, outliers and jumps
-!> better than the curve itself.
+!> What the residuals of a fit tell: whether they are noise, since a wrong model leaves residuals of
+!> one sign over many neighbours, which means over blocks of samples reveal; and noise, outliers and
+!> jumps, which they show better than the curve itself.
 module second_look
   use kinds, only: wp
   use noise, only: noise_t, noise_of, white_noise, noise_of_steps, median_of, normal_median, &
@@ -8,7 +9,21 @@ module second_look
   use modelled_curve, only: modelled_curve_t
   implicit none
   private
-  public :: look_again
+  public :: lack_t, lack_in, hardly_ever, look_again
+
+  !> The largest lack of fit. excess: by how many standard deviations the means of blocks of `width`
+  !> samples exceed those of noise. times: their ratio to those of noise.
+  type :: lack_t
+    integer :: width = 1
+    real(wp) :: excess = 0, times = 1
+  contains
+    procedure :: is_noise
+  end type lack_t
+
+  !> Smallest number of blocks that is tested. The excess that noise reaches in one fit of two
+  !> hundred with about seven widths.
+  integer, parameter :: fewest_blocks = 8
+  real(wp), parameter :: hardly_ever = 3.2_wp
 
   !> Standard deviations above which a sample is an outlier; one good sample in 150,000 exceeds
   !> this.
@@ -19,6 +34,60 @@ module second_look
   real(wp), parameter :: differs = 4
 
 contains
+
+  !> Whether noise explains the residuals.
+  pure logical function is_noise(self)
+    class(lack_t), intent(in) :: self
+
+    is_noise = self%excess <= hardly_ever
+  end function is_noise
+
+  !> The largest lack of fit over all widths. white: whitened residuals. run: number of the run of
+  !> each sample; samples of different runs are not neighbours. freedom: number of independent
+  !> residuals. noise: the noise that they were whitened with.
+  pure type(lack_t) function lack_in(white, run, freedom, noise) result(worst)
+    real(wp), intent(in) :: white(:)
+    type(noise_t), intent(in) :: noise
+    integer, intent(in) :: run(:), freedom
+    real(wp) :: total, part, excess
+    integer :: width, i, k, blocks
+
+    worst%excess = -huge(1.0_wp)
+    width = 1
+    do
+      total = 0
+      blocks = 0
+      k = 0
+      part = 0
+      do i = 1, size(white)
+        if (run(i) /= run(max(1, i - 1))) k = 0
+        if (k == 0) part = 0
+        part = part + white(i)
+        k = k + 1
+        if (k < width) cycle
+        k = 0
+        blocks = blocks + 1
+        total = total + part**2/width
+      end do
+      if (width == 1) blocks = max(1, freedom)
+      if (width > 1 .and. blocks < fewest_blocks) return
+      ! The ratio of the variance of all samples to that of their steps has the variance 1/n (von
+      ! Neumann, 1941), half that of the variance of all samples, as if n were twice as large.
+      excess = normal_of(total, blocks, noise%known_by)
+      if (width == 1 .and. noise%of_steps) excess = normal_of(2*total, 2*blocks, huge(1.0_wp))
+      if (excess > worst%excess) worst = lack_t(width, excess, sqrt(total/blocks))
+      width = 2*width
+    end do
+  end function lack_in
+
+  !> A sum of n squares of normal numbers as a normal number (Wilson and Hilferty, 1931), if their
+  !> variance is known from `known_by` others.
+  pure real(wp) function normal_of(total, n, known_by)
+    real(wp), intent(in) :: total, known_by
+    integer, intent(in) :: n
+
+    normal_of = ((total/n)**(1.0_wp/3) - 1 + 2.0_wp/(9*n))/sqrt(2.0_wp/(9*n) + 2/9.0_wp/known_by)
+  end function normal_of
 
   !> Finds noise, outliers and jumps again. value: the best fit so far. keep_noise: the noise is
   !> given. settled: there was no significant change.
@@ -50,9 +119,8 @@ contains
       do way = 1, 2
         if (curve%response%way(way)%main == 0 .or. .not. any(data%way == way)) cycle
         jump = jump_by_model(curve, value, baseline, left, way)
-        settled = settled .and. jump%before == data%jump(way)%before .and. &
-          jump%after == data%jump(way)%after .and. &
-          abs(jump%z - data%jump(way)%z) <= 0.1_wp*jump%uncertainty
+        settled = settled .and. jump%before == data%jump(way)%before .and. jump%after == &
+          data%jump(way)%after .and. abs(jump%z - data%jump(way)%z) <= 0.1_wp*jump%uncertainty
         data%jump(way) = jump
       end do
     end associate

@@ -10,10 +10,9 @@
 !> waves need.
 module mesh_waves
   use kinds, only: wp
-  use quadrature, only: lagrange_basis
+  use quadrature, only: lagrange_basis, wave_rule
   use linear_algebra, only: multiply, multiply_left, add_by_transposed
-  use bessel, only: bessel_t, new_bessel
-  use wave_quadrature, only: wave_rule
+  use special_functions, only: bessel_t, new_bessel
   use panel_map, only: algebraic_map
   use discretisation, only: discretisation_t, local_nodes_t, gauss_nodes, axis_row, centre_row, &
     first_node

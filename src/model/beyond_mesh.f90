@@ -8,8 +8,7 @@ module beyond_mesh
   use quadrature, only: gauss_legendre
   implicit none
   private
-  public :: load_beyond, load_slope_beyond, energy_beyond, energy_density, &
-    falls_slowly, farthest
+  public :: load_beyond, load_slope_beyond, energy_beyond, energy_density, falls_slowly, farthest
 
   !> Number of points of the quadrature; and for the energy of the parabola, where the gap is a
   !> power of the variable.

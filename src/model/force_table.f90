@@ -5,8 +5,7 @@
 !> the first point the pressure is a power of the gap with the same value and slope.
 module force_table
   use kinds, only: wp
-  use cubic, only: spline, monotone
-  use interpolation, only: interval_of
+  use interpolation, only: spline, monotone, interval_of
   use quadrature, only: gauss_legendre
   implicit none
   private

@@ -6,7 +6,7 @@ module layered_body
   use linear_algebra, only: multiply_transposed
   use chebyshev, only: chebyshev_points, chebyshev_series, series_slope, series_integral, &
     power_series, power_value
-  use wave_quadrature, only: wave_rule
+  use quadrature, only: wave_rule
   use elastic_body, only: elastic_body_t
   use layered_surface, only: layered_surface_t
   implicit none
@@ -22,7 +22,7 @@ module layered_body
   !> Largest turn of a wave over a panel of waves, and numbers of nodes of a panel (`wave_rule`).
   real(wp), parameter :: swing = 16
   real(wp), parameter :: nodes(2) = 20
-  !> More panels than needed for layers within the limits of `layer_group`.
+  !> More panels than needed for layers within the limits of `scene_problem`.
   integer, parameter :: most_panels = 1000
   !> Largest size of the last coefficients of a series.
   real(wp), parameter :: resolved = 1.0e-13_wp
@@ -84,8 +84,7 @@ contains
       end do
       body%ends = [body%ends, merge(last, first + (last - first)/2**halved, halved == 0)]
       largest = max(largest, maxval(abs(series)))
-      body%series = reshape([body%series, power_series(series)], &
-        [degree + 1, size(body%ends) - 1])
+      body%series = reshape([body%series, power_series(series)], [degree + 1, size(body%ends) - 1])
       body%slope = reshape([body%slope, power_series(series_slope(series)*2/ &
         (body%ends(size(body%ends)) - first))], [degree + 1, size(body%ends) - 1])
       whole = series_integral(series)*(body%ends(size(body%ends)) - first)/2

@@ -14,7 +14,7 @@
 !> line y = y0 + p t and s = s0 - (1 - p) cosh(y0/2) t. The two t are the unknowns.
 module poisson_boltzmann
   use kinds, only: wp
-  use elliptic, only: carlson_rf
+  use special_functions, only: carlson_rf
   implicit none
   private
   public :: surface_t, gap_state_t, far_state, solve_gap
@@ -79,9 +79,8 @@ contains
           jacobian(:, k) = (residual(trial) - r)/(trial(k) - t(k))
         end do
       end if
-      step = [r(2)*jacobian(1, 2) - r(1)*jacobian(2, 2), &
-        r(1)*jacobian(2, 1) - r(2)*jacobian(1, 1)]/ &
-        (jacobian(1, 1)*jacobian(2, 2) - jacobian(1, 2)*jacobian(2, 1))
+      step = [r(2)*jacobian(1, 2) - r(1)*jacobian(2, 2), r(1)*jacobian(2, 1) - r(2)*jacobian(1, &
+        1)]/ (jacobian(1, 1)*jacobian(2, 2) - jacobian(1, 2)*jacobian(2, 1))
       if (.not. all(abs(step) < huge(step))) return
       off = maxval(abs(step)/scale)
       solved = off*merge(off/last, increment, gains) <= rounding

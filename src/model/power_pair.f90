@@ -79,8 +79,7 @@ contains
       if (self%attractive > 0) value = value - self%attractive*inverse_power(gap, self%m)
     case (of_slope)
       value = -self%repulsive*self%n*inverse_power(gap, self%n + 1)
-      if (self%attractive > 0) &
-        value = value + self%attractive*self%m*inverse_power(gap, self%m + 1)
+      if (self%attractive > 0) value = value + self%attractive*self%m*inverse_power(gap, self%m + 1)
     case default
       value = self%repulsive/(self%n - 1)*inverse_power(gap, self%n - 1)
       if (self%attractive > 0) &

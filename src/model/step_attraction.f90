@@ -3,10 +3,9 @@
 !> Jacobian. Dugdale's law, the depletion force and a capillary bridge are of this kind.
 module step_attraction
   use kinds, only: wp, pi
-  use failure, only: failure_t
   use deck, only: deck_t
   use force_law, only: force_law_t, of_pressure, of_slope, whole_step
-  use law_reading, only: accept_law
+  use group_reading, only: accept_law
   implicit none
   private
   public :: new_step, read_step
@@ -27,42 +26,38 @@ module step_attraction
 
 contains
 
-  !> The law of a group whose keys `strength_key` [Pa] and `length_key` [m] give stress and range,
-  !> if the deck has the group.
-  subroutine read_step(deck, group, strength_key, length_key, law, error)
+  !> The law of a group whose keys `strength_key` [Pa] and `length_key` [m] give stress and range.
+  subroutine read_step(deck, group, strength_key, length_key, law)
     type(deck_t), intent(inout) :: deck
     character(len=*), intent(in) :: group, strength_key, length_key
     class(force_law_t), allocatable, intent(out) :: law
-    type(failure_t), allocatable, intent(inout) :: error
     real(wp) :: stress, range
 
-    if (.not. deck%has_group(group)) return
     call deck%get(group, strength_key, stress)
     call deck%get(group, length_key, range)
-    call new_step(deck, group, strength_key, length_key, stress, range, law, error)
+    call new_step(deck, group, strength_key, length_key, stress, range, law)
   end subroutine read_step
 
   !> The law with stress [Pa] and range [m], and the key `smoothing` of the group; the other keys
   !> are for messages.
-  subroutine new_step(deck, group, strength_key, length_key, stress, range, law, error)
+  subroutine new_step(deck, group, strength_key, length_key, stress, range, law)
     type(deck_t), intent(inout) :: deck
     character(len=*), intent(in) :: group, strength_key, length_key
     real(wp), intent(in) :: stress, range
     class(force_law_t), allocatable, intent(out) :: law
-    type(failure_t), allocatable, intent(inout) :: error
     type(step_t) :: this
 
     call deck%assume(group, 'smoothing', usual*range)
     call deck%get(group, 'smoothing', this%smoothing)
     if (this%smoothing > 0.5_wp*range) call deck%mistake(group, 'smoothing', &
-      'is more than half of the range; above that there is no step', error)
+      'is more than half of the range; above that there is no step')
     this%length = range
     this%pressure_unit = stress
     this%smoothing = this%smoothing/range
     this%step_at = 1
     this%step_width = this%smoothing
     this%breaks = 1 + max(whole_step*this%smoothing, least)*[-1.0_wp, 1.0_wp]
-    call accept_law(deck, group, strength_key, length_key, this, law, error)
+    call accept_law(deck, group, strength_key, length_key, this, law)
   end subroutine new_step
 
   !> Distance of the gap from the step in smoothing lengths.

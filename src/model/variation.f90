@@ -1,15 +1,41 @@
-!> A problem with one of its parameters varied, and the rule for derivatives from values at the
-!> varied problems: differences, so that laws, shapes and bodies need no derivatives by parameters.
-!> Reported derivatives are of sixth order; second order suffices for a search.
+!> Problems that differ in the values of parameters, for fits; and a problem with one parameter
+!> varied, with the rule for derivatives from values at the varied problems: differences, so that
+!> laws, shapes and bodies need no derivatives by parameters. Reported derivatives are of sixth
+!> order; second order suffices for a search.
 module variation
   use kinds, only: wp
   use failure, only: failure_t
   use dimensionless_problem, only: problem_t, calm_gap
   use interpolation, only: polynomial_slope
-  use problem_family, only: problem_family_t, parameter_t
   implicit none
   private
-  public :: variation_t, vary, along_path, to_report, to_search
+  public :: problem_family_t, parameter_t, variation_t, vary, along_path, to_report, to_search
+
+  !> A parameter: its value in the present problem, SI units, and its scale, which is the value
+  !> unless the value is zero. follows: the value is a factor of the parameter's default, which may
+  !> follow from other parameters.
+  type :: parameter_t
+    character(len=:), allocatable :: name
+    real(wp) :: value = 0, scale = 1
+    logical :: follows = .false.
+  end type parameter_t
+
+  type, abstract :: problem_family_t
+    type(parameter_t), allocatable :: parameter(:)
+  contains
+    !> The problem with other values of the parameters; fails if a value is not allowed.
+    procedure(pose_problem), deferred :: pose
+  end type problem_family_t
+
+  abstract interface
+    subroutine pose_problem(self, value, problem, error)
+      import :: problem_family_t, problem_t, failure_t, wp
+      class(problem_family_t), intent(in) :: self
+      real(wp), intent(in) :: value(:)
+      type(problem_t), intent(out) :: problem
+      type(failure_t), allocatable, intent(out) :: error
+    end subroutine pose_problem
+  end interface
 
   !> Number of problems on either side of the present one; and for each number the step between two,
   !> as a part of the parameter's scale. The error of differences of sixth order, for h^-n about
@@ -54,70 +80,64 @@ contains
     if (aside == to_report) call family%pose(family%parameter%value, problem, error)
     if (allocated(error)) return
     do
-      call pose_beside(family, i, aside, apart, varied, error)
+      call pose_beside(i)
       if (allocated(error)) return
       varied%shift = 0*varied%offset
       call find_rule(varied)
       if (aside < to_report .or. apart < least_step) return
-      if (is_smooth(problem, varied)) return
+      if (is_smooth()) return
       apart = 0.25_wp*apart
     end do
-  end subroutine vary
-
-  !> Poses the problems at distances `apart`, as a part of the parameter's scale.
-  subroutine pose_beside(family, i, aside, apart, varied, error)
-    class(problem_family_t), intent(in) :: family
-    integer, intent(in) :: i, aside
-    real(wp), intent(in) :: apart
-    type(variation_t), intent(inout) :: varied
-    type(failure_t), allocatable, intent(out) :: error
-    real(wp) :: value(size(family%parameter))
-    integer :: shift, k
-
-    do shift = 0, 2
-      varied%offset = [(real(k + aside*merge(-1, shift, shift == 2), wp), k=-aside, aside)]
-      ! With two sides the present problem has no weight.
-      if (shift == 0) varied%offset = pack(varied%offset, abs(varied%offset) > 0)
-      varied%offset = apart*varied%parameter%scale*varied%offset
-      deallocate (varied%problem)
-      allocate (varied%problem(size(varied%offset)))
-      do k = 1, size(varied%offset)
-        value = family%parameter%value
-        value(i) = value(i) + varied%offset(k)
-        call family%pose(value, varied%problem(k), error)
-        if (allocated(error)) exit
-      end do
-      if (.not. allocated(error)) return
-    end do
-  end subroutine pose_beside
-
-  !> Whether the two rules agree for the pressures at many separations, also within the step of a
-  !> law, and for the heights of the shape.
-  logical function is_smooth(problem, varied)
-    type(problem_t), intent(in) :: problem
-    type(variation_t), intent(in) :: varied
-    integer, parameter :: tried = 40
-    real(wp), allocatable :: gap(:), separation(:), r(:), pressure(:, :), height(:, :)
-    real(wp) :: from
-    integer :: k
-
-    associate (law => problem%law)
-      from = max(law%rest_gap, 0.1_wp)
-      gap = from*(calm_gap(problem)/from)**[(k/(tried - 1.0_wp), k=0, tried - 1)]
-      r = [(problem%lateral*problem%shape%position_of(gap(k)), k=1, tried)]
-      if (law%step_width > 0) gap = [gap, law%step_at + law%step_width*[(k/4.0_wp, k=-12, 12)]]
-      separation = law%separation_of(gap)
-    end associate
-    allocate (pressure(size(separation), size(varied%offset)), height(tried, size(varied%offset)))
-    do k = 1, size(varied%offset)
-      associate (other => varied%problem(k))
-        pressure(:, k) = other%pressure*other%law%pressure(other%law%gap_of(separation))
-        height(:, k) = other%length*other%shape%height(r/other%lateral)
-      end associate
-    end do
-    is_smooth = agree(pressure) .and. agree(height)
 
   contains
+
+    !> Poses the problems at distances `apart`, as a part of the parameter's scale.
+    subroutine pose_beside(i)
+      integer, intent(in) :: i
+      real(wp) :: value(size(family%parameter))
+      integer :: shift, k
+
+      do shift = 0, 2
+        varied%offset = [(real(k + aside*merge(-1, shift, shift == 2), wp), k=-aside, aside)]
+        ! With two sides the present problem has no weight.
+        if (shift == 0) varied%offset = pack(varied%offset, abs(varied%offset) > 0)
+        varied%offset = apart*varied%parameter%scale*varied%offset
+        deallocate (varied%problem)
+        allocate (varied%problem(size(varied%offset)))
+        do k = 1, size(varied%offset)
+          value = family%parameter%value
+          value(i) = value(i) + varied%offset(k)
+          call family%pose(value, varied%problem(k), error)
+          if (allocated(error)) exit
+        end do
+        if (.not. allocated(error)) return
+      end do
+    end subroutine pose_beside
+
+    !> Whether the two rules agree for the pressures at many separations, also within the step of a
+    !> law, and for the heights of the shape.
+    logical function is_smooth()
+      integer, parameter :: tried = 40
+      real(wp), allocatable :: gap(:), separation(:), r(:), pressure(:, :), height(:, :)
+      real(wp) :: from
+      integer :: k
+
+      associate (law => problem%law)
+        from = max(law%rest_gap, 0.1_wp)
+        gap = from*(calm_gap(problem)/from)**[(k/(tried - 1.0_wp), k=0, tried - 1)]
+        r = [(problem%lateral*problem%shape%position_of(gap(k)), k=1, tried)]
+        if (law%step_width > 0) gap = [gap, law%step_at + law%step_width*[(k/4.0_wp, k=-12, 12)]]
+        separation = law%separation_of(gap)
+      end associate
+      allocate (pressure(size(separation), size(varied%offset)), height(tried, size(varied%offset)))
+      do k = 1, size(varied%offset)
+        associate (other => varied%problem(k))
+          pressure(:, k) = other%pressure*other%law%pressure(other%law%gap_of(separation))
+          height(:, k) = other%length*other%shape%height(r/other%lateral)
+        end associate
+      end do
+      is_smooth = agree(pressure) .and. agree(height)
+    end function is_smooth
 
     !> Whether the rules agree for values in the varied problems, except for rounding, and the
     !> largest value changes little.
@@ -127,13 +147,12 @@ contains
       real(wp) :: most(size(value, 2))
 
       most = maxval(abs(value), 1)
-      agree = maxval(most) - minval(most) <= little*maxval(most) .and. &
-        maxval(abs(matmul(value, varied%weight - varied%coarser))) <= &
-        coarse*maxval(abs(matmul(value, varied%weight))) + &
+      agree = maxval(most) - minval(most) <= little*maxval(most) .and. maxval(abs(matmul(value, &
+        varied%weight - varied%coarser))) <= coarse*maxval(abs(matmul(value, varied%weight))) + &
         rounding*maxval(most)*sum(abs(varied%weight))
     end function agree
 
-  end function is_smooth
+  end subroutine vary
 
   !> Varies the path's coordinate, with the same problem. apart: a distance over which the path is
   !> smooth, however steep the law.
@@ -149,7 +168,6 @@ contains
     call find_rule(varied)
   end function along_path
 
-  !> Sets the weights for the offsets.
   subroutine find_rule(varied)
     type(variation_t), intent(inout) :: varied
     real(wp) :: one(size(varied%offset))

@@ -14,8 +14,7 @@ module data_table
     miscount
   implicit none
   private
-  public :: data_table_t, read_data_table, largest_table, read_columns
-  public :: is_header
+  public :: data_table_t, read_data_table, largest_table, read_columns, is_header
 
   !> The columns asked for, value(row, column), the position of each row in the file's text, and the
   !> number of columns in the file.
@@ -42,25 +41,25 @@ contains
     type(span_t), allocatable :: cells(:), names(:)
     integer, allocatable :: at(:)
     logical, allocatable :: turned(:)
-    integer :: first, next, n, comment, named
+    integer :: first, next, n, comment, named, i
     logical :: header
 
     call load_source(file, table%source, error, largest_table)
     if (allocated(error)) return
     call point_decimals(table%source%text)
-    n = lines_of(table%source%text)
+    n = count([(table%source%text(i:i) == newline, i=1, len(table%source%text))]) + 1
     allocate (table%place(n), table%value(n, size(wanted)), at(size(wanted)))
     turned = index(adjustl(wanted), '-') == 1
     n = 0
     comment = 0
     next = 1
-    call next_row(table%source, next, first, cells, comment)
+    call next_row()
     if (first > 0) then
       named = first
       names = cells
       header = is_header(table%source, first, cells)
       if (header) then
-        call next_row(table%source, next, first, cells, comment)
+        call next_row()
       else if (comment > 0) then
         ! The last comment before the rows may have the names.
         named = comment
@@ -70,8 +69,8 @@ contains
       if (first > 0) table%columns = size(cells)
       if (size(names) /= table%columns) then
         if (header .and. first > 0 .and. size(cells) < size(names)) then
-          if (ends_empty(line_at(table%source, first))) then
-            call table%source%complain(first, miscount(line_at(table%source, first), size(cells), &
+          if (ends_empty(this_line())) then
+            call table%source%complain(first, miscount(this_line(), size(cells), &
               size(names)), error)
             return
           end if
@@ -85,23 +84,103 @@ contains
         named = first
         names = cells
       end if
-      call find_columns(table%source, named, names, wanted, at, error)
+      call find_columns(named, names)
       if (allocated(error)) return
     end if
     do while (first > 0)
       if (size(cells) /= table%columns) then
-        call table%source%complain(first, miscount(line_at(table%source, first), size(cells), &
+        call table%source%complain(first, miscount(this_line(), size(cells), &
           table%columns), error)
         return
       end if
       n = n + 1
-      call read_row(table%source, first, cells(at), turned, table%value(n, :), error)
+      call read_row(table%value(n, :))
       if (allocated(error)) return
       table%place(n) = first
-      call next_row(table%source, next, first, cells, comment)
+      call next_row()
     end do
     table%value = table%value(:n, :)
     table%place = table%place(:n)
+
+  contains
+
+    !> Finds the next line with cells at or after the position `next`, and moves `next` behind it.
+    !> first: the position of the line; 0 if there is none. comment: the position of the last
+    !> comment before the line, unchanged if there is none.
+    subroutine next_row()
+      associate (source => table%source)
+        do while (next <= len(source%text))
+          first = next
+          next = first + scan(source%text(first:), newline)
+          if (next == first) next = len(source%text) + 2
+          call split(uncommented(source%part(first, next - 2)), cells)
+          if (size(cells) > 0) return
+          if (index(source%part(first, next - 2), '#') > 0) comment = first
+        end do
+      end associate
+      first = 0
+    end subroutine next_row
+
+    pure function this_line() result(line)
+      character(len=:), allocatable :: line
+
+      line = table%source%part(first, first + scan(table%source%text(first:) // newline, newline) &
+        - 2)
+    end function this_line
+
+    !> The column of each wanted name or number; the names are in the line at position `start`.
+    subroutine find_columns(start, spans)
+      integer, intent(in) :: start
+      type(span_t), intent(in) :: spans(:)
+      character(len=:), allocatable :: names, name, what
+      logical :: found(size(spans))
+      integer :: i, k
+
+      names = ''
+      do k = 1, size(spans)
+        names = names // ' ' // lower(cell(start, spans(k)))
+      end do
+      do i = 1, size(wanted)
+        name = trim(adjustl(wanted(i)))
+        if (turned(i)) name = trim(adjustl(name(2:)))
+        call parse_integer(name, at(i), what)
+        if (allocated(what)) then
+          found = [(lower(cell(start, spans(k))) == lower(name), k=1, size(spans))]
+          at(i) = findloc(found, .true., 1)
+          if (count(found) > 1) call table%source%complain(start, 'more than one column ' // &
+            quoted(clip(name)) // '; give its number', error)
+        end if
+        if (at(i) >= 1 .and. at(i) <= size(spans)) cycle
+        call table%source%complain(start, 'no column ' // quoted(clip(name)) // &
+          guess(name, names(2:), '') // '; this line has ' // counted(size(spans)), error)
+      end do
+    end subroutine find_columns
+
+    !> The text of a span in the line at position `start`.
+    pure function cell(start, span)
+      integer, intent(in) :: start
+      type(span_t), intent(in) :: span
+      character(len=:), allocatable :: cell
+
+      cell = table%source%part(start + span%first - 1, start + span%last - 1)
+    end function cell
+
+    !> The wanted numbers of the present row, some with the sign changed.
+    subroutine read_row(row)
+      real(wp), intent(out) :: row(:)
+      character(len=:), allocatable :: what
+      integer :: i
+
+      do i = 1, size(at)
+        call parse_real(cell(first, cells(at(i))), row(i), what)
+        if (allocated(what)) then
+          call table%source%complain(first + cells(at(i))%first - 1, what, error)
+          return
+        end if
+        if (turned(i)) row(i) = -row(i)
+      end do
+    end subroutine read_row
+
   end subroutine read_data_table
 
   !> Reads the file of two columns, with at least `fewest` rows, that a key of the deck names.
@@ -124,43 +203,6 @@ contains
     end if
   end subroutine read_columns
 
-  !> Number of lines of a text, at most.
-  pure integer function lines_of(text)
-    character(len=*), intent(in) :: text
-    integer :: i
-
-    lines_of = count([(text(i:i) == newline, i=1, len(text))]) + 1
-  end function lines_of
-
-  !> Finds the next line with cells at or after the position `next`, and moves `next` behind it.
-  !> first: the position of the line; 0 if there is none. comment: the position of the last comment
-  !> before the line, unchanged if there is none.
-  subroutine next_row(source, next, first, cells, comment)
-    type(source_t), intent(in) :: source
-    integer, intent(inout) :: next, comment
-    integer, intent(out) :: first
-    type(span_t), allocatable, intent(out) :: cells(:)
-
-    do while (next <= len(source%text))
-      first = next
-      next = first + scan(source%text(first:), newline)
-      if (next == first) next = len(source%text) + 2
-      call split(uncommented(source%part(first, next - 2)), cells)
-      if (size(cells) > 0) return
-      if (index(source%part(first, next - 2), '#') > 0) comment = first
-    end do
-    first = 0
-  end subroutine next_row
-
-  !> The line at position `first`.
-  pure function line_at(source, first) result(line)
-    type(source_t), intent(in) :: source
-    integer, intent(in) :: first
-    character(len=:), allocatable :: line
-
-    line = source%part(first, first + scan(source%text(first:) // newline, newline) - 2)
-  end function line_at
-
   !> Whether a line has names, and not a number.
   logical function is_header(source, start, cells)
     type(source_t), intent(in) :: source
@@ -177,78 +219,5 @@ contains
       is_header = is_header .and. allocated(what)
     end do
   end function is_header
-
-  !> The column of each wanted name or number; the names are in the line at position `start`.
-  subroutine find_columns(source, start, cells, wanted, at, error)
-    type(source_t), intent(in) :: source
-    integer, intent(in) :: start
-    type(span_t), intent(in) :: cells(:)
-    character(len=*), intent(in) :: wanted(:)
-    integer, intent(out) :: at(:)
-    type(failure_t), allocatable, intent(inout) :: error
-    character(len=:), allocatable :: names, name, what
-    logical, allocatable :: found(:)
-    integer :: i, k
-
-    names = ''
-    do k = 1, size(cells)
-      names = names // ' ' // lower(cell(k))
-    end do
-    do i = 1, size(wanted)
-      name = unsigned(wanted(i))
-      call parse_integer(name, at(i), what)
-      if (allocated(what)) then
-        found = [(lower(cell(k)) == lower(name), k=1, size(cells))]
-        at(i) = findloc(found, .true., 1)
-        if (count(found) > 1) call source%complain(start, 'more than one column ' // &
-          quoted(clip(name)) // '; give its number', error)
-      end if
-      if (at(i) >= 1 .and. at(i) <= size(cells)) cycle
-      call source%complain(start, 'no column ' // quoted(clip(name)) // &
-        guess(name, names(2:), '') // '; this line has ' // counted(size(cells)), error)
-    end do
-
-  contains
-
-    pure function cell(k)
-      integer, intent(in) :: k
-      character(len=:), allocatable :: cell
-
-      cell = source%part(start + cells(k)%first - 1, start + cells(k)%last - 1)
-    end function cell
-
-  end subroutine find_columns
-
-  !> A column's name or number without its sign.
-  pure function unsigned(name)
-    character(len=*), intent(in) :: name
-    character(len=:), allocatable :: unsigned
-
-    unsigned = trim(adjustl(name))
-    if (index(unsigned, '-') == 1) unsigned = trim(adjustl(unsigned(2:)))
-  end function unsigned
-
-  !> The numbers in these cells of a line; turned: with the sign changed.
-  subroutine read_row(source, start, cells, turned, row, error)
-    type(source_t), intent(in) :: source
-    integer, intent(in) :: start
-    type(span_t), intent(in) :: cells(:)
-    logical, intent(in) :: turned(:)
-    real(wp), intent(out) :: row(:)
-    type(failure_t), allocatable, intent(inout) :: error
-    character(len=:), allocatable :: what
-    integer :: i
-
-    do i = 1, size(cells)
-      associate (first => start + cells(i)%first - 1, last => start + cells(i)%last - 1)
-        call parse_real(source%part(first, last), row(i), what)
-      end associate
-      if (allocated(what)) then
-        call source%complain(start + cells(i)%first - 1, what, error)
-        return
-      end if
-      if (turned(i)) row(i) = -row(i)
-    end do
-  end subroutine read_row
 
 end module data_table

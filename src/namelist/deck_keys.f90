@@ -4,10 +4,8 @@ module deck_keys
   use text, only: brief, listing
   implicit none
   private
-  public :: key_spec, group_row, ignored_group
-  public :: real_value, real_list, integer_value, logical_value, word_value, text_value
-  public :: names_value
-  public :: allowed, names_of, is_of, write_keys
+  public :: key_spec, group_row, ignored_group, real_value, real_list, integer_value, &
+    logical_value, word_value, text_value, names_value, allowed, names_of, is_of, write_keys
 
   !> Kinds of row: a group, a group that is skipped, and seven kinds of key.
   integer, parameter :: group_row = 0, ignored_group = 1

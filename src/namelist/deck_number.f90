@@ -62,7 +62,10 @@ contains
     i = scan(small(:mark - 1), '123456789')
     if (i > 0) then
       ! Clipped, since adding to the largest integer would overflow.
-      order = max(-beyond, min(beyond, order)) + leading_order(small(:mark - 1), i)
+      order = max(-beyond, min(beyond, order))
+      ! The order of the first digit that is not zero.
+      point = index(small(:mark - 1) // '.', '.')
+      order = order + merge(point - i - 1, point - i, i < point)
       if (abs(order) > largest_order) then
         what = token // ' is too ' // merge('large', 'small', order > 0) // &
                '; numbers have decimal orders from -50 to 50'
@@ -78,17 +81,6 @@ contains
     if (.not. abs(value) <= huge(value)) return
     deallocate (what)
   end subroutine parse_real
-
-  !> Decimal order of the first digit that is not zero, at position `first` in `digits`.
-  pure integer function leading_order(digits, first) result(order)
-    character(len=*), intent(in) :: digits
-    integer, intent(in) :: first
-    integer :: point
-
-    point = index(digits, '.')
-    if (point == 0) point = len(digits) + 1
-    order = merge(point - first - 1, point - first, first < point)
-  end function leading_order
 
   !> Reads one integer; `what` as in `parse_real`.
   pure subroutine parse_integer(token, value, what)

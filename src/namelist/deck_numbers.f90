@@ -43,8 +43,7 @@ contains
     end if
     if (row == 0) then
       call fail(error, bad_input, quoted(clip(path)) // ' is not a key that holds a number' // &
-                guess_number(name, numbers_of(deck)) // '; allowed: ' // &
-                listing(numbers_of(deck), '', ''))
+        guess_number(name, numbers_of(deck)) // '; allowed: ' // listing(numbers_of(deck), '', ''))
     else if (.not. deck%in_use(group)) then
       call fail(error, bad_input, 'the deck has no &' // group // ' for ' // quoted(name))
     else if (term > terms_in(deck%values(row))) then

@@ -134,7 +134,6 @@ contains
       end if
     end subroutine end_by_name
 
-    !> Checks that a comma follows a value.
     subroutine take_comma()
       if (.not. assigned .or. after_comma) then
         call complain(start, key, 'a comma with no value before it')
@@ -174,7 +173,6 @@ contains
       end if
     end subroutine open_entry
 
-    !> Adds the value just read to the present assignment.
     subroutine add_value()
       if (.not. assigned) then
         call complain(start, key, 'a value without a key; write key = value')

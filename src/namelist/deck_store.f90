@@ -19,6 +19,8 @@ module deck_store
     !> Whether runs of this deck vary its numbers. `resolved` then writes defaults that follow other
     !> keys as comments, so that they follow them in runs of what it writes, too.
     logical :: varied = .false.
+    !> The mistakes found so far.
+    type(failure_t), allocatable :: error
   contains
     procedure :: has_group
     procedure :: is_set
@@ -81,13 +83,12 @@ contains
     if (row > 0) place = self%values(row)%at
   end function place
 
-  !> Adds a mistake of `group` and `key` (both may be '') to `error`.
-  pure subroutine mistake(self, group, key, what, error)
-    class(deck_t), intent(in) :: self
+  !> Adds a mistake of `group` and `key` (both may be '') to the deck's error.
+  pure subroutine mistake(self, group, key, what)
+    class(deck_t), intent(inout) :: self
     character(len=*), intent(in) :: group, key, what
-    type(failure_t), allocatable, intent(inout) :: error
 
-    call self%source%complain(self%place(group, key), what, error, group, key)
+    call self%source%complain(self%place(group, key), what, self%error, group, key)
   end subroutine mistake
 
   pure subroutine get_real(self, group, key, value)

@@ -118,9 +118,8 @@ contains
       call parse_logical(token, value%flag, what)
     case (word_value)
       value%text = trim(lower(token))
-      if (len(value%text) > 0 .and. index(' ' // trim(spec%choices) // ' ', &
-                                          ' ' // value%text // ' ') > 0 .and. &
-          index(value%text, ' ') == 0) return
+      if (len(value%text) > 0 .and. index(' ' // trim(spec%choices) // ' ', ' ' // value%text // &
+        ' ') > 0 .and. index(value%text, ' ') == 0) return
       hint = guess(value%text, spec%choices, '')
       what = quoted(clip(token)) // ' is not known' // hint
     case (text_value)

@@ -1,4 +1,4 @@
-!> The cause for which an experiment ends early.
+!> The cause for which an experiment ends early, and the message for it.
 module ending
   use kinds, only: wp
   implicit none
@@ -7,15 +7,23 @@ module ending
   public :: as_planned, touching, beyond_rounding, no_equilibrium, path_lost, steps_lost, &
     fallen_before, beyond_path, nothing_afar, state_lost, turn_not_reached, not_kept
 
-  !> In order: no early end; rigid bodies would touch, and their law has no pressure at such gaps;
-  !> rounding hides the contact; there is no further stable equilibrium; no step along the path
-  !> converged, however small; no step in h0 converged, however small; the bodies have fallen onto
-  !> each other before the experiment begins; the path was not traced so far; no equilibrium was
-  !> found at large separation; a state at a given h0 did not converge; loading did not reach the
-  !> turning point; the results can no longer be kept.
+  !> The causes, and their messages in the same order; blank if the end was planned.
   integer, parameter :: as_planned = 0, touching = 1, beyond_rounding = 2, no_equilibrium = 3, &
     path_lost = 4, steps_lost = 5, fallen_before = 6, beyond_path = 7, nothing_afar = 8, &
     state_lost = 9, turn_not_reached = 10, not_kept = 11
+  character(len=*), parameter :: messages(0:not_kept) = [character(len=100) :: '', &
+    'rigid bodies would touch: the law has no pressure at gaps so small (h0 <= 0, or far ' // &
+      'below it)', &
+    'adhesion is so strong that rounding hides the force law once the bodies are in contact', &
+    'no stable equilibrium exists beyond this h0', &
+    'the equilibrium path was lost: no step, however small, converged', &
+    'no step, however small, converged', &
+    'the bodies have jumped into contact before the h0 at which this branch starts', &
+    'this h0 is beyond the path that was traced', &
+    'no equilibrium was found far from contact: after', &
+    'a state at a given h0 did not converge', &
+    'loading did not reach the turning point', &
+    'the results can no longer be written']
 
   type :: ending_t
     integer :: cause = as_planned
@@ -24,6 +32,7 @@ module ending
     real(wp) :: residual = 0
   contains
     procedure :: early
+    procedure :: message
   end type ending_t
 
 contains
@@ -33,5 +42,15 @@ contains
 
     early = self%cause /= as_planned
   end function early
+
+  !> The reason of the end. The length is not deferred: compiler note 4.
+  pure function message(self) result(text)
+    class(ending_t), intent(in) :: self
+    character(len=160) :: text
+
+    text = messages(self%cause)
+    if (self%cause == nothing_afar) write (text, '(a, i0, a, es7.1)') trim(text) // ' ', &
+      self%iterations, ' iterations the residual was ', self%residual
+  end function message
 
 end module ending

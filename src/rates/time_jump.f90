@@ -70,7 +70,7 @@ contains
     done = .false.
     to = from
     s = coordinate_of(steps%problem, steps%meshes, to%mesh, to%state)
-    call solve_at(steps, s, to, found)
+    call solve_at(s, to, found)
     if (.not. found) return
     last = to
     s_last = s
@@ -82,7 +82,7 @@ contains
       elongation = max(elongation, steps%compliance*abs(to%state%load))
       if (way > farthest .or. ds < shortest .or. abs(missing) > too_far + elongation) return
       missing_last = missing
-      call advance(steps, merge(ds, -ds, inwards), last, s_last, to, s, found)
+      call advance(merge(ds, -ds, inwards), to)
       if (.not. found) then
         ds = 0.4_wp*ds
         cycle
@@ -93,7 +93,7 @@ contains
       ds = min(longest, 1.5_wp*ds)
       mesh = steps%mesh_for(to%mesh, to%state)
       if (mesh == to%mesh) cycle
-      call change_mesh(steps, mesh, to, found)
+      call change_mesh(to, found)
       if (.not. found) cycle
       last = to
       s = coordinate_of(steps%problem, steps%meshes, to%mesh, to%state)
@@ -106,7 +106,7 @@ contains
       call steps%solve(steps%control_at(position, mesh, to%state), to%state, done)
       return
     end do
-    call find_between(steps, position, last, s_last, missing_last, to, s, missing, done)
+    call find_between(to)
 
   contains
 
@@ -117,102 +117,92 @@ contains
       if (jumps) passed = passed .and. (inwards .eqv. missing < 0)
     end function passed
 
-  end subroutine go
+    !> The distance of the drive beyond a position.
+    pure real(wp) function off(steps, at, position)
+      class(time_stepper_t), intent(in) :: steps
+      type(instant_t), intent(in) :: at
+      real(wp), intent(in) :: position
 
-  !> The distance of the drive beyond a position.
-  pure real(wp) function off(steps, at, position)
-    class(time_stepper_t), intent(in) :: steps
-    type(instant_t), intent(in) :: at
-    real(wp), intent(in) :: position
+      off = at%state%h0 - steps%compliance*at%state%load - position
+    end function off
 
-    off = at%state%h0 - steps%compliance*at%state%load - position
-  end function off
+    !> Solves for the state at a coordinate, with the state of the instant as the guess.
+    subroutine solve_at(s, at, found)
+      real(wp), intent(in) :: s
+      type(instant_t), intent(inout) :: at
+      logical, intent(out) :: found
+      type(control_t) :: control
+      type(state_t) :: state
 
-  !> Solves for the state at a coordinate, with the state of the instant as the guess.
-  subroutine solve_at(steps, s, at, found)
-    class(time_stepper_t), intent(inout) :: steps
-    real(wp), intent(in) :: s
-    type(instant_t), intent(inout) :: at
-    logical, intent(out) :: found
-    type(control_t) :: control
-    type(state_t) :: state
+      control = path_control(steps%problem, steps%meshes, at%mesh, s)
+      call steps%place_rise(at%mesh, expected_scale(control, at%state))
+      state = at%state
+      call steps%solve(control, state, found)
+      if (.not. found) call steps%frozen%forget()
+      if (found) at%state = state
+    end subroutine solve_at
 
-    control = path_control(steps%problem, steps%meshes, at%mesh, s)
-    call steps%place_rise(at%mesh, expected_scale(control, at%state))
-    state = at%state
-    call steps%solve(control, state, found)
-    if (.not. found) call steps%frozen%forget()
-    if (found) at%state = state
-  end subroutine solve_at
+    !> Continues the path by a step `ds` of the coordinate, inward if `ds` is positive.
+    subroutine advance(ds, at)
+      real(wp), intent(in) :: ds
+      type(instant_t), intent(inout) :: at
+      type(instant_t) :: next
+      real(wp) :: to
 
-  !> Continues the path by a step `ds` of the coordinate, inward if `ds` is positive.
-  subroutine advance(steps, ds, last, s_last, at, s, found)
-    class(time_stepper_t), intent(inout) :: steps
-    real(wp), intent(in) :: ds
-    type(instant_t), intent(inout) :: last, at
-    real(wp), intent(inout) :: s_last, s
-    logical, intent(out) :: found
-    type(instant_t) :: next
-    real(wp) :: to
+      next = at
+      to = s + ds
+      if (last%mesh == at%mesh .and. abs(s - s_last) > 0) call extrapolate(steps%problem%shape, &
+        steps%meshes%grid(at%mesh), last%state, at%state, (to - s)/(s - s_last), next%state)
+      call solve_at(to, next, found)
+      if (.not. found) return
+      last = at
+      s_last = s
+      at = next
+      s = to
+    end subroutine advance
 
-    next = at
-    to = s + ds
-    if (last%mesh == at%mesh .and. abs(s - s_last) > 0) call extrapolate(steps%problem%shape, &
-      steps%meshes%grid(at%mesh), last%state, at%state, (to - s)/(s - s_last), next%state)
-    call solve_at(steps, to, next, found)
-    if (.not. found) return
-    last = at
-    s_last = s
-    at = next
-    s = to
-  end subroutine advance
+    !> The state at which the drive has a position, between two states. at: at entry the second
+    !> state, at return the result.
+    subroutine find_between(at)
+      type(instant_t), intent(inout) :: at
+      type(root_search_t) :: search
+      real(wp) :: here, left
+      integer :: round
 
-  !> The state at which the drive has a position, between two states. at: at entry the second state,
-  !> at return the result.
-  subroutine find_between(steps, position, last, s_last, missing_last, at, s, missing, done)
-    class(time_stepper_t), intent(inout) :: steps
-    real(wp), intent(in) :: position, s_last, missing_last, s, missing
-    type(instant_t), intent(in) :: last
-    type(instant_t), intent(inout) :: at
-    logical, intent(out) :: done
-    type(root_search_t) :: search
-    real(wp) :: here, left
-    integer :: round
+      search = new_root_search(s_last, missing_last, s, missing)
+      left = missing
+      done = .false.
+      do round = 1, most_rounds
+        done = abs(left) < left_over + left_over_load*steps%compliance
+        if (done .or. .not. search%is_open()) exit
+        here = search%place()
+        at%state = last%state
+        call solve_at(here, at, done)
+        if (.not. done) return
+        left = off(steps, at, position)
+        call search%note(here, left)
+      end do
+    end subroutine find_between
 
-    search = new_root_search(s_last, missing_last, s, missing)
-    left = missing
-    done = .false.
-    do round = 1, most_rounds
-      done = abs(left) < left_over + left_over_load*steps%compliance
-      if (done .or. .not. search%is_open()) exit
-      here = search%place()
-      at%state = last%state
-      call solve_at(steps, here, at, done)
+    !> Moves a state of the path to another mesh, at the same coordinate.
+    subroutine change_mesh(at, done)
+      type(instant_t), intent(inout) :: at
+      logical, intent(out) :: done
+      type(instant_t) :: moved
+      real(wp) :: scale
+
+      scale = radius_for(steps%equations_t, at%mesh, mesh, at%state)
+      done = scale > 0
       if (.not. done) return
-      left = off(steps, at, position)
-      call search%note(here, left)
-    end do
-  end subroutine find_between
+      moved = at
+      moved%mesh = mesh
+      moved%state = regrid(steps%problem%shape, at%state, steps%meshes%grid(at%mesh), &
+        steps%meshes%grid(mesh), scale)
+      call steps%frozen%forget()
+      call solve_at(coordinate_of(steps%problem, steps%meshes, mesh, moved%state), moved, done)
+      if (done) at = moved
+    end subroutine change_mesh
 
-  !> Moves a state of the path to another mesh, at the same coordinate.
-  subroutine change_mesh(steps, mesh, at, done)
-    class(time_stepper_t), intent(inout) :: steps
-    integer, intent(in) :: mesh
-    type(instant_t), intent(inout) :: at
-    logical, intent(out) :: done
-    type(instant_t) :: moved
-    real(wp) :: scale
-
-    scale = radius_for(steps%equations_t, at%mesh, mesh, at%state)
-    done = scale > 0
-    if (.not. done) return
-    moved = at
-    moved%mesh = mesh
-    moved%state = regrid(steps%problem%shape, at%state, steps%meshes%grid(at%mesh), &
-      steps%meshes%grid(mesh), scale)
-    call steps%frozen%forget()
-    call solve_at(steps, coordinate_of(steps%problem, steps%meshes, mesh, moved%state), moved, done)
-    if (done) at = moved
-  end subroutine change_mesh
+  end subroutine go
 
 end module time_jump

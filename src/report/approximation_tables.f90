@@ -1,6 +1,8 @@
 !> The approximation of slowly varying deformation over the range of a scene, as rows of a table,
 !> and the jumps of approaching bodies in this approximation. SI units.
 module approximation_tables
+  ! The module with most dependencies is first: compiler note 12.
+  use results, only: results_t
   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
   use kinds, only: wp, nan
   use dimensionless_problem, only: problem_t
@@ -9,7 +11,6 @@ module approximation_tables
   use slow_jumps, only: slow_gap, at_h0, at_criterion, at_fold
   use scene_groups, only: range_t
   use result_rows, only: row_of
-  use results, only: results_t
   use summary, only: summary_t
   implicit none
   private
@@ -50,6 +51,7 @@ contains
     real(wp) :: start, nearest
     integer :: k
 
+    call results%begin_table('approximations.csv')
     start = from
     if (allocated(range%h0_start)) start = range%h0_start
     jumps = jumps_of(problem)
@@ -60,7 +62,7 @@ contains
     if (jumps(of_equation_37)%theory /= '') nearest = problem%law%gap_of(jumps(of_equation_37)%gap)
     call add_curve(attraction_only)
     do k = 1, size(jumps)
-      if (jumps(k)%theory /= '') call write_row(results, jumps(k))
+      if (jumps(k)%theory /= '') call write_row(jumps(k))
     end do
 
   contains
@@ -72,12 +74,76 @@ contains
       integer :: i
 
       if (.not. has_form(problem, form)) return
-      gap = gaps_between(problem, form, problem%law%gap_of(start), &
-        problem%law%gap_of(range%h0_end), nearest, range%count)
+      gap = gaps_between(form, problem%law%gap_of(start), problem%law%gap_of(range%h0_end), &
+        range%count)
       do i = 1, size(gap)
-        call write_row(results, state_at(problem, form, gap(i), trim(names(form))))
+        call write_row(state_at(problem, form, gap(i), trim(names(form))))
       end do
     end subroutine add_curve
+
+    !> Writes the row of a state; these theories give no contact radius.
+    subroutine write_row(state)
+      type(slow_state_t), intent(in) :: state
+
+      call results%row(trim(state%theory), [state%h0, state%displacement, state%load, nan])
+    end subroutine write_row
+
+    !> Gaps on the axis, descending, from the gap at h0 = start to the gap at h0 = finish or to
+    !> `nearest`, whichever is larger (in lengths of the law). None if h0 = start is reached only
+    !> below `nearest`.
+    pure function gaps_between(form, start, finish, count) result(gap)
+      integer, intent(in) :: form, count
+      real(wp), intent(in) :: start, finish
+      real(wp), allocatable :: gap(:)
+      real(wp) :: high, low
+      integer :: i
+
+      allocate (gap(0))
+      if (.not. start > finish) return
+      if (.not. problem%coupling > 0) then
+        gap = [(start + (finish - start)*(i - 1)/(count - 1), i=1, count)]
+        ! At smaller gaps rigid bodies would touch.
+        gap = pack(gap, gap >= problem%law%smallest_gap)
+        return
+      end if
+      high = slow_gap(problem, form, at_h0, start, nearest)
+      if (ieee_is_nan(high)) return
+      low = slow_gap(problem, form, at_h0, finish, nearest)
+      if (ieee_is_nan(low)) low = max(nearest, problem%law%smallest_gap)
+      if (high > low) gap = spaced(form, high, low, count)
+    end function gaps_between
+
+    !> `count` gaps from high to low, equally spaced along the curve of gap and displacement. If the
+    !> displacement grows as the gap falls these are equal steps of h0.
+    pure function spaced(form, high, low, count) result(gap)
+      integer, intent(in) :: form, count
+      real(wp), intent(in) :: high, low
+      real(wp) :: gap(count), at(0:samples), delta(0:samples), length(0:samples), wanted
+      integer :: i, j
+
+      ! The displacement varies most at small gaps, over the law's own length.
+      associate (scale => problem%law%repulsion_length)
+        at = [(low + scale*((1 + (high - low)/scale)**(real(samples - j, wp)/samples) - 1), &
+          j=0, samples)]
+      end associate
+      at(0) = high
+      at(samples) = low
+      delta = slow_displacement(problem, form, at)
+      length(0) = 0
+      do j = 1, samples
+        length(j) = length(j - 1) + abs(at(j) - at(j - 1)) + abs(delta(j) - delta(j - 1))
+      end do
+      j = 1
+      do i = 1, count
+        wanted = length(samples)*(i - 1)/(count - 1)
+        do while (j < samples .and. length(j) < wanted)
+          j = j + 1
+        end do
+        gap(i) = at(j) + (at(j - 1) - at(j))*(length(j) - wanted) &
+          /max(length(j) - length(j - 1), tiny(wanted))
+      end do
+      gap(count) = low
+    end function spaced
 
   end subroutine write_approximations
 
@@ -142,73 +208,5 @@ contains
     state%displacement = delta*problem%length
     state%load = slow_load(problem, form, gap)*problem%load
   end function state_at
-
-  !> Writes the row of a state; these theories give no contact radius.
-  subroutine write_row(results, state)
-    type(results_t), intent(inout) :: results
-    type(slow_state_t), intent(in) :: state
-
-    call results%row(trim(state%theory), [state%h0, state%displacement, state%load, &
-      nan])
-  end subroutine write_row
-
-  !> Gaps on the axis, descending, from the gap at h0 = start to the gap at h0 = finish or to
-  !> `nearest`, whichever is larger (in lengths of the law). None if h0 = start is reached only
-  !> below `nearest`.
-  pure function gaps_between(problem, form, start, finish, nearest, count) result(gap)
-    type(problem_t), intent(in) :: problem
-    integer, intent(in) :: form, count
-    real(wp), intent(in) :: start, finish, nearest
-    real(wp), allocatable :: gap(:)
-    real(wp) :: high, low
-    integer :: i
-
-    allocate (gap(0))
-    if (.not. start > finish) return
-    if (.not. problem%coupling > 0) then
-      gap = [(start + (finish - start)*(i - 1)/(count - 1), i=1, count)]
-      ! At smaller gaps rigid bodies would touch.
-      gap = pack(gap, gap >= problem%law%smallest_gap)
-      return
-    end if
-    high = slow_gap(problem, form, at_h0, start, nearest)
-    if (ieee_is_nan(high)) return
-    low = slow_gap(problem, form, at_h0, finish, nearest)
-    if (ieee_is_nan(low)) low = max(nearest, problem%law%smallest_gap)
-    if (high > low) gap = spaced(problem, form, high, low, count)
-  end function gaps_between
-
-  !> `count` gaps from high to low, equally spaced along the curve of gap and displacement. If the
-  !> displacement grows as the gap falls these are equal steps of h0.
-  pure function spaced(problem, form, high, low, count) result(gap)
-    type(problem_t), intent(in) :: problem
-    integer, intent(in) :: form, count
-    real(wp), intent(in) :: high, low
-    real(wp) :: gap(count), at(0:samples), delta(0:samples), length(0:samples), wanted
-    integer :: i, j
-
-    ! The displacement varies most at small gaps, over the law's own length.
-    associate (scale => problem%law%repulsion_length)
-      at = [(low + scale*((1 + (high - low)/scale)**(real(samples - j, wp)/samples) - 1), &
-        j=0, samples)]
-    end associate
-    at(0) = high
-    at(samples) = low
-    delta = slow_displacement(problem, form, at)
-    length(0) = 0
-    do j = 1, samples
-      length(j) = length(j - 1) + abs(at(j) - at(j - 1)) + abs(delta(j) - delta(j - 1))
-    end do
-    j = 1
-    do i = 1, count
-      wanted = length(samples)*(i - 1)/(count - 1)
-      do while (j < samples .and. length(j) < wanted)
-        j = j + 1
-      end do
-      gap(i) = at(j) + (at(j - 1) - at(j))*(length(j) - wanted) &
-        /max(length(j) - length(j - 1), tiny(wanted))
-    end do
-    gap(count) = low
-  end function spaced
 
 end module approximation_tables

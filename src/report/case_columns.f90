@@ -8,7 +8,7 @@ module case_columns
   use deck_numbers, only: find_number
   use result_rows, only: row_t, rows, turning, spring, given_load, layered_regime, &
     of_carpick => carpick, of_troyon => pietrement_troyon
-  use theory_names, only: carpick, pietrement_troyon
+  use classical, only: carpick, pietrement_troyon
   use scene_groups, only: scene_t
   use summary, only: summary_t
   implicit none
@@ -166,7 +166,7 @@ contains
       if (allocated(scene%device)) &
         elements = count_of('stiffness', max(1, size(scene%device%stiffness)))
     case (given_load)
-      if (allocated(scene%fixed_load)) elements = count_of('load', size(scene%fixed_load%load))
+      if (allocated(scene%fixed_loads)) elements = count_of('load', size(scene%fixed_loads))
     end select
 
   contains

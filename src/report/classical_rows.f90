@@ -4,13 +4,12 @@ module classical_rows
   use kinds, only: wp
   use dimensionless_problem, only: problem_t, surface_energy, largest_tension
   use classical, only: hertz_load_at_displacement, hertz_radius_at_displacement, &
-    jkr_load_at_displacement, jkr_radius_at_displacement, dmt_load_at_displacement
-  use convex_contact, only: hertz_like_load, jkr_like_load, jkr_like_radius, &
-    detachment_radius
+    jkr_load_at_displacement, jkr_radius_at_displacement, dmt_load_at_displacement, theories, &
+    hertz, jkr, dmt, maugis_dugdale, carpick, pietrement_troyon
+  use convex_contact, only: hertz_like_load, jkr_like_load, jkr_like_radius, detachment_radius
   use maugis, only: maugis_t, new_maugis
   use transition_fits, only: fit_t, carpick_fit, pietrement_fit
-  use theory_names, only: theories, hertz, jkr, dmt, maugis_dugdale, carpick, pietrement_troyon
-  use layered_contact, only: layered_contact_t, new_layered_contact, has_layers
+  use layered_contact, only: layered_contact_t, new_layered_contact, has_layers, of_load
   use scene_groups, only: range_t
   use results, only: results_t
   use summary, only: summary_t
@@ -43,6 +42,7 @@ contains
     logical :: layered, any_row
     integer :: i
 
+    call results%begin_table('classical.csv')
     if (problem%rigid) then
       call summary%note('classical: rigid bodies have no displacement, and no theory has rows')
       return
@@ -125,7 +125,7 @@ contains
       if (.not. range%shown(theory)) return
       a = contact%radius_at(theory, delta/problem%length)
       if (.not. ieee_is_nan(a)) &
-        call add(theory, contact%load(theory, a)*problem%load, a*problem%lateral)
+        call add(theory, contact%value_of(of_load, theory, a)*problem%load, a*problem%lateral)
     end subroutine add_layered
 
     subroutine add(theory, load, contact_radius)
@@ -161,7 +161,7 @@ contains
     if (ieee_is_nan(a)) return
     homogeneous = hertz_like_load(problem, problem%shape%contact_radius(delta))
     call summary%set('effective_modulus', &
-      0.5_wp*problem%stiffness*contact%load(hertz, a)/homogeneous)
+      0.5_wp*problem%stiffness*contact%value_of(of_load, hertz, a)/homogeneous)
   end subroutine summarise_layered
 
   !> Adds numbers of Maugis-Dugdale theory with the law's surface energy and largest tension, and of

@@ -37,8 +37,7 @@ contains
     associate (data => outcome%curve%data%measured, fitted => outcome%fitted)
       do i = 1, size(used)
         call results%row(direction_of(data%inward(i)), [data%z(i), data%signal(i), &
-          fitted%model(i), fitted%baseline(i), fitted%residual(i)], &
-          [used(i), outlier(i)])
+          fitted%model(i), fitted%baseline(i), fitted%residual(i)], [used(i), outlier(i)])
       end do
     end associate
   end subroutine write_fit_rows
@@ -93,18 +92,13 @@ contains
       names(i)%text = unknown(i)%name
     end do
     text = assignment_of('converged', found) // assignment_of('parameters', names) // &
-      assignment_of('estimate', fitted%value) // &
-      assignment_of('standard_error', fitted%deviation)
+      assignment_of('estimate', fitted%value) // assignment_of('standard_error', fitted%deviation)
     text = text // numbers('lower_68', &
       [(fitted%end_of(i, unknown(i), -1.0_wp), i=1, size(unknown))])
-    text = text // numbers('upper_68', &
-      [(fitted%end_of(i, unknown(i), 1.0_wp), i=1, size(unknown))])
-    text = text // numbers('lower_95', &
-      [(fitted%end_of(i, unknown(i), -most), i=1, size(unknown))])
-    text = text // numbers('upper_95', &
-      [(fitted%end_of(i, unknown(i), most), i=1, size(unknown))])
-    text = text // numbers('correlation', &
-      reshape(fitted%correlation, [size(fitted%correlation)]))
+    text = text // numbers('upper_68', [(fitted%end_of(i, unknown(i), 1.0_wp), i=1, size(unknown))])
+    text = text // numbers('lower_95', [(fitted%end_of(i, unknown(i), -most), i=1, size(unknown))])
+    text = text // numbers('upper_95', [(fitted%end_of(i, unknown(i), most), i=1, size(unknown))])
+    text = text // numbers('correlation', reshape(fitted%correlation, [size(fitted%correlation)]))
     text = text // numbers('identifiable', [fitted%identifiable])
     text = text // numbers('chi_squared', [fitted%chi_squared])
     text = text // numbers('degrees_of_freedom', [real(fitted%freedom, wp)])
@@ -112,7 +106,6 @@ contains
     text = text // numbers('excess_width', [real(fitted%lack%width, wp)])
   end function of_fitted
 
-  !> The entries about numbers that were held.
   function of_held(held) result(text)
     type(held_t), intent(in) :: held(:)
     character(len=:), allocatable :: text

@@ -16,13 +16,6 @@ module problem_numbers
   private
   public :: describe_problem
 
-  !> A number for each row; NaN if there is none.
-  type :: numbers_t
-    real(wp) :: of_row(size(rows)) = 0
-  contains
-    procedure :: set
-  end type numbers_t
-
 contains
 
   !> Adds the numbers of a problem, with derivatives by what `varied` varies.
@@ -30,7 +23,7 @@ contains
     type(problem_t), intent(in) :: problem
     type(summary_t), intent(inout) :: summary
     type(variation_t), intent(in), optional :: varied(:)
-    type(numbers_t) :: own, other
+    real(wp) :: own(size(rows)), other(size(rows))
     real(wp), allocatable :: rate(:, :)
     integer :: i, j, k
 
@@ -42,95 +35,95 @@ contains
       do k = 1, size(varied(j)%problem)
         other = numbers_of(varied(j)%problem(k))
         ! Differences, so that a number that does not depend on a parameter has a derivative of 0.
-        rate(j, :) = rate(j, :) + varied(j)%weight(k)*(other%of_row - own%of_row)
+        rate(j, :) = rate(j, :) + varied(j)%weight(k)*(other - own)
       end do
     end do
     do i = 1, size(rows)
-      if (.not. ieee_is_nan(own%of_row(i))) &
-        call summary%set(trim(rows(i)%key), own%of_row(i:i), rate=rate(:, i:i))
+      if (.not. ieee_is_nan(own(i))) &
+        call summary%set(trim(rows(i)%key), own(i:i), rate=rate(:, i:i))
     end do
   end subroutine describe_problem
 
-  subroutine set(self, key, value)
-    class(numbers_t), intent(inout) :: self
-    character(len=*), intent(in) :: key
-    real(wp), intent(in) :: value
-
-    self%of_row(row_of(key)) = value
-  end subroutine set
-
-  type(numbers_t) function numbers_of(problem) result(numbers)
+  !> A number for each row; NaN if there is none.
+  function numbers_of(problem) result(number)
     type(problem_t), intent(in) :: problem
+    real(wp) :: number(size(rows))
 
-    numbers%of_row = nan
+    number = nan
     if (problem%law%adhesion > 0) then
       if (problem%law%work > 0) then
-        call numbers%set('surface_energy', surface_energy(problem))
-        call take_pull_offs(problem, numbers)
+        call set('surface_energy', surface_energy(problem))
+        call take_pull_offs()
       end if
       ! Without a work of adhesion or a gap at rest, adhesion is only a scale of the law.
       if (.not. problem%rigid .and. (problem%law%work > 0 .or. problem%law%rest_gap > 0)) then
-        call numbers%set('sigma', adhesion_strength(problem))
-        if (problem%shape%exponent > 0) call numbers%set('tabor', tabor_parameter(problem))
+        call set('sigma', adhesion_strength(problem))
+        if (problem%shape%exponent > 0) call set('tabor', tabor_parameter(problem))
       end if
     else if (problem%law%coupling_name /= '' .and. .not. problem%rigid) then
-      call numbers%set(trim(problem%law%coupling_name), problem%coupling)
+      call set(trim(problem%law%coupling_name), problem%coupling)
     end if
     select type (body => problem%body)
     type is (layered_body_t)
       ! The top layer has the modulus for short waves, the base that for long waves.
-      call numbers%set('top_modulus', 0.5_wp*problem%stiffness)
-      if (body%bottom > 0) &
-        call numbers%set('bottom_modulus', 0.5_wp*problem%stiffness/body%bottom)
+      call set('top_modulus', 0.5_wp*problem%stiffness)
+      if (body%bottom > 0) call set('bottom_modulus', 0.5_wp*problem%stiffness/body%bottom)
     end select
     if (problem%law%rest_gap > 0) then
-      call numbers%set('rest_gap', problem%law%separation_of(problem%law%rest_gap))
-      call take_forces(problem, numbers)
+      call set('rest_gap', problem%law%separation_of(problem%law%rest_gap))
+      call take_forces()
     end if
+
+  contains
+
+    subroutine set(key, value)
+      character(len=*), intent(in) :: key
+      real(wp), intent(in) :: value
+
+      number(row_of(key)) = value
+    end subroutine set
+
+    !> Pull-offs of the theories. For other shapes than the parabola the pull-off of JKR theory
+    !> depends on the stiffness, and that of rigid bodies on more of the law than its surface
+    !> energy.
+    subroutine take_pull_offs()
+      if (problem%shape%parabolic) call set('dmt_pull_off', &
+        -dmt_pull_off(problem%radius, surface_energy(problem)))
+      ! JKR of layered bodies needs &classical.
+      if (.not. problem%body%is_homogeneous()) return
+      if (problem%shape%parabolic) then
+        call set('jkr_pull_off', -jkr_pull_off(problem%radius, surface_energy(problem)))
+      else if (.not. problem%rigid) then
+        call set('jkr_pull_off', -jkr_like_pull_off(problem)*problem%load)
+      end if
+    end subroutine take_pull_offs
+
+    !> Numbers of the well of contact and of barrier and well outside it, as far as the law has
+    !> them.
+    subroutine take_forces()
+      type(surroundings_t) :: outside
+      real(wp) :: energy
+
+      associate (law => problem%law)
+        energy = problem%pressure*problem%length
+        call set('work_of_adhesion', surface_energy(problem))
+        if (law%edge_gap > 0) then
+          call set('edge_gap', law%separation_of(law%edge_gap))
+          call set('cohesive_stress', largest_tension(problem))
+          call set('cohesive_range', law%adhesion*energy/largest_tension(problem))
+        end if
+        outside = surroundings_of(law)
+        if (outside%has_barrier) then
+          call set('barrier_pressure', outside%barrier_pressure*problem%pressure)
+          call set('barrier_energy', outside%barrier_energy*energy)
+        end if
+        if (outside%has_well) then
+          call set('secondary_minimum_gap', law%separation_of(outside%well_gap))
+          call set('secondary_minimum_energy', outside%well_energy*energy)
+        end if
+      end associate
+    end subroutine take_forces
+
   end function numbers_of
-
-  !> Pull-offs of the theories. For other shapes than the parabola the pull-off of JKR theory
-  !> depends on the stiffness, and that of rigid bodies on more of the law than its surface energy.
-  subroutine take_pull_offs(problem, numbers)
-    type(problem_t), intent(in) :: problem
-    type(numbers_t), intent(inout) :: numbers
-
-    if (problem%shape%parabolic) call numbers%set('dmt_pull_off', &
-      -dmt_pull_off(problem%radius, surface_energy(problem)))
-    ! JKR of layered bodies needs &classical.
-    if (.not. problem%body%is_homogeneous()) return
-    if (problem%shape%parabolic) then
-      call numbers%set('jkr_pull_off', -jkr_pull_off(problem%radius, surface_energy(problem)))
-    else if (.not. problem%rigid) then
-      call numbers%set('jkr_pull_off', -jkr_like_pull_off(problem)*problem%load)
-    end if
-  end subroutine take_pull_offs
-
-  !> Numbers of the well of contact and of barrier and well outside it, as far as the law has them.
-  subroutine take_forces(problem, numbers)
-    type(problem_t), intent(in) :: problem
-    type(numbers_t), intent(inout) :: numbers
-    type(surroundings_t) :: outside
-    real(wp) :: energy
-
-    associate (law => problem%law)
-      energy = problem%pressure*problem%length
-      call numbers%set('work_of_adhesion', surface_energy(problem))
-      if (law%edge_gap > 0) then
-        call numbers%set('edge_gap', law%separation_of(law%edge_gap))
-        call numbers%set('cohesive_stress', largest_tension(problem))
-        call numbers%set('cohesive_range', law%adhesion*energy/largest_tension(problem))
-      end if
-      outside = surroundings_of(law)
-      if (outside%has_barrier) then
-        call numbers%set('barrier_pressure', outside%barrier_pressure*problem%pressure)
-        call numbers%set('barrier_energy', outside%barrier_energy*energy)
-      end if
-      if (outside%has_well) then
-        call numbers%set('secondary_minimum_gap', law%separation_of(outside%well_gap))
-        call numbers%set('secondary_minimum_energy', outside%well_energy*energy)
-      end if
-    end associate
-  end subroutine take_forces
 
 end module problem_numbers

@@ -68,7 +68,13 @@ contains
         call summary%warn('drive: max_suction is not determined: the error, ' // &
           rounded(timed%error(of_suction)*problem%pressure) // ' Pa, is larger than the suction')
       else if (timed%number(of_suction)*problem%pressure > atmosphere) then
-        call warn_of_cavities()
+        associate (at => timed%suction_at)
+          call summary%warn('the fluid is under a suction of ' // &
+            rounded(timed%number(of_suction)*problem%pressure) // ' Pa after ' // &
+            rounded(at(1)) // ' s, at h0 = ' // rounded(problem%law%separation_of(at(2))) // &
+            ' m and ' // rounded(at(3)*problem%lateral) // ' m from the axis: more than an ' // &
+            'atmosphere; a real fluid may cavitate, which the model does not include')
+        end associate
       end if
     end if
     if (timed%memory_tail > unresolved) call summary%warn('the mesh does not resolve the ' // &
@@ -76,16 +82,6 @@ contains
       'nodes; ask for a higher accuracy')
 
   contains
-
-    subroutine warn_of_cavities()
-      associate (at => timed%suction_at)
-        call summary%warn('the fluid is under a suction of ' // &
-          rounded(timed%number(of_suction)*problem%pressure) // ' Pa after ' // &
-          rounded(at(1)) // ' s, at h0 = ' // rounded(problem%law%separation_of(at(2))) // &
-          ' m and ' // rounded(at(3)*problem%lateral) // ' m from the axis: more than an ' // &
-          'atmosphere; a real fluid may cavitate, which the model does not include')
-      end associate
-    end subroutine warn_of_cavities
 
     !> Adds a number with its error and derivatives.
     subroutine take(key, which)

@@ -4,9 +4,8 @@ module regime_rows
   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
   use kinds, only: wp, pi, nan
   use dimensionless_problem, only: problem_t, surface_energy, largest_tension, tabor_parameter
-  use layered_contact, only: layered_contact_t, new_layered_contact, has_layers
-  use theory_names, only: hertz, jkr
-  use classical, only: hertz_radius_at_load, hertz_displacement, jkr_radius_at_load, &
+  use layered_contact, only: layered_contact_t, new_layered_contact, has_layers, of_displacement
+  use classical, only: hertz, jkr, hertz_radius_at_load, hertz_displacement, jkr_radius_at_load, &
     jkr_displacement, jkr_pull_off, dmt_radius_at_load, dmt_pull_off
   use maugis, only: maugis_t, new_maugis
   use transition_fits, only: fit_t, carpick_fit, pietrement_fit
@@ -52,7 +51,7 @@ contains
     gamma = surface_energy(problem)
     strength = largest_tension(problem)
     call summary%set('regime_tabor', tabor_parameter(problem))
-    call measure(problem, places, load, solved, load_error, uncertain, there)
+    call measure()
     if (.not. (there .and. gamma > 0 .and. strength > 0)) then
       call summary%warn('regime: the path does not end in a contact that theories can be ' // &
         'compared with')
@@ -76,8 +75,8 @@ contains
         call summary%set('regime_error_' // trim(theories(i)), errors(:, i), spread(:, i))
       end do
     end associate
-    call recommend(errors, summary)
-    call recommend_formula(errors, summary)
+    call recommend()
+    call recommend_formula()
 
   contains
 
@@ -87,136 +86,118 @@ contains
       real(wp) :: errors(3, size(theories))
       integer :: k
 
-      errors = of_theories(problem, cohesive, layered, at_load)
+      errors = of_theories(at_load)
       do k = 1, size(theories)
-        errors(:, k) = errors_of(errors(:, k), numbers, problem%radius)
+        errors(:, k) = [errors(:radius, k)/numbers(:radius), 1 + (errors(indentation, k) - &
+          numbers(indentation))*problem%radius/numbers(radius)**2] - 1
       end do
     end function all_errors
 
-  end subroutine summarise_regime
+    !> The numbers of the path, with errors. there = .false. if it has no pull-off, or no contact at
+    !> its end.
+    subroutine measure()
+      type(place_t) :: lowest, finish
 
-  !> The numbers of the path, with errors. there = .false. if it has no pull-off, or no contact at
-  !> its end.
-  subroutine measure(problem, places, load, solved, load_error, uncertain, there)
-    type(problem_t), intent(in) :: problem
-    type(places_t), intent(in) :: places
-    real(wp), intent(out) :: load, load_error
-    real(wp), intent(out) :: solved(3), uncertain(3)
-    logical, intent(out) :: there
-    type(place_t) :: lowest, finish
-
-    lowest = places%place_of('path_tension')
-    finish = places%place_of('path_end')
-    there = min(finish%at(of_edge), finish%at(of_radius)) > 0 .and. lowest%at(of_load) < 0
-    load = finish%at(of_load)*problem%load
-    solved = [lowest%at(of_load)*problem%load, finish%at(of_edge)*problem%lateral, &
-      (problem%law%rest_gap - finish%at(of_h0))*problem%length]
-    associate (errors => finish%errors()*units_of(problem), &
-      of_lowest => lowest%errors()*units_of(problem))
-      load_error = errors(of_load)
-      uncertain = [of_lowest(of_load), errors(of_edge), errors(of_h0)]
-    end associate
-  end subroutine measure
-
-  !> The numbers of all theories at a load [N]; NaN if a theory has none.
-  function of_theories(problem, cohesive, layered, load) result(says)
-    type(problem_t), intent(in) :: problem
-    type(maugis_t), intent(in) :: cohesive
-    type(layered_contact_t), intent(in) :: layered
-    real(wp), intent(in) :: load
-    real(wp) :: says(3, size(theories)), a
-    type(fit_t) :: fit
-    integer :: i
-
-    says = nan
-    associate (r => problem%radius, y => problem%stiffness, gamma => surface_energy(problem))
-      a = hertz_radius_at_load(load, r, y)
-      says(:, by_hertz) = [0.0_wp, a, hertz_displacement(a, r)]
-      a = jkr_radius_at_load(load, r, y, gamma)
-      says(:, by_jkr) = [jkr_pull_off(r, gamma), a, jkr_displacement(a, r, y, gamma)]
-      a = dmt_radius_at_load(load, r, y, gamma)
-      says(:, by_dmt) = [dmt_pull_off(r, gamma), a, hertz_displacement(a, r)]
-    end associate
-    says(:radius, by_maugis) = [cohesive%pull_off(), cohesive%radius_at_load(load)]
-    if (says(radius, by_maugis) > 0) says(indentation, by_maugis) = &
-      cohesive%displacement(says(radius, by_maugis))
-    ! Carpick's formula gives no displacement.
-    fit = carpick_fit(cohesive)
-    says(:radius, by_carpick) = [fit%pull_off, fit%radius_at_load(load)]
-    fit = pietrement_fit(cohesive)
-    says(:, by_pietrement) = [fit%pull_off, fit%radius_at_load(load), &
-      fit%displacement_at_load(load)]
-    if (.not. has_layers(problem)) return
-    do i = by_hertz_layered, by_jkr_layered
-      associate (theory => merge(hertz, jkr, i == by_hertz_layered))
-        a = layered%radius_at(theory, load=load/problem%load)
-        says(:radius, i) = [0.0_wp, a*problem%lateral]
-        if (theory == jkr) says(pull_off, i) = layered%pull_off()*problem%load
-        if (.not. ieee_is_nan(a)) &
-          says(indentation, i) = layered%displacement(theory, a)*problem%length
+      lowest = places%place_of('path_tension')
+      finish = places%place_of('path_end')
+      there = min(finish%at(of_edge), finish%at(of_radius)) > 0 .and. lowest%at(of_load) < 0
+      load = finish%at(of_load)*problem%load
+      solved = [lowest%at(of_load)*problem%load, finish%at(of_edge)*problem%lateral, &
+        (problem%law%rest_gap - finish%at(of_h0))*problem%length]
+      associate (errors => finish%errors()*units_of(problem), &
+        of_lowest => lowest%errors()*units_of(problem))
+        load_error = errors(of_load)
+        uncertain = [of_lowest(of_load), errors(of_edge), errors(of_h0)]
       end associate
-    end do
-  end function of_theories
+    end subroutine measure
 
-  pure function errors_of(theory, solved, r) result(errors)
-    real(wp), intent(in) :: theory(3), solved(3), r
-    real(wp) :: errors(3)
+    !> The numbers of all theories at a load [N]; NaN if a theory has none.
+    function of_theories(load) result(says)
+      real(wp), intent(in) :: load
+      real(wp) :: says(3, size(theories)), a
+      type(fit_t) :: fit
+      integer :: i
 
-    errors = [theory(:radius)/solved(:radius), &
-      1 + (theory(indentation) - solved(indentation))*r/solved(radius)**2] - 1
-  end function errors_of
+      says = nan
+      associate (r => problem%radius, y => problem%stiffness, gamma => surface_energy(problem))
+        a = hertz_radius_at_load(load, r, y)
+        says(:, by_hertz) = [0.0_wp, a, hertz_displacement(a, r)]
+        a = jkr_radius_at_load(load, r, y, gamma)
+        says(:, by_jkr) = [jkr_pull_off(r, gamma), a, jkr_displacement(a, r, y, gamma)]
+        a = dmt_radius_at_load(load, r, y, gamma)
+        says(:, by_dmt) = [dmt_pull_off(r, gamma), a, hertz_displacement(a, r)]
+      end associate
+      says(:radius, by_maugis) = [cohesive%pull_off(), cohesive%radius_at_load(load)]
+      if (says(radius, by_maugis) > 0) says(indentation, by_maugis) = &
+        cohesive%displacement(says(radius, by_maugis))
+      ! Carpick's formula gives no displacement.
+      fit = carpick_fit(cohesive)
+      says(:radius, by_carpick) = [fit%pull_off, fit%radius_at_load(load)]
+      fit = pietrement_fit(cohesive)
+      says(:, by_pietrement) = [fit%pull_off, fit%radius_at_load(load), &
+        fit%displacement_at_load(load)]
+      if (.not. has_layers(problem)) return
+      do i = by_hertz_layered, by_jkr_layered
+        associate (theory => merge(hertz, jkr, i == by_hertz_layered))
+          a = layered%radius_at(theory, load=load/problem%load)
+          says(:radius, i) = [0.0_wp, a*problem%lateral]
+          if (theory == jkr) says(pull_off, i) = layered%pull_off()*problem%load
+          if (.not. ieee_is_nan(a)) &
+            says(indentation, i) = layered%value_of(of_displacement, theory, a)*problem%length
+        end associate
+      end do
+    end function of_theories
 
-  !> Recommends the theory whose largest error is the smallest, and says why. A formula fitted to a
-  !> theory can be nearer than the theory only by chance, and is not recommended here.
-  subroutine recommend(errors, summary)
-    real(wp), intent(in) :: errors(:, :)
-    type(summary_t), intent(inout) :: summary
-    real(wp) :: worst(size(errors, 2))
-    character(len=*), parameter :: none_is_near = 'no theory is within 10 %; '
-    character(len=160) :: nearest
-    character(len=16) :: percent
-    integer :: i, best, where_worst
+    !> Recommends the theory whose largest error is the smallest, and says why. A formula fitted to
+    !> a theory can be nearer than the theory only by chance, and is not recommended here.
+    subroutine recommend()
+      real(wp) :: worst(size(errors, 2))
+      character(len=*), parameter :: none_is_near = 'no theory is within 10 %; '
+      character(len=160) :: nearest
+      character(len=16) :: percent
+      integer :: i, best, where_worst
 
-    worst = largest_of_each(errors)
-    do i = 1, size(worst)
-      if (worst(i) < huge(1.0_wp)) call summary%set('regime_worst_' // trim(theories(i)), worst(i))
-    end do
-    best = minloc(worst(:by_jkr_layered), 1)
-    call summary%set('regime_theory', merge(real(best, wp), 0.0_wp, worst(best) <= acceptable))
-    where_worst = maxloc(abs(errors(:, best)), 1)
-    write (percent, '(f16.1)') 100*min(worst(best), 1.0e6_wp)
-    nearest = 'nearest is '//trim(theories(best))//', off by at most '//trim(adjustl(percent))// &
-      ' % ('//trim(numbers(where_worst))//')'
-    if (worst(best) <= acceptable) then
-      call summary%set('regime_recommended', trim(theories(best)))
-      call summary%set('regime_reason', trim(nearest))
-    else
-      call summary%set('regime_recommended', 'none')
-      call summary%set('regime_reason', none_is_near//trim(nearest))
-    end if
-  end subroutine recommend
+      worst = largest_of_each(errors)
+      do i = 1, size(worst)
+        if (worst(i) < huge(1.0_wp)) call summary%set('regime_worst_' // trim(theories(i)), &
+          worst(i))
+      end do
+      best = minloc(worst(:by_jkr_layered), 1)
+      call summary%set('regime_theory', merge(real(best, wp), 0.0_wp, worst(best) <= acceptable))
+      where_worst = maxloc(abs(errors(:, best)), 1)
+      write (percent, '(f16.1)') 100*min(worst(best), 1.0e6_wp)
+      nearest = 'nearest is '//trim(theories(best))//', off by at most '//trim(adjustl(percent))// &
+        ' % ('//trim(numbers(where_worst))//')'
+      if (worst(best) <= acceptable) then
+        call summary%set('regime_recommended', trim(theories(best)))
+        call summary%set('regime_reason', trim(nearest))
+      else
+        call summary%set('regime_recommended', 'none')
+        call summary%set('regime_reason', none_is_near//trim(nearest))
+      end if
+    end subroutine recommend
 
-  !> Recommends the closed form whose pull-off and contact radius are nearest.
-  subroutine recommend_formula(errors, summary)
-    real(wp), intent(in) :: errors(:, :)
-    type(summary_t), intent(inout) :: summary
-    real(wp) :: worst(size(closed))
-    integer :: best
+    !> Recommends the closed form whose pull-off and contact radius are nearest.
+    subroutine recommend_formula()
+      real(wp) :: worst(size(closed))
+      integer :: best
 
-    worst = largest_of_each(errors(:2, closed))
-    best = minloc(worst, 1)
-    if (.not. worst(best) < huge(1.0_wp)) return
-    call summary%set('regime_formula', trim(theories(closed(best))))
-    call summary%set('regime_formula_error', worst(best))
-  end subroutine recommend_formula
+      worst = largest_of_each(errors(:2, closed))
+      best = minloc(worst, 1)
+      if (.not. worst(best) < huge(1.0_wp)) return
+      call summary%set('regime_formula', trim(theories(closed(best))))
+      call summary%set('regime_formula_error', worst(best))
+    end subroutine recommend_formula
 
-  !> The largest error of each theory; huge if the theory does not give all numbers.
-  pure function largest_of_each(errors) result(largest)
-    real(wp), intent(in) :: errors(:, :)
-    real(wp) :: largest(size(errors, 2))
+    !> The largest error of each theory; huge if the theory does not give all numbers.
+    pure function largest_of_each(errors) result(largest)
+      real(wp), intent(in) :: errors(:, :)
+      real(wp) :: largest(size(errors, 2))
 
-    largest = maxval(abs(errors), 1)
-    where (.not. all(abs(errors) < huge(1.0_wp), 1)) largest = huge(1.0_wp)
-  end function largest_of_each
+      largest = maxval(abs(errors), 1)
+      where (.not. all(abs(errors) < huge(1.0_wp), 1)) largest = huge(1.0_wp)
+    end function largest_of_each
+
+  end subroutine summarise_regime
 
 end module regime_rows

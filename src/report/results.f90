@@ -21,11 +21,9 @@ module results
   use journal, only: journal_t
   use run_identity, only: difference_between
   use text_file, only: output_t, partial
-  use tables, only: table_t, cells
+  use tables, only: table_t, cells, columns_of_curve, curve_row, columns_of_profiles, write_profile
   use result_tables, only: columns_of
   use text, only: word_of
-  use curve_rows, only: columns_of_curve, curve_row
-  use profiles, only: columns_of_profiles, write_profile
   use summary, only: summary_t, summary_text
   use progress, only: progress_t
   implicit none
@@ -99,7 +97,7 @@ contains
     if (scene%has_curve() .and. .not. allocated(error)) then
       call self%begin(self%curve, 'curve.csv', columns_of_curve(scene%has_eigenvalues(), &
         scene%drive_columns()), error)
-      if (allocated(scene%profiles) .and. .not. allocated(error)) &
+      if (allocated(scene%profile_h0) .and. .not. allocated(error)) &
         call self%begin(self%shapes, 'profiles.csv', columns_of_profiles(problem), error)
     end if
     if (.not. allocated(error)) return
@@ -337,7 +335,6 @@ contains
 
   end subroutine check_presence
 
-  !> Closes a table; the first error stays.
   subroutine finish_table(table, error)
     type(table_t), intent(inout) :: table
     type(failure_t), allocatable, intent(inout) :: error

@@ -7,7 +7,9 @@ module sensitivity_rows
   use dimensionless_problem, only: problem_t
   use variation, only: variation_t
   use reported_place, only: of_h0, of_displacement, of_radius
-  use places, only: places_t, readings_t
+  use curve_states, only: path_state_t
+  use experiment_result, only: experiment_result_t
+  use places, only: readings_t
   use path_sensitivity, only: rate_t, held
   use driven_pieces, only: through_spring
   use path_readings, only: path_readings_t
@@ -16,7 +18,7 @@ module sensitivity_rows
   use summary, only: summary_t
   implicit none
   private
-  public :: write_sensitivity, write_curve_sensitivity
+  public :: write_sensitivities
 
   !> z turns where it changes along the path by less than this part of its terms, or of the law's
   !> units: folds are found with a millionth of a unit of the coordinate.
@@ -24,42 +26,44 @@ module sensitivity_rows
 
 contains
 
-  !> Writes the rows of sensitivity.csv: the numbers of the summary in its order, then those of the
-  !> rows of fixed_load.csv.
-  subroutine write_sensitivity(problem, varied, summary, places, results)
-    type(problem_t), intent(in) :: problem
+  !> Writes the derivatives by what `varied` varies, if the scene has results that are
+  !> differentiated.
+  subroutine write_sensitivities(varied, problem, outcome, summary, results)
     type(variation_t), intent(in) :: varied(:)
+    type(problem_t), intent(in) :: problem
+    type(experiment_result_t), intent(in) :: outcome
     type(summary_t), intent(in) :: summary
-    type(places_t), intent(in) :: places
     type(results_t), intent(inout) :: results
-    type(readings_t) :: h0, displacement, radius
-    integer :: i
 
-    do i = 1, size(rows)
-      call write_number(trim(rows(i)%key), summary%numbers_of_row(i), rows(i)%list)
-    end do
-    h0 = places%read_numbers(problem, 'fixed_load', of_h0)
-    displacement = places%read_numbers(problem, 'fixed_load', of_displacement)
-    radius = places%read_numbers(problem, 'fixed_load', of_radius)
-    do i = 1, size(h0%value)
-      call write_element('fixed_load.h0', h0, i)
-      call write_element('fixed_load.displacement', displacement, i)
-      if (radius%value(i) > 0) call write_element('fixed_load.contact_radius', radius, i)
-    end do
+    if (.not. (allocated(outcome%readings) .or. allocated(outcome%timed))) return
+    call write_numbers()
+    if (.not. allocated(outcome%readings)) return
+    if (allocated(outcome%readings%rate)) call write_curve(outcome%readings)
 
   contains
 
-    subroutine write_number(key, number, is_list)
-      character(len=*), intent(in) :: key
-      type(readings_t), intent(in) :: number
-      logical, intent(in) :: is_list
-      integer :: k
+    !> The numbers of the summary in its order, then those of the rows of fixed_load.csv.
+    subroutine write_numbers()
+      type(readings_t) :: number, h0, displacement, radius
+      integer :: i, k
 
-      do k = 1, size(number%rate, 2)
-        if (is_list) call write_element(key, number, k)
-        if (.not. is_list) call write_lines(key, number, k)
+      call results%begin_table('sensitivity.csv')
+      do i = 1, size(rows)
+        number = summary%numbers_of_row(i)
+        do k = 1, size(number%rate, 2)
+          if (rows(i)%list) call write_element(trim(rows(i)%key), number, k)
+          if (.not. rows(i)%list) call write_lines(trim(rows(i)%key), number, k)
+        end do
       end do
-    end subroutine write_number
+      h0 = outcome%places%read_numbers(problem, 'fixed_load', of_h0)
+      displacement = outcome%places%read_numbers(problem, 'fixed_load', of_displacement)
+      radius = outcome%places%read_numbers(problem, 'fixed_load', of_radius)
+      do i = 1, size(h0%value)
+        call write_element('fixed_load.h0', h0, i)
+        call write_element('fixed_load.displacement', displacement, i)
+        if (radius%value(i) > 0) call write_element('fixed_load.contact_radius', radius, i)
+      end do
+    end subroutine write_numbers
 
     subroutine write_element(key, number, k)
       character(len=*), intent(in) :: key
@@ -84,54 +88,50 @@ contains
       end do
     end subroutine write_lines
 
-  end subroutine write_sensitivity
+    !> For each parameter: the curve at prescribed h0, then behind each spring.
+    subroutine write_curve(readings)
+      type(path_readings_t), intent(in) :: readings
+      real(wp), allocatable :: stiffness(:)
+      integer :: i, j, k
 
-  !> Writes the rows of curve_sensitivity.csv for each parameter: the curve at prescribed h0, then
-  !> behind each spring.
-  subroutine write_curve_sensitivity(problem, varied, readings, results)
-    type(problem_t), intent(in) :: problem
-    type(variation_t), intent(in) :: varied(:)
-    type(path_readings_t), intent(in) :: readings
-    type(results_t), intent(inout) :: results
-    real(wp), allocatable :: stiffness(:)
-    integer :: i, j, k
-
-    stiffness = [ieee_value(1.0_wp, ieee_positive_inf)]
-    if (allocated(readings%device)) stiffness = [stiffness, &
-      pack(readings%device%stiffness, readings%device%stiffness <= huge(1.0_wp))]
-    do j = 1, size(varied)
-      do k = 1, size(stiffness)
-        do i = 1, size(readings%node)
-          call add(i, j, stiffness(k))
+      call results%begin_table('curve_sensitivity.csv')
+      stiffness = [ieee_value(1.0_wp, ieee_positive_inf)]
+      if (allocated(readings%device)) stiffness = [stiffness, &
+        pack(readings%device%stiffness, readings%device%stiffness <= huge(1.0_wp))]
+      do j = 1, size(varied)
+        do k = 1, size(stiffness)
+          do i = 1, size(readings%node)
+            call add(varied(j)%parameter%name, stiffness(k), readings%node(i), readings%rate(j, i))
+          end do
         end do
       end do
-    end do
+    end subroutine write_curve
 
-  contains
-
-    subroutine add(i, j, stiffness)
-      integer, intent(in) :: i, j
+    subroutine add(parameter, stiffness, node, by)
+      character(len=*), intent(in) :: parameter
       real(wp), intent(in) :: stiffness
+      type(path_state_t), intent(in) :: node
+      type(rate_t), intent(in) :: by
       type(rate_t) :: rate
       real(wp) :: weights(2), terms(2), z
 
-      associate (node => readings%node(i), drive => through_spring(stiffness))
+      associate (drive => through_spring(stiffness))
         weights = drive%weights
-        terms = weights*node%slopes*[problem%length, problem%load]
-        rate = held(problem, node, readings%rate(j, i), weights)
-        if (.not. abs(sum(terms)) > turning*sum(abs(terms) + &
-          abs(weights)*[problem%length, problem%load])) then
-          rate%h0 = nan
-          rate%load = rate%h0
-        end if
-        z = nan
-        if (weights(1) > 0) z = problem%law%separation_of(node%h0) + weights(2)*node%load* &
-          problem%load
-        call results%row(varied(j)%parameter%name, [stiffness, z, &
-          problem%law%separation_of(node%h0), node%load*problem%load, rate%h0, rate%load])
       end associate
+      terms = weights*node%slopes*[problem%length, problem%load]
+      rate = held(problem, node, by, weights)
+      if (.not. abs(sum(terms)) > turning*sum(abs(terms) + &
+        abs(weights)*[problem%length, problem%load])) then
+        rate%h0 = nan
+        rate%load = rate%h0
+      end if
+      z = nan
+      if (weights(1) > 0) z = problem%law%separation_of(node%h0) + weights(2)*node%load* &
+        problem%load
+      call results%row(parameter, [stiffness, z, problem%law%separation_of(node%h0), &
+        node%load*problem%load, rate%h0, rate%load])
     end subroutine add
 
-  end subroutine write_curve_sensitivity
+  end subroutine write_sensitivities
 
 end module sensitivity_rows

@@ -12,18 +12,15 @@ module summarise
   use path_readings, only: path_readings_t
   use reported_place, only: place_t, of_h0, of_load
   use places, only: places_t, readings_t
-  use ending_text, only: text_of
   use problem_numbers, only: describe_problem
   use result_rows, only: rows
   use summary, only: summary_t
   use classical_rows, only: summarise_classical
   use approximation_tables, only: summarise_approximations
-  use device_rows, only: summarise_device
-  use fixed_load_rows, only: summarise_fixed_loads
+  use reading_rows, only: summarise_device, summarise_fixed_loads
   use regime_rows, only: summarise_regime
   use rate_entries, only: summarise_timed
-  use validity, only: judge_law, judge_extent, judge_layers
-  use quality_warnings, only: judge_resolution, judge_accuracy, judge_stopping
+  use quality_warnings, only: judge_law, judge_run
   implicit none
   private
   public :: summary_of
@@ -39,8 +36,8 @@ contains
 
     call summary%set('title', scene%title)
     call summary%set('converged', .true.)
-    if (allocated(scene%sensitivity) .and. .not. allocated(scene%drive)) then
-      call describe_problem(problem, summary, scene%sensitivity%varied)
+    if (allocated(scene%varied) .and. .not. allocated(scene%drive)) then
+      call describe_problem(problem, summary, scene%varied)
     else
       call describe_problem(problem, summary)
     end if
@@ -49,93 +46,73 @@ contains
     if (allocated(scene%approximations)) call summarise_approximations(problem, summary)
     if (outcome%chosen%grid == unchosen) return
     quality = outcome%quality()
-    call describe_numerics(scene, outcome, quality, summary)
-    call take_places(problem, outcome%places, summary)
-    call tell_branches(scene, problem, outcome, summary)
+    call describe_numerics()
+    call take_places(outcome%places)
+    call tell_branches()
     if (allocated(outcome%timed)) call summarise_timed(scene, problem, outcome%timed, summary)
-    if (allocated(outcome%path)) call tell_path(problem, outcome%path, summary)
-    if (allocated(outcome%readings)) &
-      call take_readings(scene, problem, outcome%readings, outcome%places, summary)
+    if (allocated(outcome%path)) call tell_path(outcome%path)
+    if (allocated(outcome%readings)) call take_readings(outcome%readings, outcome%places)
     if (scene%regime) call summarise_regime(problem, outcome%places, summary)
-    call judge_extent(problem, quality, summary)
-    call judge_layers(problem, quality, summary)
-    if (.not. outcome%differentiated) &
-      call summary%fail_with('sensitivity: not all derivatives were found')
-    call judge_resolution(outcome%chosen%grid == edge_locked, quality, summary)
-    call judge_accuracy(scene, outcome, quality, summary)
-    call judge_stopping(outcome, quality, summary)
-  end function summary_of
-
-  !> Adds the chosen numerics, and the largest residual and error.
-  subroutine describe_numerics(scene, outcome, quality, summary)
-    type(scene_t), intent(in) :: scene
-    type(experiment_result_t), intent(in) :: outcome
-    type(quality_t), intent(in) :: quality
-    type(summary_t), intent(inout) :: summary
-
-    call summary%set('grid', trim(grid_names(outcome%chosen%grid)))
-    call summary%set('method', outcome%chosen%method)
-    call summary%set('chosen_because', outcome%chosen%because)
-    call summary%set('nodes', int(outcome%nodes, long))
-    call summary%set('worst_residual', quality%residual)
-    if (quality%spacing > 0) call summary%set('spacing_over_neck', quality%spacing)
-    if (allocated(outcome%error_estimate)) &
-      call summary%set('error_estimate', outcome%error_estimate)
-    associate (numerics => scene%numerics)
-      if (outcome%chosen%grid == edge_locked .and. (allocated(numerics%nodes) .or. &
-        allocated(numerics%r_max) .or. allocated(numerics%panel_order))) call summary%note( &
-        'numerics: nodes, r_max and panel_order have no effect on meshes that follow from ' // &
-        'accuracy; grid = ''uniform'' and method = ''mixing'' have fixed ones')
-    end associate
-  end subroutine describe_numerics
-
-  !> Adds all numbers that are read at places, with their errors and derivatives.
-  subroutine take_places(problem, places, summary)
-    type(problem_t), intent(in) :: problem
-    type(places_t), intent(in) :: places
-    type(summary_t), intent(inout) :: summary
-    type(readings_t) :: found
-    integer :: i
-
-    do i = 1, size(rows)
-      if (.not. places%has(rows(i)%place)) cycle
-      found = places%read_numbers(problem, rows(i)%place, rows(i)%quantity)
-      if (rows(i)%error == '') then
-        call summary%set(trim(rows(i)%key), found%value)
-      else
-        call summary%set(trim(rows(i)%key), found%value, found%error, found%rate)
-      end if
-    end do
-  end subroutine take_places
-
-  !> Adds further numbers and warnings of branches that are stepped in h0.
-  subroutine tell_branches(scene, problem, outcome, summary)
-    type(scene_t), intent(in) :: scene
-    type(problem_t), intent(in) :: problem
-    type(experiment_result_t), intent(in) :: outcome
-    type(summary_t), intent(inout) :: summary
-    integer :: k
-
-    if (allocated(outcome%stepped_path)) call tell_trouble('path', outcome%stepped_path)
-    if (allocated(outcome%loading)) then
-      call tell_trouble('loading', outcome%loading)
-      if (outcome%loading%jump_uncertainty > 0 .and. .not. exact('jump_in')) call summary%set( &
-        'jump_in_uncertainty', outcome%loading%jump_uncertainty*problem%length)
-    end if
-    if (.not. allocated(outcome%unloading)) return
-    call summary%set('unload_from', scene%unloading%from)
-    do k = 1, size(outcome%unloading)
-      call tell_trouble('unloading_'//brief(k), outcome%unloading(k))
-    end do
-    do k = 1, size(outcome%unloading)
-      if (.not. allocated(outcome%unloading(k)%jump)) cycle
-      if (outcome%unloading(k)%jump_uncertainty > 0 .and. .not. exact('jump_out')) &
-        call summary%set('jump_out_uncertainty', &
-        outcome%unloading(k)%jump_uncertainty*problem%length)
-      exit
-    end do
+    call judge_run(scene, problem, outcome, quality, summary)
 
   contains
+
+    !> Adds the chosen numerics, and the largest residual and error.
+    subroutine describe_numerics()
+      call summary%set('grid', trim(grid_names(outcome%chosen%grid)))
+      call summary%set('method', outcome%chosen%method)
+      call summary%set('chosen_because', outcome%chosen%because)
+      call summary%set('nodes', int(outcome%nodes, long))
+      call summary%set('worst_residual', quality%residual)
+      if (quality%spacing > 0) call summary%set('spacing_over_neck', quality%spacing)
+      if (allocated(outcome%error_estimate)) &
+        call summary%set('error_estimate', outcome%error_estimate)
+      associate (numerics => scene%numerics)
+        if (outcome%chosen%grid == edge_locked .and. (allocated(numerics%nodes) .or. &
+          allocated(numerics%r_max) .or. allocated(numerics%panel_order))) call summary%note( &
+          'numerics: nodes, r_max and panel_order have no effect on meshes that follow from ' // &
+          'accuracy; grid = ''uniform'' and method = ''mixing'' have fixed ones')
+      end associate
+    end subroutine describe_numerics
+
+    !> Adds all numbers that are read at places, with their errors and derivatives.
+    subroutine take_places(places)
+      type(places_t), intent(in) :: places
+      type(readings_t) :: found
+      integer :: i
+
+      do i = 1, size(rows)
+        if (.not. places%has(rows(i)%place)) cycle
+        found = places%read_numbers(problem, rows(i)%place, rows(i)%quantity)
+        if (rows(i)%error == '') then
+          call summary%set(trim(rows(i)%key), found%value)
+        else
+          call summary%set(trim(rows(i)%key), found%value, found%error, found%rate)
+        end if
+      end do
+    end subroutine take_places
+
+    subroutine tell_branches()
+      integer :: k
+
+      if (allocated(outcome%stepped_path)) call tell_trouble('path', outcome%stepped_path)
+      if (allocated(outcome%loading)) then
+        call tell_trouble('loading', outcome%loading)
+        if (outcome%loading%jump_uncertainty > 0 .and. .not. exact('jump_in')) call summary%set( &
+          'jump_in_uncertainty', outcome%loading%jump_uncertainty*problem%length)
+      end if
+      if (.not. allocated(outcome%unloading)) return
+      call summary%set('unload_from', scene%unloading%from)
+      do k = 1, size(outcome%unloading)
+        call tell_trouble('unloading_'//brief(k), outcome%unloading(k))
+      end do
+      do k = 1, size(outcome%unloading)
+        if (.not. allocated(outcome%unloading(k)%jump)) cycle
+        if (outcome%unloading(k)%jump_uncertainty > 0 .and. .not. exact('jump_out')) call &
+          summary%set('jump_out_uncertainty', outcome%unloading(k)%jump_uncertainty*problem%length)
+        exit
+      end do
+    end subroutine tell_branches
 
     !> Whether a jump starts from a fold that is known.
     pure logical function exact(name)
@@ -157,64 +134,57 @@ contains
           ' m; the largest residual is '//rounded(branch%quality%residual)// &
           ' lengths of the force law')
       if (branch%ending%early()) &
-        call summary%fail_with(name//' ended early: '//trim(text_of(branch%ending)))
+        call summary%fail_with(name//' ended early: '//trim(branch%ending%message()))
     end subroutine tell_trouble
 
-  end subroutine tell_branches
+    subroutine tell_path(path)
+      type(path_t), intent(in) :: path
 
-  !> Adds further numbers and warnings of the path.
-  subroutine tell_path(problem, path, summary)
-    type(problem_t), intent(in) :: problem
-    type(path_t), intent(in) :: path
-    type(summary_t), intent(inout) :: summary
+      if (path%ending%early()) call summary%fail_with('path: '//trim(path%ending%message()))
+      if (path%fallen) call summary%warn('path: the bodies fall onto each other ' // &
+        'under this law; the path ends there and has no state in contact')
+      if (problem%law%rest_gap > 0) then
+        if (.not. path%fallen .and. .not. path%quality%contact_radius > 0 .and. &
+          is_lowest(path, path%finish)) call summary%note('path: it ends at h0 = ' // &
+          rounded(problem%law%separation_of(path%finish%at(of_h0))) // ' m, before contact, ' // &
+          'with the largest tension in its last row; lower h0_end')
+        if (path%states > 1 .and. is_lowest(path, path%start)) call summary%note( &
+          'path: it begins at h0 = ' // rounded(problem%law%separation_of(path%start%at(of_h0))) &
+          // ' m with the largest tension; raise h0_start')
+      end if
+      call summary%set('folds_stable', merge(1, 0, path%unstable_after == 0))
+    end subroutine tell_path
 
-    if (path%ending%early()) call summary%fail_with('path: '//trim(text_of(path%ending)))
-    if (path%fallen) call summary%warn('path: the bodies fall onto each other ' // &
-      'under this law; the path ends there and has no state in contact')
-    if (problem%law%rest_gap > 0) then
-      if (.not. path%fallen .and. .not. path%quality%contact_radius > 0 .and. &
-        is_lowest(path, path%finish)) call summary%note('path: it ends at h0 = ' // &
-        rounded(problem%law%separation_of(path%finish%at(of_h0))) // ' m, before contact, ' // &
-        'with the largest tension in its last row; lower h0_end')
-      if (path%states > 1 .and. is_lowest(path, path%start)) call summary%note( &
-        'path: it begins at h0 = ' // rounded(problem%law%separation_of(path%start%at(of_h0))) // &
-        ' m with the largest tension; raise h0_start')
-    end if
-    call summary%set('folds_stable', merge(1, 0, path%unstable_after == 0))
-  end subroutine tell_path
+    !> Whether a path's largest tension is at this place, one of its ends, if the path has both.
+    pure logical function is_lowest(path, place)
+      type(path_t), intent(in) :: path
+      type(place_t), intent(in), optional :: place
 
-  !> Whether a path's largest tension is at this place, one of its ends, if the path has both.
-  pure logical function is_lowest(path, place)
-    type(path_t), intent(in) :: path
-    type(place_t), intent(in), optional :: place
+      is_lowest = allocated(path%lowest) .and. present(place)
+      if (is_lowest) is_lowest = path%lowest%at(of_load) < 0 .and. &
+        abs(path%lowest%at(of_h0) - place%at(of_h0)) <= 0
+    end function is_lowest
 
-    is_lowest = allocated(path%lowest) .and. present(place)
-    if (is_lowest) is_lowest = path%lowest%at(of_load) < 0 .and. &
-      abs(path%lowest%at(of_h0) - place%at(of_h0)) <= 0
-  end function is_lowest
+    subroutine take_readings(readings, places)
+      type(path_readings_t), intent(in) :: readings
+      type(places_t), intent(in) :: places
 
-  !> Adds numbers that are read from the path.
-  subroutine take_readings(scene, problem, readings, places, summary)
-    type(scene_t), intent(in) :: scene
-    type(problem_t), intent(in) :: problem
-    type(path_readings_t), intent(in) :: readings
-    type(places_t), intent(in) :: places
-    type(summary_t), intent(inout) :: summary
+      if (readings%traced_from > -huge(readings%traced_from)) call summary%set( &
+        'path_traced_h0', problem%law%separation_of(readings%traced_from))
+      if (readings%undeformed_from > readings%traced_from) call summary%set( &
+        'path_undeformed_h0', problem%law%separation_of(readings%undeformed_from))
+      if (.not. readings%solved) &
+        call summary%fail_with('some numbers that are read from the path were not solved')
+      if (allocated(readings%device)) call summarise_device(problem, readings, places, summary)
+      if (places%has('table')) then
+        call summary%set('table_load_error', places%largest_of('table', of_load)*problem%load)
+        call summary%set('table_interpolation_error', &
+          readings%table_interpolation_error*problem%load)
+      end if
+      if (allocated(readings%loaded)) call summarise_fixed_loads(problem, scene%fixed_loads, &
+        readings, places, summary)
+    end subroutine take_readings
 
-    if (readings%traced_from > -huge(readings%traced_from)) call summary%set( &
-      'path_traced_h0', problem%law%separation_of(readings%traced_from))
-    if (readings%undeformed_from > readings%traced_from) call summary%set( &
-      'path_undeformed_h0', problem%law%separation_of(readings%undeformed_from))
-    if (.not. readings%solved) &
-      call summary%fail_with('some numbers that are read from the path were not solved')
-    if (allocated(readings%device)) call summarise_device(problem, readings, places, summary)
-    if (places%has('table')) then
-      call summary%set('table_load_error', places%largest_of('table', of_load)*problem%load)
-      call summary%set('table_interpolation_error', &
-        readings%table_interpolation_error*problem%load)
-    end if
-    if (allocated(readings%loaded)) call summarise_fixed_loads(problem, scene%fixed_load%load, &
-      readings, places, summary)
-  end subroutine take_readings
+  end function summary_of
 
 end module summarise

@@ -1,13 +1,23 @@
-!> Tables as comma-separated values, written row by row.
+!> Tables as comma-separated values, written row by row, and their rows of states: the curve has one
+!> for each equilibrium; profiles have separation, deformation, pressure and energy of a state
+!> against r.
 module tables
   use, intrinsic :: iso_c_binding, only: c_int
   use kinds, only: wp
   use failure, only: failure_t
-  use decimal, only: put_real, longest_real
+  use decimal, only: put_real, longest_real, put_whole
   use text_file, only: output_t, plain
+  use records, only: record_t
+  use result_tables, only: columns_of
+  use dimensionless_problem, only: problem_t
+  use discretisation, only: discretisation_t, axis_row, first_node
+  use elastic_operator, only: elastic_operator_t
+  use contact_state, only: state_t
+  use represented_pressure, only: pressure_at_nodes
   implicit none
   private
-  public :: table_t, cells, put_cells, direction_of
+  public :: table_t, cells, put_cells, direction_of, columns_of_curve, curve_row, &
+    columns_of_profiles, write_profile
 
   !> A table that is being written, one row a line, made with `cells`.
   type, extends(output_t) :: table_t
@@ -76,5 +86,128 @@ contains
       held = held + 1 + length
     end do
   end subroutine put_cells
+
+  !> The columns of the table: with those of stability if there are eigenvalues, and with the first
+  !> `of_drive` of those of a drive in time.
+  pure function columns_of_curve(eigenvalues, of_drive) result(columns)
+    logical, intent(in) :: eigenvalues
+    integer, intent(in) :: of_drive
+    character(len=96), allocatable :: columns(:), more(:)
+
+    columns = columns_of('curve.csv')
+    more = columns_of('curve.csv', 'with &stability')
+    if (eigenvalues) columns = [columns, more]
+    more = columns_of('curve.csv', 'with &drive')
+    columns = [columns, more(:of_drive)]
+  end function columns_of_curve
+
+  !> The row of a record, with columns of stability if the record has them.
+  pure function curve_row(record) result(text)
+    type(record_t), intent(in) :: record
+    character(len=:), allocatable :: text
+    character(len=len(record%branch) + 14*(longest_real + 1)) :: row
+    integer :: held
+
+    row(:len(record%branch)) = record%branch
+    held = len(record%branch)
+    call put_cells([record%h0, record%h_centre, record%displacement, record%load, &
+      record%contact_radius], row, held)
+    call put_count(record%stable, row, held)
+    call put_cells([record%residual], row, held)
+    call put_count(record%iterations, row, held)
+    call put_count(merge(1, 0, record%converged), row, held)
+    if (allocated(record%eigenvalue)) call put_cells([record%eigenvalue, record%local_criterion, &
+      record%axis_criterion], row, held)
+    if (allocated(record%time)) call put_cells([record%time], row, held)
+    if (allocated(record%z)) call put_cells([record%z], row, held)
+    text = row(:held)
+  end function curve_row
+
+  !> Adds an integer after a comma.
+  pure subroutine put_count(count, row, held)
+    integer, intent(in) :: count
+    character(len=*), intent(inout) :: row
+    integer, intent(inout) :: held
+    integer :: length
+
+    row(held + 1:held + 1) = ','
+    call put_whole(count, row(held + 2:), length)
+    held = held + 1 + length
+  end subroutine put_count
+
+  !> The columns of the table.
+  pure function columns_of_profiles(problem) result(columns)
+    type(problem_t), intent(in) :: problem
+    character(len=96), allocatable :: columns(:), more(:)
+
+    columns = columns_of('profiles.csv')
+    more = columns_of('profiles.csv', 'of bodies that are not alike')
+    if (.not. alike(problem)) columns = [columns, more]
+  end function columns_of_profiles
+
+  pure logical function alike(problem)
+    type(problem_t), intent(in) :: problem
+
+    alike = problem%body%is_alike() .and. .not. abs(problem%share(1) - problem%share(2)) > 0
+  end function alike
+
+  !> Adds a state to a table of profiles: the axis, then the nodes. `h0` is in metres.
+  subroutine write_profile(table, branch, h0, problem, grid, state, error)
+    type(table_t), intent(inout) :: table
+    character(len=*), intent(in) :: branch
+    real(wp), intent(in) :: h0
+    type(problem_t), intent(in) :: problem
+    type(discretisation_t), intent(in) :: grid
+    type(state_t), intent(in) :: state
+    type(failure_t), allocatable, intent(inout) :: error
+    real(wp), dimension(size(state%gap) + 1) :: r, gap, deformation, pressure, energy
+    real(wp) :: each(size(state%gap) + 1, 2)
+    character(len=:), allocatable :: row
+    integer :: j
+
+    if (.not. table%is_open()) return
+    associate (n => size(state%gap), law => problem%law)
+      r = [0.0_wp, state%scale*grid%x(:n)]
+      gap = [state%axis_gap, state%gap]
+      pressure = [law%pressure([state%axis_gap]), &
+        pressure_at_nodes(law, grid, state%gap, state%pressure)]
+      energy = law%energy(gap)
+      ! h = h0 + f - 2u.
+      deformation = -0.5_wp*(gap - state%h0 - problem%shape%height(r))
+      if (problem%rigid) deformation = 0
+    end associate
+    each(:, 1) = problem%share(1)*deformation
+    if (.not. problem%body%is_alike()) each(:, 1) = deformation_of_first(problem, grid, state)
+    each(:, 2) = 2*deformation - each(:, 1)
+    do j = 1, size(r)
+      ! A mesh may have a node on the axis.
+      if (j == 2 .and. .not. r(j) > 0) cycle
+      row = branch // ',' // cells([h0, r(j)*problem%lateral, problem%law%separation_of(gap(j)), &
+        deformation(j)*problem%length, pressure(j)*problem%pressure, &
+        energy(j)*problem%pressure*problem%length])
+      if (.not. alike(problem)) row = row // ',' // cells(each(j, :)*problem%length)
+      call table%line(row, error)
+      if (allocated(error)) return
+    end do
+    call table%flush(error)
+  end subroutine write_profile
+
+  !> Outward displacement of the first body's surface, on the axis and at the nodes, for bodies that
+  !> deform differently.
+  function deformation_of_first(problem, grid, state) result(deformation)
+    type(problem_t), intent(in) :: problem
+    type(discretisation_t), intent(in) :: grid
+    type(state_t), intent(in) :: state
+    real(wp) :: deformation(size(state%gap) + 1)
+    type(problem_t) :: first
+    type(elastic_operator_t) :: operator
+    real(wp) :: rise(first_node - 1 + size(state%gap))
+
+    first = problem
+    first%coupling = problem%coupling*problem%share(1)/2
+    call problem%body%take_one(1, first%body)
+    call operator%deform(first, grid, state%scale, size(state%gap), state%pressure, rise)
+    deformation = -[rise(axis_row), rise(first_node:)]
+  end function deformation_of_first
 
 end module tables

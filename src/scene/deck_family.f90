@@ -1,20 +1,22 @@
 !> The problems of a deck in which some numbers are replaced. The deck is read again with each set
-!> of numbers, so that no law, shape or unit needs code of its own for this.
+!> of numbers, so that no law, shape or unit needs code of its own for this. &sensitivity names
+!> such numbers, by which results are differentiated.
 module deck_family
   use kinds, only: wp
   use failure, only: failure_t, fail, bad_input
   use text, only: lower, quoted, brief, clip, listing, word_count, word_of
   use deck, only: deck_t
   use deck_numbers, only: find_number, set_number, guess_number
-  use deck_keys, only: key_spec, real_value, real_list
+  use deck_keys, only: key_spec, real_value, real_list, names_value
   use deck_values, only: given
   use dimensionless_problem, only: problem_t
-  use problem_family, only: problem_family_t, parameter_t
+  use variation, only: problem_family_t, parameter_t, vary, to_report
   use scene_groups, only: scene_t
   use scene_problem, only: keys_of_model, take_model, problem_of
+  use curve_groups, only: check_path
   implicit none
   private
-  public :: deck_family_t, new_deck_family, widened
+  public :: deck_family_t, new_deck_family, widened, sensitivity_keys, take_sensitivity
 
   !> A deck, and the numbers of it that `pose` replaces.
   type, extends(problem_family_t) :: deck_family_t
@@ -22,6 +24,13 @@ module deck_family
   contains
     procedure :: pose
   end type deck_family_t
+
+  !> The rows of &sensitivity.
+  type(key_spec), parameter :: sensitivity_keys(*) = [ &
+    key_spec('sensitivity', meaning='Derivatives of reported numbers by numbers of bodies, ' // &
+      'shape and forces; needs &equilibrium_path, or &drive.'), &
+    key_spec('sensitivity', 'parameters', names_value, 'The numbers, as ''group.key''; an ' // &
+      'element of a list as ''group.key(2)''.', most=20, required=.true.)]
 
 contains
 
@@ -86,14 +95,18 @@ contains
     do i = 1, size(value)
       if (.not. self%parameter(i)%follows .or. abs(value(i) - 1) <= 0) cycle
       usual = scene
-      call take_model(usual, error)
-      if (allocated(error)) return
+      call take_model(usual)
+      if (allocated(usual%deck%error)) then
+        call move_alloc(usual%deck%error, error)
+        return
+      end if
       call find_number(usual%deck, self%parameter(i)%name, row, term, error)
       call set_number(scene%deck, self%parameter(i)%name, &
         value(i)*usual%deck%values(row)%reals(max(1, term)), error)
       if (allocated(error)) return
     end do
-    call take_model(scene, error)
+    call take_model(scene)
+    call move_alloc(scene%deck%error, error)
     if (.not. allocated(error)) problem = problem_of(scene)
   end subroutine pose
 
@@ -144,5 +157,71 @@ contains
       end do
     end do
   end function parameters_of
+
+  !> Reads &sensitivity.
+  subroutine take_sensitivity(scene)
+    type(scene_t), intent(inout) :: scene
+    type(deck_family_t) :: family
+    type(failure_t), allocatable :: trouble
+    character(len=:), allocatable :: keys, why
+    logical :: driven
+    integer :: i
+
+    if (.not. scene%deck%has_group('sensitivity')) return
+    scene%deck%varied = .true.
+    driven = scene%deck%has_group('drive')
+    why = ''
+    if (.not. driven) then
+      call check_path(scene, 'sensitivity')
+      why = ', whose cases show no curve'
+    end if
+    if (scene%deck%has_group('sweep')) call scene%deck%mistake('sensitivity', '', &
+      'not together with &sweep' // why)
+    if (allocated(scene%deck%error) .and. .not. driven) return
+    call scene%deck%get('sensitivity', 'parameters', keys)
+    allocate (scene%varied(word_count(keys)))
+    do i = 1, word_count(keys)
+      associate (varied => scene%varied(i))
+        if (driven) then
+          call take_number(scene%deck, lower(word_of(keys, i)), varied%parameter, trouble)
+        else
+          ! Each alone: where a default follows the number, it follows whatever else is named.
+          call new_deck_family(scene%deck, word_of(keys, i), family, trouble)
+          if (.not. allocated(trouble)) call vary(family, 1, to_report, varied, trouble)
+        end if
+      end associate
+      if (.not. allocated(trouble)) cycle
+      call scene%deck%mistake('sensitivity', 'parameters', trouble%message)
+      return
+    end do
+  end subroutine take_sensitivity
+
+  !> A parameter of a drive in time, which is differentiated by whole runs: any number of the deck
+  !> except those of &numerics.
+  subroutine take_number(deck, name, parameter, error)
+    type(deck_t), intent(in) :: deck
+    character(len=*), intent(in) :: name
+    type(parameter_t), intent(inout) :: parameter
+    type(failure_t), allocatable, intent(out) :: error
+    integer :: row, term
+
+    call find_number(deck, name, row, term, error)
+    if (allocated(error)) return
+    parameter%name = name
+    if (index(name, 'numerics.') == 1 .or. &
+      all(deck%specs(row)%kind /= [real_value, real_list])) then
+      call fail(error, bad_input, quoted(name) // ' is not a number on which results depend ' // &
+        'smoothly')
+    else if (.not. allocated(deck%values(row)%reals)) then
+      call fail(error, bad_input, 'the deck gives no ' // quoted(name))
+    else if (term == 0 .and. size(deck%values(row)%reals) > 1) then
+      call fail(error, bad_input, quoted(name) // ' is a list; name an element of it, as ' // &
+        quoted(name // '(1)'))
+    else
+      parameter%value = deck%values(row)%reals(max(1, term))
+      if (.not. abs(parameter%value) > 0) call fail(error, bad_input, quoted(name) // &
+        ' is 0, so that no relative change of it can be made')
+    end if
+  end subroutine take_number
 
 end module deck_family

@@ -37,35 +37,34 @@ module fit_group
 contains
 
   !> Reads &measurement and &fit.
-  subroutine take_fit(scene, error)
+  subroutine take_fit(scene)
     type(scene_t), intent(inout) :: scene
-    type(failure_t), allocatable, intent(inout) :: error
     type(failure_t), allocatable :: trouble
 
     associate (deck => scene%deck)
       if (deck%has_group('measurement') .and. .not. deck%has_group('fit')) &
-        call deck%mistake('measurement', '', 'needs &fit', error)
+        call deck%mistake('measurement', '', 'needs &fit')
       if (.not. deck%has_group('fit')) return
       deck%varied = .true.
       if (.not. deck%has_group('measurement')) then
-        call deck%mistake('fit', '', 'needs &measurement', error)
+        call deck%mistake('fit', '', 'needs &measurement')
         return
       end if
-      if (deck%has_group('sweep')) call deck%mistake('fit', '', 'not together with &sweep', error)
+      if (deck%has_group('sweep')) call deck%mistake('fit', '', 'not together with &sweep')
       if (allocated(scene%law)) then
         if (scene%bodies%rigid .or. .not. scene%law%adhesion > 0) call deck%mistake('fit', '', &
           'needs elastic bodies and a force that attracts; beside a repulsion a weak ' // &
-          '&van_der_waals with &born is enough', error)
+          '&van_der_waals with &born is enough')
       end if
     end associate
-    if (allocated(error)) return
-    allocate (scene%measurement, scene%measured, scene%fit)
-    call take_measurement(scene, error)
-    if (.not. allocated(error)) call take_unknowns(scene, error)
-    if (allocated(error)) return
-    call read_measured(scene%measurement, scene%measured, trouble)
+    if (allocated(scene%deck%error)) return
+    allocate (scene%measured, scene%fit)
+    call take_measurement(scene)
+    if (.not. allocated(scene%deck%error)) call take_unknowns(scene)
+    if (allocated(scene%deck%error)) return
+    call read_measured(scene%measured, trouble)
     if (allocated(trouble)) call scene%deck%mistake('measurement', 'file', &
-      'the curve cannot be used: ' // trouble%message, error)
+      'the curve cannot be used: ' // trouble%message)
   end subroutine take_fit
 
   !> The family of problems whose parameters are the unknowns of bodies, shape and forces, in order.
@@ -84,7 +83,6 @@ contains
     call new_deck_family(deck, own, family, error)
   end subroutine family_of_fit
 
-  !> Whether a key is in &measurement.
   pure logical function is_measured(name)
     character(len=*), intent(in) :: name
 
@@ -92,9 +90,8 @@ contains
   end function is_measured
 
   !> Reads the unknowns of &fit with their bounds and prior standard deviations.
-  subroutine take_unknowns(scene, error)
+  subroutine take_unknowns(scene)
     type(scene_t), intent(inout) :: scene
-    type(failure_t), allocatable, intent(inout) :: error
     type(deck_family_t) :: family
     type(failure_t), allocatable :: trouble
     character(len=:), allocatable :: names
@@ -104,7 +101,7 @@ contains
     call family_of_fit(scene%deck, family, trouble)
     if (allocated(trouble)) then
       call scene%deck%mistake('fit', 'parameters', trouble%message // &
-        ', measurement.contact_point, measurement.sensitivity, measurement.spring_constant', error)
+        ', measurement.contact_point, measurement.sensitivity, measurement.spring_constant')
       return
     end if
     allocate (scene%fit%unknown(word_count(names)))
@@ -113,7 +110,7 @@ contains
       associate (unknown => scene%fit%unknown(i))
         unknown%name = lower(word_of(names, i))
         if (is_measured(unknown%name)) then
-          call take_measured(scene, unknown, error)
+          call take_measured(scene, unknown)
         else
           own = own + 1
           unknown%value = family%parameter(own)%value
@@ -127,15 +124,15 @@ contains
       end associate
       do k = 1, i - 1
         if (scene%fit%unknown(k)%name == scene%fit%unknown(i)%name) call scene%deck%mistake('fit', &
-          'parameters', quoted(scene%fit%unknown(i)%name) // ' is there twice', error)
+          'parameters', quoted(scene%fit%unknown(i)%name) // ' is there twice')
       end do
-      if (allocated(error)) return
+      if (allocated(scene%deck%error)) return
     end do
     if (.not. any(scene%fit%unknown%role == of_contact_point) .and. &
-      .not. allocated(scene%measurement%contact_point)) call scene%deck%mistake('fit', &
+      .not. allocated(scene%measured%contact_point)) call scene%deck%mistake('fit', &
       'parameters', 'the contact point is unknown: add measurement.contact_point here, or ' // &
-      'give contact_point in &measurement', error)
-    call take_bounds(scene%deck, scene%fit%unknown, error)
+      'give contact_point in &measurement')
+    call take_bounds(scene%deck, scene%fit%unknown)
   end subroutine take_unknowns
 
   !> Makes the ends of a key's range bounds of the unknown: a search that may not go beyond them
@@ -149,8 +146,7 @@ contains
     associate (value => unknown%value)
       if (.not. unknown%in_log) then
         if (spec%low > -huge(1.0_wp)) unknown%lower = spec%low
-        if (spec%above > -huge(1.0_wp)) &
-          unknown%lower = spec%above + inside*abs(value - spec%above)
+        if (spec%above > -huge(1.0_wp)) unknown%lower = spec%above + inside*abs(value - spec%above)
       end if
       if (spec%high < huge(1.0_wp)) unknown%upper = spec%high
       if (spec%below < huge(1.0_wp)) unknown%upper = spec%below - inside*abs(spec%below - value)
@@ -158,41 +154,37 @@ contains
   end subroutine take_range
 
   !> Sets role, value and scale of an unknown in &measurement.
-  subroutine take_measured(scene, unknown, error)
-    type(scene_t), intent(in) :: scene
+  subroutine take_measured(scene, unknown)
+    type(scene_t), intent(inout) :: scene
     type(unknown_t), intent(inout) :: unknown
-    type(failure_t), allocatable, intent(inout) :: error
 
     select case (unknown%name)
     case ('measurement.contact_point')
       unknown%role = of_contact_point
-      if (allocated(scene%measurement%contact_point)) &
-        unknown%value = scene%measurement%contact_point
+      if (allocated(scene%measured%contact_point)) unknown%value = scene%measured%contact_point
     case ('measurement.spring_constant')
       unknown%role = of_spring
-      unknown%value = scene%measurement%spring_constant
+      unknown%value = scene%measured%spring_constant
     case ('measurement.sensitivity')
       unknown%role = of_sensitivity
-      if (allocated(scene%measurement%sensitivity)) then
-        unknown%value = scene%measurement%sensitivity
+      if (allocated(scene%measured%sensitivity)) then
+        unknown%value = scene%measured%sensitivity
       else
         call scene%deck%mistake('fit', 'parameters', 'the signal is a force: &measurement has ' // &
-          'no sensitivity', error)
+          'no sensitivity')
       end if
     case default
-      call scene%deck%mistake('fit', 'parameters', quoted(unknown%name) // &
-        ' cannot be fitted; of &measurement only contact_point, sensitivity and ' // &
-        'spring_constant can', error)
+      call scene%deck%mistake('fit', 'parameters', quoted(unknown%name) // ' cannot be ' // &
+        'fitted; of &measurement only contact_point, sensitivity and spring_constant can')
     end select
     unknown%in_log = unknown%role /= of_contact_point
     if (unknown%in_log .and. unknown%value > 0) unknown%scale = unknown%value
   end subroutine take_measured
 
   !> Reads bounds and prior standard deviations, one for each unknown.
-  subroutine take_bounds(deck, unknown, error)
-    type(deck_t), intent(in) :: deck
+  subroutine take_bounds(deck, unknown)
+    type(deck_t), intent(inout) :: deck
     type(unknown_t), intent(inout) :: unknown(:)
-    type(failure_t), allocatable, intent(inout) :: error
     character(len=*), parameter :: keys(*) = [character(len=5) :: 'lower', 'upper', 'prior']
     real(wp), allocatable :: value(:)
     integer :: i, k
@@ -201,7 +193,7 @@ contains
       call deck%get('fit', trim(keys(k)), value)
       if (size(value) == 0) cycle
       if (size(value) /= size(unknown)) then
-        call deck%mistake('fit', trim(keys(k)), 'give one value for each of parameters', error)
+        call deck%mistake('fit', trim(keys(k)), 'give one value for each of parameters')
         return
       end if
       do i = 1, size(unknown)
@@ -222,16 +214,16 @@ contains
       if (unknown(i)%role == of_contact_point .and. .not. deck%is_set('measurement', &
         'contact_point')) then
         if (unknown(i)%prior > 0) call deck%mistake('fit', 'prior', &
-          'measurement.contact_point is not given, so that it has no prior', error)
+          'measurement.contact_point is not given, so that it has no prior')
         cycle
       end if
       if (allocated(unknown(i)%lower)) then
         if (unknown(i)%value < unknown(i)%lower) call deck%mistake('fit', 'lower', &
-          unknown(i)%name // ' is below this bound in the deck', error)
+          unknown(i)%name // ' is below this bound in the deck')
       end if
       if (allocated(unknown(i)%upper)) then
         if (unknown(i)%value > unknown(i)%upper) call deck%mistake('fit', 'upper', &
-          unknown(i)%name // ' is above this bound in the deck', error)
+          unknown(i)%name // ' is above this bound in the deck')
       end if
     end do
   end subroutine take_bounds

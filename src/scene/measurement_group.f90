@@ -43,19 +43,18 @@ module measurement_group
 contains
 
   !> Reads &measurement.
-  subroutine take_measurement(scene, error)
+  subroutine take_measurement(scene)
     type(scene_t), intent(inout) :: scene
-    type(failure_t), allocatable, intent(inout) :: error
     type(source_t) :: source
     type(failure_t), allocatable :: trouble
     character(len=:), allocatable :: names
     integer :: i
 
-    associate (deck => scene%deck, measurement => scene%measurement)
+    associate (deck => scene%deck, measurement => scene%measured)
       measurement%file = deck%path_of('measurement', 'file')
       call load_source(measurement%file, source, trouble, largest_table)
       if (allocated(trouble)) then
-        call deck%mistake('measurement', 'file', trouble%message, error)
+        call deck%mistake('measurement', 'file', trouble%message)
         return
       end if
       call deck%note_file('measurement', 'file', checksum(source%text))
@@ -63,7 +62,7 @@ contains
       call deck%get('measurement', 'columns', names)
       if (word_count(names) < 2) then
         call deck%mistake('measurement', 'columns', 'names the columns of position and ' // &
-          'signal, and of the segment if the file has one', error)
+          'signal, and of the segment if the file has one')
         return
       end if
       allocate (measurement%columns(word_count(names)))
@@ -74,17 +73,21 @@ contains
       call deck%get_optional('measurement', 'sensitivity', measurement%sensitivity)
       call deck%get_optional('measurement', 'contact_point', measurement%contact_point)
       call deck%get('measurement', 'segment', measurement%segment)
-      call take_skipped(deck, measurement%skip, error)
-      call take_units(deck, measurement%unit, error)
+      call deck%get('measurement', 'skip', measurement%skip)
+      if (mod(size(measurement%skip), 2) == 1) then
+        call deck%mistake('measurement', 'skip', 'positions come in pairs: from and to')
+      else if (any(measurement%skip(1::2) > measurement%skip(2::2))) then
+        call deck%mistake('measurement', 'skip', 'the first of each pair must be the smaller')
+      end if
+      call take_units(deck, measurement%unit)
       call deck%get_optional('fit', 'noise', scene%fit%noise)
     end associate
   end subroutine take_measurement
 
   !> Reads the units of the file's columns: metres, newtons and volts, with SI prefixes.
-  subroutine take_units(deck, unit, error)
+  subroutine take_units(deck, unit)
     type(deck_t), intent(inout) :: deck
     real(wp), intent(out) :: unit(2)
-    type(failure_t), allocatable, intent(inout) :: error
     character(len=*), parameter :: prefixes = 'munp', bases(2) = ['m  ', 'NVm']
     integer, parameter :: powers(*) = [-3, -6, -9, -12]
     character(len=:), allocatable :: names, name
@@ -100,26 +103,12 @@ contains
       if (index(trim(bases(i)), name(len(name):)) == 0 .or. (k == 0 .and. len(name) /= 1)) &
         call deck%mistake('measurement', 'units', quoted(name) // ' is not a unit of ' // &
         trim(merge('position', 'signal  ', i == 1)) // ' such as ' // &
-        trim(merge('nm', 'nN', i == 1)), error)
+        trim(merge('nm', 'nN', i == 1)))
     end do
     if (word_count(names) < 2 .or. deck%is_set('measurement', 'sensitivity')) return
     if (scan(name(len(name):), 'Vm') > 0) call deck%mistake('measurement', 'units', 'a signal in ' &
       // 'volts needs sensitivity, the deflection of the spring for one volt, and a ' // &
-      'deflection sensitivity = 1', error)
+      'deflection sensitivity = 1')
   end subroutine take_units
-
-  !> Reads the ranges of position that are left out.
-  subroutine take_skipped(deck, skip, error)
-    type(deck_t), intent(inout) :: deck
-    real(wp), allocatable, intent(out) :: skip(:)
-    type(failure_t), allocatable, intent(inout) :: error
-
-    call deck%get('measurement', 'skip', skip)
-    if (mod(size(skip), 2) == 1) then
-      call deck%mistake('measurement', 'skip', 'positions come in pairs: from and to', error)
-    else if (any(skip(1::2) > skip(2::2))) then
-      call deck%mistake('measurement', 'skip', 'the first of each pair must be the smaller', error)
-    end if
-  end subroutine take_skipped
 
 end module measurement_group

@@ -2,12 +2,11 @@
 !> drains from between them.
 module rate_groups
   use kinds, only: wp
-  use failure, only: failure_t
   use text, only: brief
   use deck_keys, only: key_spec, real_value, real_list
   use creep, only: creep_t
   use scene_groups, only: scene_t
-  use path_groups, only: check_order
+  use curve_groups, only: check_order
   implicit none
   private
   public :: rate_keys, take_rates
@@ -41,9 +40,8 @@ module rate_groups
       otherwise='from accuracy, 1e-4 unless it is given'), &
     key_spec('viscoelastic', meaning='Bodies that creep; &bodies has the instantaneous ' // &
       'stiffness. Give stiffness_relaxed or compliance. Needs &drive.'), &
-    key_spec('viscoelastic', 'stiffness_relaxed', real_value, &
-      'Stiffness of bodies at rest, of a standard linear solid, at most the instantaneous one.', &
-      'Pa', above=0.0_wp), &
+    key_spec('viscoelastic', 'stiffness_relaxed', real_value, 'Stiffness of bodies at rest, ' // &
+      'of a standard linear solid, at most the instantaneous one.', 'Pa', above=0.0_wp), &
     key_spec('viscoelastic', 'compliance', real_list, 'Final contribution of each term to the ' // &
       'compliance (1-nu^2)/E.', '1/Pa', most=most_terms, above=0.0_wp), &
     key_spec('viscoelastic', 'retardation_time', real_list, 'Retardation time of each term, ' // &
@@ -58,18 +56,16 @@ module rate_groups
 contains
 
   !> Reads &drive, &viscoelastic and &fluid.
-  subroutine take_rates(scene, error)
+  subroutine take_rates(scene)
     type(scene_t), intent(inout) :: scene
-    type(failure_t), allocatable, intent(inout) :: error
 
-    if (scene%deck%has_group('drive')) call take_drive(scene, error)
-    if (scene%deck%has_group('viscoelastic')) call take_creep(scene, error)
-    if (scene%deck%has_group('fluid')) call take_fluid(scene, error)
+    if (scene%deck%has_group('drive')) call take_drive(scene)
+    if (scene%deck%has_group('viscoelastic')) call take_creep(scene)
+    if (scene%deck%has_group('fluid')) call take_fluid(scene)
   end subroutine take_rates
 
-  subroutine take_drive(scene, error)
+  subroutine take_drive(scene)
     type(scene_t), intent(inout) :: scene
-    type(failure_t), allocatable, intent(inout) :: error
     real(wp) :: time
     character(len=:), allocatable :: word
     integer :: i
@@ -85,85 +81,81 @@ contains
       call deck%assume('drive', 'z_end', drive%z_start)
       call deck%get('drive', 'z_end', drive%z_end)
       call deck%assume('numerics', 'accuracy', usual_accuracy)
-      call check_order(deck, 'drive', 'z_start', drive%z_start, 'above', 'z_turn', drive%z_turn, &
-        error)
+      call check_order(deck, 'drive', 'z_start', drive%z_start, 'above', 'z_turn', drive%z_turn)
       if (deck%is_set('drive', 'z_end')) call check_order(deck, 'drive', 'z_end', drive%z_end, &
-        'above', 'z_turn', drive%z_turn, error)
+        'above', 'z_turn', drive%z_turn)
       if (allocated(drive%time_step)) then
         time = (drive%z_start - 2*drive%z_turn + drive%z_end)/drive%velocity + drive%dwell
         if (time > most_steps*drive%time_step) call deck%mistake('drive', 'time_step', &
-          'the drive takes ' // brief(time) // ' s, more than 4e4 steps of this length', error)
+          'the drive takes ' // brief(time) // ' s, more than 4e4 steps of this length')
       end if
       do i = 1, size(at_rest)
         if (deck%has_group(trim(at_rest(i)))) call deck%mistake(trim(at_rest(i)), '', &
-          'shows bodies at rest, which &drive does not have; use a deck of its own', error)
+          'shows bodies at rest, which &drive does not have; use a deck of its own')
       end do
       if (scene%bodies%rigid .and. .not. deck%has_group('fluid')) call deck%mistake('drive', '', &
-        'needs bodies that deform, or &fluid; rigid ones have the same load at any velocity', error)
+        'needs bodies that deform, or &fluid; rigid ones have the same load at any velocity')
       call deck%get('numerics', 'grid', word)
       if (word /= 'auto') call deck%mistake('numerics', 'grid', &
-        '&drive has meshes that move with the contact; leave grid out', error)
+        '&drive has meshes that move with the contact; leave grid out')
       call deck%get('numerics', 'method', word)
       if (word == 'mixing') call deck%mistake('numerics', 'method', &
-        '&drive does not mix; leave method out', error)
+        '&drive does not mix; leave method out')
     end associate
   end subroutine take_drive
 
-  subroutine take_creep(scene, error)
+  subroutine take_creep(scene)
     type(scene_t), intent(inout) :: scene
-    type(failure_t), allocatable, intent(inout) :: error
     real(wp), allocatable :: relaxed, compliance(:), time(:)
 
     associate (deck => scene%deck, bodies => scene%bodies)
       if (.not. allocated(scene%drive)) call deck%mistake('viscoelastic', '', 'needs &drive; ' // &
-        'bodies at rest are elastic ones with the relaxed stiffness', error)
+        'bodies at rest are elastic ones with the relaxed stiffness')
       if (bodies%rigid) call deck%mistake('viscoelastic', '', &
-        'needs bodies that deform, and these are rigid', error)
+        'needs bodies that deform, and these are rigid')
       if (deck%has_group('classical')) call deck%mistake('classical', '', &
-        'is for elastic bodies; leave out this group or &viscoelastic', error)
+        'is for elastic bodies; leave out this group or &viscoelastic')
       if (allocated(bodies%surface)) call deck%mistake('layer', '', &
-        'bodies with layers cannot be viscoelastic', error)
+        'bodies with layers cannot be viscoelastic')
       call deck%get_optional('viscoelastic', 'stiffness_relaxed', relaxed)
       call deck%get('viscoelastic', 'compliance', compliance)
       call deck%get('viscoelastic', 'retardation_time', time)
       if (allocated(relaxed) .eqv. size(compliance) > 0) then
         call deck%mistake('viscoelastic', 'stiffness_relaxed', &
-          'give one of: stiffness_relaxed; compliance', error)
+          'give one of: stiffness_relaxed; compliance')
       else if (allocated(relaxed)) then
         if (relaxed > bodies%stiffness .and. .not. bodies%rigid) call deck%mistake( &
-          'viscoelastic', 'stiffness_relaxed', &
-          brief(relaxed) // ' is above the instantaneous stiffness, ' // &
-          brief(bodies%stiffness) // ' Pa', error)
+          'viscoelastic', 'stiffness_relaxed', brief(relaxed) // &
+          ' is above the instantaneous stiffness, ' // brief(bodies%stiffness) // ' Pa')
         compliance = [1/relaxed - 1/bodies%stiffness]
       end if
-      if (.not. allocated(error) .and. size(compliance) /= size(time)) call deck%mistake( &
-        'viscoelastic', 'retardation_time', 'has ' // brief(size(time)) // &
-        ' values for ' // brief(size(compliance)) // ' terms', error)
-      if (allocated(error)) return
+      if (.not. allocated(scene%deck%error) .and. size(compliance) /= size(time)) call &
+        deck%mistake( 'viscoelastic', 'retardation_time', 'has ' // brief(size(time)) // &
+        ' values for ' // brief(size(compliance)) // ' terms')
+      if (allocated(scene%deck%error)) return
       scene%creep = creep_t(compliance*bodies%stiffness, time)
     end associate
   end subroutine take_creep
 
-  subroutine take_fluid(scene, error)
+  subroutine take_fluid(scene)
     type(scene_t), intent(inout) :: scene
-    type(failure_t), allocatable, intent(inout) :: error
     real(wp), allocatable :: slip(:)
 
     allocate (scene%fluid)
     associate (deck => scene%deck, fluid => scene%fluid)
       if (.not. allocated(scene%drive)) call deck%mistake('fluid', '', &
-        'needs &drive; the fluid has no effect on bodies at rest', error)
+        'needs &drive; the fluid has no effect on bodies at rest')
       if (allocated(scene%shape)) then
         if (.not. scene%shape%parabolic) call deck%mistake('fluid', '', &
-          'is for parabolas; leave out this group or &shape', error)
+          'is for parabolas; leave out this group or &shape')
       end if
       if (allocated(scene%law)) then
         if (.not. scene%law%adhesion > 0) call deck%mistake('fluid', '', &
-          'needs a force that attracts, however weak', error)
+          'needs a force that attracts, however weak')
       end if
       call deck%get('fluid', 'viscosity', fluid%viscosity)
       call deck%get('fluid', 'slip_length', slip)
-      if (allocated(error)) return
+      if (allocated(scene%deck%error)) return
       if (size(slip) == 1) fluid%slip = slip(1)
       if (size(slip) == 2) fluid%slip = slip
     end associate

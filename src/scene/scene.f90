@@ -10,10 +10,9 @@ module scene
   use deck_keys, only: key_spec, ignored_group, text_value
   use scene_groups, only: scene_t
   use scene_problem, only: keys_of_model, take_model
-  use cycle_groups, only: cycle_keys, take_loading, take_unloading
-  use path_groups, only: path_keys, profiles_keys, take_path, take_readings, take_regime, &
-    take_profiles, take_stability
-  use sensitivity_group, only: sensitivity_keys, take_sensitivity
+  use curve_groups, only: cycle_keys, take_loading, take_unloading, path_keys, profiles_keys, &
+    take_path, take_readings, take_regime, take_profiles, has_states
+  use deck_family, only: sensitivity_keys, take_sensitivity
   use rate_groups, only: rate_keys, take_rates
   use theory_groups, only: theory_keys, take_theories
   use sweep_group, only: sweep_keys, take_sweep
@@ -68,45 +67,44 @@ contains
     character(len=*), intent(in), optional :: text
     type(deck_t) :: deck
 
-    call read_deck(file, keys_of_scene(), deck, error, text)
-    if (allocated(error)) return
-    call make_scene(deck, scene, error)
-    if (allocated(error)) return
-    if (allocated(scene%sweep)) call check_sweep(scene, error)
+    call read_deck(file, keys_of_scene(), deck, text)
+    call make_scene(deck, scene)
+    if (allocated(scene%sweep) .and. .not. allocated(scene%deck%error)) call check_sweep(scene)
+    call move_alloc(scene%deck%error, error)
   end subroutine read_scene
 
-  !> The scene of a deck that has been read; fails if keys contradict each other.
-  subroutine make_scene(deck, scene, error)
+  !> The scene of a deck that has been read; it is a mistake if keys contradict each other.
+  subroutine make_scene(deck, scene)
     type(deck_t), intent(in) :: deck
     type(scene_t), intent(out) :: scene
-    type(failure_t), allocatable, intent(out) :: error
     character(len=len(computing)*size(computing)) :: all_names
     integer :: i
 
     scene%deck = deck
+    if (allocated(deck%error)) return
     call deck%get('scene', 'title', scene%title)
-    call take_model(scene, error)
-    call take_loading(scene, error)
+    call take_model(scene)
+    call take_loading(scene)
     ! The groups below take defaults from &loading and are checked against it.
-    if (allocated(error)) return
-    call take_unloading(scene, error)
-    call take_path(scene, error)
-    if (allocated(error)) return
-    call take_readings(scene, error)
-    call take_sensitivity(scene, error)
-    call take_regime(scene, error)
-    call take_rates(scene, error)
-    call take_profiles(scene, error)
-    call take_theories(scene, error)
-    call take_stability(scene, error)
-    call take_sweep(scene, error)
+    if (allocated(scene%deck%error)) return
+    call take_unloading(scene)
+    call take_path(scene)
+    if (allocated(scene%deck%error)) return
+    call take_readings(scene)
+    call take_sensitivity(scene)
+    call take_regime(scene)
+    call take_rates(scene)
+    call take_profiles(scene)
+    call take_theories(scene)
+    scene%stability = has_states(scene, 'stability')
+    call take_sweep(scene)
     call take_numerics(scene)
-    call take_fit(scene, error)
+    call take_fit(scene)
     if (.not. any([(deck%has_group(trim(computing(i))), i=1, size(computing))])) &
-      call deck%mistake('', '', 'nothing to compute; a deck needs at least one of ' // &
-                        listing(transfer(computing, all_names), '&', ''), error)
-    if (.not. allocated(error)) call check_derived(scene, error)
-    if (.not. allocated(error)) call check_shape(scene, error)
+      call scene%deck%mistake('', '', 'nothing to compute; a deck needs at least one of ' // &
+        listing(transfer(computing, all_names), '&', ''))
+    if (.not. allocated(scene%deck%error)) call check_derived(scene)
+    if (.not. allocated(scene%deck%error)) call check_shape(scene)
   end subroutine make_scene
 
   !> The scene with the keys `names`, blank-separated, set to `values`, and without &sweep and
@@ -127,15 +125,15 @@ contains
       call set_number(deck, word_of(names, k), values(k), error)
       if (allocated(error)) return
     end do
-    call make_scene(deck, variant, error)
+    call make_scene(deck, variant)
+    call move_alloc(variant%deck%error, error)
   end subroutine swept_scene
 
   !> Tries the sweep, so that a mistake shows before hours of work: every value against the bounds
   !> of its key, and the whole scene with the smallest and with the largest values of all keys, or
   !> with the first and the last case of a file.
-  subroutine check_sweep(scene, error)
-    type(scene_t), intent(in) :: scene
-    type(failure_t), allocatable, intent(inout) :: error
+  subroutine check_sweep(scene)
+    type(scene_t), intent(inout) :: scene
     type(failure_t), allocatable :: trouble
     type(deck_t) :: trial
     character(len=:), allocatable :: key
@@ -151,30 +149,29 @@ contains
         call fail(trouble, bad_input, quoted(word_of(scene%sweep%names, k)) // ' is there twice')
       if (allocated(trouble)) then
         call scene%deck%mistake('sweep', trim(merge('file', 'key ', allocated(scene%sweep%file))), &
-          trouble%message, error)
+          trouble%message)
         return
       end if
       if (allocated(scene%sweep%file)) then
-        call try_values(scene, trial, k, scene%sweep%file%telling(:, k), 'file', error)
+        call try_values(scene, trial, k, scene%sweep%file%telling(:, k), 'file')
       else
         key = 'from'
         if (scene%deck%is_set('sweep', 'values')) key = 'values'
         if (scene%sweep%words(k) /= '') key = 'words'
-        call try_values(scene, trial, k, scene%sweep%axis(k)%values, key, error)
+        call try_values(scene, trial, k, scene%sweep%axis(k)%values, key)
       end if
-      if (allocated(error)) return
+      if (allocated(scene%deck%error)) return
     end do
-    call try_ends(scene, error)
+    call try_ends(scene)
   end subroutine check_sweep
 
   !> Refuses values of key k outside its bounds.
-  subroutine try_values(scene, trial, k, values, key, error)
-    type(scene_t), intent(in) :: scene
+  subroutine try_values(scene, trial, k, values, key)
+    type(scene_t), intent(inout) :: scene
     type(deck_t), intent(inout) :: trial
     integer, intent(in) :: k
     real(wp), intent(in) :: values(:)
     character(len=*), intent(in) :: key
-    type(failure_t), allocatable, intent(inout) :: error
     type(failure_t), allocatable :: trouble
     integer :: i
 
@@ -183,15 +180,14 @@ contains
       if (.not. allocated(trouble)) cycle
       if (key == 'file') trouble%message = 'case ' // &
         brief(scene%sweep%file%of_case(i, k)) // ': ' // trouble%message
-      call scene%deck%mistake('sweep', key, trouble%message, error)
+      call scene%deck%mistake('sweep', key, trouble%message)
       return
     end do
   end subroutine try_values
 
   !> Refuses a sweep if the scene is wrong at either end.
-  subroutine try_ends(scene, error)
-    type(scene_t), intent(in) :: scene
-    type(failure_t), allocatable, intent(inout) :: error
+  subroutine try_ends(scene)
+    type(scene_t), intent(inout) :: scene
     type(failure_t), allocatable :: trouble
     type(scene_t) :: variant
     character(len=:), allocatable :: key, said
@@ -219,7 +215,7 @@ contains
           said = said // word_of(sweep%names, k) // ' = ' // sweep%shown(k, values(k))
         end do
         call scene%deck%mistake('sweep', key, said // ' the deck is wrong: ' // &
-          first_line(trouble%message), error)
+          first_line(trouble%message))
         return
       end do
     end associate

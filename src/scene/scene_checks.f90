@@ -3,13 +3,12 @@
 !> is dimensionless, but the units are products of powers of the numbers in the deck.
 module scene_checks
   use kinds, only: wp, pi
-  use failure, only: failure_t
   use text, only: brief
   use force_law, only: of_pressure, of_energy
   use dimensionless_problem, only: problem_t
   use contact_scales, only: largest_radius, contact_level
   use path_demand, only: range_of
-  use law_reading, only: check_decades
+  use group_reading, only: check_decades
   use scene_groups, only: scene_t
   use scene_problem, only: problem_of
   implicit none
@@ -27,9 +26,8 @@ contains
 
   !> Refuses a scene whose units, coupling or h0 are out of range. It adds logarithms, which cannot
   !> overflow.
-  subroutine check_derived(scene, error)
-    type(scene_t), intent(in) :: scene
-    type(failure_t), allocatable, intent(inout) :: error
+  subroutine check_derived(scene)
+    type(scene_t), intent(inout) :: scene
     real(wp) :: length, pressure, radius, farthest, position
     integer :: i, k
 
@@ -50,8 +48,7 @@ contains
     end do
     if (.not. farthest <= 10.0_wp**most_lengths*scene%law%length) &
       call scene%deck%mistake(trim(scene%law%group), trim(scene%law%length_key), 'h0 reaches '// &
-      brief(farthest)//' m, more than 1e15 of these lengths, so that the law is lost in rounding', &
-      error)
+      brief(farthest)//' m, more than 1e15 of these lengths, so that the law is lost in rounding')
 
   contains
 
@@ -60,33 +57,30 @@ contains
       character(len=*), intent(in) :: what, unit
 
       call check_decades(scene%deck, trim(scene%law%group), trim(scene%law%strength_key), decades, &
-        what, unit, error)
+        what, unit)
     end subroutine check
 
   end subroutine check_derived
 
   !> Refuses a scene whose load cannot be computed.
-  subroutine check_shape(scene, error)
-    type(scene_t), intent(in) :: scene
-    type(failure_t), allocatable, intent(inout) :: error
+  subroutine check_shape(scene)
+    type(scene_t), intent(inout) :: scene
 
     if (.not. scene%finds_states()) return
     if (scene%shape%ends < huge(1.0_wp)) then
-      call check_end(scene, error)
+      call check_end(scene)
     else if (scene%law%tail_power <= 2/scene%shape%growth) then
-      call scene%deck%mistake('shape', 'kind', &
-        'the load has no limit: far out the gap grows as r^' // brief(scene%shape%growth) // &
-        ' and the pressure falls as its power -' // brief(scene%law%tail_power) // &
-        ', too slowly for the area there', error)
+      call scene%deck%mistake('shape', 'kind', 'the load has no limit: far out the gap grows ' // &
+        'as r^' // brief(scene%shape%growth) // ' and the pressure falls as its power -' // &
+        brief(scene%law%tail_power) // ', too slowly for the area there')
     end if
   end subroutine check_shape
 
   !> Refuses a body that ends within the contact, or where the force still acts, since Derjaguin's
   !> approximation does not hold at an end. The pressure at the end times an area of the body's size
   !> must be below the accuracy, as a part of the load of bodies without an end.
-  subroutine check_end(scene, error)
-    type(scene_t), intent(in) :: scene
-    type(failure_t), allocatable, intent(inout) :: error
+  subroutine check_end(scene)
+    type(scene_t), intent(inout) :: scene
     type(problem_t) :: problem
     real(wp) :: low, high, gap, part, widest
     character(len=7) :: share
@@ -100,7 +94,7 @@ contains
       if (.not. widest < shape%ends .or. .not. gap > max(law%rest_gap, law%edge_gap)) then
         write (share, '(es7.1)') shape%ends*problem%lateral
         call scene%deck%mistake('shape', 'kind', 'the contact would reach the end of the ' // &
-          'body, ' // share // ' m from the axis', error)
+          'body, ' // share // ' m from the axis')
         return
       end if
       part = abs(law%at(of_pressure, gap))*shape%ends**2
@@ -110,7 +104,7 @@ contains
     write (share, '(es7.1)') min(part, 1.0_wp)
     if (.not. part <= scene%numerics%accuracy) call scene%deck%mistake('shape', 'kind', &
       'the body ends where the force still acts: at its end it makes ' // share // &
-      ' of the load, above the accuracy; give &numerics a larger accuracy', error)
+      ' of the load, above the accuracy; give &numerics a larger accuracy')
   end subroutine check_end
 
 end module scene_checks

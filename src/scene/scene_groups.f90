@@ -8,9 +8,9 @@ module scene_groups
   use force_law, only: force_law_t
   use shape, only: shape_t
   use layered_surface, only: layered_surface_t
-  use fit_request, only: measurement_t, fit_t
+  use fit_request, only: fit_t
   use measured_curve, only: measured_t
-  use theory_names, only: theories, usual
+  use classical, only: theories, usual
   implicit none
   private
   public :: scene_t, bodies_t, range_t, sweep_t, axis_t, case_file_t
@@ -85,7 +85,6 @@ module scene_groups
     !> Whether the deck has &stability, and &regime.
     logical :: stability = .false., regime = .false.
     type(sweep_t), allocatable :: sweep
-    type(measurement_t), allocatable :: measurement
     type(measured_t), allocatable :: measured
     type(fit_t), allocatable :: fit
   contains

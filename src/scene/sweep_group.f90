@@ -43,9 +43,8 @@ module sweep_group
 contains
 
   !> Reads &sweep: a file, or keys with values or ranges.
-  subroutine take_sweep(scene, error)
+  subroutine take_sweep(scene)
     type(scene_t), intent(inout) :: scene
-    type(failure_t), allocatable, intent(inout) :: error
     integer :: i
 
     if (.not. scene%deck%has_group('sweep')) return
@@ -54,25 +53,24 @@ contains
     associate (deck => scene%deck, sweep => scene%sweep)
       if (deck%is_set('sweep', 'file')) then
         call refuse(deck, ['key   ', 'values', 'words ', of_range//' '], &
-          'file, whose columns have the keys and values', error)
-        if (.not. allocated(error)) call take_file(deck, sweep, error)
-        if (.not. allocated(error)) call find_words(deck, sweep)
+          'file, whose columns have the keys and values')
+        if (.not. allocated(scene%deck%error)) call take_file(deck, sweep)
+        if (.not. allocated(scene%deck%error)) call find_words(deck, sweep)
         return
       end if
       if (.not. deck%is_set('sweep', 'key')) then
-        call deck%mistake('sweep', 'key', 'missing; give key, or file', error)
+        call deck%mistake('sweep', 'key', 'missing; give key, or file')
         return
       end if
       call deck%get('sweep', 'key', sweep%names)
       sweep%names = trim(adjustl(sweep%names))
       allocate (sweep%axis(word_count(sweep%names)))
       call find_words(deck, sweep)
-      call take_words(deck, sweep, error)
-      if (.not. allocated(error)) call take_numbers(deck, sweep, error)
-      if (allocated(error)) return
+      call take_words(deck, sweep)
+      if (.not. allocated(scene%deck%error)) call take_numbers(deck, sweep)
+      if (allocated(scene%deck%error)) return
       if (product([(real(size(sweep%axis(i)%values), wp), i=1, size(sweep%axis))]) > most_cases) &
-        call deck%mistake('sweep', 'count', 'there are more than ' // brief(most_cases) // &
-        ' cases', error)
+        call deck%mistake('sweep', 'count', 'there are more than ' // brief(most_cases) // ' cases')
     end associate
   end subroutine take_sweep
 
@@ -89,10 +87,9 @@ contains
   end subroutine find_words
 
   !> Reads the words of the key that holds a word.
-  subroutine take_words(deck, sweep, error)
+  subroutine take_words(deck, sweep)
     type(deck_t), intent(inout) :: deck
     type(sweep_t), intent(inout) :: sweep
-    type(failure_t), allocatable, intent(inout) :: error
     character(len=:), allocatable :: words, what
     integer :: i, k
 
@@ -100,28 +97,27 @@ contains
     k = findloc(sweep%words /= '', .true., dim=1)
     if (count(sweep%words /= '') > 1) then
       call deck%mistake('sweep', 'key', 'only one of the keys may hold a word; for more give ' // &
-        'a file', error)
+        'a file')
     else if (k == 0) then
       if (deck%is_set('sweep', 'words')) call deck%mistake('sweep', 'words', &
-        quoted(sweep%names) // ' does not hold a word', error)
+        quoted(sweep%names) // ' does not hold a word')
     else if (word_count(words) == 0) then
       call deck%mistake('sweep', 'words', 'missing; ' // quoted(word_of(sweep%names, k)) // &
-        ' holds a word', error)
+        ' holds a word')
     else
       allocate (sweep%axis(k)%values(word_count(words)))
       do i = 1, word_count(words)
         call number_of_word(word_of(words, i), sweep%words(k), sweep%axis(k)%values(i), what)
-        if (allocated(what)) call deck%mistake('sweep', 'words', what, error)
-        if (allocated(error)) return
+        if (allocated(what)) call deck%mistake('sweep', 'words', what)
+        if (allocated(deck%error)) return
       end do
     end if
   end subroutine take_words
 
   !> Reads the values of the keys that hold numbers: a list for one key, or ranges.
-  subroutine take_numbers(deck, sweep, error)
+  subroutine take_numbers(deck, sweep)
     type(deck_t), intent(inout) :: deck
     type(sweep_t), intent(inout) :: sweep
-    type(failure_t), allocatable, intent(inout) :: error
     real(wp), allocatable :: values(:)
     integer, allocatable :: of_numbers(:)
     integer :: i
@@ -129,36 +125,34 @@ contains
     of_numbers = pack([(i, i=1, size(sweep%axis))], sweep%words == '')
     call deck%get('sweep', 'values', values)
     if (size(of_numbers) == 0) then
-      call refuse(deck, ['values', of_range//' '], 'a key that holds a word; give words', error)
+      call refuse(deck, ['values', of_range//' '], 'a key that holds a word; give words')
     else if (size(values) == 0) then
-      call take_ranges(deck, sweep%axis, of_numbers, error)
+      call take_ranges(deck, sweep%axis, of_numbers)
     else if (size(of_numbers) > 1) then
       call deck%mistake('sweep', 'values', 'values are those of one key; for several give ' // &
-        'from, to and count, or file', error)
+        'from, to and count, or file')
     else
-      call refuse(deck, of_range, 'values; give from, to and count, or values', error)
+      call refuse(deck, of_range, 'values; give from, to and count, or values')
       sweep%axis(of_numbers(1))%values = values
     end if
   end subroutine take_numbers
 
   !> Refuses keys that contradict `other`.
-  subroutine refuse(deck, keys, other, error)
-    type(deck_t), intent(in) :: deck
+  subroutine refuse(deck, keys, other)
+    type(deck_t), intent(inout) :: deck
     character(len=*), intent(in) :: keys(:), other
-    type(failure_t), allocatable, intent(inout) :: error
     integer :: i
 
     do i = 1, size(keys)
       if (deck%is_set('sweep', trim(keys(i)))) call deck%mistake('sweep', trim(keys(i)), &
-        'not together with ' // other, error)
+        'not together with ' // other)
     end do
   end subroutine refuse
 
   !> Reads the cases of a file once, to check that all rows are cases.
-  subroutine take_file(deck, sweep, error)
+  subroutine take_file(deck, sweep)
     type(deck_t), intent(inout) :: deck
     type(sweep_t), intent(inout) :: sweep
-    type(failure_t), allocatable, intent(inout) :: error
     type(failure_t), allocatable :: trouble
     type(case_rows_t) :: rows
     type(case_file_t) :: file
@@ -172,7 +166,7 @@ contains
       if (allocated(trouble) .or. .not. found) exit
       if (file%cases == nint(most_cases)) then
         call deck%mistake('sweep', 'file', quoted(file%path) // ' has more than ' // &
-          brief(most_cases) // ' cases', error)
+          brief(most_cases) // ' cases')
         exit
       end if
       call note_case(file, values)
@@ -180,9 +174,9 @@ contains
     call rows%close()
     call deck%note_file('sweep', 'file', rows%digest)
     if (allocated(trouble)) then
-      call deck%mistake('sweep', 'file', trouble%message, error)
+      call deck%mistake('sweep', 'file', trouble%message)
     else if (file%cases == 0) then
-      call deck%mistake('sweep', 'file', quoted(file%path) // ' has no cases', error)
+      call deck%mistake('sweep', 'file', quoted(file%path) // ' has no cases')
     else
       sweep%names = rows%names
       file%digest = rows%digest
@@ -223,11 +217,10 @@ contains
   end function is_whole
 
   !> The values of keys from their ranges; none after a mistake.
-  subroutine take_ranges(deck, axis, keys, error)
+  subroutine take_ranges(deck, axis, keys)
     type(deck_t), intent(inout) :: deck
     type(axis_t), intent(inout) :: axis(:)
     integer, intent(in) :: keys(:)
-    type(failure_t), allocatable, intent(inout) :: error
     real(wp), allocatable :: from(:), to(:), number(:)
     character(len=:), allocatable :: scales
     integer :: i
@@ -241,10 +234,10 @@ contains
     call check_size('to', size(to))
     call check_size('count', size(number))
     if (word_count(scales) /= 1) call check_size('scale', word_count(scales))
-    if (allocated(error)) return
+    if (allocated(deck%error)) return
     do i = 1, size(keys)
       call spread_values(deck, from(i), to(i), number(i), &
-        word_of(scales, min(i, word_count(scales))), axis(keys(i))%values, error)
+        word_of(scales, min(i, word_count(scales))), axis(keys(i))%values)
     end do
 
   contains
@@ -256,37 +249,36 @@ contains
 
       if (items == size(keys)) return
       if (items == 0) then
-        call deck%mistake('sweep', key, 'missing; give from, to and count, or values', error)
+        call deck%mistake('sweep', key, 'missing; give from, to and count, or values')
       else
         call deck%mistake('sweep', key, brief(items) // ' for ' // brief(size(keys)) // &
-          ' keys; give one for each', error)
+          ' keys; give one for each')
       end if
     end subroutine check_size
 
   end subroutine take_ranges
 
   !> The values from `from` to `to`; none after a mistake.
-  subroutine spread_values(deck, from, to, number, scale, values, error)
-    type(deck_t), intent(in) :: deck
+  subroutine spread_values(deck, from, to, number, scale, values)
+    type(deck_t), intent(inout) :: deck
     real(wp), intent(in) :: from, to, number
     character(len=*), intent(in) :: scale
     real(wp), allocatable, intent(inout) :: values(:)
-    type(failure_t), allocatable, intent(inout) :: error
     character(len=*), parameter :: not_positive = ' is not > 0, as scale = ''log'' needs'
     integer :: n, i
 
     allocate (values(0))
     n = nint(number)
     if (abs(number - n) > 0) then
-      call deck%mistake('sweep', 'count', brief(number) // ' is not a whole number', error)
+      call deck%mistake('sweep', 'count', brief(number) // ' is not a whole number')
     else if (scale /= 'log' .and. scale /= 'linear') then
-      call deck%mistake('sweep', 'scale', quoted(scale) // ' is neither linear nor log', error)
+      call deck%mistake('sweep', 'scale', quoted(scale) // ' is neither linear nor log')
     else if (scale == 'log' .and. from <= 0) then
-      call deck%mistake('sweep', 'from', brief(from) // not_positive, error)
+      call deck%mistake('sweep', 'from', brief(from) // not_positive)
     else if (scale == 'log' .and. to <= 0) then
-      call deck%mistake('sweep', 'to', brief(to) // not_positive, error)
+      call deck%mistake('sweep', 'to', brief(to) // not_positive)
     else if (abs(to - from) <= 0) then
-      call deck%mistake('sweep', 'to', 'the same as from; a sweep needs two ends', error)
+      call deck%mistake('sweep', 'to', 'the same as from; a sweep needs two ends')
     else
       if (scale == 'log') then
         values = exp([(log(from) + (log(to) - log(from))*(i - 1)/(n - 1), i=1, n)])

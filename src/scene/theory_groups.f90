@@ -1,11 +1,10 @@
 !> &approximations and &classical: closed forms beside the curve, over a range of h0.
 module theory_groups
-  use failure, only: failure_t
   use text, only: clip, guess, listing, lower, quoted, word_count, word_of
   use deck_keys, only: key_spec, real_value, integer_value, names_value
-  use theory_names, only: convex, theories
+  use classical, only: convex, theories
   use scene_groups, only: scene_t, range_t
-  use path_groups, only: check_order
+  use curve_groups, only: check_order
   implicit none
   private
   public :: theory_keys, take_theories
@@ -43,44 +42,41 @@ contains
   end function range_keys
 
   !> Reads &approximations and &classical.
-  subroutine take_theories(scene, error)
+  subroutine take_theories(scene)
     type(scene_t), intent(inout) :: scene
-    type(failure_t), allocatable, intent(inout) :: error
 
     if (scene%deck%has_group('approximations') .and. .not. scene%shape%parabolic) &
       call scene%deck%mistake('approximations', '', 'the approximations are those of the ' // &
-                              'parabola; leave out this group or &shape', error)
+                              'parabola; leave out this group or &shape')
     if (scene%deck%has_group('approximations') .and. scene%deck%has_group('layer')) &
       call scene%deck%mistake('approximations', '', 'the approximations are those of ' // &
-                              'half-spaces; leave out this group or &layer', error)
-    call take_range(scene, 'approximations', scene%approximations, error)
-    call take_range(scene, 'classical', scene%classical, error)
-    if (scene%deck%is_set('classical', 'theories')) call take_names(scene, error)
+                              'half-spaces; leave out this group or &layer')
+    call take_range(scene, 'approximations', scene%approximations)
+    call take_range(scene, 'classical', scene%classical)
+    if (scene%deck%is_set('classical', 'theories')) call take_names(scene)
   end subroutine take_theories
 
   !> Reads the theories to show.
-  subroutine take_names(scene, error)
+  subroutine take_names(scene)
     type(scene_t), intent(inout) :: scene
-    type(failure_t), allocatable, intent(inout) :: error
     character(len=:), allocatable :: names, name
     integer :: i, which
 
-    if (allocated(error)) return
+    if (allocated(scene%deck%error)) return
     call scene%deck%get('classical', 'theories', names)
     scene%classical%shown = .false.
     do i = 1, word_count(names)
       name = lower(word_of(names, i))
       which = findloc(theories == name, .true., dim=1)
       if (which == 0) then
-        call scene%deck%mistake('classical', 'theories', quoted(clip(name)) // &
-          ' is not a theory' // guess(name, all_names(), '') // '; allowed: ' // &
-          listing(all_names(), '', ''), error)
+        call scene%deck%mistake('classical', 'theories', quoted(clip(name)) // ' is not a theory' &
+          // guess(name, all_names(), '') // '; allowed: ' // listing(all_names(), '', ''))
         return
       end if
       if (.not. (convex(which) .or. scene%shape%parabolic .and. &
         .not. scene%deck%has_group('layer'))) then
         call scene%deck%mistake('classical', 'theories', name // ' is a theory of ' // &
-          'the parabola on half-spaces; leave it out, or &shape and &layer', error)
+          'the parabola on half-spaces; leave it out, or &shape and &layer')
         return
       end if
       scene%classical%shown(which) = .true.
@@ -99,11 +95,10 @@ contains
   end function all_names
 
   !> Reads one of these groups; the default of its range is that of &loading or &equilibrium_path.
-  subroutine take_range(scene, group, range, error)
+  subroutine take_range(scene, group, range)
     type(scene_t), intent(inout) :: scene
     character(len=*), intent(in) :: group
     type(range_t), allocatable, intent(inout) :: range
-    type(failure_t), allocatable, intent(inout) :: error
 
     if (.not. scene%deck%has_group(group)) return
     allocate (range)
@@ -112,21 +107,20 @@ contains
         call deck%assume(group, 'h0_start', scene%loading%h0_start)
         call deck%assume(group, 'h0_end', scene%loading%h0_end)
       else if (allocated(scene%path)) then
-        if (allocated(scene%path%h0_start)) &
-          call deck%assume(group, 'h0_start', scene%path%h0_start)
+        if (allocated(scene%path%h0_start)) call deck%assume(group, 'h0_start', scene%path%h0_start)
         call deck%assume(group, 'h0_end', scene%path%h0_end)
       else if (.not. deck%is_set(group, 'h0_start')) then
-        call deck%mistake(group, 'h0_start', no_range, error)
+        call deck%mistake(group, 'h0_start', no_range)
         return
       else if (.not. deck%is_set(group, 'h0_end')) then
-        call deck%mistake(group, 'h0_end', no_range, error)
+        call deck%mistake(group, 'h0_end', no_range)
         return
       end if
       call deck%get_optional(group, 'h0_start', range%h0_start)
       call deck%get(group, 'h0_end', range%h0_end)
       call deck%get(group, 'count', range%count)
       if (allocated(range%h0_start)) call check_order(deck, group, 'h0_end', range%h0_end, &
-        'below', 'h0_start', range%h0_start, error)
+        'below', 'h0_start', range%h0_start)
     end associate
   end subroutine take_range
 

@@ -5,13 +5,11 @@ module c_library
   use failure, only: failure_t, fail, file_trouble
   implicit none
   private
-  public :: c_open, c_read, c_write, c_sync, c_sync_above, c_close, c_size, c_cut, &
-    c_make_folder, c_current_folder, c_own_path, c_lock, c_kind, c_same_file, c_rename, c_remove, &
-    c_free_disk, c_is_terminal, c_prepare, c_end_with_parent, c_pause, &
-    c_openblas_threads, c_openblas_end_threads, c_openblas_config, c_build_id
-  public :: explain, check_status, nul
-  public :: as_input, as_output, as_kept_output, as_folder
-  public :: too_large, not_there, locked_elsewhere
+  public :: c_open, c_read, c_write, c_sync, c_sync_above, c_close, c_size, c_cut, c_make_folder, &
+    c_current_folder, c_own_path, c_lock, c_kind, c_same_file, c_rename, c_remove, c_free_disk, &
+    c_is_terminal, c_prepare, c_end_with_parent, c_pause, c_openblas_threads, &
+    c_openblas_end_threads, c_openblas_config, c_build_id, explain, check_status, nul, as_input, &
+    as_output, as_kept_output, as_folder, too_large, not_there, locked_elsewhere
 
   !> How a path is opened: a file of any kind for reading; a regular file for reading and writing,
   !> created or emptied; the same, unchanged; a folder.

@@ -140,9 +140,8 @@ contains
     do i = 1, size(new)
       name = trim(result_files(i))
       new(i) = index(text, nl // name // nl) > 0
-      if (new(i) .and. .not. (folder%contains_file(name) .or. &
-        folder%contains_file(name // partial))) call fail(error, file_trouble, &
-        folder%path_of(name) // ' is missing' // advice)
+      if (new(i) .and. .not. (folder%contains_file(name) .or. folder%contains_file(name // &
+        partial))) call fail(error, file_trouble, folder%path_of(name) // ' is missing' // advice)
     end do
     if (.not. any(new)) call fail(error, file_trouble, folder%path_of(intent_name) // &
       ' lists no results' // advice)

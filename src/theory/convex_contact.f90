@@ -26,7 +26,7 @@ module convex_contact
 contains
 
   !> Load at a contact radius without adhesion.
-  pure real(wp) function hertz_like_load(problem, a) result(load)
+  elemental real(wp) function hertz_like_load(problem, a) result(load)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: a
 
@@ -34,7 +34,7 @@ contains
   end function hertz_like_load
 
   !> Load at a contact radius; the adhesion is the law's `work`.
-  pure real(wp) function jkr_like_load(problem, a) result(load)
+  elemental real(wp) function jkr_like_load(problem, a) result(load)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: a
 
@@ -42,7 +42,7 @@ contains
   end function jkr_like_load
 
   !> Displacement at a contact radius for a given sigma.
-  pure real(wp) function jkr_like_displacement(shape, sigma, a) result(displacement)
+  elemental real(wp) function jkr_like_displacement(shape, sigma, a) result(displacement)
     class(shape_t), intent(in) :: shape
     real(wp), intent(in) :: sigma, a
 
@@ -93,15 +93,13 @@ contains
     class(shape_t), intent(in) :: shape
     real(wp), intent(in) :: sigma
     type(bracket_t) :: bracket
-    real(wp) :: widest, points(2)
+    real(wp) :: widest
     integer :: i
 
     widest = widest_at(shape, sigma)
     bracket = bracket_t(log(widest/widest_range), log(widest))
     do i = 1, sections
-      points = exp(bracket%golden_points())
-      call bracket%keep_larger([-jkr_like_displacement(shape, sigma, points(1)), &
-        -jkr_like_displacement(shape, sigma, points(2))])
+      call bracket%keep_larger(-jkr_like_displacement(shape, sigma, exp(bracket%golden_points())))
     end do
     a = exp(bracket%middle())
   end function detachment_radius
@@ -110,16 +108,14 @@ contains
   pure real(wp) function jkr_like_pull_off(problem) result(load)
     type(problem_t), intent(in) :: problem
     type(bracket_t) :: bracket
-    real(wp) :: widest, points(2)
+    real(wp) :: widest
     integer :: i
 
     ! Where delta is positive, the load is positive, or grows with a.
     widest = 4*widest_at(problem%shape, problem%coupling*problem%law%work)
     bracket = bracket_t(log(widest/widest_range), log(widest))
     do i = 1, sections
-      points = exp(bracket%golden_points())
-      call bracket%keep_larger([-jkr_like_load(problem, points(1)), &
-        -jkr_like_load(problem, points(2))])
+      call bracket%keep_larger(-jkr_like_load(problem, exp(bracket%golden_points())))
     end do
     load = jkr_like_load(problem, exp(bracket%middle()))
   end function jkr_like_pull_off

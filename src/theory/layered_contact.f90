@@ -15,13 +15,13 @@ module layered_contact
   use root_finding, only: bracket_t
   use dimensionless_problem, only: problem_t
   use layered_body, only: layered_body_t
-  use theory_names, only: hertz, jkr
+  use classical, only: hertz, jkr
   implicit none
   private
-  public :: layered_contact_t, new_layered_contact, has_layers
+  public :: layered_contact_t, new_layered_contact, has_layers, of_load, of_displacement
 
-  !> Quantities at a contact radius.
-  integer, parameter :: of_load = 1, of_displacement = 2
+  !> Quantities at a contact radius a: displacement over a^2 and load over a^3 are series.
+  integer, parameter :: of_displacement = 1, of_load = 2
   !> Degree of the series; ratio of the radius without displacement to the smallest radius.
   integer, parameter :: degree = 80
   real(wp), parameter :: span = 100
@@ -33,13 +33,12 @@ module layered_contact
   !> Radii among which the smallest value is searched for, and golden sections about it.
   integer, parameter :: looks = 400, sections = 50
 
-  !> Displacement over a^2 and load over a^3 between two radii, as series in ln a; (degree, theory).
+  !> The series in ln a between two radii; (degree, theory, quantity).
   type :: layered_contact_t
     real(wp) :: first = 1, last = 1
-    real(wp) :: displacement_series(0:degree, 2) = 0, load_series(0:degree, 2) = 0
+    real(wp) :: series(0:degree, 2, 2) = 0
   contains
-    procedure :: displacement
-    procedure :: load
+    procedure :: value_of
     procedure :: radius_at
     procedure :: pull_off
   end type layered_contact_t
@@ -88,8 +87,8 @@ contains
         values(i, :) = [delta/a(i)**2, force/a(i)**3]
       end do
       do i = 1, 2
-        contact%displacement_series(:, i) = chebyshev_series(values(:, i))
-        contact%load_series(:, i) = chebyshev_series(values(:, 2 + i))
+        contact%series(:, i, of_displacement) = chebyshev_series(values(:, i))
+        contact%series(:, i, of_load) = chebyshev_series(values(:, 2 + i))
       end do
     end select
   end function new_layered_contact
@@ -133,31 +132,16 @@ contains
     force = (delta*dot_product(w, of_one) - dot_product(w, of_shape))/problem%coupling
   end subroutine contact_at
 
-  !> Displacement at a contact radius within the span.
-  pure real(wp) function displacement(self, theory, a)
+  !> Displacement or load at a contact radius within the span.
+  elemental real(wp) function value_of(self, quantity, theory, a)
     class(layered_contact_t), intent(in) :: self
-    integer, intent(in) :: theory
+    integer, intent(in) :: quantity, theory
     real(wp), intent(in) :: a
 
-    displacement = a**2*series_value(self%displacement_series(:, theory), place(self, a))
-  end function displacement
-
-  !> Load at a contact radius within the span.
-  pure real(wp) function load(self, theory, a)
-    class(layered_contact_t), intent(in) :: self
-    integer, intent(in) :: theory
-    real(wp), intent(in) :: a
-
-    load = a**3*series_value(self%load_series(:, theory), place(self, a))
-  end function load
-
-  !> Where ln a lies in the span, from -1 to 1.
-  pure real(wp) function place(self, a)
-    type(layered_contact_t), intent(in) :: self
-    real(wp), intent(in) :: a
-
-    place = 2*log(a/self%first)/log(self%last/self%first) - 1
-  end function place
+    ! Where ln a lies in the span, from -1 to 1.
+    value_of = a**(1 + quantity)*series_value(self%series(:, theory, quantity), &
+      2*log(a/self%first)/log(self%last/self%first) - 1)
+  end function value_of
 
   !> Contact radius of the stable state at a displacement or at a load, of which one is given; NaN
   !> if there is none within the span.
@@ -175,26 +159,13 @@ contains
     a = nan
     bracket = bracket_t(self%first, self%last)
     if (theory == jkr) bracket%low = least(self, quantity)
-    if (value_of(self, quantity, theory, bracket%low) > wanted .or. &
-      value_of(self, quantity, theory, bracket%high) < wanted) return
+    if (self%value_of(quantity, theory, bracket%low) > wanted .or. &
+      self%value_of(quantity, theory, bracket%high) < wanted) return
     do while (bracket%is_open())
-      call bracket%narrow(value_of(self, quantity, theory, bracket%middle()) < wanted)
+      call bracket%narrow(self%value_of(quantity, theory, bracket%middle()) < wanted)
     end do
     a = bracket%middle()
   end function radius_at
-
-  !> Displacement or load at a contact radius within the span.
-  pure real(wp) function value_of(self, quantity, theory, a)
-    type(layered_contact_t), intent(in) :: self
-    integer, intent(in) :: quantity, theory
-    real(wp), intent(in) :: a
-
-    if (quantity == of_load) then
-      value_of = self%load(theory, a)
-    else
-      value_of = self%displacement(theory, a)
-    end if
-  end function value_of
 
   !> The smallest load of JKR theory, negative; NaN if it is beyond the span.
   pure real(wp) function pull_off(self)
@@ -203,7 +174,7 @@ contains
 
     a = least(self, of_load)
     pull_off = nan
-    if (a < inside*self%last) pull_off = self%load(jkr, a)
+    if (a < inside*self%last) pull_off = self%value_of(of_load, jkr, a)
   end function pull_off
 
   !> Contact radius of the smallest displacement or load of JKR theory. On layers there may be
@@ -216,13 +187,10 @@ contains
     integer :: i, lowest
 
     places = [(log(self%first) + log(self%last/self%first)*i/looks, i=0, looks)]
-    lowest = minloc([(value_of(self, quantity, jkr, exp(places(i))), i=0, looks)], 1) - 1
+    lowest = minloc(self%value_of(quantity, jkr, exp(places)), 1) - 1
     bracket = bracket_t(places(max(0, lowest - 1)), places(min(looks, lowest + 1)))
     do i = 1, sections
-      associate (points => exp(bracket%golden_points()))
-        call bracket%keep_larger([-value_of(self, quantity, jkr, points(1)), &
-          -value_of(self, quantity, jkr, points(2))])
-      end associate
+      call bracket%keep_larger(-self%value_of(quantity, jkr, exp(bracket%golden_points())))
     end do
     a = exp(bracket%middle())
   end function least

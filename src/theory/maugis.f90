@@ -66,8 +66,7 @@ contains
     real(wp), intent(in) :: radius, stiffness, surface_energy, strength
 
     theory%unit = maugis_units(radius, stiffness, surface_energy)
-    theory%lambda = &
-      2*strength*(9*radius/(4*pi*surface_energy*stiffness**2))**(1.0_wp/3.0_wp)
+    theory%lambda = 2*strength*(9*radius/(4*pi*surface_energy*stiffness**2))**(1.0_wp/3.0_wp)
   end function new_maugis
 
   !> Ratio m = c/a of cohesive zone to contact radius at a contact radius a > 0 [m]: the gap at c is

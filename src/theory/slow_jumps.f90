@@ -68,105 +68,100 @@ contains
     lowest = max(nearest, problem%law%smallest_gap)
     if (.not. has_form(problem, search%form)) return
     if (search%condition /= at_h0 .and. .not. problem%coupling > 0) return
-    gap = far_gap(problem, search, lowest)
+    gap = far_gap()
     ! Towards smaller gaps, to the first change of sign.
     highest = -huge(1.0_wp)
     top = bracket_t(gap, gap)
     do step = 1, most_steps
       if (gap <= lowest) exit
-      next = inwards(problem, gap, lowest)
-      value = excess(problem, search, next)
+      next = inwards(gap)
+      value = excess(next)
       if (value >= 0) then
-        found = root_between(problem, search, next, gap)
+        found = root_between(next, gap)
         return
       end if
       if (value > highest) then
         highest = value
-        top = bracket_t(inwards(problem, next, lowest), gap)
+        top = bracket_t(inwards(next), gap)
       end if
       gap = next
     end do
     ! Between two steps the excess may have a maximum just above zero.
     next = top%high
     do step = 1, most_sections
-      call top%keep_larger(excess(problem, search, top%golden_points()))
+      call top%keep_larger(excess(top%golden_points()))
     end do
     gap = top%middle()
-    if (excess(problem, search, gap) >= 0) found = root_between(problem, search, gap, next)
+    if (excess(gap) >= 0) found = root_between(gap, next)
+
+  contains
+
+    !> A gap larger than all gaps at which the excess is zero.
+    pure real(wp) function far_gap() result(gap)
+      !> At gaps above a few edge gaps, and once the excess is below `settled`, it falls to -1
+      !> monotonically.
+      real(wp), parameter :: edges = 4, settled = -0.999_wp
+      real(wp) :: stride
+      integer :: step
+
+      gap = edges*max(problem%law%edge_gap, 1.0_wp)
+      if (search%condition == at_h0) gap = max(search%h0, lowest, 1.0_wp)
+      stride = linear_range(gap)
+      do step = 1, most_steps
+        if (excess(gap) < merge(0.0_wp, settled, search%condition == at_h0)) exit
+        gap = gap + stride
+        stride = 2*stride
+      end do
+    end function far_gap
+
+    !> Negative at gaps above the one that meets the condition, positive below.
+    elemental real(wp) function excess(gap)
+      real(wp), intent(in) :: gap
+      real(wp) :: pressure(1), slope(1)
+
+      select case (search%condition)
+      case (at_h0)
+        excess = search%h0 - (gap - slow_displacement(problem, search%form, gap))
+      case (at_fold)
+        excess = slow_slope(problem, search%form, gap) - 1
+      case default
+        ! The criterion holds for bodies that attract each other.
+        excess = -1
+        pressure = problem%law%pressure([gap])
+        slope = problem%law%slope([gap])
+        if (pressure(1) < 0) &
+          excess = slow_displacement(problem, search%form, gap)*slope(1)/pressure(1) - 1
+      end select
+    end function excess
+
+    !> The next gap of the search.
+    pure real(wp) function inwards(gap)
+      real(wp), intent(in) :: gap
+
+      inwards = max(gap - search_step*linear_range(gap), lowest)
+    end function inwards
+
+    !> The gap between `near` and `far` at which the excess changes its sign.
+    pure real(wp) function root_between(near, far) result(root)
+      real(wp), intent(in) :: near, far
+      type(bracket_t) :: bracket
+
+      bracket = bracket_t(near, far)
+      do while (bracket%is_open())
+        call bracket%narrow(excess(bracket%middle()) >= 0)
+      end do
+      root = bracket%middle()
+    end function root_between
+
+    !> Change of gap within which the law may be linearised.
+    pure real(wp) function linear_range(gap)
+      real(wp), intent(in) :: gap
+      real(wp) :: range(1)
+
+      range = problem%law%closure([gap])
+      linear_range = range(1)
+    end function linear_range
+
   end function largest_gap
 
-  !> A gap larger than all gaps at which the excess is zero.
-  pure real(wp) function far_gap(problem, search, lowest) result(gap)
-    type(problem_t), intent(in) :: problem
-    type(search_t), intent(in) :: search
-    real(wp), intent(in) :: lowest
-    !> At gaps above a few edge gaps, and once the excess is below `settled`, it falls to -1
-    !> monotonically.
-    real(wp), parameter :: edges = 4, settled = -0.999_wp
-    real(wp) :: stride
-    integer :: step
-
-    gap = edges*max(problem%law%edge_gap, 1.0_wp)
-    if (search%condition == at_h0) gap = max(search%h0, lowest, 1.0_wp)
-    stride = linear_range(problem, gap)
-    do step = 1, most_steps
-      if (excess(problem, search, gap) < merge(0.0_wp, settled, search%condition == at_h0)) exit
-      gap = gap + stride
-      stride = 2*stride
-    end do
-  end function far_gap
-
-  !> Negative at gaps above the one that meets the condition, positive below.
-  elemental real(wp) function excess(problem, search, gap)
-    type(problem_t), intent(in) :: problem
-    type(search_t), intent(in) :: search
-    real(wp), intent(in) :: gap
-    real(wp) :: pressure(1), slope(1)
-
-    select case (search%condition)
-    case (at_h0)
-      excess = search%h0 - (gap - slow_displacement(problem, search%form, gap))
-    case (at_fold)
-      excess = slow_slope(problem, search%form, gap) - 1
-    case default
-      ! The criterion holds for bodies that attract each other.
-      excess = -1
-      pressure = problem%law%pressure([gap])
-      slope = problem%law%slope([gap])
-      if (pressure(1) < 0) &
-        excess = slow_displacement(problem, search%form, gap)*slope(1)/pressure(1) - 1
-    end select
-  end function excess
-
-  !> Change of gap within which the law may be linearised.
-  pure real(wp) function linear_range(problem, gap)
-    type(problem_t), intent(in) :: problem
-    real(wp), intent(in) :: gap
-    real(wp) :: range(1)
-
-    range = problem%law%closure([gap])
-    linear_range = range(1)
-  end function linear_range
-
-  !> The next gap of the search.
-  pure real(wp) function inwards(problem, gap, lowest)
-    type(problem_t), intent(in) :: problem
-    real(wp), intent(in) :: gap, lowest
-
-    inwards = max(gap - search_step*linear_range(problem, gap), lowest)
-  end function inwards
-
-  !> The gap between `near` and `far` at which the excess changes its sign.
-  pure real(wp) function root_between(problem, search, near, far) result(root)
-    type(problem_t), intent(in) :: problem
-    type(search_t), intent(in) :: search
-    real(wp), intent(in) :: near, far
-    type(bracket_t) :: bracket
-
-    bracket = bracket_t(near, far)
-    do while (bracket%is_open())
-      call bracket%narrow(excess(problem, search, bracket%middle()) >= 0)
-    end do
-    root = bracket%middle()
-  end function root_between
 end module slow_jumps

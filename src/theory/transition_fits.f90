@@ -62,10 +62,8 @@ contains
   elemental type(fit_t) function new_fit(theory) result(fit)
     type(maugis_t), intent(in) :: theory
 
-    associate (unit => theory%unit)
-      fit = fit_t((1 - exp(-theory%lambda/0.924_wp))/1.02_wp, unit%load, unit%radius, &
-        unit%displacement, unit%load)
-    end associate
+    fit = fit_t((1 - exp(-theory%lambda/0.924_wp))/1.02_wp, theory%unit%load, theory%unit%radius, &
+      theory%unit%displacement, theory%unit%load)
   end function new_fit
 
   !> z at a load [N].

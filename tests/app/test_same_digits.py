@@ -38,7 +38,7 @@ def test_the_same_deck_gives_the_same_bytes_on_any_number_of_threads(snapin, tmp
 
 def shared_from():
     """Nodes from which on products and factors are shared between threads."""
-    text = (ROOT / "src" / "system" / "blas_threads.f90").read_text()
+    text = (ROOT / "src" / "system" / "machine.f90").read_text()
     return int(re.search(r":: worthwhile = (\d+)", text)[1])
 
 

@@ -3,20 +3,17 @@
 program base_values
   use kinds, only: wp
   use adaptive_quadrature, only: integral_t, new_integral
-  use bessel, only: bessel_t, new_bessel
+  use special_functions, only: bessel_t, new_bessel, carlson_rf
   use chebyshev, only: chebyshev_points, chebyshev_series, series_value, series_slope, &
     series_integral
-  use cubic, only: spline, monotone
+  use interpolation, only: spline, monotone, polynomial_weights, polynomial_slope, &
+    interpolated_maximum, hermite_t, hermite_through
   use decimal, only: put_real, longest_real
-  use elliptic, only: carlson_rf
-  use interpolation, only: polynomial_weights, polynomial_slope, interpolated_maximum, hermite_t, &
-    hermite_through
   use linear_algebra, only: solve_tridiagonal, singular_values
   use quadrature, only: gauss_legendre, legendre_values, logarithm_weights, barycentric_weights, &
-    lagrange_basis
+    lagrange_basis, wave_rule
   use root_finding, only: bracket_t, root_search_t, new_root_search
   use text, only: lower, quoted, unquoted, brief
-  use wave_quadrature, only: wave_rule
   implicit none
 
   character(len=*), parameter :: numbers = '(*(es25.16e3))'

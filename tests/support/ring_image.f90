@@ -74,7 +74,7 @@ module printing_observer
   use equilibrium, only: cost_t
   use stability, only: smallest_eigenvalue
   use records, only: observer_t, record_t
-  use curve_rows, only: curve_row
+  use tables, only: curve_row
   implicit none
   private
   public :: printing_observer_t
@@ -145,10 +145,10 @@ program ring_image
   if (allocated(error)) error stop 'the deck is wrong'
   problem = problem_of(scene)
   call give_body(problem)
-  if (allocated(scene%sensitivity)) then
-    do j = 1, size(scene%sensitivity%varied)
-      do k = 1, size(scene%sensitivity%varied(j)%problem)
-        call give_body(scene%sensitivity%varied(j)%problem(k))
+  if (allocated(scene%varied)) then
+    do j = 1, size(scene%varied)
+      do k = 1, size(scene%varied(j)%problem)
+        call give_body(scene%varied(j)%problem(k))
       end do
     end do
   end if

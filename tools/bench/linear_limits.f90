@@ -17,7 +17,7 @@ program linear_limits
   use mixing, only: solve_mixing
   use anderson, only: solve_anderson
   use solver_options, only: solver_options_t
-  use blas_threads, only: use_threads_for
+  use machine, only: use_threads_for
   implicit none
 
   !> assembly: the kernel. residual: one evaluation of the equations, dgemv in it. mixing, anderson,

@@ -66,7 +66,7 @@ CLOSE = {"residual_tolerance": 1e-12}
 # On uniform grids the default is 1e-8: states at this tolerance do not agree to twelve digits.
 FIXED = {"grid": "uniform", "nodes": 300, **CLOSE}
 # Matrices with at least this number of nodes use more than one thread
-# (src/system/blas_threads.f90).
+# (src/system/machine.f90).
 SHARED = 2500
 THREADED = {"grid": "uniform", "nodes": 2600, "r_max": 20.0, **CLOSE}
 STRONG = {"loading": loading(13, -4, 0.25), "unloading": {"from_": [2.0, -4.0]}}

@@ -2,11 +2,10 @@
 !> attraction of the same Hamaker constant it is the Lennard-Jones law (33) of the paper.
 module born
   use kinds, only: wp, pi
-  use failure, only: failure_t
   use deck, only: deck_t
   use deck_keys, only: key_spec, real_value
   use force_law, only: force_law_t
-  use law_reading, only: accept_law
+  use group_reading, only: accept_law
   use power_pair, only: power_pair_t
   implicit none
   private
@@ -24,18 +23,16 @@ module born
 
 contains
 
-  !> The law, if the deck has its group.
-  subroutine read_law(deck, law, error)
+  !> The law of its group.
+  subroutine read_law(deck, law)
     type(deck_t), intent(inout) :: deck
     class(force_law_t), allocatable, intent(out) :: law
-    type(failure_t), allocatable, intent(inout) :: error
     type(power_pair_t) :: this
     real(wp) :: hamaker
 
-    if (.not. deck%has_group('born')) return
     if (.not. (deck%is_set('born', 'hamaker') .or. deck%has_group('van_der_waals'))) then
       call deck%mistake('born', 'hamaker', 'missing; give it, or &van_der_waals with this '// &
-        'constant', error)
+        'constant')
       return
     end if
     hamaker = 0
@@ -48,7 +45,7 @@ contains
     this%repulsive = 1
     this%tail_power = this%n
     call this%set_scales()
-    call accept_law(deck, 'born', 'hamaker', 'z0', this, law, error)
+    call accept_law(deck, 'born', 'hamaker', 'z0', this, law)
   end subroutine read_law
 
 end module born

@@ -4,7 +4,6 @@
 !> (`step_attraction`).
 module capillary
   use kinds, only: wp
-  use failure, only: failure_t
   use deck, only: deck_t
   use deck_keys, only: key_spec, real_value, real_list
   use force_law, only: force_law_t
@@ -34,24 +33,21 @@ module capillary
 
 contains
 
-  !> The law, if the deck has its group.
-  subroutine read_law(deck, law, error)
+  !> The law of its group.
+  subroutine read_law(deck, law)
     type(deck_t), intent(inout) :: deck
     class(force_law_t), allocatable, intent(out) :: law
-    type(failure_t), allocatable, intent(inout) :: error
     !> [J/(mol K)]
     real(wp), parameter :: gas_constant = 8.31446261815324_wp
     real(wp), allocatable :: angles(:)
     real(wp) :: tension, radius, humidity, volume, temperature
     character(len=:), allocatable :: key
 
-    if (.not. deck%has_group('capillary')) return
     call deck%get('capillary', 'surface_tension', tension)
     call deck%get('capillary', 'contact_angle', angles)
     if (size(angles) == 0) angles = [0.0_wp]
     if (deck%is_set('capillary', 'kelvin_radius') .eqv. deck%is_set('capillary', 'humidity')) then
-      call deck%mistake('capillary', 'kelvin_radius', 'give either kelvin_radius or humidity', &
-        error)
+      call deck%mistake('capillary', 'kelvin_radius', 'give either kelvin_radius or humidity')
       return
     end if
     if (deck%is_set('capillary', 'humidity')) then
@@ -65,7 +61,7 @@ contains
       call deck%get('capillary', 'kelvin_radius', radius)
     end if
     call new_step(deck, 'capillary', 'surface_tension', key, tension/radius, &
-      radius*(cos(angles(1)) + cos(angles(size(angles)))), law, error)
+      radius*(cos(angles(1)) + cos(angles(size(angles)))), law)
   end subroutine read_law
 
 end module capillary

@@ -3,7 +3,6 @@
 !> (`step_attraction`).
 module depletion
   use kinds, only: wp
-  use failure, only: failure_t
   use deck, only: deck_t
   use deck_keys, only: key_spec, real_value
   use force_law, only: force_law_t
@@ -24,13 +23,12 @@ module depletion
 
 contains
 
-  !> The law, if the deck has its group.
-  subroutine read_law(deck, law, error)
+  !> The law of its group.
+  subroutine read_law(deck, law)
     type(deck_t), intent(inout) :: deck
     class(force_law_t), allocatable, intent(out) :: law
-    type(failure_t), allocatable, intent(inout) :: error
 
-    call read_step(deck, 'depletion', 'osmotic_pressure', 'diameter', law, error)
+    call read_step(deck, 'depletion', 'osmotic_pressure', 'diameter', law)
   end subroutine read_law
 
 end module depletion

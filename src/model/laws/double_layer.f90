@@ -10,13 +10,11 @@
 !> The pressure unit is 64 n kT tanh^2(y1/4), y1 the larger potential.
 module double_layer
   use kinds, only: wp
-  use failure, only: failure_t
   use deck, only: deck_t
   use deck_keys, only: key_spec, real_value, real_list, integer_value, word_value
   use force_law, only: force_law_t, of_slope
-  use law_reading, only: check_decades
+  use group_reading, only: check_decades
   use poisson_boltzmann, only: surface_t
-  use linear_layers, only: linear_values
   use layer_table, only: layer_table_t, new_layer_table, nearest_gap
   implicit none
   private
@@ -70,23 +68,21 @@ module double_layer
 
 contains
 
-  !> The law, if the deck has its group.
-  subroutine read_law(deck, law, error)
+  !> The law of its group.
+  subroutine read_law(deck, law)
     type(deck_t), intent(inout) :: deck
     class(force_law_t), allocatable, intent(out) :: law
-    type(failure_t), allocatable, intent(inout) :: error
     type(double_layer_t) :: this
     character(len=:), allocatable :: model
     real(wp) :: osmotic
     logical :: solved
 
-    if (.not. deck%has_group('double_layer')) return
     call deck%get('double_layer', 'model', model)
     this%model = linear
     if (model == 'superposition') this%model = superposition
     if (model == 'nonlinear') this%model = nonlinear
-    call take_electrolyte(deck, this, osmotic, error)
-    if (allocated(error)) return
+    call take_electrolyte(deck, this, osmotic)
+    if (allocated(deck%error)) return
     if (this%model == linear .and. this%surface(1)%potential > small_potential) this%caveat = &
       'double_layer: model = ''linear'' is for potentials below kT/(z e), 25.7 mV for single ' // &
       'charges at room temperature; pressures may be wrong by orders of magnitude: leave model out'
@@ -108,7 +104,7 @@ contains
       call new_layer_table(this%surface, this%table, solved)
       if (.not. solved) then
         call deck%mistake('double_layer', 'model', 'the Poisson-Boltzmann equation could not be ' &
-          // 'solved at every gap for these potentials and this regulation', error)
+          // 'solved at every gap for these potentials and this regulation')
         return
       end if
     end if
@@ -116,11 +112,10 @@ contains
   end subroutine read_law
 
   !> Sets Debye length and surfaces. osmotic: 2 n kT [Pa].
-  subroutine take_electrolyte(deck, this, osmotic, error)
+  subroutine take_electrolyte(deck, this, osmotic)
     type(deck_t), intent(inout) :: deck
     type(double_layer_t), intent(inout) :: this
     real(wp), intent(out) :: osmotic
-    type(failure_t), allocatable, intent(inout) :: error
     real(wp), allocatable :: potential(:), regulation(:)
     real(wp) :: salt, permittivity, temperature, thermal, decades
     integer :: valence
@@ -129,9 +124,9 @@ contains
     if (deck%is_set('double_layer', 'salt') .eqv. deck%is_set('double_layer', 'debye_length')) then
       if (deck%is_set('double_layer', 'salt')) then
         call deck%mistake('double_layer', 'debye_length', 'salt gives it already; give ' // &
-          'debye_length or salt', error)
+          'debye_length or salt')
       else
-        call deck%mistake('double_layer', 'salt', 'missing; give salt or debye_length', error)
+        call deck%mistake('double_layer', 'salt', 'missing; give salt or debye_length')
       end if
       return
     end if
@@ -149,35 +144,26 @@ contains
     else
       call deck%get('double_layer', 'debye_length', this%length)
     end if
-    call take_surfaces(deck, potential/thermal, regulation, this, error)
-    if (allocated(error)) return
-    decades = log10(permittivity) + 2*(log10(thermal) - log10(this%length)) + &
-      2*log10(abs(this%surface(1)%potential))
-    call check_decades(deck, 'double_layer', 'potential', decades, 'a pressure', ' Pa', error)
-    osmotic = permittivity*(thermal/this%length)**2
-  end subroutine take_electrolyte
-
-  !> Sets the surfaces, first the one with the larger potential, whose sign is made positive: this
-  !> does not change pressures.
-  subroutine take_surfaces(deck, potential, regulation, this, error)
-    type(deck_t), intent(in) :: deck
-    real(wp), intent(in) :: potential(:), regulation(:)
-    type(double_layer_t), intent(inout) :: this
-    type(failure_t), allocatable, intent(inout) :: error
-
-    this%surface%potential = [potential(1), potential(size(potential))]
+    ! The surface with the larger potential is first, and its sign is made positive: this does not
+    ! change pressures.
+    this%surface%potential = [potential(1), potential(size(potential))]/thermal
     this%surface%regulation = [regulation(1), regulation(size(regulation))]
     if (abs(this%surface(2)%potential) > abs(this%surface(1)%potential)) &
       this%surface = this%surface([2, 1])
     if (this%surface(1)%potential < 0) this%surface%potential = -this%surface%potential
     if (.not. this%surface(1)%potential > 0) then
       call deck%mistake('double_layer', 'potential', 'without a potential there is no double ' // &
-        'layer; leave the group out', error)
+        'layer; leave the group out')
     else if (this%surface(1)%potential > largest_potential) then
       call deck%mistake('double_layer', 'potential', 'more than 20 kT for each ion: the size ' // &
-        'of ions would matter', error)
+        'of ions would matter')
     end if
-  end subroutine take_surfaces
+    if (allocated(deck%error)) return
+    decades = log10(permittivity) + 2*(log10(thermal) - log10(this%length)) + &
+      2*log10(abs(this%surface(1)%potential))
+    call check_decades(deck, 'double_layer', 'potential', decades, 'a pressure', ' Pa')
+    osmotic = permittivity*(thermal/this%length)**2
+  end subroutine take_electrolyte
 
   pure subroutine evaluate(self, quantity, gap, value)
     class(double_layer_t), intent(in) :: self
@@ -201,5 +187,41 @@ contains
       value = self%scale*self%table%value(quantity, h)
     end select
   end subroutine evaluate
+
+  !> Pressure, slope and energy at a positive gap by the linear equation. With x = exp(-h), a = 2 p1
+  !> - 1, b = 2 p2 - 1 and pressures in 2 n kT,
+  !>
+  !>     e = 2 [y1 y2 x + (b y1^2 + a y2^2) x^2/2]/(1 - a b x^2),   p = -de/dh .
+  pure function linear_values(surface, gap) result(value)
+    type(surface_t), intent(in) :: surface(2)
+    real(wp), intent(in) :: gap
+    real(wp) :: value(3), y(2), p(2), sense, x, d, ab, g, mixed, top, top_slope, bottom
+
+    ! Changing the sign of one potential, and p into 1 - p, only changes the sign of the pressure.
+    ! The form below loses no digits at small gaps where both p are small; their sum is at most 1.
+    y = surface%potential
+    p = surface%regulation
+    sense = 1
+    if (sum(p) > 1) then
+      sense = -1
+      y(2) = -y(2)
+      p = 1 - p
+    end if
+    x = exp(-gap)
+    ! 1 - x
+    d = 2*sinh(gap/2)*exp(-gap/2)
+    ab = product(2*p - 1)
+    g = y(1)*y(2)
+    mixed = (y(1) - y(2))*(p(2)*y(1) - p(1)*y(2))
+    ! p = 2 x top/bottom^2, top = y1 y2 (1 + a b x^2) + (b y1^2 + a y2^2) x
+    top = g*d**2 - (y(1) - y(2))**2*x + 2*x*(mixed + g*(sum(p)*d + 2*product(p)*x))
+    top_slope = -2*g*d - (y(1) - y(2))**2 + 2*(mixed + g*(sum(p)*d + 2*product(p)*x)) &
+      + 2*x*g*(2*product(p) - sum(p))
+    bottom = (1 - ab) + ab*d*(1 + x)
+    value(1) = 2*x*top/bottom**2
+    value(2) = -2*x*((top + x*top_slope)*bottom + 4*ab*x**2*top)/bottom**3
+    value(3) = 2*x*(g*d + (p(2)*y(1)**2 + p(1)*y(2)**2 - (y(1) - y(2))**2/2)*x)/bottom
+    value = sense*value
+  end function linear_values
 
 end module double_layer

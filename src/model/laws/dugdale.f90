@@ -2,7 +2,6 @@
 !> (`step_attraction`).
 module dugdale
   use kinds, only: wp
-  use failure, only: failure_t
   use deck, only: deck_t
   use deck_keys, only: key_spec, real_value
   use force_law, only: force_law_t
@@ -23,13 +22,12 @@ module dugdale
 
 contains
 
-  !> The law, if the deck has its group.
-  subroutine read_law(deck, law, error)
+  !> The law of its group.
+  subroutine read_law(deck, law)
     type(deck_t), intent(inout) :: deck
     class(force_law_t), allocatable, intent(out) :: law
-    type(failure_t), allocatable, intent(inout) :: error
 
-    call read_step(deck, 'dugdale', 'stress', 'range', law, error)
+    call read_step(deck, 'dugdale', 'stress', 'range', law)
   end subroutine read_law
 
 end module dugdale

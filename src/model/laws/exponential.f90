@@ -2,12 +2,11 @@
 !> decay use it too, also attractions.
 module exponential
   use kinds, only: wp
-  use failure, only: failure_t
   use deck, only: deck_t
   use deck_keys, only: key_spec, real_value
   use force_law, only: force_law_t, of_pressure, of_slope
   use force_sum, only: add_term
-  use law_reading, only: is_law, require, refuse_foreign, accept_law
+  use group_reading, only: is_law, require, refuse_foreign, accept_law
   implicit none
   private
   public :: exponential_t, keys, read_law, read_exponentials
@@ -31,34 +30,32 @@ module exponential
 
 contains
 
-  !> The law, if the deck has its group.
-  subroutine read_law(deck, law, error)
+  !> The law of its group.
+  subroutine read_law(deck, law)
     type(deck_t), intent(inout) :: deck
     class(force_law_t), allocatable, intent(out) :: law
-    type(failure_t), allocatable, intent(inout) :: error
     type(exponential_t) :: this
     real(wp) :: p0, decay_length
 
-    call refuse_foreign(deck, 'force', 'law', 'exponential', keys, error)
+    call refuse_foreign(deck, 'force', 'law', 'exponential', keys)
     if (.not. is_law(deck, 'exponential')) return
-    call require(deck, 'force', 'law', 'exponential', 'p0', error)
-    call require(deck, 'force', 'law', 'exponential', 'decay_length', error)
-    if (allocated(error)) return
+    call require(deck, 'force', 'law', 'exponential', 'p0')
+    call require(deck, 'force', 'law', 'exponential', 'decay_length')
+    if (allocated(deck%error)) return
     call deck%get('force', 'p0', p0)
     call deck%get('force', 'decay_length', decay_length)
     this = new_exponential(p0, decay_length)
     this%coupling_name = 'big_lambda'
-    call accept_law(deck, 'force', 'p0', 'decay_length', this, law, error)
+    call accept_law(deck, 'force', 'p0', 'decay_length', this, law)
   end subroutine read_law
 
   !> The terms of a group with the lists `decay_length` and `energy` or `pressure`. sense: 1 for
   !> repulsion, -1 for attraction. A list with one value has this value for all terms.
-  subroutine read_exponentials(deck, group, sense, law, error)
-    type(deck_t), intent(in) :: deck
+  subroutine read_exponentials(deck, group, sense, law)
+    type(deck_t), intent(inout) :: deck
     character(len=*), intent(in) :: group
     real(wp), intent(in) :: sense
     class(force_law_t), allocatable, intent(out) :: law
-    type(failure_t), allocatable, intent(inout) :: error
     class(force_law_t), allocatable :: term
     type(exponential_t) :: this
     real(wp), allocatable :: lengths(:), strengths(:)
@@ -66,10 +63,9 @@ contains
     logical :: of_energy
     integer :: i, n
 
-    if (.not. deck%has_group(group)) return
     of_energy = deck%is_set(group, 'energy')
     if (of_energy .eqv. deck%is_set(group, 'pressure')) then
-      call deck%mistake(group, 'energy', 'give either energy or pressure', error)
+      call deck%mistake(group, 'energy', 'give either energy or pressure')
       return
     end if
     key = 'pressure'
@@ -78,7 +74,7 @@ contains
     call deck%get(group, key, strengths)
     n = max(size(lengths), size(strengths))
     if (any([size(lengths), size(strengths)] /= n .and. [size(lengths), size(strengths)] /= 1)) then
-      call deck%mistake(group, key, 'has another number of values than decay_length', error)
+      call deck%mistake(group, key, 'has another number of values than decay_length')
       return
     end if
     if (size(lengths) < n) lengths = spread(lengths(1), 1, n)
@@ -88,8 +84,8 @@ contains
       this%sense = sense
       ! The scan of a law finds the scales of an attraction.
       if (sense < 0) this%range = 0
-      call accept_law(deck, group, key, 'decay_length', this, term, error)
-      if (allocated(error)) return
+      call accept_law(deck, group, key, 'decay_length', this, term)
+      if (allocated(deck%error)) return
       call add_term(law, term)
     end do
   end subroutine read_exponentials

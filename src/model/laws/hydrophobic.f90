@@ -1,7 +1,6 @@
 !> Hydrophobic attraction: p = -(W/l) exp(-h/l); each value of the keys is one term.
 module hydrophobic
   use kinds, only: wp
-  use failure, only: failure_t
   use deck, only: deck_t
   use deck_keys, only: key_spec, real_list
   use exponential, only: read_exponentials
@@ -21,13 +20,12 @@ module hydrophobic
 
 contains
 
-  !> The law, if the deck has its group.
-  subroutine read_law(deck, law, error)
+  !> The law of its group.
+  subroutine read_law(deck, law)
     type(deck_t), intent(inout) :: deck
     class(force_law_t), allocatable, intent(out) :: law
-    type(failure_t), allocatable, intent(inout) :: error
 
-    call read_exponentials(deck, 'hydrophobic', -1.0_wp, law, error)
+    call read_exponentials(deck, 'hydrophobic', -1.0_wp, law)
   end subroutine read_law
 
 end module hydrophobic

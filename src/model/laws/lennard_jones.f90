@@ -3,12 +3,11 @@
 !> In units of z0 and gamma/z0, with gamma = A/(16 pi z0^2) (34), it is (8/3) (H^-9 - H^-3).
 module lennard_jones
   use kinds, only: wp, pi
-  use failure, only: failure_t
   use deck, only: deck_t
   use deck_keys, only: key_spec, real_value, real_list, word_value
   use force_law, only: force_law_t, of_pressure, of_slope
   use power_pair, only: power_pair_t, new_power_pair, pair_factor
-  use law_reading, only: is_law, require, refuse_foreign, check_decades
+  use group_reading, only: is_law, require, refuse_foreign, check_decades
   implicit none
   private
   public :: lennard_jones_t, keys, read_law
@@ -35,31 +34,29 @@ module lennard_jones
 
 contains
 
-  !> The law, if the deck has its group.
-  subroutine read_law(deck, law, error)
+  !> The law of its group.
+  subroutine read_law(deck, law)
     type(deck_t), intent(inout) :: deck
     class(force_law_t), allocatable, intent(out) :: law
-    type(failure_t), allocatable, intent(inout) :: error
     character(len=:), allocatable :: part
     real(wp), allocatable :: exponents(:)
     real(wp) :: hamaker, z0, surface_energy
 
-    call refuse_foreign(deck, 'force', 'law', 'lennard_jones', keys, error)
+    call refuse_foreign(deck, 'force', 'law', 'lennard_jones', keys)
     if (.not. is_law(deck, 'lennard_jones')) return
     if (.not. deck%is_set('force', 'surface_energy')) &
-      call require(deck, 'force', 'law', 'lennard_jones', 'hamaker', error)
-    call require(deck, 'force', 'law', 'lennard_jones', 'z0', error)
-    if (allocated(error)) return
+      call require(deck, 'force', 'law', 'lennard_jones', 'hamaker')
+    call require(deck, 'force', 'law', 'lennard_jones', 'z0')
+    if (allocated(deck%error)) return
     call deck%assume('force', 'part', 'full')
     if (deck%is_set('force', 'surface_energy') .and. deck%is_set('force', 'hamaker')) &
-      call deck%mistake('force', 'surface_energy', 'follows from hamaker; give one of the two', &
-      error)
+      call deck%mistake('force', 'surface_energy', 'follows from hamaker; give one of the two')
     call deck%get('force', 'z0', z0)
     call deck%get('force', 'part', part)
     call deck%get('force', 'exponents', exponents)
     if (size(exponents) > 0) then
       call check_exponents()
-      if (allocated(error)) return
+      if (allocated(deck%error)) return
     end if
     ! gamma = A/(16 pi z0^2), (34).
     if (deck%is_set('force', 'surface_energy')) then
@@ -69,8 +66,8 @@ contains
       call deck%get('force', 'hamaker', hamaker)
     end if
     call check_decades(deck, 'force', 'hamaker', log10(hamaker) - log10(16*pi) - 3*log10(z0), &
-      'a pressure', ' Pa', error)
-    if (allocated(error)) return
+      'a pressure', ' Pa')
+    if (allocated(deck%error)) return
     allocate (law, source=new_lennard_jones(hamaker, z0, part))
     if (size(exponents) == 0) return
     ! The attraction is A/(6 pi h^3) if the deck gives the Hamaker constant A.
@@ -83,13 +80,13 @@ contains
 
     subroutine check_exponents()
       if (size(exponents) /= 2) then
-        call deck%mistake('force', 'exponents', 'give two', error)
+        call deck%mistake('force', 'exponents', 'give two')
       else if (exponents(1) <= exponents(2)) then
         call deck%mistake('force', 'exponents', 'the first, of the repulsion, must be the '// &
-          'larger', error)
+          'larger')
       else if (abs(exponents(2) - 3) > 0 .and. .not. deck%is_set('force', 'surface_energy')) then
         call deck%mistake('force', 'surface_energy', 'missing; a Hamaker constant needs an '// &
-          'attraction of h^-3', error)
+          'attraction of h^-3')
       end if
     end subroutine check_exponents
 

@@ -4,11 +4,10 @@
 !> - 1)).
 module morse
   use kinds, only: wp
-  use failure, only: failure_t
   use deck, only: deck_t
   use deck_keys, only: key_spec, real_value
   use force_law, only: force_law_t, of_pressure, of_slope
-  use law_reading, only: accept_law
+  use group_reading, only: accept_law
   implicit none
   private
   public :: keys, read_law
@@ -33,15 +32,13 @@ module morse
 
 contains
 
-  !> The law, if the deck has its group.
-  subroutine read_law(deck, law, error)
+  !> The law of its group.
+  subroutine read_law(deck, law)
     type(deck_t), intent(inout) :: deck
     class(force_law_t), allocatable, intent(out) :: law
-    type(failure_t), allocatable, intent(inout) :: error
     type(morse_t) :: this
     real(wp) :: surface_energy, z0, decay_length
 
-    if (.not. deck%has_group('morse')) return
     call deck%get('morse', 'surface_energy', surface_energy)
     call deck%get('morse', 'z0', z0)
     call deck%get('morse', 'decay_length', decay_length)
@@ -50,7 +47,7 @@ contains
     this%origin = z0 - this%length
     this%repulsion_length = 0.25_wp
     this%closure_length = 0.5_wp
-    call accept_law(deck, 'morse', 'surface_energy', 'decay_length', this, law, error)
+    call accept_law(deck, 'morse', 'surface_energy', 'decay_length', this, law)
   end subroutine read_law
 
   !> exp(-2 (gap - 1)), finite at any gap and constant where it would underflow.

@@ -3,11 +3,10 @@
 !> Milner, Witten and Cates, p = kT Gamma^(3/2) (1/(2 u^2) - u + u^4/2); zero beyond u = 1.
 module steric
   use kinds, only: wp
-  use failure, only: failure_t
   use deck, only: deck_t
   use deck_keys, only: key_spec, real_value, integer_value, word_value
   use force_law, only: force_law_t, of_pressure, of_slope
-  use law_reading, only: accept_law
+  use group_reading, only: accept_law
   implicit none
   private
   public :: keys, read_law
@@ -39,17 +38,15 @@ module steric
 
 contains
 
-  !> The law, if the deck has its group.
-  subroutine read_law(deck, law, error)
+  !> The law of its group.
+  subroutine read_law(deck, law)
     type(deck_t), intent(inout) :: deck
     class(force_law_t), allocatable, intent(out) :: law
-    type(failure_t), allocatable, intent(inout) :: error
     type(steric_t) :: this
     character(len=:), allocatable :: model
     real(wp) :: thickness, density, temperature
     integer :: sides
 
-    if (.not. deck%has_group('steric')) return
     call deck%get('steric', 'model', model)
     call deck%get('steric', 'brush_thickness', thickness)
     call deck%get('steric', 'grafting_density', density)
@@ -62,7 +59,7 @@ contains
     this%kinks = this%breaks
     this%smallest_gap = 1.0e-12_wp
     this%closure_fraction = 0.3_wp
-    call accept_law(deck, 'steric', 'grafting_density', 'brush_thickness', this, law, error)
+    call accept_law(deck, 'steric', 'grafting_density', 'brush_thickness', this, law)
   end subroutine read_law
 
   pure subroutine evaluate(self, quantity, gap, value)

@@ -1,11 +1,10 @@
 !> Oscillatory force of a structured liquid: p = -p0 cos(2 pi h/d + phase) exp(-h/decay_length).
 module structural
   use kinds, only: wp, pi
-  use failure, only: failure_t
   use deck, only: deck_t
   use deck_keys, only: key_spec, real_value
   use force_law, only: force_law_t, of_pressure, of_slope
-  use law_reading, only: accept_law
+  use group_reading, only: accept_law
   implicit none
   private
   public :: keys, read_law
@@ -34,21 +33,19 @@ module structural
 
 contains
 
-  !> The law, if the deck has its group. A negative amplitude is a positive one with another phase.
-  subroutine read_law(deck, law, error)
+  !> The law of its group. A negative amplitude is a positive one with another phase.
+  subroutine read_law(deck, law)
     type(deck_t), intent(inout) :: deck
     class(force_law_t), allocatable, intent(out) :: law
-    type(failure_t), allocatable, intent(inout) :: error
     type(structural_t) :: this
     real(wp) :: amplitude, period
 
-    if (.not. deck%has_group('structural')) return
     call deck%get('structural', 'amplitude', amplitude)
     call deck%get('structural', 'period', period)
     call deck%get('structural', 'decay_length', this%length)
     call deck%get('structural', 'phase', this%phase)
     if (.not. abs(amplitude) > 0) then
-      call deck%mistake('structural', 'amplitude', 'is 0; leave the group out', error)
+      call deck%mistake('structural', 'amplitude', 'is 0; leave the group out')
       return
     end if
     if (amplitude < 0) this%phase = this%phase + pi
@@ -58,7 +55,7 @@ contains
     this%closure_length = min(2.0_wp, 0.25_wp*this%period)
     ! Within the first layer there is no liquid, and the formula would oscillate without bounds.
     this%smallest_gap = 0
-    call accept_law(deck, 'structural', 'amplitude', 'decay_length', this, law, error)
+    call accept_law(deck, 'structural', 'amplitude', 'decay_length', this, law)
   end subroutine read_law
 
   !> exp(-gap), finite at any gap.

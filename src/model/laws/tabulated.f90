@@ -7,7 +7,7 @@ module tabulated
   use data_table, only: data_table_t, read_columns
   use force_law, only: force_law_t, of_pressure, of_energy
   use force_table, only: force_table_t, new_force_table, largest_step
-  use law_reading, only: check_decades
+  use group_reading, only: check_decades
   implicit none
   private
   public :: keys, read_law
@@ -53,30 +53,28 @@ module tabulated
 
 contains
 
-  !> The law, if the deck has its group.
-  subroutine read_law(deck, law, error)
+  !> The law of its group.
+  subroutine read_law(deck, law)
     type(deck_t), intent(inout) :: deck
     class(force_law_t), allocatable, intent(out) :: law
-    type(failure_t), allocatable, intent(inout) :: error
     type(tabulated_t) :: this
     type(failure_t), allocatable :: trouble
     type(data_table_t) :: table
 
-    if (.not. deck%has_group('tabulated')) return
     if (deck%is_set('tabulated', 'tail_exponent') .eqv. &
         deck%is_set('tabulated', 'tail_decay_length')) then
       call deck%mistake('tabulated', 'tail_exponent', 'give tail_exponent or ' // &
-        'tail_decay_length, one of the two, for gaps beyond the table', error)
+        'tail_decay_length, one of the two, for gaps beyond the table')
       return
     end if
     call read_columns(deck, 'tabulated', 'file', fewest, table, trouble)
     if (.not. allocated(trouble)) call put_in_order(table, trouble)
     if (allocated(trouble)) then
-      call deck%mistake('tabulated', 'file', 'the table cannot be used: ' // trouble%message, error)
+      call deck%mistake('tabulated', 'file', 'the table cannot be used: ' // trouble%message)
       return
     end if
-    call take_table(deck, table, this, error)
-    if (.not. allocated(error)) allocate (law, source=this)
+    call take_table(deck, table, this)
+    if (.not. allocated(deck%error)) allocate (law, source=this)
   end subroutine read_law
 
   !> Puts gaps in ascending order; fails if they neither ascend nor descend, or are not positive.
@@ -104,11 +102,10 @@ contains
   end subroutine put_in_order
 
   !> Makes the law of an ordered table, in units of its first gap and its largest number.
-  subroutine take_table(deck, table, this, error)
-    type(deck_t), intent(in) :: deck
+  subroutine take_table(deck, table, this)
+    type(deck_t), intent(inout) :: deck
     type(data_table_t), intent(inout) :: table
     type(tabulated_t), intent(inout) :: this
-    type(failure_t), allocatable, intent(inout) :: error
     character(len=:), allocatable :: quantity, interpolation
     real(wp), allocatable :: g(:), value(:)
     real(wp) :: exponent, decay_length
@@ -128,13 +125,13 @@ contains
     value = table%value(:, 2)/max(this%pressure_unit, tiny(1.0_wp))
     if (quantity == 'energy') this%pressure_unit = this%pressure_unit/this%length
     call check_decades(deck, 'tabulated', 'file', &
-      log10(max(this%pressure_unit, tiny(1.0_wp))), 'a pressure', ' Pa', error)
-    if (allocated(error)) return
+      log10(max(this%pressure_unit, tiny(1.0_wp))), 'a pressure', ' Pa')
+    if (allocated(deck%error)) return
     decay_length = decay_length/this%length
     do i = 1, n - 1
       if (.not. fall(g(i), g(i + 1)) > largest_step) cycle
       call deck%mistake('tabulated', 'file', 'from one point of the table to the next the ' // &
-        'tail falls by more than exp(-10)', error)
+        'tail falls by more than exp(-10)')
       return
     end do
     this%fine = new_force_table(g, value, quantity == 'energy', exponent, decay_length, &
@@ -146,10 +143,10 @@ contains
     this%share = merge(share_of_spline, share_of_monotone, interpolation == 'spline')
     i = max(1, count(g <= end_of_lever*g(n)))
     this%tail_error = tail_error_of(g([i, n]), this%pressure(g([i, n])))
-    call take_scales(deck, this, error)
+    call take_scales()
     if (.not. decay_length > 0) this%tail_power = exponent
     this%breaks = g
-    call find_kinks(deck, this)
+    call find_kinks()
 
   contains
 
@@ -180,49 +177,43 @@ contains
       end if
     end function tail_error_of
 
+    !> Finds the points about which the error of the table is not small. At the others the
+    !> derivatives jump by so little that the nodes of a mesh need not know.
+    subroutine find_kinks()
+      real(wp), dimension(size(this%breaks) - 1) :: middle
+      real(wp) :: error(2, size(middle)), accuracy
+      logical :: rough(0:size(middle) + 1)
+
+      call deck%get('numerics', 'accuracy', accuracy)
+      associate (g => this%breaks, n => size(middle))
+        middle = (g(:n) + g(2:))/2
+        error = this%table_error(middle)
+        rough = .false.
+        rough(1:n) = error(1, :) > max(unnoticed*accuracy, least)* &
+          max(abs(this%pressure(middle)), middle*abs(this%slope(middle)))
+        this%kinks = pack(g, rough(0:n) .or. rough(1:))
+      end associate
+      if (size(this%kinks) == 0) deallocate (this%kinks)
+    end subroutine find_kinks
+
+    !> Sets the scales of the repulsion, which is a power before the first point.
+    subroutine take_scales()
+      if (.not. this%fine%power > 0) then
+        call deck%mistake('tabulated', 'file', 'the force does not grow towards the first gap, ' &
+          // 'so that it cannot be continued to smaller ones')
+        return
+      end if
+      ! For the ninth power these are the numbers of the Lennard-Jones law.
+      this%smallest_gap = 10.0_wp**(-min(12.0_wp, 110/(this%fine%power + 1)))
+      this%repulsion_length = 0.9_wp/max(this%fine%power, 1.0_wp)
+      this%closure_fraction = 2.7_wp/max(this%fine%power, 9.0_wp)
+      this%group = 'tabulated'
+      this%strength_key = 'file'
+      this%length_key = 'file'
+      this%has_units = .false.
+    end subroutine take_scales
+
   end subroutine take_table
-
-  !> Finds the points about which the error of the table is not small. At the others the derivatives
-  !> jump by so little that the nodes of a mesh need not know.
-  subroutine find_kinks(deck, this)
-    type(deck_t), intent(in) :: deck
-    type(tabulated_t), intent(inout) :: this
-    real(wp), dimension(size(this%breaks) - 1) :: middle
-    real(wp) :: error(2, size(middle)), accuracy
-    logical :: rough(0:size(middle) + 1)
-
-    call deck%get('numerics', 'accuracy', accuracy)
-    associate (g => this%breaks, n => size(middle))
-      middle = (g(:n) + g(2:))/2
-      error = this%table_error(middle)
-      rough = .false.
-      rough(1:n) = error(1, :) > max(unnoticed*accuracy, least)* &
-        max(abs(this%pressure(middle)), middle*abs(this%slope(middle)))
-      this%kinks = pack(g, rough(0:n) .or. rough(1:))
-    end associate
-    if (size(this%kinks) == 0) deallocate (this%kinks)
-  end subroutine find_kinks
-
-  !> Sets the scales of the repulsion, which is a power before the first point.
-  subroutine take_scales(deck, this, error)
-    type(deck_t), intent(in) :: deck
-    type(tabulated_t), intent(inout) :: this
-    type(failure_t), allocatable, intent(inout) :: error
-
-    if (.not. this%fine%power > 0) then
-      call deck%mistake('tabulated', 'file', 'the force does not grow towards the first gap, ' // &
-        'so that it cannot be continued to smaller ones', error)
-      return
-    end if
-    ! For the ninth power these are the numbers of the Lennard-Jones law.
-    this%smallest_gap = 10.0_wp**(-min(12.0_wp, 110/(this%fine%power + 1)))
-    this%repulsion_length = 0.9_wp/max(this%fine%power, 1.0_wp)
-    this%closure_fraction = 2.7_wp/max(this%fine%power, 9.0_wp)
-    this%group = 'tabulated'
-    this%strength_key = 'file'
-    this%length_key = 'file'
-    this%has_units = .false.
-  end subroutine take_scales
 
   pure subroutine evaluate(self, quantity, gap, value)
     class(tabulated_t), intent(in) :: self

@@ -3,11 +3,10 @@
 !> 1 + c h, c = 5.32/retardation_length, so that p falls as h^-4 at large h.
 module van_der_waals
   use kinds, only: wp, pi
-  use failure, only: failure_t
   use deck, only: deck_t
   use deck_keys, only: key_spec, real_value
   use force_law, only: force_law_t, of_pressure, of_slope
-  use law_reading, only: accept_law
+  use group_reading, only: accept_law
   implicit none
   private
   public :: keys, read_law
@@ -28,21 +27,18 @@ module van_der_waals
       'repulsion such as &born beside it.'), &
     key_spec('van_der_waals', 'hamaker', real_value, 'Hamaker constant.', 'J', above=0.0_wp, &
       required=.true.), &
-    key_spec('van_der_waals', 'retardation_length', real_value, &
-      'Wavelength beyond which the attraction is retarded, about 100 nm.', 'm', above=0.0_wp, &
-      otherwise='no retardation')]
+    key_spec('van_der_waals', 'retardation_length', real_value, 'Wavelength beyond which the ' // &
+      'attraction is retarded, about 100 nm.', 'm', above=0.0_wp, otherwise='no retardation')]
 
 contains
 
-  !> The law, if the deck has its group. It has no characteristic length.
-  subroutine read_law(deck, law, error)
+  !> The law of its group. It has no characteristic length.
+  subroutine read_law(deck, law)
     type(deck_t), intent(inout) :: deck
     class(force_law_t), allocatable, intent(out) :: law
-    type(failure_t), allocatable, intent(inout) :: error
     type(van_der_waals_t) :: this
     real(wp) :: hamaker, wavelength
 
-    if (.not. deck%has_group('van_der_waals')) return
     call deck%get('van_der_waals', 'hamaker', hamaker)
     this%length = nanometre
     this%has_length = .false.
@@ -55,7 +51,7 @@ contains
     end if
     this%smallest_gap = 1.0e-12_wp
     this%closure_fraction = 0.3_wp
-    call accept_law(deck, 'van_der_waals', 'hamaker', 'hamaker', this, law, error)
+    call accept_law(deck, 'van_der_waals', 'hamaker', 'hamaker', this, law)
   end subroutine read_law
 
   pure subroutine evaluate(self, quantity, gap, value)

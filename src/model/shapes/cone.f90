@@ -1,12 +1,10 @@
 !> A cone, the gap r tan(beta): a power with n = 1.
 module cone
   use kinds, only: wp, pi
-  use failure, only: failure_t
   use deck, only: deck_t
   use deck_keys, only: key_spec, real_value
   use shape, only: shape_t
-  use law_reading, only: require
-  use shape_reading, only: refuse_radius
+  use group_reading, only: require, refuse_radius
   use power, only: take_power
   implicit none
   private
@@ -20,18 +18,17 @@ module cone
 contains
 
   !> Reads kind = 'cone'. length: the law's [m].
-  subroutine read_shape(deck, length, shape, error)
+  subroutine read_shape(deck, length, shape)
     type(deck_t), intent(inout) :: deck
     real(wp), intent(in) :: length
     class(shape_t), allocatable, intent(out) :: shape
-    type(failure_t), allocatable, intent(inout) :: error
     real(wp) :: half_angle
 
-    call require(deck, 'shape', 'kind', 'cone', 'half_angle', error)
-    call refuse_radius(deck, 'a cone has none', error)
-    if (allocated(error)) return
+    call require(deck, 'shape', 'kind', 'cone', 'half_angle')
+    call refuse_radius(deck, 'a cone has none')
+    if (allocated(deck%error)) return
     call deck%get('shape', 'half_angle', half_angle)
-    call take_power(deck, 'half_angle', 1.0_wp, -log(tan(half_angle)), length, shape, error)
+    call take_power(deck, 'half_angle', 1.0_wp, -log(tan(half_angle)), length, shape)
   end subroutine read_shape
 
 end module cone

@@ -2,11 +2,10 @@
 !> decks without &shape.
 module parabola
   use kinds, only: wp, pi
-  use failure, only: failure_t
   use deck, only: deck_t
   use deck_keys, only: key_spec
   use shape, only: shape_t
-  use shape_reading, only: read_radius
+  use group_reading, only: read_radius
   implicit none
   private
   public :: keys, read_shape, new_parabola
@@ -31,15 +30,14 @@ module parabola
 contains
 
   !> Reads kind = 'parabola', or no &shape. length: the law's [m], which does not matter.
-  subroutine read_shape(deck, length, shape, error)
+  subroutine read_shape(deck, length, shape)
     type(deck_t), intent(inout) :: deck
     real(wp), intent(in) :: length
     class(shape_t), allocatable, intent(out) :: shape
-    type(failure_t), allocatable, intent(inout) :: error
     real(wp) :: radius
 
-    call read_radius(deck, radius, error)
-    if (.not. allocated(error)) allocate (shape, source=new_parabola(radius))
+    call read_radius(deck, radius)
+    if (.not. allocated(deck%error)) allocate (shape, source=new_parabola(radius))
   end subroutine read_shape
 
   !> radius: R [m].

@@ -2,12 +2,10 @@
 !> dimensionless gap is r^n/2; for n = 2 it is the parabola itself.
 module power
   use kinds, only: wp, pi
-  use failure, only: failure_t
   use deck, only: deck_t
   use deck_keys, only: key_spec, real_value
-  use law_reading, only: require, check_decades
+  use group_reading, only: require, check_decades, read_radius, refuse_radius
   use shape, only: shape_t
-  use shape_reading, only: read_radius, refuse_radius
   use parabola, only: new_parabola
   implicit none
   private
@@ -35,30 +33,28 @@ module power
 contains
 
   !> Reads kind = 'power': B from coefficient or radius. length: the law's [m].
-  subroutine read_shape(deck, length, shape, error)
+  subroutine read_shape(deck, length, shape)
     type(deck_t), intent(inout) :: deck
     real(wp), intent(in) :: length
     class(shape_t), allocatable, intent(out) :: shape
-    type(failure_t), allocatable, intent(inout) :: error
     real(wp) :: n, coefficient, radius
 
-    call require(deck, 'shape', 'kind', 'power', 'exponent', error)
-    if (allocated(error)) return
+    call require(deck, 'shape', 'kind', 'power', 'exponent')
+    if (allocated(deck%error)) return
     call deck%get('shape', 'exponent', n)
     if (deck%is_set('shape', 'coefficient')) then
-      call refuse_radius(deck, 'the coefficient replaces it', error)
+      call refuse_radius(deck, 'the coefficient replaces it')
       call deck%get('shape', 'coefficient', coefficient)
       if (abs(n - 2) > 0) then
-        call take_power(deck, 'coefficient', n, log(coefficient), length, shape, error)
+        call take_power(deck, 'coefficient', n, log(coefficient), length, shape)
       else
         allocate (shape, source=new_parabola(0.5_wp/coefficient))
       end if
     else
-      call read_radius(deck, radius, error)
-      if (allocated(error)) return
+      call read_radius(deck, radius)
+      if (allocated(deck%error)) return
       if (abs(n - 2) > 0) then
-        call take_power(deck, 'exponent', n, -(n - 1)*log(radius) - log(2.0_wp), length, shape, &
-          error)
+        call take_power(deck, 'exponent', n, -(n - 1)*log(radius) - log(2.0_wp), length, shape)
       else
         allocate (shape, source=new_parabola(radius))
       end if
@@ -67,18 +63,17 @@ contains
 
   !> The shape from n, the logarithm of B [m^(1-n)] and the law's length [m]; fails, with the given
   !> key in the message, if its unit is out of range.
-  subroutine take_power(deck, key, n, log_b, length, shape, error)
-    type(deck_t), intent(in) :: deck
+  subroutine take_power(deck, key, n, log_b, length, shape)
+    type(deck_t), intent(inout) :: deck
     character(len=*), intent(in) :: key
     real(wp), intent(in) :: n, log_b, length
     class(shape_t), allocatable, intent(out) :: shape
-    type(failure_t), allocatable, intent(inout) :: error
     type(power_t) :: this
     real(wp) :: log_radius
 
     log_radius = 2*(log(length) - log(2.0_wp) - log_b)/n - log(length)
-    call check_decades(deck, 'shape', key, log_radius/log(10.0_wp), 'a radius', ' m', error)
-    if (allocated(error)) return
+    call check_decades(deck, 'shape', key, log_radius/log(10.0_wp), 'a radius', ' m')
+    if (allocated(deck%error)) return
     this%radius = exp(log_radius)
     this%exponent = n
     this%growth = n

@@ -6,12 +6,10 @@ module profile
   use deck, only: deck_t
   use deck_keys, only: key_spec, text_value
   use data_table, only: data_table_t, read_columns
-  use cubic, only: spline
-  use interpolation, only: interval_of
+  use interpolation, only: spline, interval_of
   use quadrature, only: gauss_legendre
-  use law_reading, only: require, check_decades
+  use group_reading, only: require, check_decades, refuse_radius
   use shape, only: shape_t
-  use shape_reading, only: refuse_radius
   implicit none
   private
   public :: keys, read_shape
@@ -41,27 +39,26 @@ module profile
 contains
 
   !> Reads kind = 'profile'. length: the law's [m].
-  subroutine read_shape(deck, length, shape, error)
+  subroutine read_shape(deck, length, shape)
     type(deck_t), intent(inout) :: deck
     real(wp), intent(in) :: length
     class(shape_t), allocatable, intent(out) :: shape
-    type(failure_t), allocatable, intent(inout) :: error
     type(failure_t), allocatable :: trouble
     type(profile_t) :: this
     type(data_table_t) :: table
 
-    call require(deck, 'shape', 'kind', 'profile', 'file', error)
-    call refuse_radius(deck, 'the profile has its own', error)
-    if (allocated(error)) return
+    call require(deck, 'shape', 'kind', 'profile', 'file')
+    call refuse_radius(deck, 'the profile has its own')
+    if (allocated(deck%error)) return
     call read_columns(deck, 'shape', 'file', fewest, table, trouble)
     if (.not. allocated(trouble)) call check_points(table, trouble)
     if (.not. allocated(trouble)) call take_points(table, length, this, trouble)
     if (allocated(trouble)) then
-      call deck%mistake('shape', 'file', 'the profile cannot be used: ' // trouble%message, error)
+      call deck%mistake('shape', 'file', 'the profile cannot be used: ' // trouble%message)
       return
     end if
-    call check_decades(deck, 'shape', 'file', log10(this%radius), 'a radius', ' m', error)
-    if (.not. allocated(error)) allocate (shape, source=this)
+    call check_decades(deck, 'shape', 'file', log10(this%radius), 'a radius', ' m')
+    if (.not. allocated(deck%error)) allocate (shape, source=this)
   end subroutine read_shape
 
   !> Fails if positions do not start at 0 and grow, or if heights do not grow with them.

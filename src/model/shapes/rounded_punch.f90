@@ -1,12 +1,10 @@
 !> A flat punch with a rounded rim: f = 0 up to the radius b and (r - b)^2/(2R) beyond.
 module rounded_punch
   use kinds, only: wp
-  use failure, only: failure_t
   use deck, only: deck_t
   use deck_keys, only: key_spec, real_value
   use shape, only: shape_t
-  use law_reading, only: require
-  use shape_reading, only: read_radius
+  use group_reading, only: require, read_radius
   implicit none
   private
   public :: keys, read_shape
@@ -30,17 +28,16 @@ module rounded_punch
 contains
 
   !> Reads kind = 'rounded_punch'. length: the law's [m].
-  subroutine read_shape(deck, length, shape, error)
+  subroutine read_shape(deck, length, shape)
     type(deck_t), intent(inout) :: deck
     real(wp), intent(in) :: length
     class(shape_t), allocatable, intent(out) :: shape
-    type(failure_t), allocatable, intent(inout) :: error
     type(rounded_punch_t) :: this
     real(wp) :: flat_radius
 
-    call require(deck, 'shape', 'kind', 'rounded_punch', 'flat_radius', error)
-    call read_radius(deck, this%radius, error)
-    if (allocated(error)) return
+    call require(deck, 'shape', 'kind', 'rounded_punch', 'flat_radius')
+    call read_radius(deck, this%radius)
+    if (allocated(deck%error)) return
     call deck%get('shape', 'flat_radius', flat_radius)
     this%flat = flat_radius/sqrt(this%radius*length)
     this%exponent = 0

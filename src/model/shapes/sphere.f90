@@ -1,11 +1,10 @@
 !> An exact sphere on a plane: the spheroid whose axes are equal.
 module sphere
   use kinds, only: wp
-  use failure, only: failure_t
   use deck, only: deck_t
   use deck_keys, only: key_spec
   use shape, only: shape_t
-  use shape_reading, only: read_radius
+  use group_reading, only: read_radius
   use spheroid, only: take_spheroid
   implicit none
   private
@@ -17,16 +16,15 @@ module sphere
 contains
 
   !> Reads kind = 'sphere'. length: the law's [m].
-  subroutine read_shape(deck, length, shape, error)
+  subroutine read_shape(deck, length, shape)
     type(deck_t), intent(inout) :: deck
     real(wp), intent(in) :: length
     class(shape_t), allocatable, intent(out) :: shape
-    type(failure_t), allocatable, intent(inout) :: error
     real(wp) :: radius
 
-    call read_radius(deck, radius, error)
-    if (.not. allocated(error)) &
-      call take_spheroid(deck, 'radius', radius, radius, length, shape, error)
+    call read_radius(deck, radius)
+    if (.not. allocated(deck%error)) &
+      call take_spheroid(deck, 'radius', radius, radius, length, shape)
   end subroutine read_shape
 
 end module sphere

@@ -3,13 +3,11 @@
 !> parabola. Beyond 0.98 a it continues as a straight line, where no force may act.
 module spheroid
   use kinds, only: wp
-  use failure, only: failure_t
   use text, only: brief
   use deck, only: deck_t
   use deck_keys, only: key_spec, real_value
   use shape, only: shape_t
-  use law_reading, only: require
-  use shape_reading, only: read_radius
+  use group_reading, only: require, read_radius
   implicit none
   private
   public :: keys, read_shape, take_spheroid
@@ -36,33 +34,31 @@ module spheroid
 contains
 
   !> Reads kind = 'spheroid'. length: the law's [m].
-  subroutine read_shape(deck, length, shape, error)
+  subroutine read_shape(deck, length, shape)
     type(deck_t), intent(inout) :: deck
     real(wp), intent(in) :: length
     class(shape_t), allocatable, intent(out) :: shape
-    type(failure_t), allocatable, intent(inout) :: error
     real(wp) :: radius, semi_axis
 
-    call require(deck, 'shape', 'kind', 'spheroid', 'semi_axis', error)
-    call read_radius(deck, radius, error)
-    if (allocated(error)) return
+    call require(deck, 'shape', 'kind', 'spheroid', 'semi_axis')
+    call read_radius(deck, radius)
+    if (allocated(deck%error)) return
     call deck%get('shape', 'semi_axis', semi_axis)
-    call take_spheroid(deck, 'semi_axis', radius, semi_axis, length, shape, error)
+    call take_spheroid(deck, 'semi_axis', radius, semi_axis, length, shape)
   end subroutine read_shape
 
   !> The shape from R, b and the law's length, all [m]; fails, with the given key in the message, if
   !> the body is hardly larger than this length.
-  subroutine take_spheroid(deck, key, radius, semi_axis, length, shape, error)
-    type(deck_t), intent(in) :: deck
+  subroutine take_spheroid(deck, key, radius, semi_axis, length, shape)
+    type(deck_t), intent(inout) :: deck
     character(len=*), intent(in) :: key
     real(wp), intent(in) :: radius, semi_axis, length
     class(shape_t), allocatable, intent(out) :: shape
-    type(failure_t), allocatable, intent(inout) :: error
     type(spheroid_t) :: this
 
     if (.not. semi_axis > smallest*length) then
       call deck%mistake('shape', key, 'the body is not larger than '//brief(smallest)// &
-        ' lengths of the force law, '//brief(length)//' m; it would end where forces act', error)
+        ' lengths of the force law, '//brief(length)//' m; it would end where forces act')
       return
     end if
     this%radius = radius

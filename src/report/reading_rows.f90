@@ -1,0 +1,229 @@
+!> Tables that are read from the path, and their numbers in the summary: bodies driven through
+!> springs, or at prescribed h0, with their jumps; equilibria at given loads.
+module reading_rows
+  use kinds, only: wp, nan
+  use dimensionless_problem, only: problem_t, surface_energy
+  use maugis, only: maugis_units_t, maugis_units
+  use curve_states, only: path_state_t
+  use device, only: driven_t, states_on
+  use reported_place, only: of_h0, of_load, of_energy, of_radius, of_position, of_displacement
+  use places, only: places_t, readings_t
+  use path_readings, only: path_readings_t
+  use results, only: results_t
+  use tables, only: cells, direction_of
+  use summary, only: summary_t
+  implicit none
+  private
+  public :: write_path_tables, summarise_device, summarise_fixed_loads
+
+  !> Relative difference of the two energies of a cycle above which there is a warning.
+  real(wp), parameter :: known_energy = 1.0e-4_wp
+
+contains
+
+  !> Writes the tables that are read from the path.
+  subroutine write_path_tables(problem, readings, places, results)
+    type(problem_t), intent(in) :: problem
+    type(path_readings_t), intent(in) :: readings
+    type(places_t), intent(in) :: places
+    type(results_t), intent(inout) :: results
+
+    if (allocated(readings%device)) then
+      call write_device()
+      call write_jumps()
+    end if
+    if (allocated(readings%loaded)) call write_fixed_loads()
+    if (allocated(readings%prescribed)) call write_contact_table()
+
+  contains
+
+    !> For each drive the whole path, then its legs; the state in which a jump starts is not stable.
+    subroutine write_device()
+      type(path_state_t), allocatable :: states(:)
+      integer :: i, j, k
+
+      call results%begin_table('device.csv')
+      do i = 1, size(readings%device)
+        associate (driven => readings%device(i))
+          do j = 1, size(readings%node)
+            associate (node => readings%node(j))
+              if (.not. node%again) call add_driven(driven, 'path', node, node%modes == 0 .and. &
+                dot_product(driven%drive%weights, node%slopes) < 0)
+            end associate
+          end do
+          do k = 1, size(driven%leg)
+            states = states_on(readings%node, driven%leg(k))
+            do j = 1, size(states)
+              call add_driven(driven, direction_of(driven%leg(k)%inward), states(j), &
+                .not. (driven%leg(k)%jumps .and. j == size(states)))
+            end do
+          end do
+        end associate
+      end do
+    end subroutine write_device
+
+    subroutine add_driven(driven, direction, state, stable)
+      type(driven_t), intent(in) :: driven
+      character(len=*), intent(in) :: direction
+      type(path_state_t), intent(in) :: state
+      logical, intent(in) :: stable
+      real(wp) :: z
+
+      z = nan
+      if (driven%drive%weights(1) > 0) z = problem%law%separation_of(driven%drive%position(state))
+      call results%row(cells([driven%stiffness]) // ',' // direction, [z, &
+        problem%law%separation_of(state%h0), state%load*problem%load, &
+        state%radius*problem%lateral], [stable])
+    end subroutine add_driven
+
+    subroutine write_jumps()
+      integer, parameter :: of_both(*) = [of_position, of_h0, of_load, of_radius]
+      type(readings_t) :: before(size(of_both)), after(size(of_both))
+      integer :: i, j, k, n
+
+      call results%begin_table('device_jumps.csv')
+      n = 0
+      do k = 1, size(of_both)
+        before(k) = places%read_numbers(problem, 'jump_before', of_both(k))
+        after(k) = places%read_numbers(problem, 'jump_after', of_both(k))
+      end do
+      do i = 1, size(readings%device)
+        do j = 1, size(readings%device(i)%jump)
+          n = n + 1
+          associate (jump => readings%device(i)%jump(j))
+            call results%row(cells([readings%device(i)%stiffness]) // ',' // &
+              direction_of(jump%inward), [(before(k)%value(n), k=1, size(of_both)), &
+              (after(k)%value(n), k=2, size(of_both)), jump%energy*problem%load*problem%length, &
+              before(1)%error(n), before(3)%error(n), after(3)%error(n)])
+          end associate
+        end do
+      end do
+    end subroutine write_jumps
+
+    !> Load by load, in the order of the path.
+    subroutine write_fixed_loads()
+      type(readings_t) :: h0, displacement, radius
+      integer :: i
+
+      call results%begin_table('fixed_load.csv')
+      h0 = places%read_numbers(problem, 'fixed_load', of_h0)
+      displacement = places%read_numbers(problem, 'fixed_load', of_displacement)
+      radius = places%read_numbers(problem, 'fixed_load', of_radius)
+      do i = 1, size(readings%loaded)
+        associate (loaded => readings%loaded(i))
+          call results%row(cells([loaded%wanted*problem%load, h0%value(i), &
+            displacement%value(i), radius%value(i)]) // merge(',1', ',0', loaded%stable), &
+            [h0%error(i), displacement%error(i), radius%error(i)])
+        end associate
+      end do
+    end subroutine write_fixed_loads
+
+    !> The table of stable states of approach and retreat at prescribed h0, as discrete-element and
+    !> finite-element programs need them.
+    subroutine write_contact_table()
+      type(path_state_t), allocatable :: states(:)
+      type(maugis_units_t) :: unit
+      real(wp) :: si(4)
+      integer :: i, j
+
+      call results%begin_table('table.csv')
+      unit = maugis_units(problem%radius, problem%stiffness, surface_energy(problem))
+      ! Other shapes have no radius on the axis.
+      if (.not. problem%shape%parabolic) unit = maugis_units_t(nan, nan, nan)
+      do i = 1, size(readings%prescribed%leg)
+        associate (leg => readings%prescribed%leg(i))
+          states = states_on(readings%node, leg)
+          do j = 1, size(states)
+            si = [-problem%law%separation_of(states(j)%h0), states(j)%load*problem%load, &
+              states(j)%radius*problem%lateral, nan]
+            if (.not. (leg%jumps .and. j == size(states))) &
+              si(4) = -states(j)%slopes(2)/states(j)%slopes(1)*problem%load/problem%length
+            call results%row(direction_of(leg%inward), [si, si(1)/unit%displacement, &
+              si(2)/unit%load, si(3)/unit%radius, si(4)*unit%displacement/unit%load])
+          end do
+        end associate
+      end do
+    end subroutine write_contact_table
+
+  end subroutine write_path_tables
+
+  !> Adds numbers of the drives that are not read at places, with one element for each stiffness.
+  subroutine summarise_device(problem, readings, places, summary)
+    type(problem_t), intent(in) :: problem
+    type(path_readings_t), intent(in) :: readings
+    type(places_t), intent(in) :: places
+    type(summary_t), intent(inout) :: summary
+    type(readings_t) :: lost
+
+    lost = places%read_numbers(problem, 'device_energy', of_energy)
+    associate (device => readings%device, unit => problem%load*problem%length)
+      call summary%set('device_stiffness', device%stiffness)
+      call summary%set('device_cycle_energy', device%cycle_energy*unit, &
+        lost%error + uncertainty(device)*unit)
+      call summary%set('device_energy_uncertainty', max(uncertainty(device)*unit, lost%error))
+      if (.not. all(device%caught)) call summary%warn('device: no stable state is known ' // &
+        'that catches the bodies after a jump; its load_after is NaN')
+      if (any(uncertainty(device) > known_energy*abs(device%energy_lost))) &
+        call summary%warn('device: the energy lost in jumps is not the area of the cycle; ' // &
+        'a smaller accuracy may help')
+    end associate
+  end subroutine summarise_device
+
+  !> Uncertainty of the energy lost: the difference of two ways to find it, from the energies before
+  !> and after jumps, and from the load between them.
+  elemental real(wp) function uncertainty(driven)
+    type(driven_t), intent(in) :: driven
+
+    uncertainty = abs(driven%energy_lost - driven%cycle_energy) + driven%uncertainty
+  end function uncertainty
+
+  !> Adds, for each load, the number of equilibria and of stable ones, and the stable one with the
+  !> smallest h0: the contact, if there is one.
+  subroutine summarise_fixed_loads(problem, loads, readings, places, summary)
+    type(problem_t), intent(in) :: problem
+    real(wp), intent(in) :: loads(:)
+    type(path_readings_t), intent(in) :: readings
+    type(places_t), intent(in) :: places
+    type(summary_t), intent(inout) :: summary
+    integer :: held(size(loads)), stable(size(loads)), nearest(size(loads)), i
+
+    associate (loaded => readings%loaded)
+      do i = 1, size(loads)
+        associate (same => loaded%number == i)
+          held(i) = count(same)
+          stable(i) = count(same .and. loaded%stable)
+          ! On the path the stable one with the smallest h0 is the last.
+          nearest(i) = findloc(same .and. loaded%stable, .true., 1, back=.true.)
+        end associate
+      end do
+    end associate
+    call summary%set('fixed_load', loads)
+    call summary%set('fixed_load_equilibria', held)
+    call summary%set('fixed_load_stable', stable)
+    call set('fixed_load_h0', of_h0)
+    call set('fixed_load_displacement', of_displacement)
+    call set('fixed_load_contact_radius', of_radius)
+
+  contains
+
+    subroutine set(key, quantity)
+      character(len=*), intent(in) :: key
+      integer, intent(in) :: quantity
+      type(readings_t) :: found
+      real(wp), dimension(size(loads)) :: value, error
+      integer :: i
+
+      found = places%read_numbers(problem, 'fixed_load', quantity)
+      value = nan
+      error = nan
+      do i = 1, size(loads)
+        if (nearest(i) == 0) cycle
+        value(i) = found%value(nearest(i))
+        error(i) = found%error(nearest(i))
+      end do
+      call summary%set(key, value, error)
+    end subroutine set
+
+  end subroutine summarise_fixed_loads
+
+end module reading_rows
