@@ -1,12 +1,10 @@
-!> The command line: options, decks, help; and whether other processes were started together with
-!> this one.
+!> The command line: options, decks, help.
 module command_line
   use failure, only: failure_t, fail, bad_input
   use text, only: guess, printable
   implicit none
   private
-  public :: options_t, file_t, read_command_line, stem_of, write_help, write_usage, &
-    started_together, own_rank
+  public :: options_t, file_t, read_command_line, stem_of, write_help, write_usage
 
   !> One file name.
   type :: file_t
@@ -32,13 +30,6 @@ module command_line
     '[--results] [--version] [--help] DECK [DECK ...]'
   character(len=*), parameter :: known = &
     '--out --into --name --check --resume --quiet --keys --results --version --help'
-
-  !> Environment variables with the number of processes that were started together, and the number
-  !> of this process: of OpenMPI, of MPICH and its relatives, of Slurm's srun.
-  character(len=*), parameter :: sizes(*) = [character(len=20) :: 'OMPI_COMM_WORLD_SIZE', &
-    'PMI_SIZE', 'SLURM_STEP_NUM_TASKS']
-  character(len=*), parameter :: numbers(*) = [character(len=20) :: 'OMPI_COMM_WORLD_RANK', &
-    'PMI_RANK', 'SLURM_PROCID']
 
 contains
 
@@ -241,30 +232,5 @@ contains
       write (unit, '(a)', iostat=status) trim(lines(i))
     end do
   end subroutine write_help
-
-  !> Number of processes that mpirun or srun has started as one job; 1 for a single process.
-  integer function started_together()
-    started_together = first_set(sizes, 1)
-  end function started_together
-
-  !> Number of this process, from 0.
-  integer function own_rank()
-    own_rank = first_set(numbers, 0)
-  end function own_rank
-
-  !> The first number among these environment variables; `otherwise` if there is none.
-  integer function first_set(names, otherwise) result(number)
-    character(len=*), intent(in) :: names(:)
-    integer, intent(in) :: otherwise
-    character(len=12) :: value
-    integer :: i, failed
-
-    do i = 1, size(names)
-      call get_environment_variable(trim(names(i)), value)
-      read (value, '(i12)', iostat=failed) number
-      if (failed == 0 .and. value /= '') return
-    end do
-    number = otherwise
-  end function first_set
 
 end module command_line

@@ -12,7 +12,8 @@ program snapin
   use results, only: to_stream
   use machine, only: begin_with_one_thread
   use result_tables, only: write_result_listing
-  use command_line, only: options_t, read_command_line, stem_of, write_help, write_usage, own_rank
+  use command_line, only: options_t, read_command_line, stem_of, write_help, write_usage
+  use launch, only: own_rank
   use simulation, only: run_scene
   use sweeps, only: work_on_sweeps
   use dispatch, only: dismiss

@@ -3,7 +3,7 @@ module ranks
   use kinds, only: long
   use failure, only: failure_t, fail, bad_input
   use byte_record, only: byte_record_t
-  use command_line, only: started_together, own_rank
+  use launch, only: started_together, own_rank
   implicit none
   private
   public :: crew_t
