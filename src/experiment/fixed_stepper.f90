@@ -220,18 +220,18 @@ contains
     !> Whether the branch of the state `before` continues to a near h0 at which the iteration did
     !> not converge: by Newton's method, for all choices of the deck. If it does, to `state`, the
     !> iteration has failed; if not, the bodies jump.
-    logical function goes_on(h0, before, state)
+    logical function goes_on(h0, before, state) result(found)
       real(wp), intent(in) :: h0
       type(state_t), intent(in) :: before
       type(state_t), intent(out) :: state
 
-      goes_on = .false.
+      found = .false.
       if (self%options%mixing) return
       state = before
       call solve_anderson(self%equations_t, rescue_of(self%options), self%frozen, &
-        control_t(value=h0), state, goes_on)
+        control_t(value=h0), state, found)
       call self%frozen%forget()
-      goes_on = goes_on .and. change(before, state) <= jump
+      found = found .and. change(before, state) <= jump
     end function goes_on
 
     !> The state to which the bodies relax from `before` at an h0 beyond the end of its branch.
