@@ -8,6 +8,7 @@ module drained_way
   use experiment_request, only: request_t
   use time_instant, only: instant_t
   use time_stepper, only: time_stepper_t
+  use time_jump, only: step_along
   use timed_record, only: pass_t, accept, lose
   implicit none
   private
@@ -47,14 +48,15 @@ contains
     type(instant_t), intent(inout) :: at
     type(pass_t), intent(inout) :: now
     type(instant_t) :: next
-    real(wp) :: shorter, longest, when, off, taken, least, farthest
+    real(wp) :: shorter, first, longest, when, off, taken, least, farthest
     logical :: follows, done, jumped
 
     shorter = 0.5_wp**(pass - 2)
     follows = .not. allocated(request%drive%time_step)
-    longest = shorter*longest_part*drive%lasts(way)
+    first = max(first_drained*drive%lasts(way), drive%least)
+    longest = shorter*max(longest_part*drive%lasts(way), first)
     if (.not. follows) longest = shorter*request%drive%time_step
-    if (.not. now%step > 0) now%step = shorter*first_drained*drive%lasts(way)
+    if (.not. now%step > 0) now%step = shorter*first
     least = roundings*spacing(max(at%time, now%step))
     when = at%time + now%step
     if (when + 0.01_wp*now%step > drive%lasts(way)) when = drive%lasts(way)
@@ -64,6 +66,8 @@ contains
     if (taken <= 2*least) steps%farthest = unfollowed
     call steps%step(at, when, drive%at(way, when), next, done)
     steps%farthest = farthest
+    if (.not. done .and. taken <= least) call step_along(steps, at, when, drive%at(way, when), &
+      now%inwards, huge(1.0_wp), next, done)
     off = 1/longer**2
     if (done .and. follows) off = max(off, missed(steps, at, next, now)/shorter**2)
     ! The deviation from a line is not known yet.

@@ -27,8 +27,9 @@ module timed_pass
     first_part = 1.0e-3_wp
   !> Number of steps after a rejected one before longer steps are tried again.
   integer, parameter :: patience = 3
-  !> The shortest step over the shortest time of retardation, and its motion over the law's length.
-  real(wp), parameter :: shortest_part = 1.0e-3_wp, shortest_way = 1.0e-6_wp
+  !> The shortest step over the shortest time of retardation, its motion over the law's length, and
+  !> the step in roundings of the time, below which a step would not be one.
+  real(wp), parameter :: shortest_part = 1.0e-3_wp, shortest_way = 1.0e-6_wp, roundings = 4
 
 contains
 
@@ -214,6 +215,7 @@ contains
     if (way_speed > 0) least = min(least, shortest_way/way_speed)
     ! Bodies that do not attract each other never jump.
     if (.not. steps%meshes%traceable) least = shortest_way*least
+    least = max(least, roundings*spacing(drive%lasts(way)))
     do while (at%time < time)
       try = min(now%longest, time - at%time)
       if (at%time + 1.01_wp*try > time) try = time - at%time

@@ -11,12 +11,16 @@ module motion
 
   !> Times [s] at which the ways begin, their durations [s], and the positions between which they
   !> lead (law's lengths). Time is counted from the beginning of a way, so that a long dwell does
-  !> not round the steps after it.
+  !> not round the steps after it. least: the time [s] in which the drive moves by `negligible`.
   type :: motion_t
-    real(wp) :: began(3) = 0, lasts(3) = 0, position(0:3) = 0
+    real(wp) :: began(3) = 0, lasts(3) = 0, position(0:3) = 0, least = 0
   contains
     procedure :: at
   end type motion_t
+
+  !> A motion (law's lengths) that is within the errors of positions: rates of gaps that are taken
+  !> over it are those of rounding. A shorter way, or a dwell of a shorter time, is none.
+  real(wp), parameter :: negligible = 1.0e-9_wp
 
 contains
 
@@ -27,6 +31,8 @@ contains
 
     motion%position = [start, turn, turn, finish]
     motion%lasts = [abs(turn - start)/velocity, dwell, abs(finish - turn)/velocity]
+    motion%least = negligible/velocity
+    where (motion%lasts < motion%least) motion%lasts = 0
     motion%began(2) = motion%lasts(1)
     motion%began(3) = motion%lasts(1) + dwell
   end function new_motion
