@@ -183,7 +183,8 @@ contains
     left = missing
     done = .false.
     do round = 1, most_rounds
-      done = abs(left) < max(left_over, steps%options%tolerance) + left_over_load*steps%compliance
+      done = abs(left) < max(left_over, steps%options%tolerance) + &
+        left_over_load*steps%compliance
       if (done .or. .not. search%is_open()) exit
       here = search%place()
       at%state = last%state
