@@ -211,7 +211,8 @@ contains
   end function may_pass_early
 
   !> Lays out the meshes on the path of relaxed bodies, for the gaps of its states, as laws with a
-  !> step or waves need it, and bodies whose path passes early to the mesh of the contact edge. Meshes that the path does not reach are laid out without seen gaps.
+  !> step or waves need it, and bodies whose path passes early to the mesh of the contact edge.
+  !> Meshes that the path does not reach are laid out without seen gaps.
   subroutine fit_to_path(relaxed, high, low, accuracy, listener, steps)
     type(problem_t), intent(in) :: relaxed
     real(wp), intent(in) :: high, low, accuracy
