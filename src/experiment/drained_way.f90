@@ -6,6 +6,7 @@ module drained_way
   use next_mesh, only: radius_for
   use time_instant, only: instant_t
   use time_stepper, only: time_stepper_t
+  use time_jump, only: step_along
   use timed_record, only: pass_t, accept, lose
   implicit none
   private
@@ -41,15 +42,16 @@ contains
     type(time_stepper_t), intent(inout) :: steps
     type(pass_t), intent(inout) :: now
     type(instant_t) :: next
-    real(wp) :: shorter, longest, when, off, taken, least, farthest, whole
+    real(wp) :: shorter, first, longest, when, off, taken, least, farthest, whole
     logical :: follows, done, jumped
 
     whole = now%drive%lasts(now%way)
     shorter = 0.5_wp**(now%number - 2)
     follows = .not. allocated(now%time_step)
-    longest = shorter*longest_part*whole
+    first = max(first_drained*whole, now%drive%least)
+    longest = shorter*max(longest_part*whole, first)
     if (.not. follows) longest = shorter*now%time_step
-    if (.not. now%step > 0) now%step = shorter*first_drained*whole
+    if (.not. now%step > 0) now%step = shorter*first
     least = roundings*spacing(max(now%at%time, now%step))
     when = now%at%time + now%step
     if (when + 0.01_wp*now%step > whole) when = whole
@@ -59,6 +61,8 @@ contains
     if (taken <= 2*least) steps%farthest = unfollowed
     call steps%step(now%at, when, now%drive%at(now%way, when), next, done)
     steps%farthest = farthest
+    if (.not. done .and. taken <= least) call step_along(steps, now%at, when, &
+      now%drive%at(now%way, when), now%inwards, huge(1.0_wp), next, done)
     off = 1/longer**2
     if (done .and. follows) off = max(off, missed(steps, next, now)/shorter**2)
     ! The deviation from a line is not known yet.

@@ -6,7 +6,8 @@ module timed_journal
   use byte_record, only: byte_record_t
   use journal, only: journal_t, of_drive
   use elastic_operator, only: elastic_operator_t
-  use time_instant, only: names_of_ways, instant_t
+  use motion, only: names_of_ways
+  use time_instant, only: instant_t
   use records, only: record_t
   use state_records, only: pass_state, pass_cost
   use time_stepper, only: time_stepper_t

@@ -5,7 +5,8 @@ module timed_pass
   use kinds, only: wp, pi
   use mesh_plan, only: contact
   use listener, only: listener_t
-  use time_instant, only: motion_t, names_of_ways, instant_t
+  use motion, only: motion_t, names_of_ways
+  use time_instant, only: instant_t
   use time_stepper, only: time_stepper_t
   use time_jump, only: step_along
   use rest, only: begin_at_rest, load_at_rest, longest_step
@@ -25,8 +26,9 @@ module timed_pass
     first_part = 1.0e-3_wp
   !> Number of steps after a rejected one before longer steps are tried again.
   integer, parameter :: patience = 3
-  !> The shortest step over the shortest time of retardation, and its motion over the law's length.
-  real(wp), parameter :: shortest_part = 1.0e-3_wp, shortest_way = 1.0e-6_wp
+  !> The shortest step over the shortest time of retardation, its motion over the law's length, and
+  !> the step in roundings of the time, below which a step would not be one.
+  real(wp), parameter :: shortest_part = 1.0e-3_wp, shortest_way = 1.0e-6_wp, roundings = 4
 
 contains
 
@@ -191,6 +193,7 @@ contains
       if (way_speed > 0) least = min(least, shortest_way/way_speed)
       ! Bodies that do not attract each other never jump.
       if (.not. steps%meshes%traceable) least = shortest_way*least
+      least = max(least, roundings*spacing(now%drive%lasts(now%way)))
       do while (now%at%time < time)
         try = min(now%longest, time - now%at%time)
         if (now%at%time + 1.01_wp*try > time) try = time - now%at%time

@@ -4,7 +4,8 @@ module timed_record
   use equilibrium, only: holds
   use mesh_plan, only: approach
   use records, only: record_t, quality_t, record_of, stable_unasked
-  use time_instant, only: motion_t, names_of_ways, instant_t
+  use motion, only: motion_t, names_of_ways
+  use time_instant, only: instant_t
   use time_stepper, only: time_stepper_t
   implicit none
   private

@@ -18,7 +18,7 @@ module timed_run
   use experiment_request, only: request_t, numerics_t
   use path_demand, only: h0_in_contact
   use creep, only: creep_t
-  use time_instant, only: new_motion, names_of_ways
+  use motion, only: new_motion, names_of_ways
   use time_stepper, only: time_stepper_t
   use material, only: new_material
   use solver_options, only: tightened
@@ -167,7 +167,7 @@ contains
         ! A drive inserts no meshes on the way of an edge to a rim.
         meshes = new_mesh_family(relaxed, high, low, &
           min(most_digits, digits + more_digits*(pass - 1)), further=.false.)
-        if (any(meshes%waits)) call fit_to_path(relaxed, high)
+        if (any(meshes%waits) .or. may_pass_early(relaxed)) call fit_to_path(relaxed, high)
         if (allocated(steps%drainage)) call steps%drainage%lay_out(meshes%grid)
         call steps%frozen%forget()
         steps%cost%kernel_entries = steps%cost%kernel_entries + sum(meshes%grid%kernel_entries())
@@ -189,8 +189,17 @@ contains
       end associate
     end subroutine lay_out
 
+    !> Whether the path may pass to the mesh of the contact edge before the planned radius
+    !> (`mesh_passage`).
+    pure logical function may_pass_early(problem)
+      type(problem_t), intent(in) :: problem
+
+      may_pass_early = .not. (problem%body%is_homogeneous() .or. problem%shape%parabolic)
+    end function may_pass_early
+
     !> Lays out the meshes on the path of relaxed bodies, for the gaps of its states, as laws with a
-    !> step or waves need it. Meshes that the path does not reach are laid out without seen gaps.
+    !> step or waves need it, and bodies whose path passes early to the mesh of the contact edge.
+    !> Meshes that the path does not reach are laid out without seen gaps.
     subroutine fit_to_path(relaxed, high)
       type(problem_t), intent(in) :: relaxed
       real(wp), intent(in) :: high

@@ -77,6 +77,8 @@ contains
         left_in_state(solver%equations_t, walker%mesh, walker%state(walker%held - 1)) <= &
         walker%most) return
     end associate
+    ! Steps in time know no fold of the gap on the axis, and pass by radii alone.
+    if (walker%stuck) solver%meshes%passage(walker%mesh) = next%state(1)%scale
     walker%arc_t = next
     walker%step = 0.5_wp*walker%step
     if (walker%stuck) walker%step = next%coordinate(2) - next%coordinate(1)

@@ -22,9 +22,9 @@ module time_jump
   !> Distance from the position of the drive (law's lengths), in addition to the largest elongation
   !> of the spring on the way, beyond which the path is assumed to go to infinity.
   real(wp), parameter :: too_far = 1.0e4_wp
-  !> Tolerated error of the position of the drive (law's lengths), and in addition of the load,
-  !> which rounding leaves to a soft spring; largest number of states solved in the search for this
-  !> position.
+  !> Tolerated error of the position of the drive (law's lengths), if it is not below the residuals
+  !> of the states, and in addition of the load, which rounding leaves to a soft spring; largest
+  !> number of states solved in the search for this position.
   real(wp), parameter :: left_over = 1.0e-9_wp, left_over_load = 1.0e-13_wp
   integer, parameter :: most_rounds = 30
 
@@ -173,7 +173,8 @@ contains
       left = missing
       done = .false.
       do round = 1, most_rounds
-        done = abs(left) < left_over + left_over_load*steps%compliance
+        done = abs(left) < max(left_over, steps%options%tolerance) + &
+          left_over_load*steps%compliance
         if (done .or. .not. search%is_open()) exit
         here = search%place()
         at%state = last%state

@@ -19,8 +19,8 @@ module scene_checks
   integer, parameter :: most_lengths = 15
   !> The groups, and their keys, that have the h0 or the positions of a drive.
   character(len=*), parameter :: groups(*) = [character(len=16) :: 'loading', 'unloading', &
-    'equilibrium_path', 'device', 'classical', 'approximations'], &
-    keys(*) = [character(len=8) :: 'h0_start', 'h0_end', 'z_start', 'z_end']
+    'equilibrium_path', 'device', 'drive', 'classical', 'approximations'], &
+    keys(*) = [character(len=8) :: 'h0_start', 'h0_end', 'z_start', 'z_turn', 'z_end']
 
 contains
 

@@ -145,6 +145,26 @@ def test_little_fluid_or_slow_drives_leave_elastic_cycles(run):
         assert above[2] == pytest.approx(above[1], rel=0.02, abs=1e-3)
 
 
+@pytest.mark.parametrize("sigma, viscosity", [(0.7, 1e-30), (7.0, 1e-30)])
+def test_a_fluid_that_no_step_resolves_leaves_elastic_jumps(run, sigma, viscosity):
+    """Such bodies were lost at their first jump, which is shorter than the rounding of times."""
+    path = run(lennard_jones(sigma, equilibrium_path={"h0_end": -1.0})).summary
+    found = run(scene(sigma, viscosity, start=20.0, accuracy=1e-2)).summary
+    for key, exact in (("max_tension", path["max_tension"]),
+                       ("energy_dissipated", path["energy_lost"])):
+        assert abs(found[key] - exact) <= found[key + "_error"] + 1e-3 * exact
+        assert found[key + "_error"] < 0.02 * exact
+
+
+def test_ways_within_the_errors_of_positions_are_none(run):
+    """Rates were those of rounding, and so were suctions; or the steps did not end."""
+    without, *found = (run(scene(0.7, 1e-2, accuracy=1e-2, dwell=dwell)).summary
+                       for dwell in (0.0, 1e-40, 1e-8, 1e-5))
+    for summary in found:
+        for key in ("max_tension", "energy_dissipated", "max_suction"):
+            assert summary[key] == pytest.approx(without[key], rel=1e-5)
+
+
 def test_viscoelastic_bodies_with_a_fluid_have_their_limits(run):
     """Without creep to speak of they are elastic, at once or at rest."""
     elastic = run(scene(0.1, 0.01, start=40.0)).summary

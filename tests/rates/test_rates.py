@@ -114,6 +114,26 @@ def test_fast_bodies_are_those_at_once_and_slow_ones_those_at_rest(run):
     assert 2 * slower - slow == pytest.approx(at_rest(run, 0.5)["max_tension"] / 5, rel=1e-3)
 
 
+@pytest.mark.parametrize("time", [1e-20, 1e-45])
+def test_a_time_of_retardation_within_the_rounding_of_times_leaves_bodies_at_rest(run, time):
+    """Steps became shorter than this rounding, and the bodies were lost at their first jump."""
+    path = at_rest(run, 2.0)
+    found = run(scene(0.2, creep={"compliance": [9.0], "retardation_time": [time]}, accuracy=1e-2,
+                      start=20.0)).summary
+    assert near(found, "max_tension", path["max_tension"] / 10)
+    assert near(found, "energy_dissipated", path["energy_lost"] / 10)
+    assert found["energy_dissipated_error"] < 1e-2 * found["energy_dissipated"]
+
+
+def test_a_drive_from_far_away_ends_as_one_from_near(run):
+    """The rounding of times is a thousandth of the law's length there."""
+    near_by, far = (run(scene(2.0, accuracy=1e-2, start=start, z_end=15.0)).summary
+                    for start in (15.0, 1e13))
+    for key in ("max_tension", "end_load"):
+        off = abs(near_by[key] - far[key])
+        assert off <= near_by[key + "_error"] + far[key + "_error"]
+
+
 @pytest.mark.parametrize("velocity", [1.0, 20.0])
 def test_a_dense_solution_of_another_kind_agrees(run, velocity):
     coarse, fine = (cycle(0.05, 3.0, 12.0, -1.0, velocity, steps) for steps in (300, 600))
@@ -225,6 +245,9 @@ def test_rows_have_times_and_ways(run):
 @pytest.mark.parametrize("change, message", [
     ({"viscoelastic": {"stiffness_relaxed": 2.0, "retardation_time": 1.0}},
      "above the instantaneous"),
+    ({"drive": {"velocity": 1.0, "z_start": 10.0, "z_turn": -1.0, "z_end": 1e16}},
+     "h0 reaches 1e16 m, more than 1e15 of these lengths"),
+    ({"drive": {"velocity": 1.0, "z_start": 10.0, "z_turn": -1e16}}, "more than 1e15"),
     ({"viscoelastic": {"retardation_time": 1.0}}, "give one of"),
     ({"viscoelastic": {"compliance": [1.0, 2.0], "retardation_time": 1.0}}, "1 values for 2"),
     ({"drive": None, "viscoelastic": {"stiffness_relaxed": 0.5, "retardation_time": 1.0},

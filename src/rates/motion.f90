@@ -1,0 +1,60 @@
+!> The motion of a drive: an approach at constant velocity, a dwell, and a retreat.
+module motion
+  use kinds, only: wp
+  implicit none
+  private
+  public :: motion_t, new_motion, names_of_ways
+
+  !> The ways of a motion, in order.
+  character(len=*), parameter :: names_of_ways(3) = [character(len=8) :: 'approach', 'dwell', &
+    'retreat']
+
+  !> Times [s] at which the ways begin, their durations [s], and the positions between which they
+  !> lead (law's lengths). Time is counted from the beginning of a way, so that a long dwell does
+  !> not round the steps after it. least: the time [s] in which the drive moves by `negligible`.
+  type :: motion_t
+    real(wp) :: began(3) = 0, lasts(3) = 0, position(0:3) = 0, least = 0
+  contains
+    procedure :: at
+    procedure :: length_of
+  end type motion_t
+
+  !> A motion (law's lengths) that is within the errors of positions: rates of gaps that are taken
+  !> over it are those of rounding. A shorter way, or a dwell of a shorter time, is none.
+  real(wp), parameter :: negligible = 1.0e-9_wp
+
+contains
+
+  !> The motion from `start` to `turn`, a dwell [s], and the motion to `finish`. velocity: the law's
+  !> lengths per second.
+  pure type(motion_t) function new_motion(velocity, start, turn, dwell, finish) result(motion)
+    real(wp), intent(in) :: velocity, start, turn, dwell, finish
+
+    motion%position = [start, turn, turn, finish]
+    motion%lasts = [abs(turn - start)/velocity, dwell, abs(finish - turn)/velocity]
+    motion%least = negligible/velocity
+    where (motion%lasts < motion%least) motion%lasts = 0
+    motion%began(2) = motion%lasts(1)
+    motion%began(3) = motion%lasts(1) + dwell
+  end function new_motion
+
+  !> The position of the drive on a way at a time since its beginning.
+  pure real(wp) function at(self, way, time) result(position)
+    class(motion_t), intent(in) :: self
+    integer, intent(in) :: way
+    real(wp), intent(in) :: time
+
+    position = self%position(way)
+    if (self%lasts(way) > 0) position = position + &
+      (self%position(way - 1) - position)*(self%lasts(way) - time)/self%lasts(way)
+  end function at
+
+  !> The distance between the ends of a way.
+  pure real(wp) function length_of(self, way)
+    class(motion_t), intent(in) :: self
+    integer, intent(in) :: way
+
+    length_of = abs(self%position(way) - self%position(way - 1))
+  end function length_of
+
+end module motion
