@@ -283,7 +283,7 @@ def test_several_at_once_are_refused_without_mpi(snapin, tmp_path, size, rank, m
 
 
 @pytest.mark.alone
-@pytest.mark.parametrize("counts", [(2000, 42000),
+@pytest.mark.parametrize("counts", [(2000, 26000),
                                     pytest.param((1000, 1000000), marks=pytest.mark.long)])
 def test_memory_does_not_grow_with_the_number_of_cases(snapin, snapin_path, tmp_path, monkeypatch,
                                                        counts):

@@ -13,10 +13,10 @@ from support.processes import answer
 from support.wrapper_registry import LAW, REGISTRY, UNIT, law_of
 from support.wrapper_values import REFUSED, cases
 
-CALLS = 200
+CALLS = 100
 # What a process may grow by over the second half of the calls [bytes]: pages of the allocator here
 # and there. A leak of 656 bytes a call shows.
-GROWTH = 64 * 1024
+GROWTH = 32 * 1024
 
 
 def resident():
