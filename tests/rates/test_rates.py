@@ -165,7 +165,8 @@ def test_pull_offs_rise_and_fall_with_velocity(run):
 
 def test_a_dwell_of_any_length_leaves_relaxed_bodies(run):
     # Ten times of retardation; much longer than the rest of the motion takes, in units of rounding.
-    found = [run(scene(0.05, 0.2, velocity=20.0, start=20.0, accuracy=1e-3, dwell=dwell)).summary for dwell in (30.0, 1e9, 1e40)]
+    found = [run(scene(0.05, 0.2, velocity=20.0, start=20.0, accuracy=1e-3, dwell=dwell)).summary
+             for dwell in (30.0, 1e9, 1e40)]
     for summary in found:
         assert summary["error_estimate"] < 3e-3
         for key in ("max_tension", "energy_dissipated"):

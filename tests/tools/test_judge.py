@@ -42,7 +42,7 @@ def test_a_cycle_reports_the_path_whatever_its_steps(tmp_path, case):
 
 @pytest.mark.parametrize("about", [{}, {"low": 0.28, "high": 0.45}], ids=["any sigma", "the cusp"])
 def test_random_cycles_report_the_path(tmp_path, about):
-    jobs = study_cycles.jobs(24, tmp_path, seed=2, **about)
+    jobs = study_cycles.jobs(16, tmp_path, seed=2, **about)
     assert not wrong_in(f for job in jobs for f in study_cycles.examine(job))
 
 

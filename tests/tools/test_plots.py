@@ -68,7 +68,7 @@ def size_of(png):
 
 
 def test_a_script_is_a_command(results, tmp_path):
-    command = [sys.executable, str(SCRIPTS / "profiles.py"), str(results / "cycle"), "-o", "here.png"]
+    command = [sys.executable, SCRIPTS / "profiles.py", results / "cycle", "-o", "here.png"]
     done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=HANG,
                           check=False)
     assert (done.returncode, done.stdout, done.stderr) == (0, "here.png\n", "")
