@@ -158,7 +158,7 @@ def test_a_steep_baseline_does_not_hide_the_pull_off(branches, tmp_path, rise):
 
 def test_a_retreat_that_ends_before_the_bodies_part_is_named(branches, tmp_path):
     """The end of the retreat counts as baseline, and the answer is wrong."""
-    z, force, segment = branches.measure(SAMPLES, NOISE, seed=7)
+    z, force, segment = branches.measure(300, NOISE, seed=7)
     jump_in, jump_out = branches.outer[0][0], branches.inner[0][-1]
     near = z < jump_out - 0.2 * (jump_out - jump_in)
     for kept, named in ((near, True), (z < z.max(), False)):

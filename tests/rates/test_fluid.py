@@ -85,7 +85,7 @@ def test_steps_are_of_second_order(run):
 @pytest.mark.parametrize("case", [
     {"sigma": 0.1, "viscosity": 0.025},
     pytest.param({"sigma": 2.0, "viscosity": 0.05}, marks=pytest.mark.long),
-    {"sigma": 0.1, "viscosity": 0.01, "stiffness": 0.1, "start": 40.0},
+    {"sigma": 0.1, "viscosity": 0.01, "stiffness": 0.5, "start": 20.0},
     {"sigma": 0.1, "viscosity": 0.01, "start": 40.0,
      "creep": {"stiffness_relaxed": 0.3, "retardation_time": 1.0}}])
 def test_errors_hold_and_work_is_stored_or_dissipated(run, case):
