@@ -5,7 +5,9 @@ import contextlib
 import fcntl
 import os
 import pathlib
+import runpy
 import subprocess
+import sys
 
 # Before anything loads OpenMP. Other tests run at the same time: two threads are enough to be more
 # than one, and while they wait they leave the core to others. OpenBLAS's own do not.
@@ -79,6 +81,28 @@ def snapin(snapin_path):
 def run(snapin, tmp_path_factory):
     """`support.scenes.runner`, whose runs the tests of a module share."""
     return runner(snapin, tmp_path_factory.mktemp("run"))
+
+
+@pytest.fixture
+def called(tmp_path, monkeypatch, capsys):
+    """Runs a script in this process, which has imported what scripts need: called(path, argument,
+    ...) -> CompletedProcess with text output, in a folder of the test."""
+    monkeypatch.chdir(tmp_path)
+
+    def run(path, *args):
+        monkeypatch.syspath_prepend(path.parent)
+        monkeypatch.setattr(sys, "argv", [str(path), *map(str, args)])
+        status = 0
+        try:
+            runpy.run_path(str(path), run_name="__main__")
+        except SystemExit as ended:
+            status = ended.code or 0
+        told = capsys.readouterr()
+        if isinstance(status, str):
+            told, status = told._replace(err=f"{told.err}{status}\n"), 1
+        return subprocess.CompletedProcess([path.name], status, told.out, told.err)
+
+    return run
 
 
 @pytest.fixture

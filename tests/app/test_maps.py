@@ -182,7 +182,7 @@ def test_a_case_that_fails_is_a_row_that_says_why(run):
 def test_a_terminal_shows_how_far_a_sweep_is(snapin_path, tmp_path):
     """In half of the cases the loading would go the wrong way."""
     sweep = {"key": ["loading.h0_start", "loading.h0_end"], "from": [2e-9, 1e-9],
-             "to": [5e-9, 4e-9], "count": [160, 160]}
+             "to": [5e-9, 4e-9], "count": [120, 120]}
     (tmp_path / "d.nml").write_text(scene(sweep, **RIGID))
     ours, theirs = pty.openpty()
     with subprocess.Popen([snapin_path, "d.nml"], cwd=tmp_path, stderr=theirs) as run:
@@ -196,7 +196,7 @@ def test_a_terminal_shows_how_far_a_sweep_is(snapin_path, tmp_path):
     *lines, last, _ = re.split("[\r\n]+", said.decode())
     line = r"d: case, \d+ %, \d+ failed, \d+ a second, \d+ (s|min) left, \d+ (s|min) so far *"
     assert any(re.fullmatch(line, text) for text in lines), lines
-    command = re.fullmatch(r"results/d: 25600 cases, \d+ a second: results/d/sweep.csv; "
+    command = re.fullmatch(r"results/d: 14400 cases, \d+ a second: results/d/sweep.csv; "
                            r"to draw it: (\S+) (\S+/map.py) results/d", last)
     assert command and all(map(os.path.exists, command.groups())), last
 
@@ -283,7 +283,7 @@ def test_several_at_once_are_refused_without_mpi(snapin, tmp_path, size, rank, m
 
 
 @pytest.mark.alone
-@pytest.mark.parametrize("counts", [(2000, 42000),
+@pytest.mark.parametrize("counts", [(2000, 26000),
                                     pytest.param((1000, 1000000), marks=pytest.mark.long)])
 def test_memory_does_not_grow_with_the_number_of_cases(snapin, snapin_path, tmp_path, monkeypatch,
                                                        counts):

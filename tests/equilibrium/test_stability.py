@@ -109,7 +109,7 @@ SIGMAS = [
 @pytest.mark.parametrize("sigma", SIGMAS)
 def test_eigenvalues_along_the_path_are_the_dense_ones(run, sigma):
     high, low = depth(sigma)
-    h0 = np.linspace(low + 0.01, 0.6 * high, 6)
+    h0 = np.linspace(low + 0.01, 0.6 * high, 4)
     agrees(run(path(sigma, stability={}, profiles={"h0": h0}, numerics=FINE)), sigma, 4)
 
 

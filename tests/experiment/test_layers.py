@@ -56,7 +56,9 @@ def test_folds_and_states_are_those_of_independent_states(run, scene):
 def test_a_film_thirty_times_thinner_than_the_contact_has_independent_states(run):
     """The one that yields least beside what its half-space does: it cannot be compressed."""
     layer = (0.1, 0.0, 0.5, 0.0, 1.0)
-    ((h0, load),) = path_by_axis(1.0, AXIS, ENDS, layer=layer, softness=())
+    # Its pressures are felt no farther than the film is thick, so the panels may end early.
+    near = (*[end for end in ENDS if end < 6], 6, 9, 12)
+    ((h0, load),) = path_by_axis(1.0, (*AXIS[::4], AXIS[-1]), near, layer=layer, softness=())
     run = run(layered(layer, equilibrium_path={"h0_end": float(h0[-1])}))
     assert run.summary["end_load"] == pytest.approx(load[-1], rel=1e-7)
 

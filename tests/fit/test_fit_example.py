@@ -59,12 +59,10 @@ def test_the_example_gives_what_its_page_says(example):
         assert phrase in said, phrase
 
 
-def test_the_fit_is_drawn(example):
+def test_the_fit_is_drawn(example, called):
     pytest.importorskip("matplotlib")
     folder, _ = example
-    script = ROOT / "pywrap/plots/fit.py"
-    done = subprocess.run([sys.executable, str(script), str(folder)], capture_output=True,
-                          text=True, timeout=HANG, check=False)
+    done = called(ROOT / "pywrap/plots/fit.py", folder)
     assert (done.returncode, done.stderr) == (0, "")
     assert (folder / "fit.png").stat().st_size > 2e4
 

@@ -65,7 +65,7 @@ def test_rigid_bodies_feel_the_film_of_reynolds(run, slip):
 def test_bodies_yield_to_first_order_as_davis_serayssol_and_hinch_have_it(run):
     off = []
     for viscosity in (2e-5, 1e-5):
-        table = run(scene(1e-13, viscosity, start=50.0, turn=5.0, accuracy=1e-4)).table("curve.csv")
+        table = run(scene(1e-13, viscosity, start=50.0, turn=5.0)).table("curve.csv")
         rows = of_way(table, "approach")
         h0, centre = rows["h0"][-1], rows["h_centre"][-1]
         first = 3 * math.pi / math.sqrt(2) * viscosity / (0.5 * h0**1.5)
@@ -85,11 +85,11 @@ def test_steps_are_of_second_order(run):
 @pytest.mark.parametrize("case", [
     {"sigma": 0.1, "viscosity": 0.025},
     pytest.param({"sigma": 2.0, "viscosity": 0.05}, marks=pytest.mark.long),
-    {"sigma": 0.1, "viscosity": 0.01, "stiffness": 0.1, "start": 40.0},
+    {"sigma": 0.1, "viscosity": 0.01, "stiffness": 0.5, "start": 20.0},
     {"sigma": 0.1, "viscosity": 0.01, "start": 40.0,
      "creep": {"stiffness_relaxed": 0.3, "retardation_time": 1.0}}])
 def test_errors_hold_and_work_is_stored_or_dissipated(run, case):
-    rough, fine = (run(scene(**case, accuracy=accuracy)).summary for accuracy in (1e-3, 3e-5))
+    rough, fine = (run(scene(**case, accuracy=accuracy)).summary for accuracy in (1e-3, 1e-4))
     assert rough["converged"] and fine["converged"]
     for key in ("max_tension", "energy_dissipated", "end_load", "end_displacement", "max_suction"):
         off = abs(rough[key] - fine[key])
@@ -117,7 +117,7 @@ def test_finite_volumes_agree(run):
     sigma, strength = 0.1, 3.0
     start, turn, parts = 15.0, -1.0, 10
     expected, left = extrapolated(sigma, strength, start, turn, 1.0)
-    found = run(scene(sigma, strength * sigma / 12, accuracy=1e-5))
+    found = run(scene(sigma, strength * sigma / 12, accuracy=1e-4))
     table = found.table("curve.csv")
     time, load = (np.array(table[name]) for name in ("time", "load"))
     way = start - turn
@@ -178,7 +178,7 @@ def test_viscoelastic_bodies_with_a_fluid_have_their_limits(run):
     assert at_rest["max_tension"] != pytest.approx(elastic["max_tension"], rel=1e-2)
     twice = run(scene(0.2, 0.02, start=40.0)).summary
     assert at_rest["max_tension"] == pytest.approx(twice["max_tension"] / 2, rel=2e-3)
-    creep = {"stiffness_relaxed": 0.25, "retardation_time": 1.0}
+    creep = {"stiffness_relaxed": 0.8, "retardation_time": 1.0}
     wet = run(scene(0.1, 1e-6, creep=creep)).summary
     without = lennard_jones(0.1, drive={"velocity": 1.0, "z_start": 15.0, "z_turn": -1.0},
                             viscoelastic=creep, numerics={"accuracy": 1e-4})

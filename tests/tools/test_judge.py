@@ -3,7 +3,7 @@
 import math
 
 import pytest
-from support import study_bodies, study_cycles, study_estimates, study_folds, study_laws
+from support import study_bodies, study_cycles, study_folds, study_laws
 from support.comparison import deviations, is_bad
 from support.decks_in_units import Report
 from support.reference import Path
@@ -42,7 +42,7 @@ def test_a_cycle_reports_the_path_whatever_its_steps(tmp_path, case):
 
 @pytest.mark.parametrize("about", [{}, {"low": 0.28, "high": 0.45}], ids=["any sigma", "the cusp"])
 def test_random_cycles_report_the_path(tmp_path, about):
-    jobs = study_cycles.jobs(24, tmp_path, seed=2, **about)
+    jobs = study_cycles.jobs(16, tmp_path, seed=2, **about)
     assert not wrong_in(f for job in jobs for f in study_cycles.examine(job))
 
 
@@ -53,15 +53,6 @@ def test_a_hair_before_a_fold_nothing_has_jumped_and_a_hair_beyond_all_has(
     job = study_folds.Job(sigma, 1e-6, experiment, (2, 5, 8), tmp_path)
     wrong = [finding[3:] for finding in study_folds.examine(job) if finding.wrong]
     assert not wrong
-
-
-@pytest.mark.parametrize("sigma", [0.01, 0.14251, 0.35, 0.45, 0.492388, 0.87, 2.57191, 30.7029])
-def test_each_number_is_as_good_as_its_estimate_says(tmp_path, sigma):
-    job = study_estimates.Job(sigma, (1e-4, 1e-8), tmp_path)
-    for finding in study_estimates.examine(job):
-        assert not finding.wrong
-        for one in finding.deviations:
-            assert one.ratio <= 1, (finding.kind, finding.accuracy, one)
 
 
 # Cycles and paths, with attraction and without; in the last under another law, more digits mean
@@ -86,7 +77,7 @@ def test_an_error_above_its_estimate_is_within_the_accuracy(tmp_path, number):
 
 @pytest.mark.parametrize("jobs", [study_bodies.experiments, study_bodies.shapes])
 def test_springs_and_fixed_loads_under_random_laws_are_within_the_accuracy(tmp_path, jobs):
-    for scene in jobs(6, tmp_path):
+    for scene in jobs(5, tmp_path):
         [finding] = study_bodies.examine(scene)
         assert finding.unknown > 0 and not finding.wrong, finding
         for one in finding.deviations:

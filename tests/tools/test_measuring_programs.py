@@ -3,7 +3,6 @@
 import json
 import re
 import subprocess
-import sys
 from pathlib import Path
 
 import pytest
@@ -29,10 +28,8 @@ def test_a_measuring_program_fits_the_modules(snapin_path, tmp_path, source):
     (["--build", "nowhere"], "no program in nowhere"),
     (["--draw", "--out", "nowhere"], "no measurements in .*nowhere"),
 ])
-def test_what_bench_lacks_is_said_in_one_line(snapin_path, tmp_path, args, phrase):
+def test_what_bench_lacks_is_said_in_one_line(called, snapin_path, args, phrase):
     pytest.importorskip("matplotlib")
-    done = subprocess.run([sys.executable, ROOT / "tools/bench/bench.py", "--build",
-                           snapin_path.parent, *args], cwd=tmp_path, capture_output=True,
-                          text=True, check=False)
+    done = called(ROOT / "tools/bench/bench.py", "--build", snapin_path.parent, *args)
     assert done.returncode == 2
     assert re.search(rf"^./bench: error: {phrase}$", done.stderr, re.MULTILINE), done.stderr

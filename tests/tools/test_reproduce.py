@@ -1,16 +1,12 @@
 """The paper reproduced: what is run and what is not run again, and claims on its figures."""
 
 import csv
-import os
 import re
-import subprocess
-import sys
 
 import f90nml
 import numpy as np
 import pytest
 from conftest import ROOT
-from support.processes import HANG
 
 pytest.importorskip("matplotlib")
 import curves  # noqa: E402 (needs matplotlib)
@@ -24,6 +20,7 @@ import style  # noqa: E402
 from runs import RunError, Runs  # noqa: E402
 
 INPUTS = ROOT / "inputs"
+COMMAND = ROOT / "tools/reproduce/reproduce.py"
 DECK = """&bodies radius = 1.5e-2, rigid = .true. /
 &force law = 'exponential', p0 = 1e7, decay_length = 1e-9 /
 &loading h0_start = 2e-9, h0_end = 0, h0_step = 1e-9 /
@@ -205,14 +202,12 @@ def test_a_published_page_is_whole_and_its_pictures_are_small(page, links):
     assert all(picture.stat().st_size < 150_000 for picture in folder.glob("*.png"))
 
 
-def test_the_command_writes_report_table_and_picture_and_fails_on_a_bad_name(snapin_path, tmp_path):
-    command = [sys.executable, str(ROOT / "tools/reproduce/reproduce.py"), "--out", str(tmp_path),
-               "-j", "2", "--program", str(snapin_path)]
-    environment = {key: value for key, value in os.environ.items() if key != "SNAPIN"}
+def test_the_command_writes_report_table_and_picture_and_fails_on_a_bad_name(
+        called, snapin_path, tmp_path, monkeypatch):
+    monkeypatch.delenv("SNAPIN", raising=False)
 
     def run(*args):
-        return subprocess.run([*command, *args], capture_output=True, text=True, timeout=HANG,
-                              check=False, env=environment)
+        return called(COMMAND, "--out", tmp_path, "-j", "2", "--program", snapin_path, *args)
 
     done = run("fig03")
     assert done.returncode == 0, done.stderr
@@ -235,12 +230,10 @@ def test_the_command_writes_report_table_and_picture_and_fails_on_a_bad_name(sna
     assert run("-j", "0", "fig03").returncode == 2
 
 
-def test_a_folder_that_cannot_be_made_is_named_in_one_line(snapin_path, tmp_path):
+def test_a_folder_that_cannot_be_made_is_named_in_one_line(called, snapin_path, tmp_path):
     (tmp_path / "file").write_text("")
     folder = tmp_path / "file/below"
-    done = subprocess.run([sys.executable, str(ROOT / "tools/reproduce/reproduce.py"), "--out",
-                           str(folder), "--program", str(snapin_path), "fig02"],
-                          capture_output=True, text=True, check=False)
+    done = called(COMMAND, "--out", folder, "--program", snapin_path, "fig02")
     assert (done.returncode, done.stderr) == (1, f"reproduce: {folder}: Not a directory\n")
 
 

@@ -13,10 +13,10 @@ from support.processes import answer
 from support.wrapper_registry import LAW, REGISTRY, UNIT, law_of
 from support.wrapper_values import REFUSED, cases
 
-CALLS = 200
-# What a process may grow by over the second half of the calls [bytes]: pages of the allocator here
-# and there. A leak of 656 bytes a call shows.
-GROWTH = 64 * 1024
+CALLS = 50
+# What a process may grow by over so many calls [bytes]: pages of the allocator here and there. A
+# leak of 656 bytes a call shows.
+GROWTH = 32 * 1024
 
 
 def resident():
@@ -42,11 +42,11 @@ def bad_calls(entry):
 
 
 def growth(call):
-    """Memory [bytes] by which the process grows over the second half of CALLS calls."""
-    for _ in range(CALLS // 2):
+    """Memory [bytes] by which the process grows over CALLS calls, after some others."""
+    for _ in range(CALLS // 3):
         call()
     before = resident()
-    for _ in range(CALLS // 2):
+    for _ in range(CALLS):
         call()
     return resident() - before
 

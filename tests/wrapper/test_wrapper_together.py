@@ -177,7 +177,7 @@ deck = snapin.deck_text({
 
 def test_an_interrupt_ends_a_run_within_a_second_and_python_goes_on():
     script = LONG + """
-threading.Timer(1.0, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
+threading.Timer(0.5, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
 try:
     snapin.run(deck)
 except KeyboardInterrupt:
@@ -187,7 +187,7 @@ except KeyboardInterrupt:
 """
     began = time.monotonic()
     assert answer(script).split() == ["interrupted", "True"]
-    # A second until the interrupt, one for it, and the rest is Python's start.
+    # Half a second until the interrupt, one for it, and the rest is Python's start.
     assert time.monotonic() - began < HANG / 4
 
 
