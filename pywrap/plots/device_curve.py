@@ -6,8 +6,8 @@
 
 import numpy as np
 from drawing import (
-    BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILION, arrow, dress, run, scale, smooth,
-    title_of)
+    BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILION, arrow, dress, entitle, run, scale,
+    smooth, title_of)
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from snapin.results import ResultsError, read_summary, read_table
@@ -28,12 +28,18 @@ def draw_device_curve(folder):
     columns = min(len(springs), _A_ROW)
     figure = Figure(figsize=(max(6.0, 4.4 * columns), 3.9 * rows + 0.5), layout="constrained")
     panels = figure.subplots(rows, columns, squeeze=False, sharey=True).ravel()
-    load, load_unit = scale(curve["load"][curve["direction"] != "path"], "N")
+    driven = curve["load"][curve["direction"] != "path"]
+    load, load_unit = scale(driven, "N")
     for panel, stiffness, colour in zip(panels, springs, _COLOURS * len(springs)):
         _draw_spring(panel, stiffness, colour, curve, jumps, load, load_unit)
     for panel in panels[len(springs):]:
         panel.remove()
-    figure.suptitle(title_of(folder, summary))
+    # All panels share this axis.
+    deepest = driven.min() / load
+    if deepest < 0:
+        highest = min(driven.max() / load, -1.5 * deepest)
+        panels[0].set_ylim(1.15 * deepest, highest - 0.05 * deepest)
+    entitle(figure, title_of(folder, summary))
     figure.legend(handles=[
         Line2D([], [], color=GREY, linewidth=2.6, alpha=0.55, label="retreat"),
         Line2D([], [], color=GREY, linewidth=1.4, label="approach"),
@@ -72,7 +78,6 @@ def _draw_spring(panel, stiffness, colour, curve, jumps, load, load_unit):
         arrow(panel, (start / length, begin / load), (end / length, finish / load), colour, 1.0,
               dashes=(0, (1, 1)), scale=13, zorder=6)
     low, high = curve[x][driven].min() / length, curve[x][driven].max() / length
-    forces = curve["load"][driven] / load
     # Show the jumps, not all of the drive beyond them.
     if here.any():
         places = np.concatenate([jumps[x][here], jumps[after][here]]) / length
@@ -81,8 +86,6 @@ def _draw_spring(panel, stiffness, colour, curve, jumps, load, load_unit):
         low, high = max(low, places.min() - span), min(high, places.max() + span)
     margin = 0.05 * (high - low)
     panel.set_xlim(low - margin, high + margin)
-    deepest = forces.min()
-    panel.set_ylim(1.15 * deepest, min(forces.max(), -1.5 * deepest) if deepest < 0 else None)
 
 
 def _name_of(stiffness):

@@ -3,6 +3,7 @@
 import argparse
 import pathlib
 import sys
+import textwrap
 
 import numpy as np
 from snapin.results import ResultsError
@@ -16,6 +17,8 @@ _PREFIXES = ((1e-12, "p"), (1e-9, "n"), (1e-6, "µ"), (1e-3, "m"), (1.0, ""), (1
 
 # Cosine of the largest angle between two steps that is drawn as a bend; a larger one is a corner.
 _GENTLE = 0.5
+# Characters of a title on an inch.
+_A_LINE = 10
 # A cubic with slopes at its ends up to this multiple of the slope of its chord is monotonic.
 _STEEPEST = 3
 
@@ -30,6 +33,12 @@ def title_of(folder, summary):
     return title
 
 
+def entitle(figure, title):
+    """Write the title above a figure, as the deck has it, in lines that are no wider."""
+    width = int(_A_LINE * figure.get_figwidth())
+    figure.suptitle("\n".join(textwrap.wrap(title, width)), parse_math=False)
+
+
 def smooth(points):
     """Return a curve through `points` (n, 2), in order, with more points in gentle bends.
 
@@ -37,7 +46,8 @@ def smooth(points):
     three neighbours. Sharp corners of the polygon stay, since there the states are too few.
     """
     points = np.asarray(points, float)
-    points = points[np.append(True, np.diff(points, axis=0).any(axis=1))]
+    if len(points) > 1:
+        points = points[np.append(True, np.diff(points, axis=0).any(axis=1))]
     if len(points) < 3:
         return points
     extent = np.ptp(points, axis=0)

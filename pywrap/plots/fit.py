@@ -8,7 +8,7 @@ import pathlib
 
 import f90nml
 import numpy as np
-from drawing import BLUE, GREY, SKY, VERMILION, dress, run, scale, title_of
+from drawing import BLUE, GREY, SKY, VERMILION, dress, entitle, run, scale, title_of
 from matplotlib.figure import Figure
 from snapin.results import read_summary, read_table
 
@@ -60,7 +60,7 @@ def draw_fit(folder, whole=False):
     if not whole:
         _show_contact(panel, z, table, force)
     panel.legend(frameon=False, markerscale=3)
-    figure.suptitle(title_of(folder, summary))
+    entitle(figure, title_of(folder, summary))
     return figure
 
 

@@ -8,8 +8,8 @@ import itertools
 
 import numpy as np
 from drawing import (
-    BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILION, arrow, dress, run, scale, smooth,
-    title_of)
+    BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILION, arrow, dress, entitle, run, scale,
+    smooth, title_of)
 from matplotlib.figure import Figure
 from snapin.results import ResultsError, read_summary, read_table
 
@@ -45,7 +45,7 @@ def draw_force_curve(folder):
     for x, panel in panels.items():
         results.draw(panel, x)
     panels["h0"].set_ylabel("")
-    figure.suptitle(title_of(folder, results.summary))
+    entitle(figure, title_of(folder, results.summary))
     handles, labels = panels["displacement"].get_legend_handles_labels()
     columns = -(-len(labels) // -(-len(labels) // _MOST_COLUMNS))
     figure.legend(handles, labels, loc="outside lower center", ncols=columns, frameon=False)

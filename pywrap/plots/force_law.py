@@ -14,7 +14,8 @@ import sys
 import f90nml
 import numpy as np
 import snapin
-from drawing import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILION, dress, scale
+from drawing import (
+    BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILION, dress, entitle, scale)
 from matplotlib.figure import Figure
 
 SAMPLES = 1500
@@ -80,7 +81,7 @@ def draw_force_law(deck, title=""):
     handles, labels = figure.axes[0].get_legend_handles_labels()
     if handles:
         figure.legend(handles, labels, loc="outside lower center", ncols=5, frameon=False)
-    figure.suptitle(title)
+    entitle(figure, title)
     return figure
 
 

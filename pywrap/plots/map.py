@@ -16,7 +16,8 @@ import pathlib
 import re
 
 import numpy as np
-from drawing import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILION, run, title_of
+from drawing import (
+    BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILION, entitle, run, title_of)
 from matplotlib import colormaps
 from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
@@ -79,7 +80,7 @@ def draw_map(folder, value="max_tension", per=None, over=None, where=()):
                       label)
         label = _label(over[1], units)
     axes.set(xlabel=_label(over[0], units), ylabel=label)
-    figure.suptitle(title_of(folder, read_summary(folder)))
+    entitle(figure, title_of(folder, read_summary(folder)))
     return figure
 
 

@@ -6,7 +6,7 @@
 
 import matplotlib
 import numpy as np
-from drawing import dress, run, scale, states_of, title_of
+from drawing import dress, entitle, run, scale, states_of, title_of
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import ListedColormap, Normalize
 from matplotlib.figure import Figure
@@ -67,10 +67,12 @@ def draw_profiles(folder, branch=None):
     bar = figure.colorbar(ScalarMappable(norm, colors), ax=panels, pad=0.02,
                           label=f"$h_0$ [{lengths[1]}]")
     if values.size <= _FEW:
+        # Steps of h0 that end at 0 leave a rounding error.
+        shown = np.where(abs(values) < 1e-9 * span, 0, values)
         bar.set_ticks(values, labels=[f"{value:.4g}".replace("-", "\N{MINUS SIGN}")
-                                      for value in values])
+                                      for value in shown])
     dashed = "; dashed: unstable" if unstable else ""
-    figure.suptitle(f"{title_of(folder, summary)} ({branch.replace('_', ' ')}{dashed})")
+    entitle(figure, f"{title_of(folder, summary)} ({branch.replace('_', ' ')}{dashed})")
     return figure
 
 

@@ -7,7 +7,7 @@
 import pathlib
 
 import numpy as np
-from drawing import GREY, VERMILION, run, title_of
+from drawing import GREY, VERMILION, entitle, run, title_of
 from matplotlib.figure import Figure
 from snapin.results import ResultsError, read_summary
 
@@ -51,7 +51,7 @@ def draw_regime(folder):
     axes.plot(x, shown, marker="o" if load > high[0] else "v", color=VERMILION, markersize=9)
     axes.annotate(_advice(summary), (x, shown), (0, 12), textcoords="offset points", ha="center",
                   color=VERMILION, weight="bold")
-    figure.suptitle(title_of(folder, summary))
+    entitle(figure, title_of(folder, summary))
     return figure
 
 

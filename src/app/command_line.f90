@@ -97,6 +97,10 @@ contains
     else if (allocated(options%name) .and. &
       all([(options%decks(i)%name /= '-', i=1, size(options%decks))])) then
       call fail(error, bad_input, '--name is for a deck on standard input, -')
+    else if (allocated(options%name)) then
+      ! The folder would be that of all results, or one above it.
+      if (verify(stem_of(options%name), '.') == 0) call fail(error, bad_input, &
+        '--name needs a name for a folder, not "' // printable(options%name) // '"')
     end if
     if (allocated(error)) return
     if (.not. allocated(options%out)) options%out = 'results'

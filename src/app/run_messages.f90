@@ -10,10 +10,11 @@ module run_messages
   private
   public :: destination_t, tell
 
-  !> The folder of a run's results, and whether it writes messages to standard error.
+  !> The folder of a run's results, or the program's name if they go to standard output; whether
+  !> messages are left out.
   type :: destination_t
     character(len=:), allocatable :: folder
-    logical :: quiet = .false.
+    logical :: quiet = .false., to_stream = .false.
   contains
     procedure :: say
   end type destination_t
@@ -65,11 +66,14 @@ contains
       summary%number('max_tension_h0'), ' m'
     call destination%say(trim(found)//trim(tension))
     if (allocated(scene%sweep)) then
-      command = drawing_of(destination%folder)
-      if (command /= '') command = '; to draw it: '//command
+      command = ''
+      if (.not. destination%to_stream) then
+        command = drawing_of(destination%folder)
+        if (command /= '') command = '; to draw it: '//command
+        command = ': '//destination%folder//'/sweep.csv'//command
+      end if
       call destination%say(brief(scene%sweep%cases())//' cases, '// &
-        rounded(scene%sweep%cases()/max(took, 1e-3_wp))//' a second: '//destination%folder// &
-        '/sweep.csv'//command)
+        rounded(scene%sweep%cases()/max(took, 1e-3_wp))//' a second'//command)
     end if
 
   contains
@@ -107,9 +111,31 @@ contains
       if (.not. file_exists(python)) python = 'python3'
       if (top == whole_path('')) top = ''
       if (top == '' .and. python /= 'python3') python = trim(pythons(i))
-      command = python // ' ' // top // trim(scripts(i)) // ' ' // folder
+      command = shell_word(python) // ' ' // shell_word(top // trim(scripts(i))) // ' ' // &
+        shell_word(folder)
       return
     end do
   end function drawing_of
+
+  !> A text as one word of a shell command: in quotes, if a character may mean something.
+  pure function shell_word(text) result(word)
+    character(len=*), intent(in) :: text
+    character(len=:), allocatable :: word
+    character(len=*), parameter :: plain = 'abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ' &
+      // '0123456789/._-+=:,@%'
+    integer :: i
+
+    word = text
+    if (verify(text, plain) == 0) return
+    word = "'"
+    do i = 1, len(text)
+      if (text(i:i) == "'") then
+        word = word // "'\''"
+      else
+        word = word // text(i:i)
+      end if
+    end do
+    word = word // "'"
+  end function shell_word
 
 end module run_messages

@@ -72,8 +72,8 @@ contains
 
     began = seconds()
     converged = .false.
-    destination = destination_t(out_dir, quiet)
-    if (out_dir == to_stream) then
+    destination = destination_t(out_dir, quiet, out_dir == to_stream)
+    if (destination%to_stream) then
       destination%folder = 'snapin'
     else
       call take_up_earlier()
@@ -100,7 +100,8 @@ contains
     call results%write_summary(summary, cost, scene%deck)
     call results%finish(error)
     if (allocated(error)) then
-      if (error%kind /= bad_input) error%message = error%message // '; then go on with --resume'
+      if (error%kind /= bad_input .and. .not. destination%to_stream) &
+        error%message = error%message // '; then go on with --resume'
       return
     end if
     call tell(scene, destination, summary, cost)

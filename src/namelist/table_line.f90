@@ -36,19 +36,23 @@ contains
     end do
   end function after_mark
 
-  !> Replaces decimal commas by points: commas between digits in lines with semicolons or tabs.
+  !> Replaces decimal commas by points: commas between digits in lines with semicolons, or tabs
+  !> between cells. Comments stay, and say nothing about the line.
   pure subroutine point_decimals(text)
     character(len=*), intent(inout) :: text
     character(len=*), parameter :: digits = '0123456789'
-    integer :: first, next, i
+    character(len=:), allocatable :: line
+    integer :: first, next, last, i
 
     next = 1
     do while (next <= len(text))
       first = next
       next = first + scan(text(first:), newline)
       if (next == first) next = len(text) + 2
-      if (scan(text(first:next - 2), ';' // achar(9)) == 0) cycle
-      do i = first + 1, next - 3
+      line = uncommented(text(first:next - 2))
+      last = verify(line, blanks, back=.true.)
+      if (scan(line(max(1, verify(line, blanks)):last), ';' // achar(9)) == 0) cycle
+      do i = first + 1, first + last - 2
         if (text(i:i) /= ',') cycle
         if (scan(text(i - 1:i - 1), digits) > 0 .and. scan(text(i + 1:i + 1), digits) > 0) &
           text(i:i) = '.'

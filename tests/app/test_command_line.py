@@ -1,11 +1,12 @@
 """The command line: options, exit status, and that a wrong deck leaves nothing behind."""
 
+import shlex
 import shutil
 import subprocess
 
 import pytest
 from conftest import ROOT
-from support.processes import status_and_memory
+from support.processes import HANG, status_and_memory
 
 # The cheapest thing the program can do.
 DECK = """&bodies radius = 1e-2, stiffness = 1e10 /
@@ -103,6 +104,8 @@ def test_of_several_processes_the_first_answers(snapin, monkeypatch, option):
         (["--name=", "-"], "--name needs a name"),
         (["--out", "a", "--into=b", "good.nml"], "give --out or --into, not both"),
         (["--name", "other", "good.nml"], "--name is for a deck on standard input"),
+        (["--name", "..", "-"], '--name needs a name for a folder, not ".."'),
+        (["--name", "a/", "-"], '--name needs a name for a folder, not "a/"'),
         (["good.nml", "good.nml"], "would both write to the folder good"),
         (["good.nml", "other.nml", "sub/good.nml"], "good.nml and sub/good.nml"),
         (["--name", "good", "good.nml", "-"], "good.nml and - would both write"),
@@ -203,6 +206,25 @@ def test_no_more_of_an_endless_file_is_read_than_a_deck_may_hold(snapin_path, de
 def test_quiet_says_nothing(snapin, decks):
     done = snapin("--quiet", "good.nml", cwd=decks)
     assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
+
+
+def test_results_on_standard_output_have_no_folder(snapin_path, decks):
+    """A command was shown that draws the folder snapin, and advice to go on with --resume."""
+    (decks / "sweep.nml").write_text(DECK + "&sweep key = 'bodies.radius', values = 1e-2, 2e-2 /")
+    with open("/dev/full", "wb") as full:
+        for out, status in ((subprocess.PIPE, 0), (full, 1)):
+            done = subprocess.run([snapin_path, "--out", "-", "sweep.nml"], cwd=decks, stdout=out,
+                                  stderr=subprocess.PIPE, text=True, timeout=HANG, check=False)
+            assert done.returncode == status and done.stderr
+            assert "map.py" not in done.stderr and "--resume" not in done.stderr
+
+
+def test_the_command_that_draws_a_sweep_is_one_of_the_shell(snapin, decks):
+    name = "it's a $weep"
+    (decks / f"{name}.nml").write_text(
+        DECK + "&sweep key = 'bodies.radius', values = 1e-2, 2e-2 /")
+    said = snapin(f"{name}.nml", cwd=decks).stderr
+    assert shlex.split(said.partition("to draw it: ")[2])[2:] == [f"results/{name}"]
 
 
 # --- The commands at the top of the checkout

@@ -88,6 +88,15 @@ def test_cells_may_stand_in_quotes(run, folder):
     assert len(set(map(tuple, tables.values()))) == 1 and len(tables["plain"]) == 3
 
 
+def test_only_what_stands_between_cells_makes_decimal_commas(run, folder):
+    """The comma between two cells was taken for a decimal comma."""
+    rows = ["1e-6,1e-19 # a; b", "1e-6,1e-19\t", "\t1e-6,1e-19", "\t # c", "1,0e-6;\t1e-19"]
+    (folder / "commas.csv").write_text("\n".join(["bodies.radius,force.hamaker", *rows]))
+    table = run(scene({"file": "commas.csv"}, **RIGID)).table("sweep.csv")
+    np.testing.assert_array_equal(table["bodies.radius"], 4 * [1e-6])
+    np.testing.assert_array_equal(table["force.hamaker"], 4 * [1e-19])
+
+
 def test_a_file_is_read_in_pieces_whatever_its_line_ends(run, folder):
     """The pieces have 64 kB: rows lie across their ends."""
     count = 4000

@@ -137,3 +137,12 @@ def test_rows_without_a_range_of_their_own_begin_where_the_path_does(run):
     rows = found.table("approximations.csv").rows("slow_deformation")
     assert rows["h0"][0] == pytest.approx(found.curve["h0"][0], rel=1e-6)
     assert rows["h0"][-1] == pytest.approx(0.6e-9, rel=1e-3)
+
+
+def test_an_oscillation_ends_where_it_is_negligible():
+    """It went on for ever, with an amplitude of 1e-261: an integral took 20,000 pieces, and a table
+    of rows more than a minute."""
+    law = {"structural": {"amplitude": 1e6, "period": 1e-9, "decay_length": 1e-9}}
+    near, *far = snapin.slow_deformation(
+        [5e-7, 7e-7, 1e-5, 1.0], radius=1e-6, stiffness=1e10, law=law).displacement
+    assert near != 0 and far == [0, 0, 0]

@@ -13,9 +13,11 @@ from conftest import ROOT
 from support.processes import HANG
 
 pytest.importorskip("matplotlib")
+from device_curve import draw_device_curve  # noqa: E402 (needs matplotlib)
 from drawing import scale, smooth  # noqa: E402 (needs matplotlib)
 from force_curve import Curve, draw_force_curve  # noqa: E402 (needs matplotlib)
 from force_law import OTHERS  # noqa: E402 (needs matplotlib)
+from profiles import draw_profiles  # noqa: E402 (needs matplotlib)
 
 SCRIPTS = ROOT / "pywrap" / "plots"
 BODIES = "&bodies radius = 1.5e-2, stiffness = 1.0e10 /\n"
@@ -116,6 +118,40 @@ def test_nothing_is_drawn_where_a_column_has_no_value(monkeypatch, tmp_path):
     corners = axes.collections[0].get_paths()
     spans = [path.vertices[:, 0] for path in corners]
     assert spans and all(max(x) <= 2 or min(x) >= 7 for x in spans)
+
+
+def test_the_panels_of_springs_share_the_loads_of_all(tmp_path):
+    """The loads of the last spring were shown in all panels; a dead load, which never lands after
+    its jump, had no picture."""
+    with pytest.warns(snapin.SnapinWarning, match="no stable state is known that catches"):
+        snapin.run(BODIES + FORCE + "&equilibrium_path h0_end = -1e-9 /\n"
+                   "&device stiffness = 1e5, 0 /", out=tmp_path)
+    figure = draw_device_curve(tmp_path)
+    figure.savefig(tmp_path / "here.png")
+    for axes in figure.axes:
+        low, high = axes.get_ylim()
+        assert low < -60.7 and high > 0
+
+
+def test_a_title_is_drawn_as_it_is_written_and_inside_the_picture(tmp_path):
+    """Text between dollars became a formula, or a message, and long titles were cut off."""
+    title = "What $\\nothing$ and _all_ cost: " + 12 * "a long title "
+    snapin.run(f"&scene title = '{title}' /\n" + DECKS["path"], out=tmp_path)
+    figure = draw_force_curve(tmp_path)
+    figure.draw_without_rendering()
+    (shown,) = figure.texts
+    # The summary has no text that begins as a group of a namelist.
+    assert shown.get_text().split() == title.replace("$", "$ ", 1).split()
+    box, edge = shown.get_window_extent(), figure.bbox
+    assert box.x0 > edge.x0 and box.x1 < edge.x1 and box.y1 <= edge.y1
+
+
+def test_a_step_to_zero_is_zero_in_the_colour_bar(tmp_path):
+    """It was -8.272e-16 nm."""
+    snapin.run(BODIES + FORCE + "&loading h0_start = 7e-9, h0_end = -2e-9, h0_step = 0.2e-9 /\n"
+               "&profiles h0 = 1e-9, 0 /", out=tmp_path)
+    labels = [tick.get_text() for tick in draw_profiles(tmp_path).axes[-1].get_yticklabels()]
+    assert labels == ["0", "1"]
 
 
 def test_the_picture_can_be_elsewhere_and_larger(plot, results, tmp_path):

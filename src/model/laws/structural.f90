@@ -58,11 +58,13 @@ contains
     call accept_law(deck, 'structural', 'amplitude', 'decay_length', this, law)
   end subroutine read_law
 
-  !> exp(-gap), finite at any gap.
+  !> exp(-gap), finite at any gap, and 0 where it is negligible: an oscillation that went on for
+  !> ever would have no integral.
   elemental real(wp) function decay(gap)
     real(wp), intent(in) :: gap
 
-    decay = exp(-max(min(gap, 2*largest_exponent), -largest_exponent))
+    decay = 0
+    if (gap < 2*largest_exponent) decay = exp(-max(gap, -largest_exponent))
   end function decay
 
   pure subroutine evaluate(self, quantity, gap, value)
