@@ -42,7 +42,7 @@ _NO_NUMBERS = (
     "byte_record", "c_library", "case_rows", "checksums", "clock", "command_line", "decimal",
     "deck", "deck_keys", "deck_number", "deck_numbers", "deck_scan", "deck_source",
     "deck_store", "deck_values", "dispatch", "failure", "files", "folder_lock", "journal",
-    "namelist_writer", "preflight", "progress", "publication", "ranks",
+    "launch", "namelist_writer", "preflight", "progress", "publication", "ranks",
     "result_rows", "result_tables", "run_identity", "snapin", "state_records",
     "text", "text_file",
 )
