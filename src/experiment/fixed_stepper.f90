@@ -73,11 +73,11 @@ contains
     real(wp), intent(in) :: h0
     type(branch_point_t), intent(inout) :: position
     type(step_result_t), intent(out) :: event
-    type(step_result_t) :: slip
+    type(step_result_t) :: slip, nothing
     logical :: slipped
 
     do
-      event = step_result_t()
+      event = nothing
       call step_until_slip()
       if (.not. slipped) exit
       if (.not. slip%jumped .or. event%jump_load < slip%jump_load) slip = event
