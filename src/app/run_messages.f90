@@ -11,7 +11,7 @@ module run_messages
   public :: destination_t, tell
 
   !> The folder of a run's results, or the program's name if they go to standard output; whether
-  !> messages are left out.
+  !> messages are left out, and whether results go to standard output.
   type :: destination_t
     character(len=:), allocatable :: folder
     logical :: quiet = .false., to_stream = .false.

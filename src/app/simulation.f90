@@ -119,8 +119,8 @@ contains
       converged = .false.
       call mend(destination%folder, mended, error)
       if (allocated(error)) return
-      if (mended) call &
-        destination%say('installed the results that an interrupted run had completed')
+      if (mended) call destination%say( &
+        'installed the results that an interrupted run had completed')
       if (file_exists(journal_of(destination%folder))) return
       if (.not. resume) return
       call find_finished(destination%folder, scene%deck%resolved(), finished, converged)
@@ -144,7 +144,7 @@ contains
       if (allocated(error)) return
       if (out_dir == to_stream) return
       if (.not. results%lock%is_held()) call destination%say('warning: folders cannot be ' // &
-        'locked '// 'here; let no other run write into this one')
+        'locked here; let no other run write into this one')
       if (results%journal%inherited > 0) then
         call destination%say('continuing a run that was interrupted after '// &
           duration(results%journal%earlier))
@@ -152,8 +152,8 @@ contains
         call destination%say('the interrupted run left nothing to continue; ' // &
           'starting from the beginning')
       else if (left_over) then
-        call &
-          destination%say('starting over; --resume continues an interrupted run of the same deck')
+        call destination%say( &
+          'starting over; --resume continues an interrupted run of the same deck')
       end if
     end subroutine open_folder
 

@@ -1,6 +1,7 @@
-!> Gauss-Legendre rules, the companion rule for a logarithm at the left end, barycentric Lagrange
-!> interpolation, and rules for integrals over wave numbers k of a smooth function times products of
-!> waves, cos(k x) or J0(k x), at several abscissas x, each with a largest wave number that matters.
+!> Gauss-Legendre rules, the companion rule for a logarithm at the left end, and barycentric
+!> Lagrange interpolation. Rules for integrals over wave numbers k of a smooth function times
+!> products of waves, cos(k x) or J0(k x), at several abscissas x, each with a largest wave number
+!> that matters.
 module quadrature
   use kinds, only: wp, pi
   implicit none

@@ -71,6 +71,7 @@ contains
     real(sp) :: column(n), square(panel, panel), right(panel, n), most
     integer :: first, last, j, k
 
+    regular = .true.
     do first = 1, n, panel
       last = first + panel - 1
       do k = first, last
@@ -156,7 +157,7 @@ contains
   pure subroutine subtract(rows, columns, n, m, x, y)
     integer, intent(in) :: rows, columns, n
     real(sp), intent(in) :: m(n, panel), x(panel, columns)
-    real(sp), intent(inout) :: y(n, columns)
+    real(sp), intent(inout) :: y(n, *)
     integer :: i, j
 
     do j = 1, columns
@@ -178,7 +179,7 @@ contains
 
     ! The elements of b / unit neither overflow nor vanish.
     unit = maxval(abs(b))
-    if (.not. unit > 0) return
+    if (.not. unit > tiny(unit)) return
     n = size(x)
     x(:size(b)) = real(b*(1/unit), sp)
     x(size(b) + 1:) = 0

@@ -1,5 +1,6 @@
-!> J0 at many arguments, about ten times as fast as the intrinsic function, with an error of 1e-14;
-!> and elliptic integrals by Carlson's duplication (Numer. Algorithms 10, 13, 1995).
+!> Special functions that the compiler lacks or computes slowly: J0 at many arguments, about ten
+!> times as fast as the intrinsic function, with an error of 1e-14; and Carlson's elliptic integral
+!> by duplication (Numer. Algorithms 10, 13, 1995).
 module special_functions
   use, intrinsic :: iso_c_binding, only: c_int, c_double
   use kinds, only: wp, pi

@@ -41,8 +41,7 @@ module exact_path
 contains
 
   !> Traces the path on steps%meshes, or on others if it is lost or has folds that finer meshes do
-  !> not have. fine: judges places of the path; places: the judged places; store:
-  !> of meshes.
+  !> not have. fine: judges places of the path; places: the judged places; store: of meshes.
   subroutine trace_exactly(request, steps, chosen, listener, fine, places, store)
     class(request_t), intent(in) :: request
     class(path_stepper_t), intent(inout), target :: steps

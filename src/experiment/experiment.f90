@@ -146,7 +146,7 @@ contains
     call observer%hear('estimating errors')
     select type (steps)
     class is (path_stepper_t)
-      call enter_energy(steps%known, outcome, outcome%places)
+      call enter_energy(steps%known, outcome)
       if (request%table) call enter_table(steps, outcome%readings, outcome%places)
     class is (fixed_stepper_t)
       call fine%lay_out_fixed(steps, outcome%chosen)

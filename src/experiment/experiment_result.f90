@@ -1,6 +1,7 @@
-!> Results of the experiments of a scene, in the units of `dimensionless_problem`. The places of the
-!> path's readings are entered into their table under the names in `result_rows`: of drives, given
-!> loads, energies, and a table of stable states, which is judged at some of its rows.
+!> Results of the experiments of a scene, in the units of `dimensionless_problem`, and the places at
+!> which their numbers are read. Those of the path's readings are entered into the table of places
+!> under the names in `result_rows`: of drives, given loads, energies, and a table of stable states,
+!> which is judged at some of its rows.
 module experiment_result
   use kinds, only: wp
   use numerics_choice, only: choice_t
@@ -128,10 +129,9 @@ contains
   !> Enters the energy that a cycle dissipates: for a path from large separation through all its
   !> jumps, or for a loading and the first unloading that end on the outermost piece, where they
   !> began.
-  subroutine enter_energy(known, outcome, places)
+  subroutine enter_energy(known, outcome)
     type(known_path_t), intent(in) :: known
-    type(experiment_result_t), intent(in) :: outcome
-    type(places_t), intent(inout) :: places
+    type(experiment_result_t), intent(inout) :: outcome
     integer, allocatable :: fold(:)
     real(wp) :: lowest
     integer :: turned, i
@@ -151,8 +151,8 @@ contains
     if (turned < 2) return
     fold = folds_of_cycle(known, turned, lowest)
     do i = 1, size(fold)
-      call places%enter('energy_lost', 1, point_of_path(fold(i)))
-      call places%enter('energy_lost', 1, point_of_path(fold(i), landing=.true.), -1.0_wp)
+      call outcome%places%enter('energy_lost', 1, point_of_path(fold(i)))
+      call outcome%places%enter('energy_lost', 1, point_of_path(fold(i), landing=.true.), -1.0_wp)
     end do
   end subroutine enter_energy
 

@@ -170,7 +170,7 @@ contains
           if (jump%before == 0) cycle
           off = abs(outcome%fitted%jump_z(i) - jump%z)
           if (.not. off < huge(1.0_wp)) then
-            call add('on the ' // trim(ways(i)) // ' the data jump and the model does ' // 'not' &
+            call add('on the ' // trim(ways(i)) // ' the data jump and the model does not' &
               // not_described)
           else if (off > far*jump%uncertainty) then
             call add('on the ' // trim(ways(i)) // ' the data jump at z = ' // rounded(jump%z) // &

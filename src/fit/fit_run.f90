@@ -58,9 +58,9 @@ module fit_run
 
 contains
 
-  !> Runs the fit. family: the problems, whose parameters are
-  !> the unknowns of the model. wider: the same family with the fixed numbers of the deck as further
-  !> parameters. problem: the problem with the deck's values.
+  !> Runs the fit. family: the problems, whose parameters are the unknowns of the model. wider: the
+  !> same family with the fixed numbers of the deck as further parameters. problem: the problem with
+  !> the deck's values.
   subroutine run_fit(measured, fit, numerics, family, wider, problem, listener, outcome)
     type(measured_t), intent(in) :: measured
     type(fit_t), intent(in) :: fit

@@ -139,7 +139,7 @@ contains
     if (problem%law%step_width > 0) &
       gap = max(gap, problem%law%step_at + whole_step*problem%law%step_width)
     if (problem%shape%parabolic) gap = max(gap, 2*(27*coupling_over(problem, &
-      problem%shape%position_of(0.5_wp*gap))* max(problem%law%adhesion, 0.0_wp))**(2.0_wp/7))
+      problem%shape%position_of(0.5_wp*gap))*max(problem%law%adhesion, 0.0_wp))**(2.0_wp/7))
   end function calm_gap
 
   !> The largest gap at which bodies deform by more than the fraction `left` of the deformation at

@@ -79,8 +79,9 @@ contains
           jacobian(:, k) = (residual(trial) - r)/(trial(k) - t(k))
         end do
       end if
-      step = [r(2)*jacobian(1, 2) - r(1)*jacobian(2, 2), r(1)*jacobian(2, 1) - r(2)*jacobian(1, &
-        1)]/ (jacobian(1, 1)*jacobian(2, 2) - jacobian(1, 2)*jacobian(2, 1))
+      step = [r(2)*jacobian(1, 2) - r(1)*jacobian(2, 2), &
+        r(1)*jacobian(2, 1) - r(2)*jacobian(1, 1)]/ &
+        (jacobian(1, 1)*jacobian(2, 2) - jacobian(1, 2)*jacobian(2, 1))
       if (.not. all(abs(step) < huge(step))) return
       off = maxval(abs(step)/scale)
       solved = off*merge(off/last, increment, gains) <= rounding

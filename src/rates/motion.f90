@@ -35,7 +35,7 @@ contains
     motion%least = negligible/velocity
     where (motion%lasts < motion%least) motion%lasts = 0
     motion%began(2) = motion%lasts(1)
-    motion%began(3) = motion%lasts(1) + dwell
+    motion%began(3) = sum(motion%lasts(:2))
   end function new_motion
 
   !> The position of the drive on a way at a time since its beginning.

@@ -167,6 +167,7 @@ contains
       type(instant_t), intent(inout) :: at
       type(root_search_t) :: search
       real(wp) :: here, left
+      logical :: solved
       integer :: round
 
       search = new_root_search(s_last, missing_last, s, missing)
@@ -178,8 +179,8 @@ contains
         if (done .or. .not. search%is_open()) exit
         here = search%place()
         at%state = last%state
-        call solve_at(here, at, done)
-        if (.not. done) return
+        call solve_at(here, at, solved)
+        if (.not. solved) return
         left = off(steps, at, position)
         call search%note(here, left)
       end do

@@ -48,7 +48,7 @@ contains
     if (problem%law%rest_gap > 0) then
       call take_table_error(problem, summary)
       if (.not. surface_energy(problem) > 0) call summary%warn('contact is only metastable: ' // &
-        'the bodies have less energy apart, '// 'and no classical theory applies')
+        'the bodies have less energy apart, and no classical theory applies')
     end if
     ! Other shapes than parabolas, circles and ellipses have no radius on the axis.
     if (abs(problem%shape%exponent - 2) > 0) return
@@ -221,7 +221,7 @@ contains
       if (outcome%chosen%is_fixed()) enough = max(enough, meaningless)
       if (outcome%error_estimate >= 1) then
         call summary%warn('the error could not be estimated: a finer mesh has no such states, ' // &
-          'or '// 'these did not converge; the numbers may mean nothing')
+          'or these did not converge; the numbers may mean nothing')
       else if (outcome%error_estimate > enough) then
         call summary%warn('the error is estimated as '//rounded(outcome%error_estimate)// &
           ', above the accuracy of '//rounded(scene%numerics%accuracy)//' asked for')

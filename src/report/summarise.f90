@@ -108,8 +108,9 @@ contains
       end do
       do k = 1, size(outcome%unloading)
         if (.not. allocated(outcome%unloading(k)%jump)) cycle
-        if (outcome%unloading(k)%jump_uncertainty > 0 .and. .not. exact('jump_out')) call &
-          summary%set('jump_out_uncertainty', outcome%unloading(k)%jump_uncertainty*problem%length)
+        if (outcome%unloading(k)%jump_uncertainty > 0 .and. .not. exact('jump_out')) &
+          call summary%set('jump_out_uncertainty', &
+          outcome%unloading(k)%jump_uncertainty*problem%length)
         exit
       end do
     end subroutine tell_branches

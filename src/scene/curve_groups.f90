@@ -138,7 +138,8 @@ contains
         call deck%assume('equilibrium_path', 'h0_end', scene%loading%h0_end)
       else if (.not. deck%is_set('equilibrium_path', 'h0_end')) then
         call deck%mistake('equilibrium_path', 'h0_end', &
-                          'missing; give it, or a &loading to take it from')
+          'missing; give it, or a &loading to take it from')
+        return
       end if
       call deck%get('equilibrium_path', 'h0_end', path%h0_end)
       call deck%get_optional('equilibrium_path', 'h0_start', path%h0_start)

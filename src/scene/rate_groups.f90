@@ -123,14 +123,14 @@ contains
       if (allocated(relaxed) .eqv. size(compliance) > 0) then
         call deck%mistake('viscoelastic', 'stiffness_relaxed', &
           'give one of: stiffness_relaxed; compliance')
-      else if (allocated(relaxed)) then
-        if (relaxed > bodies%stiffness .and. .not. bodies%rigid) call deck%mistake( &
+      else if (allocated(relaxed) .and. .not. bodies%rigid) then
+        if (relaxed > bodies%stiffness) call deck%mistake( &
           'viscoelastic', 'stiffness_relaxed', brief(relaxed) // &
           ' is above the instantaneous stiffness, ' // brief(bodies%stiffness) // ' Pa')
         compliance = [1/relaxed - 1/bodies%stiffness]
       end if
-      if (.not. allocated(scene%deck%error) .and. size(compliance) /= size(time)) call &
-        deck%mistake( 'viscoelastic', 'retardation_time', 'has ' // brief(size(time)) // &
+      if (.not. allocated(scene%deck%error) .and. size(compliance) /= size(time)) &
+        call deck%mistake('viscoelastic', 'retardation_time', 'has ' // brief(size(time)) // &
         ' values for ' // brief(size(compliance)) // ' terms')
       if (allocated(scene%deck%error)) return
       scene%creep = creep_t(compliance*bodies%stiffness, time)

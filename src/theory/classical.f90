@@ -19,6 +19,7 @@ module classical
     dmt_pull_off, dmt_radius_at_load, theories, hertz, jkr, dmt, maugis_dugdale, carpick, &
     pietrement_troyon, usual, convex
 
+  !> Numbers of the theories that &classical shows, and their names in decks and tables.
   integer, parameter :: hertz = 1, jkr = 2, dmt = 3, maugis_dugdale = 4, carpick = 5, &
     pietrement_troyon = 6
   character(len=*), parameter :: theories(*) = [character(len=17) :: 'hertz', 'jkr', 'dmt', &
