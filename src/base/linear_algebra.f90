@@ -179,34 +179,28 @@ contains
     right = 0
   end subroutine singular_values
 
-  !> Sign of the determinant, +1 or -1.
+  !> Sign of the determinant, +1 or -1; for exact factors.
   pure integer function determinant_sign(factors)
     type(factorisation_t), intent(in) :: factors
-
-    determinant_sign = (-1)**count(signed_pivots(factors) < 0)
-  end function determinant_sign
-
-  !> Logarithm of the absolute value of the determinant.
-  pure real(wp) function log_determinant(factors)
-    type(factorisation_t), intent(in) :: factors
-
-    log_determinant = sum(log(abs(signed_pivots(factors))))
-  end function log_determinant
-
-  !> Numbers whose product is the determinant: the pivots, negative after an exchange of rows.
-  pure function signed_pivots(factors) result(pivots)
-    type(factorisation_t), intent(in) :: factors
-    real(wp), allocatable :: pivots(:)
     integer :: i
 
-    if (factors%is_rough) then
-      pivots = factors%rough%signed_pivots()
-    else
-      associate (lu => factors%lu, row => factors%pivot)
-        pivots = [(merge(lu(i, i), -lu(i, i), row(i) == i), i=1, size(row))]
-      end associate
-    end if
-  end function signed_pivots
+    determinant_sign = 1
+    do i = 1, size(factors%pivot)
+      if (factors%pivot(i) /= i) determinant_sign = -determinant_sign
+      if (factors%lu(i, i) < 0) determinant_sign = -determinant_sign
+    end do
+  end function determinant_sign
+
+  !> Logarithm of the absolute value of the determinant; for exact factors.
+  pure real(wp) function log_determinant(factors)
+    type(factorisation_t), intent(in) :: factors
+    integer :: i
+
+    log_determinant = 0
+    do i = 1, size(factors%pivot)
+      log_determinant = log_determinant + log(abs(factors%lu(i, i)))
+    end do
+  end function log_determinant
 
   !> Real parts of all eigenvalues of a square matrix, and a bound of their errors. With the vectors
   !> V and values B found, a + E = V B V^-1 with E = (V B - a V) V^-1, and by Bauer and Fike (1960)

@@ -24,7 +24,6 @@ module rough_lu
   contains
     procedure :: factorise
     procedure :: solve
-    procedure :: signed_pivots
   end type rough_lu_t
 
 contains
@@ -202,16 +201,5 @@ contains
     end if
     b = unit*x(:size(b))
   end subroutine solve
-
-  !> Numbers whose product is the determinant: the pivots, negative after an exchange of rows.
-  pure function signed_pivots(self) result(pivots)
-    class(rough_lu_t), intent(in) :: self
-    real(wp) :: pivots(size(self%pivot))
-    integer :: k
-
-    associate (lu => self%lu)
-      pivots = [(real(merge(lu(k, k), -lu(k, k), self%pivot(k) == k), wp), k=1, size(pivots))]
-    end associate
-  end function signed_pivots
 
 end module rough_lu

@@ -3,7 +3,7 @@
 module frozen_jacobian
   use kinds, only: wp
   use contact_state, only: state_t
-  use equilibrium, only: control_t, equations_t, at_h0
+  use equilibrium, only: control_t, equations_t
   use jacobian, only: factorise_jacobian
   use linear_algebra, only: factorisation_t
   implicit none
@@ -51,8 +51,8 @@ contains
   end subroutine forget
 
   !> Factorises the Jacobian at a state. frozen%factors%valid: the Jacobian is regular. The factors
-  !> are rough, for iterations, unless they are to be exact, and leave out nodes unless H0 is
-  !> prescribed at a fixed scale, where their determinants are used.
+  !> are rough, for iterations, unless they are to be exact or the mesh is fixed in space: there
+  !> their determinants are used.
   subroutine freeze(equations, control, state, frozen, exact)
     type(equations_t), intent(inout) :: equations
     type(control_t), intent(in) :: control
@@ -61,11 +61,10 @@ contains
     logical, intent(in), optional :: exact
     logical :: rough
 
-    rough = .true.
-    if (present(exact)) rough = .not. exact
+    rough = .not. equations%meshes%is_fixed()
+    if (present(exact)) rough = rough .and. .not. exact
     if (rough) then
-      call factorise_jacobian(equations, control, state, frozen%factors, &
-        neglected=merge(0.0_wp, negligible, control%kind == at_h0))
+      call factorise_jacobian(equations, control, state, frozen%factors, neglected=negligible)
     else
       call factorise_jacobian(equations, control, state, frozen%factors)
     end if

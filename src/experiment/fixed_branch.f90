@@ -151,9 +151,7 @@ contains
       ahead%foreseen = ahead%regular
       call linearise(state)
       ahead%foreseen = ahead%foreseen .and. ahead%regular
-      ! A state beyond the fold would be on the unstable branch. The sign is that of single precision:
-      ! it is wrong only within some 1e-12 of the fold, since h0 changes there as the square of the
-      ! smallest eigenvalue.
+      ! A state beyond the fold would be on the unstable branch.
       if (ahead%regular) continues = determinant_sign(self%frozen%factors) > 0
     end subroutine try_step
 

@@ -61,6 +61,7 @@ module mesh_plan
     procedure :: in_contact
     procedure :: is_about_axis
     procedure :: is_in_outer_contact
+    procedure :: is_fixed
     procedure :: locked_gap
     procedure :: next_passage
     procedure :: insert
@@ -202,6 +203,13 @@ contains
       if (radius > 0) exit
     end do
   end function next_passage
+
+  !> Whether the meshes are fixed in space, and locked to nothing.
+  pure logical function is_fixed(self)
+    class(mesh_plan_t), intent(in) :: self
+
+    is_fixed = .not. allocated(self%locked)
+  end function is_fixed
 
   !> The gap to which a mesh is locked; 0 for meshes about the axis or fixed in space.
   pure real(wp) function locked_gap(self, mesh) result(gap)
