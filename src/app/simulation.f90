@@ -142,7 +142,7 @@ contains
         identity_of(scene%deck%resolved(), merge(0, thread_count(), allocated(scene%sweep))), &
         resume, error)
       if (allocated(error)) return
-      if (out_dir == to_stream) return
+      if (destination%to_stream) return
       if (.not. results%lock%is_held()) call destination%say('warning: folders cannot be ' // &
         'locked here; let no other run write into this one')
       if (results%journal%inherited > 0) then

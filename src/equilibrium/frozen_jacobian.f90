@@ -51,8 +51,9 @@ contains
   end subroutine forget
 
   !> Factorises the Jacobian at a state. frozen%factors%valid: the Jacobian is regular. The factors
-  !> are rough, for iterations, unless they are to be exact or the mesh is fixed in space: there
-  !> their determinants are used.
+  !> are rough, for iterations, except in three cases: they are to be exact; the mesh is fixed in
+  !> space, where their determinants are used; there is a fluid, whose pressures change so much with
+  !> the gaps in short steps that single precision leaves too much.
   subroutine freeze(equations, control, state, frozen, exact)
     type(equations_t), intent(inout) :: equations
     type(control_t), intent(in) :: control
@@ -61,7 +62,7 @@ contains
     logical, intent(in), optional :: exact
     logical :: rough
 
-    rough = .not. equations%meshes%is_fixed()
+    rough = .not. (equations%meshes%is_fixed() .or. allocated(equations%drainage))
     if (present(exact)) rough = rough .and. .not. exact
     if (rough) then
       call factorise_jacobian(equations, control, state, frozen%factors, neglected=negligible)

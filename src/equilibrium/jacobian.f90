@@ -19,12 +19,11 @@ contains
 
   !> Factors of the Jacobian of `residual` at a state: I - A(c) diag(P'), bordered by the
   !> derivatives by H0 or c if the control has one of these as an unknown. `shift` is added to the
-  !> diagonal of the nodes' block. neglected: if present, the factors are rough, except with a
-  !> fluid: in short steps its pressures change so much with the gaps that single precision leaves
-  !> too much. The value is the part of a change of a node's gap that may be neglected in all other
-  !> gaps. Where pressures hardly change with the gap, as outside the range of the force or within a
-  !> constant tension, the columns of A(c) diag(P') are then left out, and iterations with the
-  !> factors need to solve for the other gaps only.
+  !> diagonal of the nodes' block. neglected: if present, the factors are rough, and this is the
+  !> part of a change of a node's gap that may be neglected in all other gaps. Where pressures hardly
+  !> change with the gap, as outside the range of the force or within a constant tension, the columns
+  !> of A(c) diag(P') are then left out, and iterations with the factors need to solve for the other
+  !> gaps only.
   subroutine factorise_jacobian(equations, control, state, factors, shift, neglected)
     type(equations_t), intent(inout) :: equations
     type(control_t), intent(in) :: control
@@ -32,12 +31,10 @@ contains
     type(factorisation_t), intent(inout) :: factors
     real(wp), intent(in), optional :: shift, neglected
     real(wp) :: least
-    logical :: rough
 
     least = 0
-    rough = present(neglected) .and. .not. allocated(equations%drainage)
-    if (rough .and. .not. (allocated(equations%besides) .or. control%compliance > 0)) &
-      least = neglected
+    if (present(neglected) .and. .not. (allocated(equations%besides) .or. &
+      control%compliance > 0)) least = neglected
     associate (grid => equations%meshes%grid(control%mesh), problem => equations%problem)
       call fill(problem, grid, equations%operator, equations%meshes%locked_gap( &
         control%mesh), control, state, least, factors, equations%cost, shift)
@@ -47,7 +44,7 @@ contains
         call add_spring(equations, control, state, factors%lu)
     end associate
     if (allocated(equations%drainage)) call add_drainage(equations, control, state, factors%lu)
-    call factorise(factors, rough)
+    call factorise(factors, present(neglected))
     equations%cost%factorisations = equations%cost%factorisations + 1
   end subroutine factorise_jacobian
 

@@ -30,12 +30,12 @@ contains
 
   !> Fits the model, starting from several candidates, start(unknown, candidate), and from several
   !> contact points if that is unknown. The search ends when a fit describes the data; the best fit
-  !> is kept. renew: the model is used to find noise (unless keep_noise), outliers and jumps again.
-  subroutine fit_curve(curve, model, start, renew, keep_noise, fitted)
+  !> is kept. renew: the model is used to find noise (unless it is given), outliers and jumps again.
+  subroutine fit_curve(curve, model, start, renew, fitted)
     type(modelled_curve_t), intent(inout) :: curve
     class(force_model_t), intent(inout), target :: model
     real(wp), intent(in) :: start(:, :)
-    logical, intent(in) :: renew, keep_noise
+    logical, intent(in) :: renew
     type(fitted_t), intent(out) :: fitted
     type(curve_residuals_t) :: residuals, trial
     type(fitted_t) :: other
@@ -123,7 +123,7 @@ contains
       do round = 1, most_rounds
         call residuals%curve%ask(fitted%value, .false., done)
         if (.not. done) return
-        call look_again(residuals%curve, fitted%value, keep_noise, done)
+        call look_again(residuals%curve, fitted%value, done)
         if (done) return
         call search(residuals, fitted%value, left, fitted%found)
       end do

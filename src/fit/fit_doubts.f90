@@ -47,12 +47,9 @@ contains
       if (.not. fitted%lack%is_noise()) call add(what_is_left(fitted%lack) // &
         ' times what noise leaves (' // rounded(fitted%lack%excess) // ' standard ' // &
         'deviations more)' // not_described(:merge(0, len(not_described), stopped)))
-      ! The noise that rounding makes at least may be too large too.
-      associate (data => outcome%curve%data)
-        if (fitted%lack%excess < -hardly_ever .and. data%noise%deviation > data%least_noise) &
-          call add(what_is_left(fitted%lack) // ' times what the noise of the deck ' // &
-          'leaves: the noise is smaller, and the standard errors are larger than the true errors')
-      end associate
+      if (fitted%lack%excess < -hardly_ever .and. outcome%curve%data%noise_is_given) &
+        call add(what_is_left(fitted%lack) // ' times what the noise of the deck leaves: ' // &
+        'the noise is smaller, and the standard errors are larger than the true errors')
       if (.not. stopped) call doubt_held(outcome%held)
       do i = 1, size(fitted%value)
         call doubt_unknown(fitted, unknown(i), i)

@@ -80,7 +80,7 @@ contains
     allocate (model%family, source=family)
     model%numerics = numerics
     call starts_like(likely_characters(), family, curve%unknown, start)
-    call fit_curve(curve, model, start, .true., allocated(fit%noise), outcome%fitted)
+    call fit_curve(curve, model, start, .true., outcome%fitted)
     outcome%resolved = model%left_out <= too_much*model%numerics%accuracy
     outcome%curve = curve
     if (.not. outcome%fitted%has_curve) then
@@ -130,7 +130,8 @@ contains
       associate (data => curve%data%measured)
         call find_far(data, slope, curve%data%noise)
         curve%data%least_noise = least_noise*maxval(abs(data%signal))
-        if (allocated(fit%noise)) then
+        curve%data%noise_is_given = allocated(fit%noise)
+        if (curve%data%noise_is_given) then
           curve%data%noise = white_noise(fit%noise)
         else
           curve%data%least_noise = max(curve%data%least_noise, rounding_of(data%signal))
@@ -192,7 +193,7 @@ contains
           start(:size(few%unknown), k) = few%unknown%value
           start(2, k) = own%stiffness*factors(k)
         end do
-        call fit_curve(few, model, start(:size(few%unknown), :), .false., .true., fitted)
+        call fit_curve(few, model, start(:size(few%unknown), :), .false., fitted)
         if (.not. allocated(fitted%effect)) cycle
         new = character_t(fitted%value(1), fitted%value(2), own%range)
         likely = [likely, new]
@@ -243,7 +244,7 @@ contains
         model%theory = theories(i)
         outcome%theory(i)%theory = theories(i)
         outcome%theory(i)%unknown = curve%unknown
-        call fit_curve(curve, model, start, .false., .true., outcome%theory(i)%fitted)
+        call fit_curve(curve, model, start, .false., outcome%theory(i)%fitted)
       end do
     end subroutine fit_theories
 

@@ -18,6 +18,8 @@ module fit_samples
     type(noise_t) :: noise
     !> The least deviation of the noise: that of rounding, in a signal of few digits.
     real(wp) :: least_noise = 0
+    !> Whether the deck gives the noise.
+    logical :: noise_is_given = .false.
     type(measured_jump_t) :: jump(2)
     !> The samples that count. For all samples: the way, the side of its jump (`load_on`), and the
     !> number of the run.

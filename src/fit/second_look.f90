@@ -89,12 +89,11 @@ contains
     normal_of = ((total/n)**(1.0_wp/3) - 1 + 2.0_wp/(9*n))/sqrt(2.0_wp/(9*n) + 2/9.0_wp/known_by)
   end function normal_of
 
-  !> Finds noise, outliers and jumps again. value: the best fit so far. keep_noise: the noise is
-  !> given. settled: there was no significant change.
-  subroutine look_again(curve, value, keep_noise, settled)
+  !> Finds outliers, jumps and, unless it is given, noise again. value: the best fit so far. settled:
+  !> there was no significant change.
+  subroutine look_again(curve, value, settled)
     type(modelled_curve_t), intent(inout) :: curve
     real(wp), intent(in) :: value(:)
-    logical, intent(in) :: keep_noise
     logical, intent(out) :: settled
     real(wp), allocatable :: model(:), baseline(:), left(:)
     logical, allocatable :: usable(:)
@@ -114,7 +113,7 @@ contains
         stand_apart(left, 3*data%way + data%side, .not. data%measured%skipped, &
         [(apart*spread, way=1, size(left))])), data%side < 0)
       settled = all(usable .eqv. data%measured%usable)
-      if (.not. keep_noise) call renew_noise(curve, left)
+      if (.not. data%noise_is_given) call renew_noise(curve, left)
       settled = settled .and. abs(data%noise%deviation - deviation) < 0.01_wp*deviation
       do way = 1, 2
         if (curve%response%way(way)%main == 0 .or. .not. any(data%way == way)) cycle
