@@ -1,6 +1,6 @@
 !> LU factors, with partial pivoting, in single precision. Iterations and iterative refinement
-!> correct what such factors leave; from a hundred rows on they take a third to a half less time than
-!> factors in double precision. Of matrices with tens to a few hundred rows, for which LAPACK's
+!> correct what such factors leave; from a hundred rows on they take a third to a half less time
+!> than factors in double precision. Of matrices with tens to a few hundred rows, for which LAPACK's
 !> bookkeeping takes as long as its arithmetic, they are made here.
 module rough_lu
   use kinds, only: wp, sp

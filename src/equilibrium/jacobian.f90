@@ -20,10 +20,10 @@ contains
   !> Factors of the Jacobian of `residual` at a state: I - A(c) diag(P'), bordered by the
   !> derivatives by H0 or c if the control has one of these as an unknown. `shift` is added to the
   !> diagonal of the nodes' block. neglected: if present, the factors are rough, and this is the
-  !> part of a change of a node's gap that may be neglected in all other gaps. Where pressures hardly
-  !> change with the gap, as outside the range of the force or within a constant tension, the columns
-  !> of A(c) diag(P') are then left out, and iterations with the factors need to solve for the other
-  !> gaps only.
+  !> part of a change of a node's gap that may be neglected in all other gaps. Where pressures
+  !> hardly change with the gap, as outside the range of the force or within a constant tension, the
+  !> columns of A(c) diag(P') are then left out, and iterations with the factors need to solve for
+  !> the other gaps only.
   subroutine factorise_jacobian(equations, control, state, factors, shift, neglected)
     type(equations_t), intent(inout) :: equations
     type(control_t), intent(in) :: control

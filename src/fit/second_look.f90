@@ -89,8 +89,8 @@ contains
     normal_of = ((total/n)**(1.0_wp/3) - 1 + 2.0_wp/(9*n))/sqrt(2.0_wp/(9*n) + 2/9.0_wp/known_by)
   end function normal_of
 
-  !> Finds outliers, jumps and, unless it is given, noise again. value: the best fit so far. settled:
-  !> there was no significant change.
+  !> Finds outliers, jumps and, unless it is given, noise again. value: the best fit so far.
+  !> settled: there was no significant change.
   subroutine look_again(curve, value, settled)
     type(modelled_curve_t), intent(inout) :: curve
     real(wp), intent(in) :: value(:)
