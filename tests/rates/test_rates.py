@@ -5,28 +5,11 @@ import math
 import numpy as np
 import pytest
 from support.creeping import cycle
+from support.driven import at_rest, near, scene
 from support.scenes import JKR, deck, lennard_jones
 
 # In units of z0, and of the time of retardation.
 FAST, SLOW = 1.0e5, 0.01
-
-
-def scene(sigma, relaxed=None, *, velocity=1.0, start=15.0, turn=-1.0, accuracy=1e-4, creep=None,
-          **drive):
-    """Bodies of strength sigma at once, and of `relaxed` at rest."""
-    if relaxed is not None:
-        creep = {"stiffness_relaxed": sigma / relaxed, "retardation_time": 1.0}
-    return lennard_jones(
-        sigma, drive={"velocity": velocity, "z_start": start, "z_turn": turn, **drive},
-        viscoelastic=creep, numerics={"accuracy": accuracy})
-
-
-def at_rest(run, sigma):
-    return run(lennard_jones(sigma, equilibrium_path={"h0_end": -1.0})).summary
-
-
-def near(summary, key, value, times=1.0):
-    return abs(summary[key] - value) <= times * summary[key + "_error"]
 
 
 @pytest.mark.parametrize("sigma", [0.1, 2.0])
@@ -242,101 +225,6 @@ def test_rows_have_times_and_ways(run):
     np.testing.assert_allclose(table["z"], table["h0"] - table["load"] / 10, atol=1e-9)
 
 
-@pytest.mark.parametrize("change, message", [
-    ({"viscoelastic": {"stiffness_relaxed": 2.0, "retardation_time": 1.0}},
-     "above the instantaneous"),
-    ({"drive": {"velocity": 1.0, "z_start": 10.0, "z_turn": -1.0, "z_end": 1e16}},
-     "h0 reaches 1e16 m, more than 1e15 of these lengths"),
-    ({"drive": {"velocity": 1.0, "z_start": 10.0, "z_turn": -1e16}}, "more than 1e15"),
-    ({"viscoelastic": {"retardation_time": 1.0}}, "give one of"),
-    ({"viscoelastic": {"compliance": [1.0, 2.0], "retardation_time": 1.0}}, "1 values for 2"),
-    ({"drive": None, "viscoelastic": {"stiffness_relaxed": 0.5, "retardation_time": 1.0},
-      "equilibrium_path": {"h0_end": 0.0}}, "needs &drive"),
-    ({"drive": {"velocity": 1.0, "z_start": 1.0, "z_turn": 2.0}}, "is not above z_turn"),
-    ({"drive": {"velocity": 1.0, "z_start": 3.0, "z_turn": 2.0, "time_step": 1e-9}}, "steps"),
-    ({"equilibrium_path": {"h0_end": 0.0}}, "which &drive does not have"),
-    ({"bodies": {"radius": 1.0, "rigid": True}}, "needs bodies that deform, or &fluid"),
-    ({"bodies": {"radius": 1.0, "rigid": True}, "fluid": {"viscosity": 1.0},
-      "viscoelastic": {"stiffness_relaxed": 1.0, "retardation_time": 1.0}}, "these are rigid"),
-])
-def test_mistakes_are_named(run, change, message):
-    groups = {"drive": {"velocity": 1.0, "z_start": 10.0, "z_turn": -1.0}, **change}
-    bodies = groups.pop("bodies", None)
-    text = lennard_jones(0.1, **groups)
-    if bodies:
-        text = text.replace("stiffness = 1.0", "rigid = .true.")
-    assert message in run(text, status=2).stderr
-
-
-def test_a_start_in_contact_is_refused(run):
-    found = run(scene(2.0, 4.0, start=0.5, turn=-1.0), status=1)
-    assert any("start farther apart" in text for text in found.summary["warnings"])
-    # There are no numbers whose error could be estimated.
-    assert not any("error" in text for text in found.summary["warnings"])
-
-
-@pytest.mark.long
-def test_what_cannot_be_resolved_is_not_silent(run):
-    found = run(scene(4.0, 80.0, velocity=20.0, start=80.0, turn=-8.0, accuracy=1e-2))
-    assert found.summary["error_estimate"] < 3e-2 or any(
-        "above the accuracy" in text for text in found.summary["warnings"])
-
-
-def test_bodies_that_are_lost_have_no_numbers(run):
-    # A fluid that hardly resists, between bodies fifty times as soft at rest. Rounding decides
-    # whether the bodies are lost or come to the end with an unknown error.
-    found = run(lennard_jones(
-        0.1, drive={"velocity": 5.0, "z_start": 60.0, "z_turn": -2.0},
-        viscoelastic={"stiffness_relaxed": 0.02, "retardation_time": 1.0},
-        fluid={"viscosity": 1e-6}, numerics={"accuracy": 1e-2}), status=None)
-    lost = any("the curve ends there" in text for text in found.warnings)
-    assert lost == (found.status == 1) == ("energy_dissipated" not in found.summary)
-    if lost:
-        assert any("after" in text and ("no further state was found;" in text) != (
-            "too many steps" in text) for text in found.warnings)
-        assert any("the error could not be estimated" in text for text in found.warnings)
-
-
-def test_a_drive_of_too_many_steps_says_so(run):
-    # With halved steps they are a few more than the largest number.
-    found = run(deck(
-        bodies={"radius": 1e-5, "rigid": True},
-        force={"law": "lennard_jones", "hamaker": 1e-21, "z0": 0.2e-9},
-        fluid={"viscosity": 1e-3},
-        drive={"velocity": 1e-6, "z_start": 20e-9, "z_turn": 10e-9, "time_step": 20e-3 / 39999},
-        numerics={"accuracy": 1e-2}), status=1)
-    said = " ".join(found.warnings)
-    assert "there were too many steps or jumps" in said and "no further state" not in said
-    # It is unknown, but a number.
-    assert 1 <= found.summary["error_estimate"] < math.inf
-
-
-def test_a_drive_may_begin_where_loads_underflow(run):
-    """Steps without any load became ever shorter."""
-    found = run(deck(bodies={"radius": 1e-5, "stiffness": 1e9},
-                     hydrophobic={"energy": 1e-3, "decay_length": 0.3e-9},
-                     hydration={"energy": 2e-3, "decay_length": 0.15e-9},
-                     drive={"velocity": 1e-6, "z_start": 4e-7, "z_turn": -5e-9}))
-    assert found.curve["load"][0] == 0
-    assert not found.warnings
-
-
-def test_a_largest_tension_at_the_end_has_a_warning(run):
-    def drive(end):
-        return run(deck(
-            bodies={"radius": 1e-6, "stiffness": 2.2e9},
-            force={"law": "lennard_jones", "surface_energy": 0.05, "z0": 0.5e-9},
-            drive={"velocity": 1e-6, "z_start": 60e-9, "z_turn": -20e-9, "z_end": end,
-                   "stiffness": 1.0}, numerics={"accuracy": 1e-3}))
-    # The spring parts the bodies after 250 nm.
-    held, apart = drive(60e-9), drive(300e-9)
-    for found, warned in ((held, True), (apart, False)):
-        assert any("largest at the end" in text for text in found.warnings) is warned
-        last = -found.curve["load"][-1]
-        assert (abs(found.summary["max_tension"] / last - 1) < 1e-12) == warned
-    assert held.summary["max_tension"] < 0.9 * apart.summary["max_tension"]
-
-
 def test_rigid_bodies_have_the_drag_of_a_film_beside_their_force(run):
     curve = run(deck(
         bodies={"radius": 1e-5, "rigid": True},
@@ -351,57 +239,3 @@ def test_rigid_bodies_have_the_drag_of_a_film_beside_their_force(run):
         drag = 6 * math.pi * 1e-3 * 1e-10 * 1e-6 / h0
         force = -1e-21 * 1e-5 / (6 * h0**2) * (1 - (0.2e-9 / h0) ** 6 / 4)
         np.testing.assert_allclose(load, sense * drag + force, rtol=1e-7)
-
-
-def test_derivatives_of_a_drive_keep_its_invariances(run):
-    names = ("force.hamaker", "bodies.stiffness", "viscoelastic.stiffness_relaxed",
-             "drive.velocity", "viscoelastic.retardation_time")
-    found = run(lennard_jones(
-        0.2, drive={"velocity": 8.0, "z_start": 20.0, "z_turn": -4.0}, numerics={"accuracy": 1e-3},
-        viscoelastic={"stiffness_relaxed": 0.25, "retardation_time": 1.0},
-        sensitivity={"parameters": list(names)}))
-    table = found.table("sensitivity.csv")
-    for key in ("max_tension", "energy_dissipated"):
-        of_key = table["quantity"] == key
-        rate = dict(zip(table["parameter"][of_key], table["logarithmic"][of_key]))
-        assert set(rate) == set(names)
-        # Strength and moduli in proportion change pressures alone, velocity and time only together.
-        assert sum(rate[name] for name in names[:3]) == pytest.approx(1, abs=5e-3)
-        assert rate["drive.velocity"] == pytest.approx(rate["viscoelastic.retardation_time"],
-                                                       abs=1e-6)
-
-
-def test_the_radius_in_the_definition_of_an_effective_work_is_differentiated(run):
-    found = run(lennard_jones(
-        0.2, drive={"velocity": 8.0, "z_start": 20.0, "z_turn": -4.0}, numerics={"accuracy": 1e-3},
-        sensitivity={"parameters": "bodies.radius"}))
-    table = found.table("sensitivity.csv")
-    rate = dict(zip(table["quantity"], table["logarithmic"]))
-    assert rate["effective_work_of_adhesion"] == pytest.approx(rate["max_tension"] - 1, abs=0.01)
-
-
-def test_a_number_at_the_end_of_its_range_is_varied_to_one_side(run):
-    found = run(lennard_jones(
-        0.2, bodies={"radius": 1.0, "young": 0.75, "poisson": 0.5},
-        drive={"velocity": 8.0, "z_start": 20.0, "z_turn": -4.0}, numerics={"accuracy": 1e-4},
-        sensitivity={"parameters": ["bodies.young", "bodies.poisson"]}))
-    table = found.table("sensitivity.csv")
-    tension = table["quantity"] == "max_tension"
-    rate = dict(zip(table["parameter"][tension], table["logarithmic"][tension]))
-    # The stiffness is E/(1-nu^2), whose logarithmic derivative by nu is 2/3 at 1/2.
-    assert rate["bodies.poisson"] == pytest.approx(2 / 3 * rate["bodies.young"], rel=1e-2)
-
-
-@pytest.mark.parametrize("name, message", [
-    ("numerics.accuracy", "is not a number on which results depend"),
-    ("drive.dwell", "is 0"),
-    ("drive.stiffness", "the deck gives no"),
-    ("bodies.young", "is a list; name an element of it, as 'bodies.young(1)'"),
-    ("bodies.weight", "not a key"),
-])
-def test_what_a_drive_cannot_be_differentiated_by_is_named(run, name, message):
-    found = run(lennard_jones(
-        0.1, bodies={"radius": 1.0, "young": [1.0, 2.0], "poisson": 0.3},
-        drive={"velocity": 8.0, "z_start": 20.0, "z_turn": 0.0, "dwell": 0.0},
-        sensitivity={"parameters": name}), status=2)
-    assert message in found.stderr

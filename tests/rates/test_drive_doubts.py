@@ -1,0 +1,102 @@
+"""Claims about drives that are refused, lost or doubtful."""
+
+import math
+
+import pytest
+from support.driven import scene
+from support.scenes import deck, lennard_jones
+
+
+@pytest.mark.parametrize("change, message", [
+    ({"viscoelastic": {"stiffness_relaxed": 2.0, "retardation_time": 1.0}},
+     "above the instantaneous"),
+    ({"drive": {"velocity": 1.0, "z_start": 10.0, "z_turn": -1.0, "z_end": 1e16}},
+     "h0 reaches 1e16 m, more than 1e15 of these lengths"),
+    ({"drive": {"velocity": 1.0, "z_start": 10.0, "z_turn": -1e16}}, "more than 1e15"),
+    ({"viscoelastic": {"retardation_time": 1.0}}, "give one of"),
+    ({"viscoelastic": {"compliance": [1.0, 2.0], "retardation_time": 1.0}}, "1 values for 2"),
+    ({"drive": None, "viscoelastic": {"stiffness_relaxed": 0.5, "retardation_time": 1.0},
+      "equilibrium_path": {"h0_end": 0.0}}, "needs &drive"),
+    ({"drive": {"velocity": 1.0, "z_start": 1.0, "z_turn": 2.0}}, "is not above z_turn"),
+    ({"drive": {"velocity": 1.0, "z_start": 3.0, "z_turn": 2.0, "time_step": 1e-9}}, "steps"),
+    ({"equilibrium_path": {"h0_end": 0.0}}, "which &drive does not have"),
+    ({"bodies": {"radius": 1.0, "rigid": True}}, "needs bodies that deform, or &fluid"),
+    ({"bodies": {"radius": 1.0, "rigid": True}, "fluid": {"viscosity": 1.0},
+      "viscoelastic": {"stiffness_relaxed": 1.0, "retardation_time": 1.0}}, "these are rigid"),
+])
+def test_mistakes_are_named(run, change, message):
+    groups = {"drive": {"velocity": 1.0, "z_start": 10.0, "z_turn": -1.0}, **change}
+    bodies = groups.pop("bodies", None)
+    text = lennard_jones(0.1, **groups)
+    if bodies:
+        text = text.replace("stiffness = 1.0", "rigid = .true.")
+    assert message in run(text, status=2).stderr
+
+
+def test_a_start_in_contact_is_refused(run):
+    found = run(scene(2.0, 4.0, start=0.5, turn=-1.0), status=1)
+    assert any("start farther apart" in text for text in found.summary["warnings"])
+    # There are no numbers whose error could be estimated.
+    assert not any("error" in text for text in found.summary["warnings"])
+
+
+@pytest.mark.long
+def test_what_cannot_be_resolved_is_not_silent(run):
+    found = run(scene(4.0, 80.0, velocity=20.0, start=80.0, turn=-8.0, accuracy=1e-2))
+    assert found.summary["error_estimate"] < 3e-2 or any(
+        "above the accuracy" in text for text in found.summary["warnings"])
+
+
+def test_bodies_that_are_lost_have_no_numbers(run):
+    # A fluid that hardly resists, between bodies fifty times as soft at rest. Rounding decides
+    # whether the bodies are lost or come to the end with an unknown error.
+    found = run(lennard_jones(
+        0.1, drive={"velocity": 5.0, "z_start": 60.0, "z_turn": -2.0},
+        viscoelastic={"stiffness_relaxed": 0.02, "retardation_time": 1.0},
+        fluid={"viscosity": 1e-6}, numerics={"accuracy": 1e-2}), status=None)
+    lost = any("the curve ends there" in text for text in found.warnings)
+    assert lost == (found.status == 1) == ("energy_dissipated" not in found.summary)
+    if lost:
+        assert any("after" in text and ("no further state was found;" in text) != (
+            "too many steps" in text) for text in found.warnings)
+        assert any("the error could not be estimated" in text for text in found.warnings)
+
+
+def test_a_drive_of_too_many_steps_says_so(run):
+    # With halved steps they are a few more than the largest number.
+    found = run(deck(
+        bodies={"radius": 1e-5, "rigid": True},
+        force={"law": "lennard_jones", "hamaker": 1e-21, "z0": 0.2e-9},
+        fluid={"viscosity": 1e-3},
+        drive={"velocity": 1e-6, "z_start": 20e-9, "z_turn": 10e-9, "time_step": 20e-3 / 39999},
+        numerics={"accuracy": 1e-2}), status=1)
+    said = " ".join(found.warnings)
+    assert "there were too many steps or jumps" in said and "no further state" not in said
+    # It is unknown, but a number.
+    assert 1 <= found.summary["error_estimate"] < math.inf
+
+
+def test_a_drive_may_begin_where_loads_underflow(run):
+    """Steps without any load became ever shorter."""
+    found = run(deck(bodies={"radius": 1e-5, "stiffness": 1e9},
+                     hydrophobic={"energy": 1e-3, "decay_length": 0.3e-9},
+                     hydration={"energy": 2e-3, "decay_length": 0.15e-9},
+                     drive={"velocity": 1e-6, "z_start": 4e-7, "z_turn": -5e-9}))
+    assert found.curve["load"][0] == 0
+    assert not found.warnings
+
+
+def test_a_largest_tension_at_the_end_has_a_warning(run):
+    def drive(end):
+        return run(deck(
+            bodies={"radius": 1e-6, "stiffness": 2.2e9},
+            force={"law": "lennard_jones", "surface_energy": 0.05, "z0": 0.5e-9},
+            drive={"velocity": 1e-6, "z_start": 60e-9, "z_turn": -20e-9, "z_end": end,
+                   "stiffness": 1.0}, numerics={"accuracy": 1e-3}))
+    # The spring parts the bodies after 250 nm.
+    held, apart = drive(60e-9), drive(300e-9)
+    for found, warned in ((held, True), (apart, False)):
+        assert any("largest at the end" in text for text in found.warnings) is warned
+        last = -found.curve["load"][-1]
+        assert (abs(found.summary["max_tension"] / last - 1) < 1e-12) == warned
+    assert held.summary["max_tension"] < 0.9 * apart.summary["max_tension"]
