@@ -4,8 +4,8 @@
 !> A mesh is described by its kind, its centre, lengths and orders: 'panels' has lengths from the
 !> centre to the ends of panels, and orders(1) nodes on each; 'uniform' ends at the last length and
 !> has orders(1) nodes in all; 'mapped' has sinh panels of these lengths in z, one of them inside a
-!> centre that is not the axis, with their orders and the order of the tail, and
-!> map = [d, decay, digits] (`mapped_mesh`). `nodes` is the number of nodes in all.
+!> place that is not the axis, with their orders and the order of the tail, and map = [d, decay,
+!> digits, axis_power, focus] (`mapped_mesh`). `nodes` is the number of nodes in all.
 module flat_numerics
   use iso_c_binding, only: c_double, c_int
   implicit none
@@ -92,7 +92,7 @@ contains
     use discretisation, only: discretisation_t
     character(len=*), intent(in) :: kind
     integer(c_int), intent(in) :: nodes, l, m, orders(m)
-    real(c_double), intent(in) :: centre, lengths(l), map(4)
+    real(c_double), intent(in) :: centre, lengths(l), map(5)
     real(c_double), intent(out) :: x(nodes), weight(nodes), spacing
     type(discretisation_t) :: mesh
 
@@ -107,7 +107,7 @@ contains
     use discretisation, only: discretisation_t
     character(len=*), intent(in) :: kind
     integer(c_int), intent(in) :: nodes, l, m, orders(m)
-    real(c_double), intent(in) :: centre, lengths(l), map(4)
+    real(c_double), intent(in) :: centre, lengths(l), map(5)
     real(c_double), intent(out) :: matrix(nodes + 2, nodes)
     type(discretisation_t) :: mesh
 
@@ -122,7 +122,7 @@ contains
     use discretisation, only: discretisation_t
     character(len=*), intent(in) :: kind
     integer(c_int), intent(in) :: nodes, n, l, m, orders(m)
-    real(c_double), intent(in) :: centre, lengths(l), map(4), values(nodes), at(n)
+    real(c_double), intent(in) :: centre, lengths(l), map(5), values(nodes), at(n)
     real(c_double), intent(out) :: found(n)
     type(discretisation_t) :: mesh
     integer :: i
@@ -149,7 +149,7 @@ contains
     character(len=*), intent(in) :: deck, kind, method
     integer(c_int), intent(in) :: nodes, l, m, orders(m)
     integer(c_int), intent(in) :: most_iterations, depth, patience, stop_on_change
-    real(c_double), intent(in) :: coupling, centre, lengths(l), map(4), scale, h0, start(nodes)
+    real(c_double), intent(in) :: coupling, centre, lengths(l), map(5), scale, h0, start(nodes)
     real(c_double), intent(in) :: tolerance, mixing_limit, displacement_tolerance
     real(c_double), intent(out) :: gap(nodes), pressure(nodes), numbers(3)
     integer(c_int), intent(out) :: counts(4), stat
@@ -187,7 +187,7 @@ contains
     use mapped_mesh, only: mapped_shape_t, new_mapped_mesh
     use linear_mesh, only: new_panel_grid, new_uniform_grid
     character(len=*), intent(in) :: kind
-    real(c_double), intent(in) :: centre, lengths(:), map(4)
+    real(c_double), intent(in) :: centre, lengths(:), map(5)
     integer(c_int), intent(in) :: orders(:)
     logical, intent(in) :: elastic
     type(discretisation_t) :: mesh
@@ -199,9 +199,9 @@ contains
       mesh = new_panel_grid(centre, lengths, orders(1), elastic)
     case ('mapped')
       associate (panels => size(lengths))
-        mesh = new_mapped_mesh(mapped_shape_t(centre, map(1), merge(1, 0, centre > 0), &
-          orders(:panels), lengths, orders(panels + 1), map(2), map(3), axis_power=nint(map(4))), &
-          elastic)
+        mesh = new_mapped_mesh(mapped_shape_t(centre, map(1), merge(1, 0, centre + map(5) > 0), &
+          orders(:panels), lengths, orders(panels + 1), map(2), map(3), axis_power=nint(map(4)), &
+          focus=map(5)), elastic)
       end associate
     end select
   end function mesh_of

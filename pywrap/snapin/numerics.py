@@ -32,7 +32,7 @@ METHODS = ("mixing", "anderson", "newton")
 
 _LARGEST_ORDER = 64
 # The map of meshes without one; mapped meshes are not for users.
-_UNMAPPED = (0.0, 0.0, 0.0, 1.0)
+_UNMAPPED = (0.0, 0.0, 0.0, 1.0, 0.0)
 # As in src/scene/numerics_group.f90.
 _MOST_NODES = 20000
 # More than the deck allows: differences of so many iterations still fit into memory.

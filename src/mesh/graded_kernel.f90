@@ -116,7 +116,7 @@ contains
       z_length = panel%z_length*abs(length)
       call place_along_sinh(panel%d, exp(sign(1.0_wp, length)*z), 0.5_wp*z_length, rule%step, &
         distance, weight)
-      t = centre + panel%d*sinh(z) + sign(1.0_wp, length)*distance
+      t = centre + panel%focus + panel%d*sinh(z) + sign(1.0_wp, length)*distance
       weight = weight*z_length*rule%step_weight*t
     else if (panel%kind == power_map) then
       call place_on_power(panel, from, length, rule%step, distance, t, weight)

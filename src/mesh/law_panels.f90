@@ -10,6 +10,7 @@ module law_panels
   use dimensionless_problem, only: problem_t, calm_gap, adhesion_strength
   use force_law, only: force_law_t, whole_step
   use discretisation, only: local_nodes_t, gauss_nodes
+  use mapped_mesh, only: mapped_shape_t
   use seen_gaps, only: seen_gaps_t
   use represented_pressure, only: panel_pressure
   use step_front, only: front_leads, step_height
@@ -42,22 +43,23 @@ contains
     order = max(fewest, ceiling(density*length + more_nodes))
   end function nodes_on
 
-  !> Lengths in z and numbers of nodes of panels at positions centre + side*d sinh(z): the given
-  !> panels with the number `nodes_on` or more, or their halves. Contact radii are between low and
-  !> high; about: the kind of centre. digits: accuracy of load and h0. seen: gaps that replace the
-  !> predicted ones.
-  subroutine fit_panels(problem, about, side, d, low, high, density, fewest, digits, &
+  !> Lengths in z and numbers of nodes of panels at offsets focus + side*d sinh(z), with the centre,
+  !> focus and d of `mapped`: the given panels with the number `nodes_on` or more, or their halves.
+  !> Contact radii are between low and high; about: the kind of centre. digits: accuracy of load and
+  !> h0. seen: gaps that replace the predicted ones.
+  subroutine fit_panels(problem, about, side, mapped, low, high, density, fewest, digits, &
     length, order, seen)
     type(problem_t), intent(in) :: problem
     integer, intent(in) :: about, side, fewest
-    real(wp), intent(in) :: d, low, high, density, digits
+    type(mapped_shape_t), intent(in) :: mapped
+    real(wp), intent(in) :: low, high, density, digits
     real(wp), allocatable, intent(inout) :: length(:)
     integer, allocatable, intent(out) :: order(:)
     type(seen_gaps_t), intent(in), optional :: seen
     !> Number of places on a panel at which a step is tried.
     integer, parameter :: places = 5
     real(wp), allocatable :: given(:), parameter(:), load(:)
-    real(wp) :: centre, most, worst_radius
+    real(wp) :: most, worst_radius
     !> Gauss rules by their number of nodes, made when they are needed.
     type(local_nodes_t), allocatable :: rule(:)
     integer :: worst, k
@@ -71,7 +73,6 @@ contains
     else
       parameter = between(low, high, tries(problem%law))
     end if
-    centre = merge(0.0_wp, 1.0_wp, about == about_axis)
     load = [(load_of(k), k=1, size(parameter))]
     call move_alloc(length, given)
     allocate (rule(ceiling(maxval(times)*nodes_on(maxval(given), density, fewest))))
@@ -140,7 +141,7 @@ contains
       is_resolved = .true.
       if (worst > 0) is_resolved = suffices(z, z_length, rule(nodes), worst, worst_radius)
       do j = 1, size(parameter)
-        radius = radii_of(j, side*d*sinh(z + z_length*[(i, i=0, places - 1)]/(places - 1.0_wp)))
+        radius = radii_of(j, offset_at(z + z_length*[(i, i=0, places - 1)]/(places - 1.0_wp)))
         do i = 1, size(radius)
           if (.not. is_resolved) return
           is_resolved = suffices(z, z_length, rule(nodes), j, radius(i))
@@ -174,19 +175,27 @@ contains
       real(wp), dimension(size(local%node)) :: offset, gap
       real(wp) :: ends(2)
 
-      offset = side*d*sinh(z + z_length*local%node)
+      offset = offset_at(z + z_length*local%node)
       if (j > 1 .and. j < size(parameter) .and. problem%law%step_width > 0) then
         suffices = .not. meets_step(problem%law, gap_of(j, radius, offset([1, size(offset)])))
         if (suffices) return
       end if
       gap = gap_of(j, radius, offset)
-      ends = centre + side*d*sinh(z + z_length*[0, 1])
+      ends = mapped%centre + offset_at(z + z_length*[0, 1])
       if (side < 0) ends = [ends(2), ends(1)]
       associate (unit => merge(1.0_wp, radius, about == about_axis))
-        suffices = left_out(problem, local, unit*centre, unit*ends, unit*(centre + offset), &
-          gap, panel_pressure(problem%law, local, gap), load(j)) <= most
+        suffices = left_out(problem, local, unit*(mapped%centre + mapped%focus), unit*ends, &
+          unit*(mapped%centre + offset), gap, panel_pressure(problem%law, local, gap), load(j)) &
+          <= most
       end associate
     end function suffices
+
+    !> Offsets from the centre of the mesh.
+    elemental real(wp) function offset_at(z) result(offset)
+      real(wp), intent(in) :: z
+
+      offset = mapped%focus + side*mapped%d*sinh(z)
+    end function offset_at
 
     !> The gap number j at offsets from the centre; radius: that of a contact.
     function gap_of(j, radius, offset) result(gap)
@@ -197,7 +206,7 @@ contains
       if (present(seen)) then
         gap = seen%gap(problem%shape, j, radius, offset)
       else
-        gap = gap_at(problem, about, parameter(j), offset, d)
+        gap = gap_at(problem, about, parameter(j), offset, mapped%d)
       end if
     end function gap_of
 
@@ -214,9 +223,9 @@ contains
         load = seen%load(j)
       else if (about == about_axis) then
         z = sum(length)/points*[(i - 0.5_wp, i=1, points)]
-        offset = d*sinh(z)
+        offset = mapped%d*sinh(z)
         load = min(load, sum(length)/points* &
-          sum(abs(problem%law%pressure(gap_of(j, 1.0_wp, offset)))*offset*d*cosh(z)))
+          sum(abs(problem%law%pressure(gap_of(j, 1.0_wp, offset)))*offset*mapped%d*cosh(z)))
       end if
     end function load_of
 
@@ -229,12 +238,13 @@ contains
   !>
   !> Pressures are weighted by their area, limited by the length of the panel and by the area of the
   !> total load, and within the panel by their effect on the gap; under oscillating laws by the area
-  !> of the panel. centre: radius of the mesh's centre; ends, r: radii of the panel's ends and of
-  !> its nodes; gap, pressure: at the nodes; load: the reference load without the factor of 2 pi.
-  pure real(wp) function left_out(problem, local, centre, ends, r, gap, pressure, load) result(left)
+  !> of the panel. focus: radius to which the mesh is mapped; ends, r: radii of the panel's ends
+  !> and of its nodes; gap, pressure: at the nodes; load: the reference load without the factor of
+  !> 2 pi.
+  pure real(wp) function left_out(problem, local, focus, ends, r, gap, pressure, load) result(left)
     type(problem_t), intent(in) :: problem
     type(local_nodes_t), intent(in) :: local
-    real(wp), intent(in) :: centre, ends(2), r(:), gap(:), pressure(:), load
+    real(wp), intent(in) :: focus, ends(2), r(:), gap(:), pressure(:), load
     real(wp), dimension(size(pressure)) :: weight
     real(wp) :: most(1), area, tail, largest, whole
 
@@ -246,7 +256,7 @@ contains
       if (problem%law%edge_gap > 0) most = abs(problem%law%pressure([problem%law%edge_gap]))
       area = min(1.0_wp, load/most(1))
       weight = min(area, ends(2)**2) + &
-        r*abs(r - centre)*(ends(2) - ends(1))/maxval(abs(ends - centre))
+        r*abs(r - focus)*(ends(2) - ends(1))/maxval(abs(ends - focus))
       whole = max(most(1)*area, load)
     end if
     tail = local%tail(weight*pressure)

@@ -74,7 +74,7 @@ contains
     integer, intent(in) :: nodes
     real(wp) :: from_axis
 
-    from_axis = max(0.0_wp, panel%z_left + asinh(centre/panel%d))
+    from_axis = max(0.0_wp, panel%z_left + asinh((centre + panel%focus)/panel%d))
     part = 0
     if (from_axis < about_axis .and. feels_logarithm(from_axis/panel%z_length, nodes, digits)) &
       part = (about_axis - from_axis)/panel%z_length

@@ -1,7 +1,7 @@
-!> Meshes mapped to the contact edge or the axis: distance = d sinh(z) from it, Gauss-Legendre
-!> panels in z, and beyond some position an algebraic panel to infinity, on which pressures are a
-!> power tail. Distances from d to the mesh's length have equal numbers of nodes per factor in
-!> distance.
+!> Meshes mapped to a place, such as the contact edge or the axis: distance = d sinh(z) from it,
+!> Gauss-Legendre panels in z, and beyond some position an algebraic panel to infinity, on which
+!> pressures are a power tail. Distances from d to the mesh's length have equal numbers of nodes per
+!> factor in distance.
 module mapped_mesh
   use kinds, only: wp
   use discretisation, only: discretisation_t, gauss_nodes, axis_row, centre_row, first_node
@@ -19,7 +19,7 @@ module mapped_mesh
     !> Position of the centre (0: the axis, 1: the contact edge), and d.
     real(wp) :: centre = 0, d = 1
     !> Nodes of the sinh panels and their lengths in z, from the innermost outward; the first
-    !> `inner` panels lie inside the centre and extend to the axis.
+    !> `inner` panels lie inside the focus and extend to the axis.
     integer :: inner = 0
     integer, allocatable :: order(:)
     real(wp), allocatable :: z_length(:)
@@ -33,6 +33,8 @@ module mapped_mesh
     logical :: even = .true.
     !> Exponent of the power panel that replaces the innermost panel; 1: none.
     integer :: axis_power = 1
+    !> Offset of the place to which the mesh is mapped.
+    real(wp) :: focus = 0
   contains
     procedure :: halved
     procedure :: enriched
@@ -87,7 +89,8 @@ contains
     same = size(a%order) == size(b%order) .and. a%inner == b%inner .and. &
       a%tail_order == b%tail_order .and. a%axis_power == b%axis_power .and. (a%even .eqv. b%even)
     if (same) same = all(a%order == b%order) .and. all(abs(a%z_length - b%z_length) <= 0) .and. &
-      all(abs([a%centre, a%d, a%decay, a%digits] - [b%centre, b%d, b%decay, b%digits]) <= 0)
+      all(abs([a%centre, a%focus, a%d, a%decay, a%digits] - &
+      [b%centre, b%focus, b%d, b%decay, b%digits]) <= 0)
   end function same_shape
 
   !> The mesh of a shape; elastic = .false.: without the kernel.
@@ -130,7 +133,7 @@ contains
     z = -sum(shape%z_length(:shape%inner))
     do k = 1, panels
       if (k == shape%inner + 1) z = 0
-      grid%panel(k) = sinh_panel(shape%d, z, shape%z_length(k))
+      grid%panel(k) = sinh_panel(shape%focus, shape%d, z, shape%z_length(k))
       if (k > 1) grid%panel(k - 1)%right = grid%panel(k)%left
       z = z + shape%z_length(k)
     end do

@@ -8,7 +8,7 @@ module mesh_rule
   use contact_scales, only: smallest_feature, cohesive_width
   use law_panels, only: fit_panels, nodes_on, about_axis, about_front, about_edge
   use seen_gaps, only: seen_gaps_t
-  use shape_panels, only: panels_for
+  use shape_panels, only: panels_for, has_flat_face
   use step_front, only: front_leads, first_front, front_width
   use mapped_mesh, only: mapped_shape_t
   implicit none
@@ -61,12 +61,13 @@ contains
   end function is_narrow
 
   !> The mesh before contact, about the axis, for H0 up to h0_high and contacts up to the radius
-  !> `widest`. seen: gaps of computed states.
+  !> `widest`. seen: gaps of computed states. If these have an edge, which moves slowly over a
+  !> flat face, the mesh is mapped to the middle of the band over which it moves.
   type(mapped_shape_t) function approach_shape(problem, h0_high, widest, digits, seen) result(shape)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: h0_high, widest, digits
     type(seen_gaps_t), intent(in), optional :: seen
-    real(wp) :: density, reach, feature
+    real(wp) :: density, reach, feature, edges(2)
 
     density = (0.35_wp + digits*(0.4_wp + 0.012_wp*digits))* &
       (1 + 0.03_wp*log(1 + adhesion_strength(problem)))
@@ -76,8 +77,18 @@ contains
     if (front_leads(problem%law)) feature = min(feature, first_front(problem))
     shape%d = exp(rung*floor(log(finer*feature)/rung))
     shape%even = problem%shape%is_even()
-    call add_panels(problem, shape, about_axis, 1, asinh(reach/shape%d), density, digits, 0.0_wp, &
-      0.0_wp, seen)
+    edges = 0
+    if (present(seen)) edges = seen%edges()
+    if (edges(1) > 0 .and. has_flat_face(problem%shape)) then
+      shape%focus = 0.5_wp*sum(edges)
+      shape%d = max(0.5_wp*(edges(2) - edges(1)), finer*smallest_feature(problem, edges(2)))
+      density = density_in_contact(digits)
+      call add_panels(problem, shape, about_axis, -1, asinh(shape%focus/shape%d), density, digits, &
+        0.0_wp, 0.0_wp, seen)
+      shape%inner = size(shape%order)
+    end if
+    call add_panels(problem, shape, about_axis, 1, asinh((reach - shape%focus)/shape%d), density, &
+      digits, 0.0_wp, 0.0_wp, seen)
     call resolve_axis(problem, digits, 2.0_wp, shape)
     shape%digits = kernel_digits(problem, digits, 1.0_wp)
   end function approach_shape
@@ -93,7 +104,7 @@ contains
     type(seen_gaps_t), intent(in), optional :: seen
     real(wp) :: inner, outer, farthest, reach, repulsion
 
-    inner = 0.15_wp + digits*(0.24_wp + 0.0105_wp*digits)
+    inner = density_in_contact(digits)
     if (problem%law%adhesion > 0) then
       ! Under strong adhesion a small contact is drawn out into a neck. Under strong repulsion the
       ! repulsion begins inside the edge. Both cases need more nodes, mainly inside the edge.
@@ -128,6 +139,13 @@ contains
     call add_panels(problem, shape, about, 1, asinh(reach/shape%d), outer, digits, low, high, seen)
     shape%digits = kernel_digits(problem, digits, high)
   end function contact_shape
+
+  !> Nodes per unit of z about the edge of a contact.
+  pure real(wp) function density_in_contact(digits) result(density)
+    real(wp), intent(in) :: digits
+
+    density = 0.15_wp + digits*(0.24_wp + 0.0105_wp*digits)
+  end function density_in_contact
 
   !> The tail of the pressure: an algebraic panel if the pressure decreases as a power. Otherwise
   !> the mesh ends where the pressure is negligible; this sets `reach` (lateral units) and increases
@@ -195,11 +213,13 @@ contains
     ! Around a contact wider than the radius of the shape's kinks there are no kinks.
     broken = problem%shape%smooth_from() > merge(low, 0.0_wp, side > 0 .and. about == about_edge)
     if (side > 0) broken = broken .or. end_matters(problem, digits, &
-      (shape%centre + shape%d*sinh(z_length))*merge(high, 1.0_wp, shape%centre > 0), high)
+      (shape%centre + shape%focus + shape%d*sinh(z_length))* &
+      merge(high, 1.0_wp, shape%centre > 0), high)
     fewest = ceiling(short_order + short_orders*digits)
     associate (law => problem%law)
       if (broken) then
-        lengths = panels_for(problem%shape, about == about_axis, shape%d, z_length)
+        lengths = panels_for(problem%shape, about == about_axis, shape%focus, side, shape%d, &
+          z_length)
       else
         lengths = [rung*ceiling(z_length/rung)]
         panels = 1
@@ -215,7 +235,7 @@ contains
       ! known. In contact under a law with special gaps, meshes are laid out for seen gaps only.
       if (law%edge_gap > 0 .and. (present(seen) .or. about == about_axis .or. &
         .not. (side < 0 .or. is_narrow(problem)))) then
-        call fit_panels(problem, about, side, shape%d, low, high, density, fewest, &
+        call fit_panels(problem, about, side, shape, low, high, density, fewest, &
           digits_to_fit, lengths, orders, seen)
       else
         orders = nodes_on(lengths, density, fewest)

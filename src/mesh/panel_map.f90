@@ -2,12 +2,12 @@
 !> polynomials on Gauss-Legendre nodes, to offsets from the mesh's centre:
 !>
 !>     linear     offset = left + (right - left) s
-!>     sinh       offset = d sinh(z), z = z_left + z_length s
+!>     sinh       offset = focus + d sinh(z), z = z_left + z_length s
 !>     power      position = end s**power, from the axis
 !>     algebraic  position = begin/(1 - s), out to infinity
 !>
-!> The sinh map has equal numbers of nodes for each factor in the distance from the centre, from d
-!> to the panel's length. On a power panel a function such as ln(position), times the speed, is as
+!> The sinh map has equal numbers of nodes for each factor in the distance from its focus, from d to
+!> the panel's length. On a power panel a function such as ln(position), times the speed, is as
 !> smooth as s**(power - 1) ln(s). On an algebraic panel a pressure is (1 - s)**decay times a
 !> polynomial: a power tail position**(-decay) times a polynomial in the inverse position.
 module panel_map
@@ -23,8 +23,8 @@ module panel_map
     integer :: kind = linear_map
     !> Offsets of the panel's ends; the right one of an algebraic panel is huge.
     real(wp) :: left = 0, right = 0
-    !> Parameters of a sinh panel: d, z at the left end, and the length in z.
-    real(wp) :: d = 0, z_left = 0, z_length = 0
+    !> Parameters of a sinh panel: offset of its focus, d, z at the left end, and the length in z.
+    real(wp) :: focus = 0, d = 0, z_left = 0, z_length = 0
     !> Exponent of a power panel.
     integer :: power = 1
     !> Parameters of an algebraic panel: position of its left end, and exponent of the tail.
@@ -38,16 +38,17 @@ module panel_map
 
 contains
 
-  !> A sinh panel with parameter d, from z_left over z_length.
-  pure type(panel_map_t) function sinh_panel(d, z_left, z_length) result(panel)
-    real(wp), intent(in) :: d, z_left, z_length
+  !> A sinh panel with a focus and a parameter d, from z_left over z_length.
+  pure type(panel_map_t) function sinh_panel(focus, d, z_left, z_length) result(panel)
+    real(wp), intent(in) :: focus, d, z_left, z_length
 
     panel%kind = sinh_map
+    panel%focus = focus
     panel%d = d
     panel%z_left = z_left
     panel%z_length = z_length
-    panel%left = d*sinh(z_left)
-    panel%right = d*sinh(z_left + z_length)
+    panel%left = focus + d*sinh(z_left)
+    panel%right = focus + d*sinh(z_left + z_length)
   end function sinh_panel
 
   !> Offset at the local coordinate s.
@@ -57,7 +58,7 @@ contains
 
     select case (self%kind)
     case (sinh_map)
-      offset = self%d*sinh(self%z_left + self%z_length*s)
+      offset = self%focus + self%d*sinh(self%z_left + self%z_length*s)
     case (power_map)
       offset = self%left + (self%right - self%left)*s**self%power
     case (algebraic_map)
@@ -74,7 +75,7 @@ contains
 
     select case (self%kind)
     case (sinh_map)
-      s = (asinh(at/self%d) - self%z_left)/self%z_length
+      s = (asinh((at - self%focus)/self%d) - self%z_left)/self%z_length
     case (power_map)
       s = ((at - self%left)/(self%right - self%left))**(1.0_wp/self%power)
     case (algebraic_map)
@@ -91,8 +92,8 @@ contains
     real(wp) :: s(size(at))
 
     if (self%kind == sinh_map) then
-      s = abs(at)/self%d
-      s = (sign(log(s + sqrt(1 + s**2)), at) - self%z_left)/self%z_length
+      s = abs(at - self%focus)/self%d
+      s = (sign(log(s + sqrt(1 + s**2)), at - self%focus) - self%z_left)/self%z_length
     else
       s = self%local(at)
     end if

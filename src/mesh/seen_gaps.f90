@@ -5,6 +5,7 @@ module seen_gaps
   use kinds, only: wp
   use shape, only: shape_t
   use discretisation, only: discretisation_t
+  use shape_panels, only: kinks_at_ends
   implicit none
   private
   public :: seen_gaps_t
@@ -26,8 +27,10 @@ module seen_gaps
     procedure :: begin_on
     procedure :: add
     procedure :: try
+    procedure :: try_about_axis
     procedure :: tried
     procedure :: radii
+    procedure :: edges
     procedure :: gap
     procedure :: load
   end type seen_gaps_t
@@ -77,18 +80,26 @@ contains
 
   !> The gaps of the newest state are to be tried, moved so that the gap at the radius `from` is at
   !> radii from low to high. step: the radius of a step of the pressure in this state; 0: there is
-  !> none. about_axis: whether the new mesh is about the axis, and the state has an edge; .false. if
-  !> absent.
-  pure subroutine try(self, from, low, high, step, about_axis)
+  !> none.
+  pure subroutine try(self, from, low, high, step)
     class(seen_gaps_t), intent(inout) :: self
     real(wp), intent(in) :: from, low, high, step
-    logical, intent(in), optional :: about_axis
-    type(moved_t) :: moved
 
-    moved = moved_t(self%held, from, min(low, high), high, step)
-    if (present(about_axis)) moved%about_axis = about_axis
-    self%moved = [self%moved, moved]
+    self%moved = [self%moved, moved_t(self%held, from, min(low, high), high, step)]
   end subroutine try
+
+  !> The gaps of the newest state are to be tried on a mesh about the axis, moved so that its edge
+  !> is at radii from `edge`, where it is (0: there is none), to `high`.
+  pure subroutine try_about_axis(self, edge, high)
+    class(seen_gaps_t), intent(inout) :: self
+    real(wp), intent(in) :: edge, high
+
+    if (edge > 0) then
+      self%moved = [self%moved, moved_t(self%held, edge, edge, high, about_axis=.true.)]
+    else
+      self%moved = [self%moved, moved_t(self%held, low=1.0_wp, high=1.0_wp)]
+    end if
+  end subroutine try_about_axis
 
   !> Number of states to be tried, each at one or more radii.
   pure integer function tried(self)
@@ -96,6 +107,16 @@ contains
 
     tried = size(self%moved)
   end function tried
+
+  !> The least and the largest tried radius of the edge on a mesh about the axis; 0 if a state has
+  !> no edge.
+  pure function edges(self)
+    class(seen_gaps_t), intent(in) :: self
+    real(wp) :: edges(2)
+
+    edges = 0
+    if (all(self%moved%about_axis)) edges = [minval(self%moved%low), maxval(self%moved%high)]
+  end function edges
 
   !> The radii at which the tried state number j is tried on a panel: the least and the largest one,
   !> and between them those with the step at the given offsets from the centre of the mesh or, if
@@ -124,7 +145,8 @@ contains
   !> The gap of the tried state number j, moved to a radius, at offsets from the centre of a mesh at
   !> this radius (over the radius), or from the axis. Outside a contact gaps keep their distance
   !> from the edge. Inside they keep it approximately near the edge, and the gap on the axis stays
-  !> there.
+  !> there. On a mesh about the axis gaps stay in place at kinks of the shape and beyond them, as
+  !> seen from the edge, if the edge is not moved too near to the kink.
   pure function gap(self, shape, j, radius, offset)
     class(seen_gaps_t), intent(in) :: self
     class(shape_t), intent(in) :: shape
@@ -137,6 +159,7 @@ contains
     associate (from => self%moved(j)%from, k => self%moved(j)%state)
       r = from + radius*beyond
       where (beyond < 0) r = abs(from + radius*from*beyond/(from - beyond*(radius - from)))
+      if (self%moved(j)%about_axis) call keep_kinks(kinks_at_ends(shape), from, radius, offset, r)
       gap = shape%height(r)
       ! Beyond the mesh of the state deformations decrease as 1/r.
       r = r/self%scale(k)
@@ -144,6 +167,28 @@ contains
         (self%last/max(r, self%last))
     end associate
   end function gap
+
+  !> Sets the positions r of the gaps that an edge takes along to positions `at`, on each side up to
+  !> the nearest kink, if an edge moves from one radius to another less than `nearest` of the way to
+  !> this kink.
+  pure subroutine keep_kinks(kinks, from, radius, at, r)
+    real(wp), intent(in) :: kinks(:), from, radius, at(:)
+    real(wp), intent(inout) :: r(:)
+    real(wp), parameter :: nearest = 0.5_wp
+    real(wp) :: kink(2), way(size(r))
+    integer :: side
+
+    kink = [maxval(kinks, kinks < radius), minval(kinks, kinks > radius)]
+    do side = 1, 2
+      if (abs(kink(side)) >= huge(kink) .or. &
+        abs(radius - from) > nearest*abs(radius - kink(side))) cycle
+      way = (at - radius)/(kink(side) - radius)
+      where (way > 0)
+        way = min(way, 1.0_wp)
+        r = at - (radius - from)*(1 - way)**2*(1 + 2*way)
+      end where
+    end do
+  end subroutine keep_kinks
 
   !> The load of the tried state number j.
   pure real(wp) function load(self, j)

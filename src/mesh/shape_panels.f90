@@ -7,7 +7,7 @@ module shape_panels
   use contact_scales, only: cohesive_width, smallest_feature
   implicit none
   private
-  public :: panels_for, rim_passed_at
+  public :: panels_for, kinks_at_ends, has_flat_face, rim_passed_at
 
   !> Largest length in z of panels over which kinks lie, and of panels between kinks, which
   !> `law_panels` halves where the pressure needs it.
@@ -37,7 +37,7 @@ contains
 
     radius = 0
     associate (rim => problem%shape%smooth_from(), width => cohesive_width(problem))
-      if (.not. rim > 0 .or. problem%shape%height(rim) > 0) return
+      if (.not. has_flat_face(problem%shape)) return
       radius = min(beyond_rim*rim, rim + 1)
       if (rim > widths_to_pass*width) radius = widths_before*width
       if (.not. problem%body%is_homogeneous()) return
@@ -46,21 +46,42 @@ contains
     end associate
   end function rim_passed_at
 
-  !> Lengths in z of panels over z_length, at positions d sinh(z), for a shape with kinks. On a mesh
-  !> about the axis they end at the kinks, if these are few; otherwise they are short.
-  pure function panels_for(shape, about_axis, d, z_length) result(lengths)
+  !> The kinks of a shape at which panels of meshes about the axis end: all, if they are few.
+  pure function kinks_at_ends(shape) result(kinks)
+    class(shape_t), intent(in) :: shape
+    real(wp), allocatable :: kinks(:)
+
+    allocate (kinks(0))
+    if (.not. allocated(shape%breaks)) return
+    if (size(shape%breaks) <= few) kinks = shape%breaks
+  end function kinks_at_ends
+
+  !> Whether a shape is flat up to its outermost kink.
+  pure logical function has_flat_face(shape)
+    class(shape_t), intent(in) :: shape
+
+    associate (rim => shape%smooth_from())
+      has_flat_face = rim > 0 .and. .not. shape%height(rim) > 0
+    end associate
+  end function has_flat_face
+
+  !> Lengths in z of panels over z_length, at positions focus + side*d sinh(z), for a shape with
+  !> kinks. On a mesh about the axis they end at the kinks, if these are few; otherwise they are
+  !> short.
+  pure function panels_for(shape, about_axis, focus, side, d, z_length) result(lengths)
     class(shape_t), intent(in) :: shape
     logical, intent(in) :: about_axis
-    real(wp), intent(in) :: d, z_length
+    real(wp), intent(in) :: focus, d, z_length
+    integer, intent(in) :: side
     real(wp), allocatable :: lengths(:), kinks(:), ends(:), rims(:)
     integer :: i
 
     allocate (kinks(0), lengths(0))
-    if (about_axis .and. allocated(shape%breaks)) kinks = shape%breaks
-    if (size(kinks) > few) kinks = kinks(:0)
-    ends = asinh(kinks/d)
-    ends = [0.0_wp, pack(ends, ends < z_length), z_length]
-    rims = pack(kinks, .not. shape%height(kinks) > 0)
+    if (about_axis) kinks = kinks_at_ends(shape)
+    rims = side*(pack(kinks, .not. shape%height(kinks) > 0) - focus)
+    ends = asinh(side*(kinks - focus)/d)
+    if (side < 0) ends = ends(size(ends):1:-1)
+    ends = [0.0_wp, pack(ends, ends > 0 .and. ends < z_length), z_length]
     do i = 1, size(ends) - 1
       lengths = [lengths, graded_panels(rims, d, ends(i), ends(i + 1), &
         merge(between_kinks, short, size(kinks) > 0))]

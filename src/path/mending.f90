@@ -13,7 +13,7 @@ module mending
   use represented_pressure, only: pressure_on
   use law_panels, only: left_out
   use seen_gaps, only: seen_gaps_t
-  use contact_state, only: state_t, gaps_at, felt_load, radius_of_step
+  use contact_state, only: state_t, gaps_at, felt_load, radius_of_gap, radius_of_step
   use equilibrium, only: equations_t
   use traced_path, only: traced_path_t
   implicit none
@@ -145,6 +145,7 @@ contains
     real(wp), intent(in) :: most
     type(mapped_shape_t) :: shape
     type(seen_gaps_t) :: seen
+    real(wp) :: radius
     integer :: i, k, states
 
     associate (problem => equations%problem, meshes => equations%meshes, &
@@ -158,8 +159,12 @@ contains
         associate (state => path%point(i)%state)
           call seen%add(problem%shape, state%gap, state%scale, state%h0, &
             felt_load(problem, grid, state))
-          call seen%try(grid%centre*state%scale, state%scale, state%scale, 0.0_wp)
-          if (.not. grid%centre > 0) cycle
+          if (.not. grid%centre > 0) then
+            radius = radius_of_gap(problem%shape, problem%law%edge_gap, grid, state)
+            call seen%try_about_axis(radius, radius)
+            cycle
+          end if
+          call seen%try(state%scale, state%scale, state%scale, 0.0_wp)
           if (k == 1) call seen%try(state%scale, reach(1), state%scale, &
             radius_of_step(problem, grid, state))
           if (k == states) call seen%try(state%scale, state%scale, reach(2), &
@@ -241,7 +246,7 @@ contains
         ! `mesh_rule` chooses the panels inside the contact of a shape with kinks.
         if (panel%right <= 0 .and. .not. smooth) cycle
         left(k) = left_out(problem, grid%local(k), &
-          scale*grid%centre, scale*(grid%centre + [panel%left, panel%right]), &
+          scale*(grid%centre + panel%focus), scale*(grid%centre + [panel%left, panel%right]), &
           scale*grid%x(first:last), gap(first:last), pressure(first:last), load)
       end associate
     end do

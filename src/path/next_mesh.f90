@@ -95,14 +95,14 @@ contains
         call seen%add(problem%shape, state%gap, state%scale, state%h0, load)
         high = min(radius + widths_ahead*smallest_feature(problem, radius), &
           beyond_passage*meshes%next_passage(to))
-        call seen%try(radius, radius, max(radius, high), 0.0_wp, about_axis=.true.)
+        call seen%try_about_axis(radius, max(radius, high))
       else if (meshes%is_about_axis(to)) then
         change = equations%raised(arc%mesh, state) - equations%raised(arc%mesh, before)
         do k = 1, size(ahead)
           gap = state%gap + ahead(k)*change
           if (minval(gap) < problem%law%rest_gap .and. k > 1) exit
           call seen%add(problem%shape, gap, state%scale, state%h0, load)
-          call seen%try(0.0_wp, 1.0_wp, 1.0_wp, 0.0_wp)
+          call seen%try_about_axis(0.0_wp, 0.0_wp)
         end do
       else
         call seen%add(problem%shape, state%gap, state%scale, state%h0, load)

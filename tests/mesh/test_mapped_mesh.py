@@ -27,6 +27,7 @@ class Mapped:
     decay: float = 6.0
     digits: float = DIGITS
     power: int = 1
+    focus: float = 0.0
     x: np.ndarray = field(init=False)
     weight: np.ndarray = field(init=False)
 
@@ -39,7 +40,7 @@ class Mapped:
 
     @property
     def shape(self):
-        numbers = self.d, self.decay, self.digits, self.power
+        numbers = self.d, self.decay, self.digits, self.power, self.focus
         return "mapped", self.centre, self.z_length, [*self.order, self.tail], numbers
 
     def matrix(self):
@@ -122,19 +123,20 @@ def panel_reference(grid, row, panel, degree):
     """Return the deformation by a Legendre polynomial on one panel, its tail included, by mpmath
     from the maps as the module states them."""
     mp = mpmath.mpf
-    edges = [grid.centre and -grid.z_length[0]]
+    edges = [-grid.z_length[0] if grid.centre + grid.focus else 0]
     for length in grid.z_length:
         edges.append(edges[-1] + length)
     orders = [*grid.order, grid.tail]
-    begin = mp(grid.centre) + mp(grid.d) * mpmath.sinh(mp(edges[-1]))
-    end = mp(grid.centre) + mp(grid.d) * mpmath.sinh(mp(edges[1]))
+    middle = mp(grid.centre) + mp(grid.focus)
+    begin = middle + mp(grid.d) * mpmath.sinh(mp(edges[-1]))
+    end = middle + mp(grid.d) * mpmath.sinh(mp(edges[1]))
     if panel == 0 and grid.power > 1:
         position = lambda s: end * s ** grid.power
         speed = lambda s: end * grid.power * s ** (grid.power - 1)
         tail = lambda s: 1
     elif panel < len(grid.order):
         z0, length = mp(edges[panel]), mp(grid.z_length[panel])
-        position = lambda s: mp(grid.centre) + mp(grid.d) * mpmath.sinh(z0 + length * s)
+        position = lambda s: middle + mp(grid.d) * mpmath.sinh(z0 + length * s)
         speed = lambda s: mp(grid.d) * length * mpmath.cosh(z0 + length * s)
         tail = lambda s: 1
     else:
@@ -185,6 +187,10 @@ PANELS = {
     "small contact": lambda: Mapped(1.0, 1 / np.sinh(1.6), [20, 34], [1.6, 5.0], 5),
     "short panels": lambda: Mapped(1.0, 1 / np.sinh(0.7), [14] * 4, [0.7] * 4, 5),
     "approach": lambda: Mapped(0.0, 0.2, [30], [4.0], 6, 18.0),
+    "about a place": lambda: Mapped(0.0, 0.3, [20, 12, 24], [3.1, 0.8, 2.4], 5,
+                                    focus=0.3 * np.sinh(3.1)),
+    "near the axis": lambda: Mapped(0.0, 0.5, [24, 26], [0.6, 3.0], 5,
+                                    focus=0.5 * np.sinh(0.6)),
     "towards a tip": lambda: Mapped(0.0, 0.5, [14] * 3, [0.3, 0.4, 0.8], 4, 18.0, power=2),
     "tip in contact": lambda: Mapped(1.0, 1 / np.sinh(3.0), [16, 20, 26], [0.3, 2.7, 4.0], 5,
                                      power=4),
