@@ -118,12 +118,12 @@ contains
     end subroutine locate
 
     !> Bodies that land undeformed land at another place if their jump starts at another; wanted: D
-    !> where the jump starts on the finer mesh. A load that is negligible there has no error.
+    !> where the jump starts on the finer mesh.
     pure subroutine move_undeformed(place)
       type(place_t), intent(inout) :: place
       real(wp) :: slope, change
 
-      if (abs(place%at(of_load)) < rounding*steps%problem%law%adhesion) return
+      place%negligible = rounding*steps%problem%law%adhesion
       slope = load_slope_undeformed(steps%problem, place%at(of_h0))
       change = (wanted - dot_product(place%drive, place%at(:2)))/ &
         dot_product(place%drive, [1.0_wp, slope])

@@ -55,6 +55,8 @@ module reported_place
     !> margin: factor of the differences.
     logical :: judged = .false., known = .true.
     real(wp) :: margin = 1
+    !> Magnitude below which the relative error of a load does not matter.
+    real(wp) :: negligible = 0
     !> Derivatives of the quantities by each parameter of &sensitivity, SI units.
     real(wp), allocatable :: rate(:, :)
   contains
@@ -204,7 +206,8 @@ contains
     part = self%errors()
     where (part > 0) part = &
       min(part/max(abs(self%measures(self%at)), least, tiny(1.0_wp)), most)
-    largest = max(part(of_load), self%profile)
+    largest = self%profile
+    if (.not. abs(self%at(of_load)) < self%negligible) largest = max(largest, part(of_load))
     if (with_radius .and. self%at(of_radius) > 0) largest = max(largest, part(of_radius))
     if (self%after > 0) return
     if (.not. self%searched) &

@@ -147,13 +147,17 @@ def test_on_a_fixed_grid_a_state_has_a_contact_radius_and_a_jump_between_steps_h
     assert abs(radius - truth["end"][0]) <= error < 0.1 * radius
 
 
-def test_a_landing_of_undeformed_bodies_is_as_uncertain_as_the_jump(run):
-    """The load after the jump was given to rounding."""
+@pytest.mark.parametrize("scene", [
+    {"force": {"law": "lennard_jones", "surface_energy": 0.05, "z0": 0.5e-9},
+     "device": {"stiffness": [0.1, 1.0, 10.0]}},
+    {"morse": {"surface_energy": 0.05, "z0": 0.3e-9, "decay_length": 0.2e-9},
+     "device": {"stiffness": [10.0, 20.0]}, "force": None},
+], ids=["Lennard-Jones", "loads of nearly nothing"])
+def test_a_landing_of_undeformed_bodies_is_as_uncertain_as_the_jump(run, scene):
+    """The load after the jump was given to rounding, whatever its magnitude."""
     loads = {}
     for accuracy in (1e-3, 1e-9):
-        found = run(path_of(1e10, -2e-9, accuracy, radius=1e-6,
-                            force={"law": "lennard_jones", "surface_energy": 0.05, "z0": 0.5e-9},
-                            device={"stiffness": [0.1, 1.0, 10.0]})).summary
+        found = run(path_of(1e10, -2e-9, accuracy, radius=1e-6, **scene)).summary
         loads[accuracy] = np.array(found["device_jump_out_load_after"])
         if accuracy > 1e-6:
             allowed = np.array(found["device_jump_out_load_after_error"])
