@@ -223,7 +223,7 @@ contains
         load = seen%load(j)
       else if (about == about_axis) then
         z = sum(length)/points*[(i - 0.5_wp, i=1, points)]
-        offset = mapped%d*sinh(z)
+        offset = offset_at(z)
         load = min(load, sum(length)/points* &
           sum(abs(problem%law%pressure(gap_of(j, 1.0_wp, offset)))*offset*mapped%d*cosh(z)))
       end if

@@ -80,9 +80,11 @@ contains
     edges = 0
     if (present(seen)) edges = seen%edges()
     if (edges(1) > 0 .and. has_flat_face(problem%shape)) then
+      ! Nodes are equally dense over the band. Outside it `fit_panels` adds them where they lack.
       shape%focus = 0.5_wp*sum(edges)
       shape%d = max(0.5_wp*(edges(2) - edges(1)), finer*smallest_feature(problem, edges(2)))
       density = density_in_contact(digits)
+      ! Panels between kinks end exactly on the axis.
       call add_panels(problem, shape, about_axis, -1, asinh(shape%focus/shape%d), density, digits, &
         0.0_wp, 0.0_wp, seen)
       shape%inner = size(shape%order)
@@ -218,8 +220,7 @@ contains
     fewest = ceiling(short_order + short_orders*digits)
     associate (law => problem%law)
       if (broken) then
-        lengths = panels_for(problem%shape, about == about_axis, shape%focus, side, shape%d, &
-          z_length)
+        lengths = panels_for(problem%shape, shape, about == about_axis, side, z_length)
       else
         lengths = [rung*ceiling(z_length/rung)]
         panels = 1

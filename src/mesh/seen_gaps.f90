@@ -38,7 +38,7 @@ module seen_gaps
   !> A state, moved to other radii: its number, the radius at which it has the gap to which the new
   !> mesh is locked or, if that is about the axis, the radius of its edge; the least and the largest
   !> radius to which this gap is moved, and the radius of a step of the pressure in the state, or 0
-  !> (lateral units).
+  !> (lateral units); about_axis: whether the new mesh is about the axis and the state has an edge.
   type :: moved_t
     integer :: state = 0
     real(wp) :: from = 0, low = 0, high = 0, step = 0
@@ -108,8 +108,8 @@ contains
     tried = size(self%moved)
   end function tried
 
-  !> The least and the largest tried radius of the edge on a mesh about the axis; 0 if a state has
-  !> no edge.
+  !> The least and the largest tried radius of the edge on a mesh about the axis; 0 if any state has
+  !> no edge: the mesh must then resolve the axis.
   pure function edges(self)
     class(seen_gaps_t), intent(in) :: self
     real(wp) :: edges(2)

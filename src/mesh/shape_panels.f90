@@ -5,6 +5,7 @@ module shape_panels
   use shape, only: shape_t
   use dimensionless_problem, only: problem_t
   use contact_scales, only: cohesive_width, smallest_feature
+  use mapped_mesh, only: mapped_shape_t
   implicit none
   private
   public :: panels_for, kinks_at_ends, has_flat_face, rim_passed_at
@@ -65,25 +66,26 @@ contains
     end associate
   end function has_flat_face
 
-  !> Lengths in z of panels over z_length, at positions focus + side*d sinh(z), for a shape with
-  !> kinks. On a mesh about the axis they end at the kinks, if these are few; otherwise they are
-  !> short.
-  pure function panels_for(shape, about_axis, focus, side, d, z_length) result(lengths)
+  !> Lengths in z of panels over z_length, at offsets focus + side*d sinh(z) with the focus and d of
+  !> `mapped`, for a shape with kinks. On a mesh about the axis they end at the kinks, if these are
+  !> few; otherwise they are short.
+  pure function panels_for(shape, mapped, about_axis, side, z_length) result(lengths)
     class(shape_t), intent(in) :: shape
+    type(mapped_shape_t), intent(in) :: mapped
     logical, intent(in) :: about_axis
-    real(wp), intent(in) :: focus, d, z_length
     integer, intent(in) :: side
+    real(wp), intent(in) :: z_length
     real(wp), allocatable :: lengths(:), kinks(:), ends(:), rims(:)
     integer :: i
 
     allocate (kinks(0), lengths(0))
     if (about_axis) kinks = kinks_at_ends(shape)
-    rims = side*(pack(kinks, .not. shape%height(kinks) > 0) - focus)
-    ends = asinh(side*(kinks - focus)/d)
+    rims = side*(pack(kinks, .not. shape%height(kinks) > 0) - mapped%focus)
+    ends = asinh(side*(kinks - mapped%focus)/mapped%d)
     if (side < 0) ends = ends(size(ends):1:-1)
     ends = [0.0_wp, pack(ends, ends > 0 .and. ends < z_length), z_length]
     do i = 1, size(ends) - 1
-      lengths = [lengths, graded_panels(rims, d, ends(i), ends(i + 1), &
+      lengths = [lengths, graded_panels(rims, mapped%d, ends(i), ends(i + 1), &
         merge(between_kinks, short, size(kinks) > 0))]
     end do
   end function panels_for
