@@ -93,9 +93,9 @@ class HalfSpace:
     def __init__(self, ends, order=12, image=None, layer=None):
         local, weight = gauss(order)
         ends = np.asarray(ends, float)
-        length = np.diff(ends)
-        self.r = (ends[:-1, None] + length[:, None] * local).ravel()
-        self.weight = (length[:, None] * weight).ravel() * self.r
+        length = np.diff(ends)[:, None]
+        self.r = (ends[:-1, None] + length * local).ravel()
+        self.weight = (length * weight).ravel() * self.r
         self.end = ends[-1]
         targets = np.concatenate([[0.0], self.r])
         self.matrix = np.empty((len(targets), len(self.r)))
@@ -106,18 +106,18 @@ class HalfSpace:
             far = (targets < a - (b - a)) | (targets > b + (b - a))
             r = targets[far, None]
             self.matrix[far, columns] = kernel(r, t, abs(r - t)) * weight * (b - a) * t
-            for i in np.flatnonzero(~far):
-                # Graded as the sixth power towards the point nearest to the target.
-                near = min(max(targets[i], a), b)
-                row = np.zeros(order)
-                for side, reach in ((-1, near - a), (1, b - near)):
-                    if reach <= 0:
-                        continue
-                    offset = side * reach * s**6
-                    at = near + offset
-                    k = kernel(targets[i], at, abs((near - targets[i]) + offset))
-                    row += (k * 6 * s**5 * v * reach * at) @ lagrange((at - a) / (b - a), order)
-                self.matrix[i, columns] = row
+            # Graded as the sixth power towards the point nearest to the target.
+            self.matrix[~far, columns] = 0
+            nearest = np.clip(targets, a, b)
+            for side, reach in ((-1, nearest - a), (1, b - nearest)):
+                rows = np.flatnonzero(~far & (reach > 0))
+                target, near, length = (x[rows, None] for x in (targets, nearest, reach))
+                offset = side * length * s**6
+                at = near + offset
+                k = kernel(target, at, abs((near - target) + offset))
+                self.matrix[rows, columns] += np.einsum(
+                    "iq,iqj->ij", k * 6 * s**5 * v * length * at,
+                    lagrange((at - a) / (b - a), order))
         if image:
             strength, depth = image
             self.matrix += strength * ring_image(targets[:, None], self.r, depth) * self.weight

@@ -86,7 +86,7 @@ def solve(sigma, mesh, value, log_gap, h0):
             break
         step *= min(1.0, 0.5 / largest)
         log_gap, h0 = log_gap + step[:n], h0 + step[n]
-        if largest < 1e-9 and abs(step[n]) < 1e-9 * (1 + abs(h0)):
+        if largest < 1e-7 and abs(step[n]) < 1e-7 * (1 + abs(h0)):
             return finished(sigma, mesh, c, np.exp(log_gap), h0)
     raise Lost(f"sigma {sigma}, parameter {value}")
 
