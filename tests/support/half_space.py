@@ -131,21 +131,29 @@ class HalfSpace:
         """
         r = np.concatenate([[0.0], self.r])
         shape, gap, h0 = r**2 / 2, axis[0] + r**2 / 2, axis[0]
+        nodes, jacobian = np.arange(len(r)), np.empty((len(r), len(r)))
         found = []
         for value in axis:
-            gap = gap + (value - gap[0])
+            if len(found) < 2:
+                gap = gap + (value - gap[0])
+            else:
+                # Begun as the gaps changed last.
+                before = found[-2][0]
+                gap = gap * (gap / before) ** ((value - gap[0]) / (gap[0] - before[0]))
+                gap[0] = value
             for _ in range(60):
                 pressure, slope, _ = law(gap[1:])
                 residual = gap - h0 - shape - 2 * s * self.matrix @ pressure
                 # The first column is that of H0, since the gap on the axis is constant.
-                jacobian = np.eye(len(r))
-                jacobian[:, 1:] -= 2 * s * self.matrix * slope
+                jacobian[:, 1:] = self.matrix * (-2 * s * slope)
+                jacobian[nodes, nodes] += 1
                 jacobian[:, 0] = -1
                 step = np.linalg.solve(jacobian, -residual)
                 h0 += step[0]
                 step[0] = 0
                 gap = np.maximum(gap + step, 0.7 * gap)
-                if abs(step).max() < 1e-11 * max(1, abs(h0)):
+                # What is left is the square of the step.
+                if abs(step).max() < 1e-8 * max(1, abs(h0)):
                     break
             else:
                 raise ArithmeticError(f"no solution at {value}")
