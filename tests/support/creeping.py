@@ -16,13 +16,14 @@ from support.states import energy, pressure, slope
 class Creeping:
     """The moving bodies: gaps, pressures and memory at the nodes."""
 
-    def __init__(self, sigma, share, start, finer=4):
+    def __init__(self, sigma, share, start, finer=2):
         self.mesh = Mesh(0.0, 0.5, 400.0, USUAL, finer)
         self.sigma, self.share = sigma, share
         self.shape = self.mesh.x**2 / 2
         self.gap = start + self.shape
         self.solve(start, sigma * (1 + share), 0 * self.shape)
         self.memory = self.pressure = pressure(self.gap)
+        self.before = self.gap
 
     def solve(self, h0, sigma, rise):
         """The gaps at h0 with a given rise."""
@@ -33,7 +34,8 @@ class Creeping:
             matrix = np.diag(self.gap) - self.mesh.operator * softness
             step = np.linalg.solve(matrix, -left)
             self.gap = self.gap * np.exp(np.clip(step, -0.3, 0.3))
-            if np.abs(step).max() < 1e-12:
+            # What is left is the square of the step.
+            if np.abs(step).max() < 1e-6:
                 return
         raise ArithmeticError("no equilibrium")
 
@@ -43,6 +45,8 @@ class Creeping:
         left = ((1 - q) * self.memory + q * self.pressure) / (1 + q)
         part = q / (1 + q)
         rise = 2 * self.sigma * self.share * self.mesh.operator @ left
+        # Begun as the gaps change from step to step.
+        self.gap, self.before = self.gap**2 / self.before, self.gap
         self.solve(h0, self.sigma * (1 + self.share * part), rise)
         self.pressure = pressure(self.gap)
         self.memory = left + part * self.pressure

@@ -9,9 +9,8 @@ import signal
 import subprocess
 from typing import NamedTuple
 
-import f90nml
 from support.processes import HANG, threaded
-from support.scenes import deck, read_table, several
+from support.scenes import deck, read_groups, read_table, several
 
 LOADS = (
     "max_tension", "jump_in_load", "jump_out_load", "folds_load", "load_folds_load", "end_load",
@@ -107,7 +106,7 @@ def report(sigma, groups, folder, name="deck", *, rows=False, seconds=120, units
     status, stderr, results = run_deck(folder, name, units.deck(sigma, groups), seconds)
     if status is None or not (results / "summary.nml").exists():
         return Report(-1 if status is None else status, {}, {}, 0.0, [], stderr, None)
-    summary = f90nml.read(results / "summary.nml")["summary"]
+    summary = read_groups(results / "summary.nml")["summary"]
     table = read_table(results / "curve.csv") if rows else None
     if rows:
         table.columns["h0"] /= units.z0

@@ -70,7 +70,7 @@ class Drained:
             matrix = np.eye(gap.size) - self.w * slope(gap) - self.w @ by_gap
             step = np.linalg.solve(matrix, -left)
             gap = gap + min(1.0, 0.3 / np.abs(step / gap).max()) * step
-            if np.abs(step / gap).max() < 1e-9:
+            if np.abs(step / gap).max() < 1e-7:
                 break
         else:
             raise ArithmeticError("no step")

@@ -18,10 +18,9 @@ import re
 import resource
 import sys
 
-import f90nml
 import numpy as np
 from support.decks_in_units import run_deck
-from support.scenes import deck, read_table, several
+from support.scenes import deck, read_groups, read_table, several
 from support.spread import spread
 
 # --- Decks
@@ -183,7 +182,7 @@ def check_run(status, stderr, folder):
             if found and found.group().lower() == "nan" and path.name in MAY_BE_NAN:
                 continue
             claim(not found, f"{path.name}: {line}")
-    groups = f90nml.read(folder / "summary.nml")
+    groups = read_groups(folder / "summary.nml")
     summary = groups["summary"]
     warnings = several(summary.get("warnings", []))
     claim(summary["converged"] == (status == 0), "converged and status differ")

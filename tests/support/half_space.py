@@ -93,9 +93,9 @@ class HalfSpace:
     def __init__(self, ends, order=12, image=None, layer=None):
         local, weight = gauss(order)
         ends = np.asarray(ends, float)
-        length = np.diff(ends)
-        self.r = (ends[:-1, None] + length[:, None] * local).ravel()
-        self.weight = (length[:, None] * weight).ravel() * self.r
+        length = np.diff(ends)[:, None]
+        self.r = (ends[:-1, None] + length * local).ravel()
+        self.weight = (length * weight).ravel() * self.r
         self.end = ends[-1]
         targets = np.concatenate([[0.0], self.r])
         self.matrix = np.empty((len(targets), len(self.r)))
@@ -106,18 +106,18 @@ class HalfSpace:
             far = (targets < a - (b - a)) | (targets > b + (b - a))
             r = targets[far, None]
             self.matrix[far, columns] = kernel(r, t, abs(r - t)) * weight * (b - a) * t
-            for i in np.flatnonzero(~far):
-                # Graded as the sixth power towards the point nearest to the target.
-                near = min(max(targets[i], a), b)
-                row = np.zeros(order)
-                for side, reach in ((-1, near - a), (1, b - near)):
-                    if reach <= 0:
-                        continue
-                    offset = side * reach * s**6
-                    at = near + offset
-                    k = kernel(targets[i], at, abs((near - targets[i]) + offset))
-                    row += (k * 6 * s**5 * v * reach * at) @ lagrange((at - a) / (b - a), order)
-                self.matrix[i, columns] = row
+            # Graded as the sixth power towards the point nearest to the target.
+            self.matrix[~far, columns] = 0
+            nearest = np.clip(targets, a, b)
+            for side, reach in ((-1, nearest - a), (1, b - nearest)):
+                rows = np.flatnonzero(~far & (reach > 0))
+                target, near, length = (x[rows, None] for x in (targets, nearest, reach))
+                offset = side * length * s**6
+                at = near + offset
+                k = kernel(target, at, abs((near - target) + offset))
+                self.matrix[rows, columns] += np.einsum(
+                    "iq,iqj->ij", k * 6 * s**5 * v * length * at,
+                    lagrange((at - a) / (b - a), order))
         if image:
             strength, depth = image
             self.matrix += strength * ring_image(targets[:, None], self.r, depth) * self.weight
@@ -131,21 +131,29 @@ class HalfSpace:
         """
         r = np.concatenate([[0.0], self.r])
         shape, gap, h0 = r**2 / 2, axis[0] + r**2 / 2, axis[0]
+        nodes, jacobian = np.arange(len(r)), np.empty((len(r), len(r)))
         found = []
         for value in axis:
-            gap = gap + (value - gap[0])
+            if len(found) < 2:
+                gap = gap + (value - gap[0])
+            else:
+                # Begun as the gaps changed last.
+                before = found[-2][0]
+                gap = gap * (gap / before) ** ((value - gap[0]) / (gap[0] - before[0]))
+                gap[0] = value
             for _ in range(60):
                 pressure, slope, _ = law(gap[1:])
                 residual = gap - h0 - shape - 2 * s * self.matrix @ pressure
                 # The first column is that of H0, since the gap on the axis is constant.
-                jacobian = np.eye(len(r))
-                jacobian[:, 1:] -= 2 * s * self.matrix * slope
+                jacobian[:, 1:] = self.matrix * (-2 * s * slope)
+                jacobian[nodes, nodes] += 1
                 jacobian[:, 0] = -1
                 step = np.linalg.solve(jacobian, -residual)
                 h0 += step[0]
                 step[0] = 0
                 gap = np.maximum(gap + step, 0.7 * gap)
-                if abs(step).max() < 1e-11 * max(1, abs(h0)):
+                # What is left is the square of the step.
+                if abs(step).max() < 1e-8 * max(1, abs(h0)):
                     break
             else:
                 raise ArithmeticError(f"no solution at {value}")

@@ -10,12 +10,11 @@ import random
 import shutil
 from typing import NamedTuple
 
-import f90nml
 import numpy as np
 from support import comparison
 from support.comparison import Deviation
 from support.decks_in_units import LENGTHS, LOADS, run_deck
-from support.scenes import deck, read_table, several
+from support.scenes import deck, read_groups, read_table, several
 from support.study_cycles import logarithmic
 
 ACCURACIES = (1e-3, 1e-8)
@@ -212,7 +211,7 @@ def run(scene, name, groups):
         return {}, stderr
     if not (found / "summary.nml").exists():
         return {}, f"status {status}: {stderr.strip()[-200:]}"
-    results = f90nml.read(found / "summary.nml")
+    results = read_groups(found / "summary.nml")
     summary = {**results["summary"], "wall_seconds": results["cost"]["wall_seconds"]}
     if (found / "fixed_load.csv").exists():
         rows = read_table(found / "fixed_load.csv")

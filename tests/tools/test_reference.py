@@ -12,7 +12,7 @@ from support.calculus import gauss
 from support.known import BY_SIGMA, BY_TABOR, ERRORS
 from support.reference import CUSP, Path, path
 from support.scenes import JKR
-from support.series import FINE, USUAL
+from support.series import FINE
 
 
 @pytest.mark.parametrize("centre, d, finer", [(0.0, 0.3, 2), (1.0, 0.05, 1), (1.0, 0.2, 2)])
@@ -74,7 +74,7 @@ def numbers(found):
 
 @pytest.mark.parametrize("sigma", [1e-3, 0.35, 30.0])
 def test_two_resolutions_agree_to_nine_digits(sigma):
-    usual, fine = (numbers(Path(sigma, resolution=each)) for each in (USUAL, FINE))
+    usual, fine = map(numbers, (path(sigma), Path(sigma, resolution=FINE)))
     np.testing.assert_allclose(usual, fine, rtol=1e-9)
 
 
