@@ -6,10 +6,9 @@ import _snapin
 import numpy as np
 import pytest
 import snapin
-from support.calculus import gauss, graded
+from support.calculus import gauss, graded_rule
 from support.half_space import kernel
-from test_discretisation import gaussian
-from test_discretisation import graded as graded_ends
+from test_discretisation import gaussian, graded
 
 flat = _snapin.flat_numerics
 DIGITS = 14.0
@@ -110,7 +109,7 @@ def test_a_sharp_edge_has_the_deformation_that_graded_panels_find(neck):
     # Nodes in proportion to the length in z.
     order = 30 + int(7 * np.arcsinh(4 / neck))
     grid = contact_mesh(0.5 * neck, 4.0, order, 24, 4.0)
-    fine = snapin.panel_mesh(graded_ends(1.0, 3e4, 0.1 * neck), 16, centre=1.0)
+    fine = snapin.panel_mesh(graded(1.0, 3e4, 0.1 * neck), 16, centre=1.0)
     matrix = fine.matrix()
     raised = grid.matrix() @ pressure(grid.x)
     exact = matrix.nodes @ pressure(fine.x)
@@ -150,7 +149,7 @@ def panel_reference(grid, row, panel, degree):
         r = place(cuts[1])[0]
     total = 0.0
     # Towards every end, where the logarithm is or is near.
-    points, weights = graded(1e-10)
+    points, weights = graded_rule(1e-10)
     for a, b in zip(cuts, cuts[1:]):
         half = (b - a) / 2
         for s in a + half * points, b - half * points:

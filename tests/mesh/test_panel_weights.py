@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 import snapin
-from support.calculus import graded
+from support.calculus import graded_rule
 from support.half_space import kernel
 from test_discretisation import local_nodes
 
@@ -13,7 +13,7 @@ def reference(node, centre, target, left, right, columns):
     target."""
     at = left + (right - left) * node
     total = np.zeros(len(columns))
-    points, weights = graded()
+    points, weights = graded_rule()
     for side, near, far in (
             (1, max(left - target, 0), right - target),
             (-1, max(target - right, 0), target - left)):

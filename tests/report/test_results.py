@@ -163,7 +163,7 @@ def test_the_listing_names_every_column_and_entry_of_a_run(full, snapin):
 
 def test_f90nml_reads_the_summary_and_writes_it_back(full, tmp_path):
     groups = f90nml.read(full.folder / "summary.nml")
-    # The tests read it otherwise.
+    # All other tests read summaries with the package's reader.
     assert {name: dict(group) for name, group in groups.items()} == full.groups
     f90nml.write(groups, tmp_path / "again.nml")
     again = f90nml.read(tmp_path / "again.nml")

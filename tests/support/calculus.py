@@ -13,7 +13,7 @@ def gauss(count, low=0.0, high=1.0):
 
 
 @functools.cache
-def graded(least=1e-16, order=24):
+def graded_rule(least=1e-16, order=24):
     """Points and weights of a rule on [0, 1] whose panels grow threefold away from 0."""
     ends = np.concatenate([[0.0], np.geomspace(least, 1, int(-2 * np.log10(least)) + 1)])
     points, weights = gauss(order)

@@ -126,8 +126,8 @@ def read_table(path):
 
 
 def read_groups(path):
-    """The groups of a namelist of results; a single value is no list, as f90nml has it, which
-    takes long."""
+    """The groups of a namelist of results, by the package's reader, which is faster than f90nml. A
+    single value is no list, as with f90nml."""
     text = re.sub(r" ! checksum \w+$", "", path.read_text(), flags=re.MULTILINE)
     return {
         name: {key: values[0] if len(values) == 1 else values for key, values in group.items()}
