@@ -1,5 +1,6 @@
 !> The polynomial through a few scattered values: weights, value, slope, maximum; and Hermite's
-!> polynomial, which has given slopes there too. Piecewise cubic polynomials through many points.
+!> polynomial, which has given slopes there too. Piecewise cubic polynomials through many points. A
+!> smooth transition.
 module interpolation
   use kinds, only: wp
   use root_finding, only: bracket_t
@@ -7,7 +8,7 @@ module interpolation
   implicit none
   private
   public :: polynomial_weights, polynomial_slope, interpolated_maximum, interval_of, hermite_t, &
-    hermite_through, hermite_weights, most_hermite_nodes, find_nodes_about, spline, monotone
+    hermite_through, hermite_weights, most_hermite_nodes, find_nodes_about, spline, monotone, fading
 
   integer, parameter :: most_hermite_nodes = 4
 
@@ -23,6 +24,15 @@ module interpolation
   end type hermite_t
 
 contains
+
+  !> The cubic transition from 1 for x <= 0 to 0 for x >= 1.
+  elemental real(wp) function fading(x)
+    real(wp), intent(in) :: x
+    real(wp) :: left
+
+    left = 1 - max(0.0_wp, min(1.0_wp, x))
+    fading = left**2*(3 - 2*left)
+  end function fading
 
   !> Weights of the values at `at` (all different) in their polynomial's value at x.
   pure function polynomial_weights(at, x) result(weight)

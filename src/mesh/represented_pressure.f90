@@ -13,6 +13,7 @@
 !> jump by so much.
 module represented_pressure
   use kinds, only: wp
+  use interpolation, only: fading
   use force_law, only: force_law_t
   use discretisation, only: discretisation_t, local_nodes_t, gauss_nodes
   use panel_map, only: algebraic_map
@@ -246,8 +247,7 @@ contains
     associate (n => ubound(y, 1))
       reach = merge(abs(y(1) - y(0)), abs(y(n) - y(n - 1)), abs(kink - y(0)) < abs(kink - y(n)))
     end associate
-    off = min(1.0_wp, off/max(reach, tiny(1.0_wp)))
-    share = (1 - off)**2*(1 + 2*off)
+    share = fading(off/max(reach, tiny(1.0_wp)))
   end function share_near
 
   !> The places between two positions x, where the gaps are y, at which the panel's polynomial

@@ -3,6 +3,7 @@
 !> moved to other radii, approximate those of other states.
 module seen_gaps
   use kinds, only: wp
+  use interpolation, only: fading
   use shape, only: shape_t
   use discretisation, only: discretisation_t
   use shape_panels, only: kinks_at_ends
@@ -183,10 +184,7 @@ contains
       if (abs(kink(side)) >= huge(kink) .or. &
         abs(radius - from) > nearest*abs(radius - kink(side))) cycle
       way = (at - radius)/(kink(side) - radius)
-      where (way > 0)
-        way = min(way, 1.0_wp)
-        r = at - (radius - from)*(1 - way)**2*(1 + 2*way)
-      end where
+      where (way > 0) r = at - (radius - from)*fading(way)
     end do
   end subroutine keep_kinks
 
