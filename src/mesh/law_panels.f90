@@ -1,19 +1,20 @@
 !> Panels short enough for a force law with lengths of its own: barriers, oscillations and steps lie
 !> between the edge and infinity at positions that a general rule does not know.
 !>
-!> The pressure is evaluated for gaps that bodies are expected to have: undeformed before contact;
-!> in contact the gap outside a JKR contact. Once there is a path, the gaps seen on it are used. A
-!> panel in z on which the last Legendre coefficients of this pressure are not small gets more nodes
-!> or is halved, whichever takes fewer nodes (`left_out`).
+!> The pressure is evaluated for gaps that bodies are expected to have (`predicted_gaps`). Once
+!> there is a path, the gaps seen on it are used (`seen_gaps`). A panel in z on which the last
+!> Legendre coefficients of this pressure are not small gets more nodes or is halved, whichever
+!> takes fewer nodes (`left_out`).
 module law_panels
-  use kinds, only: wp, pi
-  use dimensionless_problem, only: problem_t, calm_gap, adhesion_strength
+  use kinds, only: wp
+  use dimensionless_problem, only: problem_t
   use force_law, only: force_law_t, whole_step
   use discretisation, only: local_nodes_t, gauss_nodes
   use mapped_mesh, only: mapped_shape_t
+  use predicted_gaps, only: axis_gaps, between, predicted_gap
   use seen_gaps, only: seen_gaps_t
   use represented_pressure, only: panel_pressure
-  use step_front, only: front_leads, step_height
+  use step_front, only: step_height
   implicit none
   private
   public :: fit_panels, nodes_on, left_out
@@ -24,10 +25,8 @@ module law_panels
 
   !> Number of nodes of a panel in addition to the number proportional to its length in z.
   real(wp), parameter :: more_nodes = 3
-  !> Panels shorter than twice `shortest` are not halved. Number of gaps on the axis, or of radii,
-  !> for which the pressure is evaluated: `tried`, or `often` where waves move with them.
+  !> Panels shorter than twice `shortest` are not halved.
   real(wp), parameter :: shortest = 0.01_wp
-  integer, parameter :: tried = 9, often = 33
   !> Factors by which the number of nodes is increased in turn. A panel that needs no more nodes
   !> than its halves is not halved: waves need more nodes, steps need shorter panels.
   real(wp), parameter :: times(*) = [1.0_wp, 1.3_wp, 1.7_wp, 2.2_wp, 2.8_wp, 3.6_wp]
@@ -71,7 +70,7 @@ contains
     else if (about == about_axis) then
       parameter = axis_gaps(problem)
     else
-      parameter = between(low, high, tries(problem%law))
+      parameter = between(low, high, problem%law)
     end if
     load = [(load_of(k), k=1, size(parameter))]
     call move_alloc(length, given)
@@ -206,7 +205,7 @@ contains
       if (present(seen)) then
         gap = seen%gap(problem%shape, j, radius, offset)
       else
-        gap = gap_at(problem, about, parameter(j), offset, mapped%d)
+        gap = predicted_gap(problem, about == about_axis, parameter(j), offset, mapped%d)
       end if
     end function gap_of
 
@@ -277,59 +276,5 @@ contains
         minval(ends) < law%step_at + whole_step*law%step_width
     end associate
   end function meets_step
-
-  !> Gaps on the axis before contact: from large gaps down to that of largest tension or, if a step
-  !> has a front before that, through the step.
-  pure function axis_gaps(problem) result(gap)
-    type(problem_t), intent(in) :: problem
-    real(wp), allocatable :: gap(:)
-    real(wp) :: from
-    integer :: k
-
-    associate (law => problem%law)
-      from = law%edge_gap
-      if (front_leads(law)) from = law%step_at
-      gap = between(from, max(calm_gap(problem), 2*from, merge(law%power_from, from, &
-        law%period > 0)), tries(law))
-      if (front_leads(law)) gap = [gap, law%step_at + law%step_width*[(0.5_wp*k, k=-4, 6)]]
-    end associate
-  end function axis_gaps
-
-  !> Number of tried gaps or radii; larger under oscillating laws.
-  pure integer function tries(law)
-    class(force_law_t), intent(in) :: law
-
-    tries = merge(often, tried, law%period > 0)
-  end function tries
-
-  !> Values from one to another in equal ratios.
-  pure function between(from, to, tried) result(values)
-    real(wp), intent(in) :: from, to
-    integer, intent(in) :: tried
-    real(wp) :: values(tried)
-    integer :: k
-
-    values = from*(to/from)**[(real(k, wp)/(tried - 1), k=0, tried - 1)]
-  end function between
-
-  !> The gap at an offset from the centre: before contact with the gap h on the axis; otherwise
-  !> outside a JKR contact of radius h, with the gap of largest tension at its edge.
-  !>
-  !> The JKR gap increases as the square root of the distance from the edge; cohesion rounds the
-  !> square root over the distance d.
-  pure function gap_at(problem, about, h, offset, d) result(gap)
-    type(problem_t), intent(in) :: problem
-    integer, intent(in) :: about
-    real(wp), intent(in) :: h, offset(:), d
-    real(wp), dimension(size(offset)) :: gap, beyond
-
-    if (about == about_axis) then
-      gap = h + problem%shape%height(offset)
-    else
-      beyond = offset**2/(d + sqrt(d**2 + offset**2))
-      gap = problem%law%edge_gap + problem%shape%hertz_gap(h, beyond) + &
-        2/pi*sqrt(4*pi*adhesion_strength(problem)*h)*atan(sqrt(beyond*(2 + beyond)))
-    end if
-  end function gap_at
 
 end module law_panels
