@@ -21,13 +21,15 @@ contains
   pure function chebyshev_series(value) result(coefficient)
     real(wp), intent(in) :: value(0:)
     real(wp) :: coefficient(0:ubound(value, 1)), weighted(0:ubound(value, 1))
+    real(wp) :: cosine(0:2*ubound(value, 1))
     integer :: n, j, k
 
     n = ubound(value, 1)
     weighted = value
     weighted([0, n]) = value([0, n])/2
+    cosine = [(cos(pi*j/n), j=0, 2*n)]
     do k = 0, n
-      coefficient(k) = (-1)**k*2.0_wp/n*sum(weighted*[(cos(pi*mod(j*k, 2*n)/n), j=0, n)])
+      coefficient(k) = (-1)**k*2.0_wp/n*sum(weighted*cosine([(mod(j*k, 2*n), j=0, n)]))
     end do
     coefficient([0, n]) = coefficient([0, n])/2
   end function chebyshev_series
