@@ -18,7 +18,7 @@ contains
   !> exact for polynomials of degree 2 size(x) - 1.
   pure subroutine gauss_legendre(x, w)
     real(wp), intent(out) :: x(:), w(:)
-    real(wp), dimension((size(x) + 1)/2) :: z, value, slope
+    real(wp), dimension((size(x) + 1)/2) :: z, value, slope, curvature, step
     integer :: i, n, iteration
 
     n = size(x)
@@ -26,11 +26,13 @@ contains
     z = [((1 - (1 - 1.0_wp/n)/(8.0_wp*n**2))*cos(pi*(i - 0.25_wp)/(n + 0.5_wp)), i=1, size(z))]
     do iteration = 1, 20
       call legendre(n, z, value, slope)
-      z = z - value/slope
-      ! Steps shrink quadratically: the next would be below rounding.
-      if (maxval(abs(value/slope)) <= 1.0e-9_wp) exit
+      ! Legendre's equation has the second derivative. With it, steps shrink by third powers.
+      curvature = (2*z*slope - n*(n + 1)*value)/(1 - z**2)
+      step = value/slope*(1 + 0.5_wp*value*curvature/slope**2)
+      z = z - step
+      if (maxval(abs(step)) <= 1.0e-10_wp) exit
     end do
-    call legendre(n, z, value, slope)
+    slope = slope - step*curvature
     do i = 1, size(z)
       x(i) = 0.5_wp*(1 - z(i))
       x(n + 1 - i) = 0.5_wp*(1 + z(i))
