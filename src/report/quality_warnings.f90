@@ -137,28 +137,33 @@ contains
     !> Warns of layers thinner than the range of the force, of soft layers compressed by a part of
     !> their thickness that is not small, and of strains below the top layer that are not small.
     subroutine judge_layers()
-      real(wp) :: reach, strain
+      real(wp) :: reach, thinnest, total, strain
       integer :: i
 
       select type (body => problem%body)
       type is (layered_body_t)
         reach = range_of(problem)
+        thinnest = huge(thinnest)
+        total = huge(total)
+        strain = 0
         do i = 1, 2
           if (size(body%surface(i)%thickness) == 0) cycle
           associate (thickness => body%surface(i)%thickness*problem%lateral)
-            if (minval(thickness) < reach) call summary%warn('beyond the model: a layer of ' // &
-              rounded(minval(thickness)) // ' m is thinner than the range of the force, ' // &
-              rounded(reach) // ' m; bulk elasticity does not hold for it')
-            if (body%bottom < 1 .and. quality%depth > strained*sum(thickness)) call summary%warn( &
-              'beyond the model: the bodies are pressed together by ' // &
-              rounded(quality%depth/sum(thickness)) // ' of the thickness of the layers; ' // &
-              'strains are no longer small')
-            strain = strain_below(body%surface(i), thickness, quality%load, quality%contact_radius)
-            if (strain > strained) call summary%warn('beyond the model: the strain below the ' // &
-              'top layer is about ' // rounded(strain) // ', which is not small')
-            exit
+            thinnest = min(thinnest, minval(thickness))
+            total = min(total, sum(thickness))
+            strain = max(strain, strain_below(body%surface(i), thickness, quality%load, &
+              quality%contact_radius))
           end associate
         end do
+        if (thinnest < reach) call summary%warn('beyond the model: a layer of ' // &
+          rounded(thinnest) // ' m is thinner than the range of the force, ' // &
+          rounded(reach) // ' m; bulk elasticity does not hold for it')
+        if (body%bottom < 1 .and. quality%depth > strained*total) call summary%warn( &
+          'beyond the model: the bodies are pressed together by ' // &
+          rounded(quality%depth/total) // ' of the thickness of the layers; ' // &
+          'strains are no longer small')
+        if (strain > strained) call summary%warn('beyond the model: the strain below the ' // &
+          'top layer is about ' // rounded(strain) // ', which is not small')
       end select
     end subroutine judge_layers
 

@@ -214,6 +214,15 @@ def test_what_is_beyond_the_model_is_said(run):
     assert any("strain below the top layer is about" in text for text in warnings(run(skin)))
 
 
+@pytest.mark.parametrize("young", ([1e4, 1e8], [1e8, 1e4]))
+def test_a_large_strain_is_said_of_either_body(run, young):
+    skins = deck(bodies={"radius": 1e-3, "young": young, "poisson": 0.3},
+                 layer={"thickness": 1e-5, "young": 1e9, "poisson": 0.3, "body": "both"},
+                 force={"law": "lennard_jones", "surface_energy": 0.05, "z0": 2e-9},
+                 equilibrium_path={"h0_end": -3e-6}, numerics={"accuracy": 1e-4})
+    assert any("strain below the top layer is about" in text for text in warnings(run(skins)))
+
+
 # Young's moduli of the bodies; a layer on the first; what is read.
 DEEP = {
     "film": ([1e11, 1e11], {"thickness": 3e-6, "young": 1e10, "poisson": 0.3, "base": "rigid"},
