@@ -58,7 +58,7 @@ contains
   !> Whether a curve with these values and slopes at ascending abscissas may turn between one
   !> abscissa and the next: 0 or 1.
   subroutine turning_intervals(x, value, slope, turns, n)
-    use path_search, only: may_turn
+    use path_extrema, only: may_turn
     use interpolation, only: hermite_through
     integer(c_int), intent(in) :: n
     real(c_double), intent(in) :: x(n), value(n), slope(n)
@@ -143,7 +143,7 @@ contains
     displacement_tolerance, gap, pressure, numbers, counts, stat, message, nodes, l, m)
     use deck_problem, only: pose
     use contact_state, only: state_t
-    use equilibrium, only: control_t, at_h0
+    use controls, only: control_t, at_h0
     use solver, only: solver_t
     use solver_options, only: solver_options_t, newton_of
     character(len=*), intent(in) :: deck, kind, method

@@ -15,7 +15,7 @@ module preflight
   use machine, only: available_memory, thread_count, blas_buffers
   use files, only: free_disk, same_file
   use publication, only: result_files, summary_name
-  use results, only: to_stream
+  use result_folder, only: to_stream
   use case_columns, only: column_count
   implicit none
   private

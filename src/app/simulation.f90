@@ -29,7 +29,8 @@ module simulation
   use summarise, only: summary_of
   use problem_numbers, only: describe_problem
   use summary, only: summary_t
-  use results, only: results_t, journal_of, to_stream
+  use result_folder, only: journal_of, to_stream
+  use results, only: results_t
   use publication, only: mend
   use run_identity, only: identity_of, find_finished
   use progress, only: duration
@@ -96,7 +97,7 @@ contains
     call summary%set('blas', blas)
     call summary%set('build_options', options)
     call summary%set('threads', int(thread_count(), long))
-    call summary%set('wall_seconds', results%journal%earlier + seconds() - began)
+    call summary%set('wall_seconds', results%folder%journal%earlier + seconds() - began)
     call results%write_summary(summary, cost, scene%deck)
     call results%finish(error)
     if (allocated(error)) then
@@ -143,11 +144,11 @@ contains
         resume, error)
       if (allocated(error)) return
       if (destination%to_stream) return
-      if (.not. results%lock%is_held()) call destination%say('warning: folders cannot be ' // &
-        'locked here; let no other run write into this one')
-      if (results%journal%inherited > 0) then
+      if (.not. results%folder%lock%is_held()) call destination%say('warning: folders cannot ' // &
+        'be locked here; let no other run write into this one')
+      if (results%folder%journal%inherited > 0) then
         call destination%say('continuing a run that was interrupted after '// &
-          duration(results%journal%earlier))
+          duration(results%folder%journal%earlier))
       else if (left_over .and. resume) then
         call destination%say('the interrupted run left nothing to continue; ' // &
           'starting from the beginning')
@@ -194,10 +195,10 @@ contains
       type(stability_recorder_t) :: recorder
       type(resumable_stepper_t) :: keeper
 
-      keeper%journal => results%journal
+      keeper%journal => results%folder%journal
       if (scene%has_eigenvalues()) then
         recorder%next => results
-        recorder%journal => results%journal
+        recorder%journal => results%folder%journal
         recorder%accuracy = scene%numerics%accuracy
         call run_experiment(scene, problem, recorder, outcome, keeper)
       else

@@ -9,7 +9,7 @@ program snapin
   use scene, only: scene_t, keys_of_scene, read_scene
   use c_library, only: c_prepare, c_end_with_parent
   use files, only: read_standard_input
-  use results, only: to_stream
+  use result_folder, only: to_stream
   use machine, only: begin_with_one_thread
   use result_tables, only: write_result_listing
   use command_line, only: options_t, read_command_line, stem_of, write_help, write_usage

@@ -8,8 +8,8 @@
 module anderson
   use kinds, only: wp
   use contact_state, only: state_t
-  use equilibrium, only: control_t, equations_t, residual, largest_step, unknowns_of, holds, &
-    at_h0_with_edge
+  use controls, only: control_t, unknowns_of, at_h0_with_edge
+  use equilibrium, only: equations_t, residual, largest_step, holds
   use frozen_jacobian, only: frozen_jacobian_t, freeze
   use linear_algebra, only: solve
   use solver_options, only: solver_options_t

@@ -3,7 +3,8 @@
 module frozen_jacobian
   use kinds, only: wp
   use contact_state, only: state_t
-  use equilibrium, only: control_t, equations_t
+  use controls, only: control_t
+  use equilibrium, only: equations_t
   use jacobian, only: factorise_jacobian
   use linear_algebra, only: factorisation_t
   implicit none

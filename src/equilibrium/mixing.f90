@@ -8,7 +8,8 @@
 module mixing
   use kinds, only: wp
   use contact_state, only: state_t
-  use equilibrium, only: control_t, equations_t, residual, largest_step, holds, at_h0
+  use controls, only: control_t, at_h0
+  use equilibrium, only: equations_t, residual, largest_step, holds
   use solver_options, only: solver_options_t
   implicit none
   private

@@ -4,7 +4,8 @@
 module relaxation
   use kinds, only: wp
   use contact_state, only: state_t
-  use equilibrium, only: control_t, equations_t, residual, largest_step, holds, at_h0
+  use controls, only: control_t, at_h0
+  use equilibrium, only: equations_t, residual, largest_step, holds
   use jacobian, only: factorise_jacobian
   use linear_algebra, only: factorisation_t, solve, determinant_sign
   use solver_options, only: solver_options_t

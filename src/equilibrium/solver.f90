@@ -1,7 +1,8 @@
 !> A problem on its meshes with the iteration that solves its states.
 module solver
   use contact_state, only: state_t
-  use equilibrium, only: control_t, equations_t
+  use controls, only: control_t
+  use equilibrium, only: equations_t
   use solver_options, only: solver_options_t
   use mixing, only: solve_mixing
   use anderson, only: solve_anderson

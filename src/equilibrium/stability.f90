@@ -6,7 +6,8 @@ module stability
   use discretisation, only: discretisation_t, first_node
   use contact_state, only: state_t
   use represented_pressure, only: pressure_slope_t, slope_on
-  use equilibrium, only: control_t, cost_t
+  use controls, only: control_t
+  use equilibrium, only: cost_t
   use jacobian, only: factorise_on
   use elastic_operator, only: elastic_operator_t
   use linear_algebra, only: factorisation_t, solve, determinant_sign, eigenvalues

@@ -11,7 +11,7 @@ module finer_solver
   use mesh_store, only: mesh_store_t
   use edge_locked, only: mesh_family_t, new_mesh_family
   use contact_state, only: state_t, far_gap, contact_radius_of
-  use equilibrium, only: control_t
+  use controls, only: control_t
   use solver, only: solver_t
   use numerics_choice, only: choice_t, fixed_mesh, companion
   use path_coordinate, only: path_control

@@ -3,8 +3,8 @@ module fixed_branch
   use kinds, only: wp
   use dimensionless_problem, only: over_neck => spacing_over_neck
   use contact_state, only: state_t
-  use equilibrium, only: control_t
-  use jacobian, only: control_derivative
+  use controls, only: control_t
+  use control_derivatives, only: control_derivative
   use frozen_jacobian, only: freeze
   use linear_algebra, only: solve, determinant_sign, log_determinant
   use prediction, only: extrapolated, moved_with_edge, towards_fold

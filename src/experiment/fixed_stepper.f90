@@ -6,7 +6,8 @@ module fixed_stepper
   use dimensionless_problem, only: calm_gap, over_neck => spacing_over_neck
   use contact_state, only: state_t, undeformed_state, radius_of_gap
   use contact_scales, only: largest_radius, lost_in_rounding
-  use equilibrium, only: control_t, holds
+  use controls, only: control_t
+  use equilibrium, only: holds
   use fixed_branch, only: continue_to, expected_at, change, follow, jump
   use ending, only: beyond_rounding, no_equilibrium
   use stepper, only: stepper_t, branch_point_t, step_result_t, remember

@@ -5,7 +5,7 @@ module path_rows
   use kinds, only: wp
   use dimensionless_problem, only: contact_level_of
   use contact_state, only: state_t, contact_radius_of
-  use equilibrium, only: control_t, at_axis_gap
+  use controls, only: control_t, at_axis_gap
   use solver, only: solver_t
   use path_coordinate, only: path_control
   use path_span, only: path_span_t, new_path_span

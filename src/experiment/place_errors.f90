@@ -7,7 +7,8 @@ module place_errors
   use undeformed, only: load_slope_undeformed
   use regridding, only: regrid
   use contact_state, only: state_t, gap_at, contact_radius_of
-  use equilibrium, only: control_t, residual_floor
+  use controls, only: control_t
+  use equilibrium, only: residual_floor
   use solver, only: solver_t
   use path_coordinate, only: path_control, coordinate_of
   use path_tangent, only: h0_alone => of_h0, load_alone => of_load

@@ -9,7 +9,7 @@ module law_panels
   use kinds, only: wp
   use dimensionless_problem, only: problem_t
   use force_law, only: force_law_t, whole_step
-  use discretisation, only: local_nodes_t, gauss_nodes
+  use local_nodes, only: local_nodes_t, gauss_nodes
   use mapped_mesh, only: mapped_shape_t
   use predicted_gaps, only: axis_gaps, between, predicted_gap
   use seen_gaps, only: seen_gaps_t

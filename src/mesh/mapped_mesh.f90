@@ -4,7 +4,8 @@
 !> factor in distance.
 module mapped_mesh
   use kinds, only: wp
-  use discretisation, only: discretisation_t, gauss_nodes, axis_row, centre_row, first_node
+  use discretisation, only: discretisation_t, axis_row, centre_row, first_node
+  use local_nodes, only: gauss_nodes
   use panel_map, only: panel_map_t, sinh_panel, power_map, algebraic_map
   use mapped_kernel, only: add_panel
   implicit none

@@ -15,7 +15,8 @@ module represented_pressure
   use kinds, only: wp
   use interpolation, only: fading
   use force_law, only: force_law_t
-  use discretisation, only: discretisation_t, local_nodes_t, gauss_nodes
+  use discretisation, only: discretisation_t
+  use local_nodes, only: local_nodes_t, gauss_nodes
   use panel_map, only: algebraic_map
   use linear_algebra, only: multiply, multiply_left, add_by_transposed
   implicit none

@@ -5,7 +5,8 @@
 !> the second are position**(-6) times a polynomial in u.
 module running_integrals
   use kinds, only: wp
-  use discretisation, only: discretisation_t, local_nodes_t
+  use discretisation, only: discretisation_t
+  use local_nodes, only: local_nodes_t
   use linear_algebra, only: add_by_transposed
   use panel_map, only: algebraic_map
   use quadrature, only: gauss_legendre, lagrange_basis

@@ -8,7 +8,8 @@ module curve_states
   use contact_state, only: state_t, contact_radius_of
   use solver, only: solver_t
   use path_tangent, only: tangent_t
-  use path_search, only: found_t, find_extrema, find_place, may_turn
+  use path_extrema, only: find_extrema, may_turn
+  use path_search, only: found_t, find_place
   use traced_path, only: traced_path_t, no_mesh
   use path_span, only: path_span_t, new_path_span
   use potential_energy, only: energy_of

@@ -9,7 +9,7 @@ module path_coordinate
   use force_law, only: force_law_t
   use dimensionless_problem, only: problem_t
   use contact_state, only: state_t
-  use equilibrium, only: control_t, at_axis_gap, at_edge_radius
+  use controls, only: control_t, at_axis_gap, at_edge_radius
   use edge_locked, only: mesh_family_t
   implicit none
   private

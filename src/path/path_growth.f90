@@ -12,7 +12,8 @@ module path_growth
   use solver, only: solver_t
   use arc, only: arc_t
   use path_tangent, only: of_h0, of_load
-  use path_search, only: found_t, find_extrema
+  use path_extrema, only: find_extrema
+  use path_search, only: found_t
   use traced_path, only: traced_path_t, path_point_t
   implicit none
   private

@@ -6,10 +6,12 @@ module path_tangent
   use beyond_mesh, only: load_slope_beyond
   use represented_pressure, only: pressure_slope_t, slope_on
   use contact_state, only: state_t, load_reach, gap_at_end
-  use equilibrium, only: control_t, equations_t, at_axis_gap, at_edge_radius
+  use controls, only: control_t, at_axis_gap, at_edge_radius
+  use equilibrium, only: equations_t
   use solver, only: solver_t
   use path_coordinate, only: path_control, axis_gap_rate
-  use jacobian, only: control_derivative, jacobian_times
+  use control_derivatives, only: control_derivative
+  use jacobian, only: jacobian_times
   use linear_algebra, only: solve
   use frozen_jacobian, only: frozen_jacobian_t, freeze
   implicit none

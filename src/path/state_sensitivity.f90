@@ -12,7 +12,8 @@ module state_sensitivity
   use dimensionless_problem, only: problem_t
   use contact_state, only: state_t, far_gap
   use edge_locked, only: mesh_family_t
-  use equilibrium, only: control_t, equations_t, residual, at_edge_radius
+  use controls, only: control_t, at_edge_radius
+  use equilibrium, only: equations_t, residual
   use frozen_jacobian, only: frozen_jacobian_t, freeze
   use linear_algebra, only: solve
   use path_coordinate, only: path_control

@@ -6,7 +6,8 @@ module tracing
   use contact_state, only: state_t, undeformed_state
   use discretisation, only: discretisation_t
   use regridding, only: regrid
-  use equilibrium, only: control_t, equations_t
+  use controls, only: control_t
+  use equilibrium, only: equations_t
   use solver, only: solver_t
   use mesh_plan, only: approach
   use contact_scales, only: largest_radius, lost_in_rounding

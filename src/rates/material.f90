@@ -5,7 +5,8 @@
 !> represent it.
 module material
   use kinds, only: wp
-  use discretisation, only: discretisation_t, local_nodes_t, gauss_nodes
+  use discretisation, only: discretisation_t
+  use local_nodes, only: local_nodes_t, gauss_nodes
   use quadrature, only: lagrange_basis
   use linear_algebra, only: multiply
   implicit none

@@ -3,7 +3,7 @@ module rest
   use kinds, only: wp
   use dimensionless_problem, only: calm_gap
   use contact_state, only: state_t, undeformed_state
-  use equilibrium, only: control_t
+  use controls, only: control_t
   use mesh_plan, only: approach, contact
   use locked_meshes, only: scale_at
   use path_coordinate, only: coordinate_of

@@ -5,7 +5,7 @@
 module time_jump
   use kinds, only: wp
   use contact_state, only: state_t
-  use equilibrium, only: control_t
+  use controls, only: control_t
   use path_coordinate, only: path_control, coordinate_of
   use regridding, only: regrid
   use root_finding, only: root_search_t, new_root_search

@@ -3,7 +3,7 @@
 module time_stepper
   use kinds, only: wp
   use contact_state, only: state_t
-  use equilibrium, only: control_t, at_h0_with_edge, at_edge_radius
+  use controls, only: control_t, at_h0_with_edge, at_edge_radius
   use mesh_plan, only: approach
   use contact_scales, only: cohesive_width
   use locked_meshes, only: h0_control

@@ -1,13 +1,8 @@
-!> The results of one run: a folder with the curve, the profiles, the tables and the summary.
-!>
-!> All files are first written as `.partial` files, the curve and the profiles row by row; `finish`
-!> gives the whole set its names (`publication`). Until then the results of an earlier run stay
-!> unchanged, and files of an interrupted run have partial names. One run at a time has the folder.
-!> A journal keeps the states found, from which another run can continue.
+!> The results of one run: the curve, the profiles, the tables and the summary, as files of a folder
+!> (`result_folder`). The curve, the profiles and the tables are written row by row.
 module results
-  use, intrinsic :: iso_c_binding, only: c_int
   use kinds, only: wp
-  use failure, only: failure_t, fail, file_trouble
+  use failure, only: failure_t
   use dimensionless_problem, only: problem_t
   use discretisation, only: discretisation_t
   use contact_state, only: state_t
@@ -15,24 +10,17 @@ module results
   use records, only: record_t, observer_t
   use scene_groups, only: scene_t
   use deck, only: deck_t
-  use files, only: make_folder, file_exists
-  use folder_lock, only: folder_lock_t
-  use publication, only: publish, result_files, journal_name, summary_name
-  use journal, only: journal_t
-  use run_identity, only: difference_between
-  use text_file, only: output_t, partial
+  use publication, only: summary_name
+  use text_file, only: output_t
   use tables, only: table_t, cells, columns_of_curve, curve_row, columns_of_profiles, write_profile
+  use result_folder, only: result_folder_t
   use result_tables, only: columns_of
   use text, only: word_of
   use summary, only: summary_t, summary_text
   use progress, only: progress_t
   implicit none
   private
-  public :: results_t, journal_of, to_stream
-
-  !> Replaces a folder if results go to standard output, file by file in pieces (`text_file`).
-  character(len=*), parameter :: to_stream = '-'
-  integer(c_int), parameter :: standard_output = 1
+  public :: results_t
 
   !> Takes the results of a run, between `open` and `finish`. The first error is kept in `trouble`;
   !> after it nothing more is written. Must not be copied while files are open.
@@ -42,16 +30,9 @@ module results
     !> Once started, it counts a step for each record of a cycle. The states of a path come all at
     !> once, after the work, and are not counted.
     type(progress_t) :: progress
-    !> The states found by this run, and by an interrupted one.
-    type(journal_t) :: journal
-    !> The descriptor, if results go to a stream. Then there is no folder and no journal.
-    integer(c_int), allocatable, private :: stream
-    !> Excludes other runs from the folder.
-    type(folder_lock_t) :: lock
-    character(len=:), allocatable, private :: folder, title, version
+    type(result_folder_t) :: folder
+    character(len=:), allocatable, private :: title, version
     type(table_t), private :: curve, shapes, cases, beside
-    !> Whether this run has made each of `result_files`.
-    logical, private :: made(size(result_files)) = .false.
   contains
     procedure :: open => open_results
     procedure :: take
@@ -62,18 +43,13 @@ module results
     procedure :: write_text
     procedure :: write_summary
     procedure :: finish
-    procedure, private :: claim
-    procedure, private :: check_presence
-    procedure, private :: file_of
     procedure, private :: begin
   end type results_t
 
 contains
 
-  !> Creates and locks the folder, opens its journal and begins the curve and the profiles if the
-  !> scene has them, so that a folder that cannot be written shows before anything is computed.
-  !> `owner` is the run's identity; resume: the journal of an interrupted run, if there is one, is
-  !> continued.
+  !> Opens the folder and begins the curve and the profiles if the scene has them, so that a folder
+  !> that cannot be written shows before anything is computed. owner, resume: see `result_folder`.
   subroutine open_results(self, folder, scene, version, problem, owner, resume, error)
     class(results_t), intent(inout) :: self
     character(len=*), intent(in) :: folder, version, owner
@@ -83,17 +59,9 @@ contains
     type(failure_t), allocatable, intent(out) :: error
 
     if (allocated(self%trouble)) deallocate (self%trouble)
-    self%folder = folder
-    if (len(folder) == 0) self%folder = '.'
     self%title = scene%title
     self%version = version
-    self%made = .false.
-    if (allocated(self%stream)) deallocate (self%stream)
-    if (folder == to_stream) then
-      self%stream = standard_output
-    else
-      call self%claim(owner, resume, error)
-    end if
+    call self%folder%open(folder, owner, resume, error)
     if (scene%has_curve() .and. .not. allocated(error)) then
       call self%begin(self%curve, 'curve.csv', columns_of_curve(scene%has_eigenvalues(), &
         scene%drive_columns()), error)
@@ -102,7 +70,7 @@ contains
     end if
     if (.not. allocated(error)) return
     self%trouble = error
-    call self%lock%release()
+    call self%folder%lock%release()
   end subroutine open_results
 
   !> Begins the table `name`, a file of the folder.
@@ -112,40 +80,9 @@ contains
     character(len=*), intent(in) :: name, columns(:)
     type(failure_t), allocatable, intent(inout) :: error
 
-    where (result_files == name) self%made = .true.
-    call table%begin(self%file_of(name), self%title, self%version, columns, error, self%stream)
+    call table%begin(self%folder%new_file(name), self%title, self%version, columns, error, &
+      self%folder%stream)
   end subroutine begin
-
-  !> Creates and locks the folder and opens the journal.
-  subroutine claim(self, owner, resume, error)
-    class(results_t), intent(inout) :: self
-    character(len=*), intent(in) :: owner
-    logical, intent(in) :: resume
-    type(failure_t), allocatable, intent(out) :: error
-    character(len=:), allocatable :: path, other
-    logical :: left_over
-
-    call make_folder(self%folder, error)
-    if (.not. allocated(error)) call self%lock%take(self%folder, error)
-    if (allocated(error)) return
-    path = journal_of(self%folder)
-    left_over = file_exists(path)
-    if (.not. (resume .and. left_over)) then
-      call self%journal%begin(path, owner, error)
-      return
-    end if
-    call self%journal%go_on(path, owner, other, error)
-    if (allocated(other)) call fail(error, file_trouble, 'cannot continue: the interrupted ' // &
-      'run had another ' // difference_between(other, owner))
-  end subroutine claim
-
-  !> Path of the journal in a folder of results.
-  pure function journal_of(folder) result(path)
-    character(len=*), intent(in) :: folder
-    character(len=:), allocatable :: path
-
-    path = folder // '/' // journal_name
-  end function journal_of
 
   !> Shows the present activity.
   subroutine hear(self, what)
@@ -167,7 +104,7 @@ contains
     if (record%branch == 'path') then
       call self%progress%note(record%branch)
     else
-      call self%progress%step(record%branch, given=self%journal%is_behind())
+      call self%progress%step(record%branch, given=self%folder%journal%is_behind())
     end if
     if (allocated(self%trouble)) return
     call self%curve%line(curve_row(record), self%trouble)
@@ -253,8 +190,7 @@ contains
     if (allocated(self%trouble)) return
     call self%beside%close(self%trouble)
     if (allocated(self%trouble)) return
-    where (result_files == name) self%made = .true.
-    call file%open(self%file_of(name), self%trouble, self%stream)
+    call file%open(self%folder%new_file(name), self%trouble, self%folder%stream)
     if (.not. allocated(self%trouble)) call file%put(text, self%trouble)
     if (.not. allocated(self%trouble)) call file%close(self%trouble)
   end subroutine write_text
@@ -274,7 +210,7 @@ contains
     call complete%set('version', self%version)
     call complete%take_cost(cost)
     ! Another folder of the same name may hold the summary of another run.
-    if (.not. allocated(self%stream)) call self%check_presence(missing)
+    call self%folder%check_presence(missing)
     if (allocated(missing)) then
       call move_alloc(missing, self%trouble)
       return
@@ -282,58 +218,22 @@ contains
     call self%write_text(summary_name, summary_text(complete) // deck%resolved())
   end subroutine write_summary
 
-  !> Ends the progress and gives the files of this run their names. Files of an earlier run that
-  !> this run has not made are removed, and finally the journal. After an error, also in the
-  !> journal, the partial files stay and `error` gives the reason. The folder is unlocked.
+  !> Ends the progress and closes the folder, which gives the files their names. After an error,
+  !> also in the journal, the partial files stay and `error` gives the reason.
   subroutine finish(self, error)
     class(results_t), intent(inout) :: self
     type(failure_t), allocatable, intent(out) :: error
 
     call self%progress%finish()
-    if (.not. allocated(self%trouble) .and. allocated(self%journal%trouble)) &
-      self%trouble = self%journal%trouble
+    if (.not. allocated(self%trouble) .and. allocated(self%folder%journal%trouble)) &
+      self%trouble = self%folder%journal%trouble
     call finish_table(self%curve, self%trouble)
     call finish_table(self%shapes, self%trouble)
     call finish_table(self%cases, self%trouble)
     call finish_table(self%beside, self%trouble)
-    if (allocated(self%trouble)) then
-      error = self%trouble
-    else if (any(self%made) .and. .not. allocated(self%stream)) then
-      call self%check_presence(error)
-      if (.not. allocated(error)) call publish(self%lock, self%made, error)
-    end if
-    if (allocated(error)) then
-      call self%journal%close()
-    else
-      call self%journal%drop()
-    end if
-    call self%lock%release()
+    if (allocated(self%trouble)) error = self%trouble
+    call self%folder%close(error)
   end subroutine finish
-
-  !> Fails if a file that this run has begun is no longer in the folder.
-  subroutine check_presence(self, error)
-    class(results_t), intent(in) :: self
-    type(failure_t), allocatable, intent(inout) :: error
-    integer :: i
-
-    if (.not. self%lock%contains_file(journal_name)) call complain(journal_name)
-    do i = 1, size(result_files)
-      if (allocated(error)) return
-      if (.not. self%made(i)) cycle
-      if (.not. self%lock%contains_file(trim(result_files(i)) // partial)) &
-        call complain(trim(result_files(i)) // partial)
-    end do
-
-  contains
-
-    subroutine complain(name)
-      character(len=*), intent(in) :: name
-
-      call fail(error, file_trouble, self%folder // '/' // name // ' was removed or moved ' // &
-        'away during the run; make sure that no other program does this')
-    end subroutine complain
-
-  end subroutine check_presence
 
   subroutine finish_table(table, error)
     type(table_t), intent(inout) :: table
@@ -343,15 +243,5 @@ contains
     call table%close(another)
     if (allocated(another) .and. .not. allocated(error)) call move_alloc(another, error)
   end subroutine finish_table
-
-  !> Path of a file while it is written: its partial name in the folder, or its name in a stream.
-  pure function file_of(self, name) result(path)
-    class(results_t), intent(in) :: self
-    character(len=*), intent(in) :: name
-    character(len=:), allocatable :: path
-
-    path = self%folder // '/' // name // partial
-    if (allocated(self%stream)) path = name
-  end function file_of
 
 end module results

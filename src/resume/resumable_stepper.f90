@@ -6,7 +6,8 @@ module resumable_stepper
   use discretisation, only: discretisation_t
   use frozen_jacobian, only: freeze
   use contact_state, only: state_t
-  use equilibrium, only: control_t, cost_t
+  use controls, only: control_t
+  use equilibrium, only: cost_t
   use ending, only: ending_t, not_kept
   use stepper, only: keeping_stepper_t, branch_point_t, step_result_t
   use journal, only: of_step

@@ -1,19 +1,19 @@
 !> A file to which a run appends its results, so that another run can continue after an
 !> interruption.
 !>
-!> A journal begins with a text that identifies its owner; records follow. Each record has its
-!> length, a checksum, and the time since the run began. Records are collected and written several
-!> times a second. An incomplete last record, which was being written when the run was killed, is
-!> cut off. Every few seconds the journal is synchronised to the disk, the first time with its name,
-!> so that a power failure costs only the last seconds. System calls write it for the reason given
-!> in `text_file`.
+!> A journal begins with a text that identifies its owner; records follow (`journal_frame`), with
+!> the time since the run began. Records are collected and written several times a second. A last
+!> record that is not complete, since the run was killed, is cut off. Every few seconds the journal
+!> is synchronised to the disk, the first time with its name, so that a power failure costs only the
+!> last seconds. System calls write it for the reason given in `text_file`.
 module journal
   use, intrinsic :: iso_c_binding, only: c_char, c_int, c_long, c_loc, c_f_pointer
   use kinds, only: wp, long
   use failure, only: failure_t, fail, file_trouble
-  use c_library, only: c_open, c_read, c_write, c_sync, c_close, c_size, c_cut, check_status, &
+  use c_library, only: c_open, c_write, c_sync, c_close, c_size, c_cut, check_status, &
     as_output, as_kept_output, nul
   use byte_record, only: byte_record_t
+  use journal_frame, only: frame, word, read_frame
   use checksums, only: checksum
   use files, only: sync_names
   use clock, only: seconds
@@ -57,12 +57,9 @@ module journal
     procedure :: drop => let_go
     procedure :: discard
     procedure, private :: put_on_disk
-    procedure, private :: read_frame
     procedure, private :: hand_over
   end type journal_t
 
-  !> Number of words before the packed ones: their number, the checksum of all others, the time.
-  integer, parameter :: frame = 3, word = storage_size(0_long)/8
   !> Largest loss in a power failure, in seconds of work. Synchronising takes a hundredth of it.
   real(wp), parameter :: sync_interval = 2
   !> Largest loss when a run is killed, in seconds of work, and largest number of collected words.
@@ -103,7 +100,7 @@ contains
     call start(self, path, as_kept_output, error)
     if (allocated(error)) return
     whole = 0
-    call self%read_frame(record, whole, found)
+    call read_frame(self%descriptor, self%room, record, self%earlier, whole, found)
     if (.not. found) then
       call self%close()
       call self%begin(path, owner, error)
@@ -117,7 +114,7 @@ contains
     deallocate (other)
     first = whole
     do
-      call self%read_frame(record, whole, found)
+      call read_frame(self%descriptor, self%room, record, self%earlier, whole, found)
       if (.not. found) exit
       self%inherited = self%inherited + 1
     end do
@@ -175,7 +172,7 @@ contains
     found = .false.
     if (.not. self%is_behind()) return
     whole = 0
-    call self%read_frame(record, whole, found)
+    call read_frame(self%descriptor, self%room, record, self%earlier, whole, found)
     self%waiting = self%waiting - 1
     ! `go_on` has read this record before.
     if (found) return
@@ -298,40 +295,5 @@ contains
     if (status /= 0) call fail(self%trouble, file_trouble, self%path // ' cannot be emptied')
     call let_go(self)
   end subroutine discard
-
-  !> Reads the record at the present position and moves `whole` [bytes] to its end. found = .false.
-  !> at the end of the file, or if the record is not complete.
-  subroutine read_frame(self, record, whole, found)
-    class(journal_t), intent(inout) :: self
-    type(byte_record_t), intent(inout) :: record
-    integer(c_long), intent(inout) :: whole
-    logical, intent(out) :: found
-    integer(long) :: head(frame)
-    integer(long), allocatable :: words(:)
-
-    found = .false.
-    call record%clear()
-    if (.not. read_words(self%descriptor, head)) return
-    if (head(1) < 0 .or. head(1) > self%room) return
-    allocate (words(frame + head(1)))
-    words(:frame) = head
-    words(2) = 0
-    if (.not. read_words(self%descriptor, words(frame + 1:))) return
-    if (checksum(words) /= head(2)) return
-    call record%fill(words(frame + 1:))
-    self%earlier = transfer(head(3), self%earlier)
-    whole = whole + size(words)*word
-    found = .true.
-  end subroutine read_frame
-
-  !> Reads words; .false. if the file ends before.
-  logical function read_words(descriptor, words) result(complete)
-    integer(c_int), intent(in) :: descriptor
-    integer(long), intent(out) :: words(:)
-    character :: bytes(word*size(words))
-
-    complete = c_read(descriptor, bytes, size(bytes, kind=c_long)) == size(bytes)
-    if (complete) words = transfer(bytes, words)
-  end function read_words
 
 end module journal

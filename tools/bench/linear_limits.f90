@@ -11,7 +11,8 @@ program linear_limits
   use discretisation, only: discretisation_t, first_node
   use linear_mesh, only: new_uniform_grid
   use contact_state, only: undeformed_state, state_t
-  use equilibrium, only: control_t, equations_t, residual
+  use controls, only: control_t
+  use equilibrium, only: equations_t, residual
   use frozen_jacobian, only: frozen_jacobian_t, freeze
   use linear_algebra, only: multiply, factorisation_t, factorise, solve
   use mixing, only: solve_mixing

@@ -1,0 +1,198 @@
+!> The cases of a sweep: those to be computed, in order, and the rows of those that have ended. Each
+!> case is one row: the values of its keys, and its numbers.
+module case_queue
+  use kinds, only: wp
+  use failure, only: failure_t, fail, bad_input, file_trouble
+  use scene_groups, only: scene_t
+  use sweep_case, only: case_t, sweep_tally_t, pass_case
+  use case_rows, only: case_rows_t
+  use case_columns, only: column_width
+  use byte_record, only: byte_record_t
+  use results, only: results_t
+  use dispatch, only: foreman_t
+  implicit none
+  private
+  public :: case_queue_t
+
+  !> The cases of a sweep: number of cases handed out, cases that wait for the rows before theirs,
+  !> number of rows written, and the tally of these. `waiting` has a case at its number modulo the
+  !> array's size.
+  type, extends(foreman_t) :: case_queue_t
+    type(scene_t), pointer :: scene => null()
+    type(results_t), pointer :: results => null()
+    character(len=column_width), allocatable :: columns(:)
+    !> The file of the cases, if the sweep has one.
+    type(case_rows_t) :: rows
+    type(case_t), allocatable :: waiting(:)
+    integer :: handed_out = 0, written = 0
+    type(sweep_tally_t) :: tally
+  contains
+    procedure :: next
+    procedure :: put_next
+    procedure :: take_answer
+    procedure :: enter
+    procedure :: recall_cases
+    procedure, private :: next_row
+    procedure, private :: has
+    procedure, private :: add
+  end type case_queue_t
+
+contains
+
+  !> The next case that is not complete. found = .false. if there is none, if results cannot be
+  !> written, or if the file has changed since the deck was read.
+  subroutine next(self, case, found)
+    class(case_queue_t), intent(inout) :: self
+    type(case_t), intent(inout) :: case
+    logical, intent(out) :: found
+    type(failure_t), allocatable :: error
+    real(wp), allocatable :: rest(:)
+
+    found = .false.
+    if (allocated(self%results%trouble) .or. allocated(self%results%folder%journal%trouble)) return
+    associate (sweep => self%scene%sweep)
+      do while (.not. found .and. self%handed_out < sweep%cases())
+        self%handed_out = self%handed_out + 1
+        case%number = self%handed_out
+        if (allocated(sweep%file)) then
+          call self%next_row(case%values, .false., error)
+        else
+          case%values = sweep%values(case%number)
+        end if
+        if (allocated(error)) then
+          found = .false.
+          call move_alloc(error, self%results%trouble)
+          return
+        end if
+        found = .not. self%has(case%number)
+      end do
+      if (.not. found .and. allocated(sweep%file)) &
+        call self%next_row(rest, .true., self%results%trouble)
+    end associate
+  end subroutine next
+
+  !> Reads the row of the next case from the file, or, if all are `given`, what is after the last.
+  !> The file was read before without a mistake, and all of its lines are compared with that
+  !> reading: a changed row may be a case too. Nothing shows which cases are still of the deck, so
+  !> that no run may go on from them.
+  subroutine next_row(self, values, given, error)
+    class(case_queue_t), intent(inout) :: self
+    real(wp), allocatable, intent(inout) :: values(:)
+    logical, intent(in) :: given
+    type(failure_t), allocatable, intent(out) :: error
+    logical :: found
+
+    call self%rows%next(values, found, error)
+    associate (file => self%scene%sweep%file)
+      if (allocated(error)) then
+        if (error%kind == file_trouble) return
+      else if (given) then
+        if (.not. found .and. self%rows%digest == file%digest) return
+      else if (found) then
+        return
+      end if
+      call self%results%folder%journal%discard()
+      call fail(error, bad_input, file%path // ' has changed since it was first read; start again')
+    end associate
+  end subroutine next_row
+
+  subroutine put_next(self, batch, found)
+    class(case_queue_t), intent(inout) :: self
+    type(byte_record_t), intent(inout) :: batch
+    logical, intent(out) :: found
+    type(case_t) :: case
+
+    call self%next(case, found)
+    if (.not. found) return
+    call batch%pass(case%number)
+    call batch%pass(case%values)
+  end subroutine put_next
+
+  subroutine take_answer(self, answers)
+    class(case_queue_t), intent(inout) :: self
+    type(byte_record_t), intent(inout) :: answers
+    type(case_t) :: case
+
+    call pass_case(answers, case)
+    call self%enter(case)
+  end subroutine take_answer
+
+  !> Takes a case that has been computed, and appends it to the journal.
+  subroutine enter(self, case)
+    class(case_queue_t), intent(inout) :: self
+    type(case_t), intent(inout) :: case
+    type(byte_record_t) :: record
+
+    call pass_case(record, case)
+    call self%results%folder%journal%append(record)
+    call self%add(case)
+    call self%results%progress%step('case', failed=.not. case%converged)
+  end subroutine enter
+
+  !> Takes the completed cases of an interrupted run.
+  subroutine recall_cases(self)
+    class(case_queue_t), intent(inout) :: self
+    type(byte_record_t) :: record
+    type(case_t) :: case
+    logical :: found
+
+    do
+      call self%results%folder%journal%next(record, found)
+      if (.not. found) exit
+      call pass_case(record, case)
+      call self%add(case)
+      call self%results%progress%step('case', failed=.not. case%converged, given=.true.)
+    end do
+  end subroutine recall_cases
+
+  !> Whether a case has ended, in this run or in the interrupted one.
+  pure logical function has(self, number)
+    class(case_queue_t), intent(in) :: self
+    integer, intent(in) :: number
+
+    has = number <= self%written
+    if (.not. has .and. allocated(self%waiting)) &
+      has = self%waiting(mod(number, size(self%waiting)))%number == number
+  end function has
+
+  !> Adds a case that has ended, and writes all rows that are next.
+  subroutine add(self, case)
+    class(case_queue_t), intent(inout) :: self
+    type(case_t), intent(in) :: case
+
+    if (.not. allocated(self%waiting)) allocate (self%waiting(0:15))
+    call make_room(self%waiting, case%number - self%written)
+    self%waiting(mod(case%number, size(self%waiting))) = case
+    do
+      associate (first => self%waiting(mod(self%written + 1, size(self%waiting))))
+        if (first%number /= self%written + 1) exit
+        call self%results%take_case(self%columns, self%scene%sweep%words, first%values, &
+          first%numbers, first%failure)
+        call self%tally%add(first)
+        first%number = 0
+        deallocate (first%numbers, first%values)
+      end associate
+      self%written = self%written + 1
+    end do
+  end subroutine add
+
+  !> Makes room for a case that is `ahead` cases after the last one written.
+  subroutine make_room(waiting, ahead)
+    type(case_t), allocatable, intent(inout) :: waiting(:)
+    integer, intent(in) :: ahead
+    type(case_t), allocatable :: larger(:)
+    integer :: size_needed, i
+
+    if (ahead <= size(waiting)) return
+    size_needed = size(waiting)
+    do while (size_needed < ahead)
+      size_needed = 2*size_needed
+    end do
+    allocate (larger(0:size_needed - 1))
+    do i = 0, size(waiting) - 1
+      if (waiting(i)%number > 0) larger(mod(waiting(i)%number, size_needed)) = waiting(i)
+    end do
+    call move_alloc(larger, waiting)
+  end subroutine make_room
+
+end module case_queue

@@ -1,0 +1,56 @@
+!> The frame of a record in a journal: before its words are their number, the checksum of all other
+!> words, and a time.
+module journal_frame
+  use, intrinsic :: iso_c_binding, only: c_int, c_long
+  use kinds, only: wp, long
+  use c_library, only: c_read
+  use byte_record, only: byte_record_t
+  use checksums, only: checksum
+  implicit none
+  private
+  public :: frame, word, read_frame
+
+  !> Number of words of a frame, and of bytes of a word.
+  integer, parameter :: frame = 3, word = storage_size(0_long)/8
+
+contains
+
+  !> Reads the record at the present position of a file of at most `most` words, and its time [s];
+  !> adds its bytes to `whole`. found = .false. at the end of the file, or if the record is not
+  !> complete.
+  subroutine read_frame(descriptor, most, record, time, whole, found)
+    integer(c_int), intent(in) :: descriptor
+    integer(long), intent(in) :: most
+    type(byte_record_t), intent(inout) :: record
+    real(wp), intent(inout) :: time
+    integer(c_long), intent(inout) :: whole
+    logical, intent(out) :: found
+    integer(long) :: head(frame)
+    integer(long), allocatable :: words(:)
+
+    found = .false.
+    call record%clear()
+    if (.not. read_words(descriptor, head)) return
+    if (head(1) < 0 .or. head(1) > most) return
+    allocate (words(frame + head(1)))
+    words(:frame) = head
+    words(2) = 0
+    if (.not. read_words(descriptor, words(frame + 1:))) return
+    if (checksum(words) /= head(2)) return
+    call record%fill(words(frame + 1:))
+    time = transfer(head(3), time)
+    whole = whole + size(words)*word
+    found = .true.
+  end subroutine read_frame
+
+  !> Reads words; .false. if the file ends before.
+  logical function read_words(descriptor, words) result(complete)
+    integer(c_int), intent(in) :: descriptor
+    integer(long), intent(out) :: words(:)
+    character :: bytes(word*size(words))
+
+    complete = c_read(descriptor, bytes, size(bytes, kind=c_long)) == size(bytes)
+    if (complete) words = transfer(bytes, words)
+  end function read_words
+
+end module journal_frame
