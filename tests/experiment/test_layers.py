@@ -214,6 +214,17 @@ def test_what_is_beyond_the_model_is_said(run):
     assert any("strain below the top layer is about" in text for text in warnings(run(skin)))
 
 
+def test_a_profile_does_not_spoil_the_estimate_of_a_stiff_layer_on_a_soft_base(run):
+    """Far out the deformation changes over the plate's length, which the outermost panel's few nodes
+    cannot interpolate."""
+    found = run(deck(
+        bodies={"radius": 8.55e-3, "young": 1.73e5, "poisson": 0.5},
+        layer={"thickness": 2.6e-4, "young": 1.89e8, "poisson": 0.09, "partner": "rigid"},
+        force={"law": "lennard_jones", "surface_energy": 3.25e-3, "z0": 8.4e-9},
+        equilibrium_path={"h0_end": -2.4e-7}, profiles={"h0": -7.9e-8})).summary
+    assert found["error_estimate"] < 1e-6 and found["profiles_error"] < 1e-6
+
+
 @pytest.mark.parametrize("young", ([1e4, 1e8], [1e8, 1e4]))
 def test_a_large_strain_is_said_of_either_body(run, young):
     skins = deck(bodies={"radius": 1e-3, "young": young, "poisson": 0.3},
