@@ -9,10 +9,12 @@ module classical_rows
   use convex_contact, only: hertz_like_load, jkr_like_load, jkr_like_radius, detachment_radius
   use maugis, only: maugis_t, new_maugis
   use transition_fits, only: fit_t, carpick_fit, pietrement_fit
-  use layered_contact, only: layered_contact_t, new_layered_contact, has_layers, of_load
+  use layered_contact, only: layered_contact_t, new_layered_contact, has_layers, of_load, &
+    of_displacement
   use scene_groups, only: range_t
   use results, only: results_t
   use summary, only: summary_t
+  use text, only: rounded
   implicit none
   private
   public :: write_classical, summarise_classical
@@ -158,7 +160,12 @@ contains
     delta = (problem%law%origin - range%h0_end)/problem%length
     if (.not. delta > 0) return
     a = contact%radius_at(hertz, delta)
-    if (ieee_is_nan(a)) return
+    if (ieee_is_nan(a)) then
+      if (contact%value_of(of_displacement, hertz, contact%last) < delta) call summary%note( &
+        'classical: theories of layers are computed up to a contact radius of ' // &
+        rounded(contact%last*problem%lateral) // ' m, which these bodies have before h0_end')
+      return
+    end if
     homogeneous = hertz_like_load(problem, problem%shape%contact_radius(delta))
     call summary%set('effective_modulus', &
       0.5_wp*problem%stiffness*contact%value_of(of_load, hertz, a)/homogeneous)

@@ -89,6 +89,19 @@ def test_equal_moduli_are_hertz_and_jkr(run, shape):
             assert mine[column][here] == pytest.approx(expected[here], rel=1e-6, abs=1e-9)
 
 
+def test_a_note_says_where_the_theories_of_layers_end(run):
+    """At a contact radius of forty thicknesses."""
+    def notes(summary):
+        found = summary.get("notes", [])
+        return " ".join([found] if isinstance(found, str) else found)
+
+    within, beyond = (run(theory(0.5, 0.4, (0.1, 0.2), sigma=1.0, h0_end=h0)).summary
+                      for h0 in (-1.0, -1000.0))
+    assert "up to a contact radius of 20 m" in notes(beyond)
+    assert "effective_modulus" in within and "effective_modulus" not in beyond
+    assert "contact radius" not in notes(within)
+
+
 def test_a_film_has_the_modulus_of_its_base_below_a_large_sphere(run):
     base = (0.1, 0.2)
     found = [run(theory(t, 0.4, base, sigma=1.0, h0_end=-1.0)).summary for t in (0.03, 100.0)]
