@@ -8,17 +8,9 @@ from support.half_space import path_by_axis
 from support.scenes import JKR, deck, exponential, lennard_jones, loading, several
 
 FIG1 = {"radius": 1.5e-2, "stiffness": 1e10}
-FIG1_LJ = {"law": "lennard_jones", "hamaker": 1e-20, "z0": 0.5e-9}
 # sigma of the two rows of the reference table: attraction with a jump, and with much adhesion.
 WEAK, STRONG = 0.87, 8.7
 STRONG_PULL_OFF = 1.01124487  # In units of JKR's.
-
-
-def fig1(**numerics):
-    """The Lennard-Jones cycle of Fig. 1."""
-    return deck(
-        bodies=FIG1, force=FIG1_LJ, loading={"h0_start": 4e-9, "h0_end": -15e-9, "h0_step": 1e-10},
-        unloading={}, numerics={"accuracy": 1e-4, **numerics})
 
 
 # --- Independent solutions
@@ -201,16 +193,3 @@ def test_profiles_fit_together_and_to_the_curve(profiled, branch):
         # The nodes are few, and quintics through them leave this.
         assert load == pytest.approx(curve["load"][row][0], abs=6e-3 * WEAK)
         assert -2 * u[0] == pytest.approx(curve["displacement"][row][0], abs=1e-12)
-
-
-# --- The same again
-
-
-def test_summary_runs_again_with_the_same_digits(run):
-    first = run(fig1())
-    again = run((first.folder / "summary.nml").read_text())
-    assert (again.folder / "curve.csv").read_bytes() == (first.folder / "curve.csv").read_bytes()
-    for group, values in first.groups.items():
-        for key, value in values.items():
-            if not key.endswith("_seconds"):
-                assert again.groups[group][key] == value, key

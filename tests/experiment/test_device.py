@@ -142,14 +142,6 @@ def test_a_load_that_underflows_far_out_is_no_jump_of_a_dead_load(run):
     assert len(found.warnings) == 1 and "no stable state is known" in found.warnings[0]
 
 
-def test_bodies_that_nothing_keeps_apart_jump_in_for_good(run):
-    found = run(lennard_jones(0.87, part="attractive", equilibrium_path={"h0_end": -2.0},
-                              device={"stiffness": [1.0]}))
-    assert numbers(found, "jump_in_z")[0] == pytest.approx(4.17, abs=0.01)
-    assert np.isnan(numbers(found, "jump_in_load_after")[0])
-    assert any("no stable state is known" in warning for warning in found.warnings)
-
-
 def test_below_the_cusp_only_soft_springs_jump(run):
     found = run(springs(0.2, [10, 1]))
     assert np.isnan(numbers(found, "jump_in_z")[0])
