@@ -6,7 +6,6 @@ As in test_deck.py, every mistake is named by line, group and key.
 import re
 
 import pytest
-from conftest import ROOT
 from support.decks import (
     BODIES, FORCE, GOOD, LAYERED, LOADING, assert_refused, body, extra, with_bodies, with_extra)
 
@@ -211,13 +210,6 @@ def resolved(snapin, folder, name, text):
         elif match := re.match(r"  (\w+) = (.*)", line):
             group[match[1]] = match[2]
     return summary, "\n".join(lines[start:]), values
-
-
-@pytest.mark.parametrize("deck", sorted((ROOT / "inputs/examples").glob("*.nml")),
-                         ids=lambda path: path.stem)
-def test_examples_are_accepted(snapin, deck):
-    done = snapin("--check", deck.name, cwd=deck.parent)
-    assert done.returncode == 0, done.stderr
 
 
 def test_resolved_deck_holds_every_value_and_default(snapin, tmp_path):

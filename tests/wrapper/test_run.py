@@ -224,16 +224,6 @@ def test_what_is_handed_over_is_what_a_folder_would_hold(name, tmp_path, monkeyp
     assert handed.cost["states"] == kept.cost["states"]
 
 
-def test_summaries_are_read_as_a_reader_of_namelists_does(tmp_path):
-    """The package has a reader of its own for what the program writes: f90nml takes long."""
-    result = snapin.run(CYCLE, out=tmp_path)
-    expected = f90nml.read(tmp_path / "summary.nml")
-    for group, found in (("summary", result.summary), ("cost", result.cost)):
-        assert list(found) == list(expected[group])
-        for key, value in found.items():
-            np.testing.assert_array_equal(np.squeeze(value), np.squeeze(expected[group][key]))
-
-
 def test_resume_needs_a_folder():
     with pytest.raises(ValueError, match="^resume: "):
         snapin.run(CURVE, resume=True)
