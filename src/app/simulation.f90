@@ -116,7 +116,6 @@ contains
       logical :: mended
 
       finished = .false.
-      converged = .false.
       call mend(destination%folder, mended, error)
       if (allocated(error)) return
       if (mended) call destination%say( &

@@ -82,13 +82,10 @@ contains
     logical, intent(in) :: resume
     type(failure_t), allocatable, intent(out) :: error
 
-    if (allocated(self%trouble)) deallocate (self%trouble)
     self%folder = folder
     if (len(folder) == 0) self%folder = '.'
     self%title = scene%title
     self%version = version
-    self%made = .false.
-    if (allocated(self%stream)) deallocate (self%stream)
     if (folder == to_stream) then
       self%stream = standard_output
     else
