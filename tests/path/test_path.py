@@ -69,14 +69,6 @@ def test_energy_lost_is_that_of_the_whole_cycle_or_is_not_given(run):
         assert "energy_lost_uncertainty" not in summary
 
 
-def test_summary_has_the_extrema_of_the_load(run):
-    summary = run(path(8.7)).summary
-    h0, load = several(summary["load_folds_h0"]), several(summary["load_folds_load"])
-    assert len(h0) == len(load) == 3
-    assert min(load) == -summary["max_tension"]
-    assert h0[int(np.argmin(load))] == summary["max_tension_h0"]
-
-
 def test_the_largest_tension_is_an_extremum_where_meshes_change_beside_it(run):
     # At this sigma and 1e-2 the path passes to another mesh three digits from the extremum, and
     # what the meshes err by made the state there the lower one, with no error of its h0.
