@@ -150,11 +150,6 @@ def test_a_file_that_changes_meanwhile_stops_the_sweep(snapin_path, tmp_path, ch
     assert (tmp_path / "results/d/journal.partial").stat().st_size == 0
 
 
-def test_two_threads_leave_the_same_bytes(run):
-    one, two = (run(scene(GRID), threads=threads) for threads in (1, 2))
-    assert rows_of(one) == rows_of(two)
-
-
 @pytest.mark.long
 @pytest.mark.alone
 def test_two_threads_hardly_wait_for_each_other(snapin_path, tmp_path):

@@ -229,12 +229,6 @@ def test_resume_needs_a_folder():
         snapin.run(CURVE, resume=True)
 
 
-def test_results_that_cannot_be_written_are_an_error(tmp_path):
-    (tmp_path / "file").write_text("")
-    with pytest.raises(snapin.SnapinError, match="cannot make the folder"):
-        snapin.run(CURVE, out=tmp_path / "file" / "folder")
-
-
 @pytest.mark.parametrize(("out", "error"), [("a\0", ValueError), (3, TypeError), (b"a", TypeError)])
 def test_what_is_no_folder_is_refused(out, error, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
@@ -257,7 +251,7 @@ def test_tables_of_others_in_the_folder_are_left_alone(notes, tmp_path):
 def test_the_program_says_nothing_unless_it_is_asked_to(capfd):
     with pytest.raises(snapin.DeckError):
         snapin.run({"frog": True})
-    with pytest.raises(snapin.SnapinError):
+    with pytest.raises(snapin.SnapinError, match="cannot make the folder"):
         snapin.run(CURVE, out="/dev/null/folder")
     with pytest.warns(snapin.SnapinWarning, match="under-resolved"):
         snapin.run(lennard_jones(2.0, loading=loading(4, 2, 1), numerics={"nodes": 100,
