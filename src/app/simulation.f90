@@ -97,7 +97,8 @@ contains
     call summary%set('build_options', options)
     call summary%set('threads', int(thread_count(), long))
     call summary%set('wall_seconds', results%journal%earlier + seconds() - began)
-    call results%write_summary(summary, cost, scene%deck)
+    call summary%take_cost(cost)
+    call results%write_summary(summary, scene%deck)
     call results%finish(error)
     if (allocated(error)) then
       if (error%kind /= bad_input .and. .not. destination%to_stream) &
