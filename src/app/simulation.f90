@@ -98,7 +98,8 @@ contains
     call summary%set('build_options', options)
     call summary%set('threads', int(thread_count(), long))
     call summary%set('wall_seconds', results%folder%journal%earlier + seconds() - began)
-    call results%write_summary(summary, cost, scene%deck)
+    call summary%take_cost(cost)
+    call results%write_summary(summary, scene%deck)
     call results%finish(error)
     if (allocated(error)) then
       if (error%kind /= bad_input .and. .not. destination%to_stream) &
@@ -117,7 +118,6 @@ contains
       logical :: mended
 
       finished = .false.
-      converged = .false.
       call mend(destination%folder, mended, error)
       if (allocated(error)) return
       if (mended) call destination%say( &

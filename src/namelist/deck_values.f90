@@ -84,7 +84,6 @@ contains
     character(len=*), intent(in) :: token
     type(value_t), intent(inout) :: value
     character(len=:), allocatable, intent(out) :: what
-    character(len=:), allocatable :: hint
     real(wp) :: x
     integer :: star, times, i
 
@@ -120,8 +119,7 @@ contains
       value%text = trim(lower(token))
       if (len(value%text) > 0 .and. index(' ' // trim(spec%choices) // ' ', ' ' // value%text // &
         ' ') > 0 .and. index(value%text, ' ') == 0) return
-      hint = guess(value%text, spec%choices, '')
-      what = quoted(clip(token)) // ' is not known' // hint
+      what = quoted(clip(token)) // ' is not known' // guess(value%text, spec%choices, '')
     case (text_value)
       value%text = trim(token)
       if (len(value%text) > spec%most) what = 'the text is too long'

@@ -50,8 +50,6 @@ contains
 
     self%path = folder
     if (len(folder) == 0) self%path = '.'
-    self%made = .false.
-    if (allocated(self%stream)) deallocate (self%stream)
     if (folder == to_stream) then
       self%stream = standard_output
       return

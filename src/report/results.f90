@@ -6,7 +6,6 @@ module results
   use dimensionless_problem, only: problem_t
   use discretisation, only: discretisation_t
   use contact_state, only: state_t
-  use equilibrium, only: cost_t
   use records, only: record_t, observer_t
   use scene_groups, only: scene_t
   use deck, only: deck_t
@@ -58,7 +57,6 @@ contains
     logical, intent(in) :: resume
     type(failure_t), allocatable, intent(out) :: error
 
-    if (allocated(self%trouble)) deallocate (self%trouble)
     self%title = scene%title
     self%version = version
     call self%folder%open(folder, owner, resume, error)
@@ -195,27 +193,21 @@ contains
     if (.not. allocated(self%trouble)) call file%close(self%trouble)
   end subroutine write_text
 
-  !> Writes the summary; title and version are those given to `open`.
-  subroutine write_summary(self, summary, cost, deck)
+  !> Writes the summary and the deck.
+  subroutine write_summary(self, summary, deck)
     class(results_t), intent(inout) :: self
     type(summary_t), intent(in) :: summary
-    type(cost_t), intent(in) :: cost
     type(deck_t), intent(in) :: deck
-    type(summary_t) :: complete
     type(failure_t), allocatable :: missing
 
     if (allocated(self%trouble)) return
-    complete = summary
-    call complete%set('title', self%title)
-    call complete%set('version', self%version)
-    call complete%take_cost(cost)
     ! Another folder of the same name may hold the summary of another run.
     call self%folder%check_presence(missing)
     if (allocated(missing)) then
       call move_alloc(missing, self%trouble)
       return
     end if
-    call self%write_text(summary_name, summary_text(complete) // deck%resolved())
+    call self%write_text(summary_name, summary_text(summary) // deck%resolved())
   end subroutine write_summary
 
   !> Ends the progress and closes the folder, which gives the files their names. After an error,

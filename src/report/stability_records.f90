@@ -58,7 +58,6 @@ contains
     type(state_t), intent(in) :: state
     logical, intent(in) :: profile
     type(record_t) :: completed
-    real(wp) :: eigenvalue
     logical :: certain
 
     completed = record
@@ -67,16 +66,15 @@ contains
     completed%axis_criterion = unknown()
     ! A state that is not an equilibrium is neither stable nor unstable.
     if (record%converged) then
-      call self%find_eigenvalue(problem, grid, state, eigenvalue, certain)
-      completed%eigenvalue = eigenvalue
+      call self%find_eigenvalue(problem, grid, state, completed%eigenvalue, certain)
       completed%local_criterion = local_criterion(problem, grid, state)
       completed%axis_criterion = axis_criterion(problem, state)
       if (.not. certain) then
         self%uncertain = self%uncertain + 1
       else if (record%stable == stable_unasked) then
-        completed%stable = merge(stable_yes, stable_no, eigenvalue > 0)
-      else if (abs(eigenvalue) > zero*self%accuracy) then
-        if ((record%stable == stable_yes) .neqv. (eigenvalue > 0)) &
+        completed%stable = merge(stable_yes, stable_no, completed%eigenvalue > 0)
+      else if (abs(completed%eigenvalue) > zero*self%accuracy) then
+        if ((record%stable == stable_yes) .neqv. (completed%eigenvalue > 0)) &
           self%contradicted = self%contradicted + 1
       end if
     end if

@@ -66,7 +66,6 @@ contains
     integer, intent(in) :: i
 
     allocate (found%value(0), found%rate(0, 0))
-    if (.not. allocated(self%value)) return
     if (allocated(self%value(i)%number)) found%value = self%value(i)%number
     if (allocated(self%value(i)%rate)) found%rate = self%value(i)%rate
   end function numbers_of_row
@@ -147,7 +146,6 @@ contains
     character(len=*), intent(in) :: key
 
     has = .false.
-    if (.not. allocated(self%value)) return
     associate (value => self%value(row_of(key)))
       has = allocated(value%number) .or. allocated(value%count) .or. allocated(value%truth) .or. &
         allocated(value%text)
@@ -168,7 +166,6 @@ contains
     integer, intent(in) :: i, k
 
     element = nan
-    if (.not. allocated(self%value)) return
     associate (value => self%value(i))
       if (allocated(value%number)) then
         if (k <= size(value%number)) element = value%number(k)
@@ -186,7 +183,6 @@ contains
     character(len=*), intent(in) :: key
 
     is_true = .false.
-    if (.not. allocated(self%value)) return
     associate (value => self%value(row_of(key)))
       if (allocated(value%truth)) is_true = value%truth
     end associate
@@ -199,7 +195,6 @@ contains
     character(len=:), allocatable :: text
 
     text = ''
-    if (.not. allocated(self%value)) return
     associate (value => self%value(row_of(key)))
       if (allocated(value%text)) text = value%text
     end associate

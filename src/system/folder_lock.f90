@@ -41,7 +41,6 @@ contains
     integer(c_int) :: status, sort
     character(len=:), allocatable :: reason
 
-    call self%release()
     self%path = path
     self%folder = c_open(path // nul, as_folder)
     call check_status('cannot open the folder ' // path, self%folder, error)

@@ -123,23 +123,16 @@ contains
     if (allocated(error)) call self%close()
   end subroutine go_on
 
-  !> Opens the file and resets the journal.
+  !> Opens the file and starts the clocks.
   subroutine start(self, path, how, error)
     class(journal_t), intent(inout) :: self
     character(len=*), intent(in) :: path
     integer(c_int), intent(in) :: how
     type(failure_t), allocatable, intent(out) :: error
 
-    call self%close()
-    if (allocated(self%trouble)) deallocate (self%trouble)
-    self%inherited = 0
-    self%earlier = 0
-    self%waiting = 0
     self%began = seconds()
     self%handed = self%began
     self%synced = self%began
-    self%named = .false.
-    self%held = 0
     if (.not. allocated(self%gathered)) allocate (self%gathered(most_gathered))
     self%path = path
     self%descriptor = c_open(path // nul, how)

@@ -65,7 +65,6 @@ contains
     character(len=*), intent(in) :: name
     logical, intent(in) :: quiet
 
-    call self%finish()
     if (.not. quiet) self%heartbeat = begin_progress(name // nul, int(max(total, 0), c_long), &
       merge(1_c_int, 0_c_int, is_terminal()))
   end subroutine start

@@ -150,11 +150,6 @@ def test_a_file_that_changes_meanwhile_stops_the_sweep(snapin_path, tmp_path, ch
     assert (tmp_path / "results/d/journal.partial").stat().st_size == 0
 
 
-def test_two_threads_leave_the_same_bytes(run):
-    one, two = (run(scene(GRID), threads=threads) for threads in (1, 2))
-    assert rows_of(one) == rows_of(two)
-
-
 @pytest.mark.long
 @pytest.mark.alone
 def test_two_threads_hardly_wait_for_each_other(snapin_path, tmp_path):
@@ -210,6 +205,7 @@ def test_a_terminal_shows_how_far_a_sweep_is(snapin_path, tmp_path):
     assert command and all(map(os.path.exists, command.groups())), last
 
 
+# A sweep, or the text of its file of cases; what is said of it.
 WRONG = {
     "count": ({**GRID, "count": [3]}, "1 for 2 keys"),
     "fraction": ({**GRID, "count": [3, 2.5]}, "not a whole number"),
@@ -221,23 +217,25 @@ WRONG = {
     "too many": ({**GRID, "count": [10000, 10000]}, "more than 10000000 cases"),
     "no file": ({"file": "nowhere.csv"}, "no such file"),
     "both": ({"file": "nowhere.csv", "key": "force.hamaker"}, "not together with file"),
-    "no names": ({"file": "bare.csv"}, "no line of names"),
-    "cell": ({"file": "word.csv"}, "word.csv:2"),
-    "value": ({"file": "sign.csv"}, "case 2: -1"),
-    "empty": ({"file": "empty.csv"}, "has no cases"),
-    "void": ({"file": "void.csv"}, "has no cases"),
-    "late": ({"file": "late.csv"}, "late.csv:20002: 1e is not a number"),
-    "columns": ({"file": "columns.csv"}, "2 columns where 1 column are expected"),
-    "last cell": ({"file": "last.csv"}, "last.csv:2: 1 column where 2 columns are expected; the "
-                                        "last cell is empty"),
-    "quoted last cell": ({"file": "none.csv"}, "the last cell is empty"),
-    "blank": ({"file": "blank.csv"}, "blank.csv:1: a name with a blank"),
-    "open quote": ({"file": "open.csv"}, 'open.csv:2: "1e9 is not a number'),
-    "whole": ({"file": "whole.csv"}, "case 3: 2.5"),
+    "no names": ("1e9\n", "no line of names"),
+    "cell": ("bodies.stiffness\nsoft\n", "cases.csv:2"),
+    "value": ("bodies.stiffness\n1\n-1\n", "case 2: -1"),
+    "empty": ("bodies.stiffness\n", "has no cases"),
+    "void": ("", "has no cases"),
+    "late": ("bodies.stiffness\n" + "1e9\n" * 20000 + "1e\n",
+             "cases.csv:20002: 1e is not a number"),
+    "columns": ("bodies.stiffness\n1e9, 2\n", "2 columns where 1 column are expected"),
+    "last cell": ("bodies.stiffness,force.hamaker\n1e9,\n", "cases.csv:2: 1 column where 2 columns "
+                                                            "are expected; the last cell is empty"),
+    "quoted last cell": ('bodies.stiffness,force.hamaker\n1e9,""\n', "the last cell is empty"),
+    "blank": ('"bodies.stiffness force.hamaker"\n1e9\n', "cases.csv:1: a name with a blank"),
+    "open quote": ('bodies.stiffness\n"1e9\n', 'cases.csv:2: "1e9 is not a number'),
+    "whole": ("numerics.nodes\n100\n200\n2.5\n", "case 3: 2.5"),
     "folder": ({"file": "."}, "cannot be"),
     "twice": ({**GRID, "key": ["force.hamaker", "Force.Hamaker"]}, "is there twice"),
-    "column twice": ({"file": "twice.csv"}, "'bodies.stiffness' is there twice"),
-    "nul": ({"file": "nul.csv"}, "nul.csv:3: a NUL byte"),
+    "column twice": ("bodies.stiffness, bodies.stiffness\n1e9, 2e9\n",
+                     "'bodies.stiffness' is there twice"),
+    "nul": ("bodies.stiffness\n1e9\n2e9\0\n", "cases.csv:3: a NUL byte"),
     "unknown": ({"key": "force.law", "words": ["lennard_jones", "exponentail"]},
                 'did you mean "exponential"'),
     "no words": ({"key": "force.law"}, "missing"),
@@ -247,8 +245,8 @@ WRONG = {
                 "only one of the keys may hold a word"),
     "no range": ({"key": ["force.law", "force.hamaker"], "words": ["lennard_jones"]},
                  "missing; give from"),
-    "word in a cell": ({"file": "laws.csv"}, "laws.csv:3"),
-    "with file": ({"file": "laws.csv", "words": ["exponential"]}, "not together with file"),
+    "word in a cell": ("force.law\nlennard_jones\nnewton\n", "cases.csv:3"),
+    "with file": ({"file": "cases.csv", "words": ["exponential"]}, "not together with file"),
     "deck": ({"key": "force.law", "words": ["exponential"]}, "with force.law = exponential"),
 }
 
@@ -256,19 +254,9 @@ WRONG = {
 @pytest.mark.parametrize("case", WRONG)
 def test_a_wrong_sweep_is_refused(snapin, tmp_path, case):
     sweep, said = WRONG[case]
-    for name, text in (("bare", "1e9\n"), ("word", "bodies.stiffness\nsoft\n"),
-                       ("sign", "bodies.stiffness\n1\n-1\n"), ("empty", "bodies.stiffness\n"),
-                       ("void", ""), ("late", "bodies.stiffness\n" + "1e9\n" * 20000 + "1e\n"),
-                       ("columns", "bodies.stiffness\n1e9, 2\n"),
-                       ("last", "bodies.stiffness,force.hamaker\n1e9,\n"),
-                       ("none", 'bodies.stiffness,force.hamaker\n1e9,""\n'),
-                       ("blank", '"bodies.stiffness force.hamaker"\n1e9\n'),
-                       ("open", 'bodies.stiffness\n"1e9\n'),
-                       ("whole", "numerics.nodes\n100\n200\n2.5\n"),
-                       ("twice", "bodies.stiffness, bodies.stiffness\n1e9, 2e9\n"),
-                       ("nul", "bodies.stiffness\n1e9\n2e9\0\n"),
-                       ("laws", "force.law\nlennard_jones\nnewton\n")):
-        (tmp_path / f"{name}.csv").write_text(text)
+    if isinstance(sweep, str):
+        (tmp_path / "cases.csv").write_text(sweep)
+        sweep = {"file": "cases.csv"}
     (tmp_path / "d.nml").write_text(scene(sweep))
     result = snapin("d.nml", cwd=tmp_path)
     assert result.returncode == 2

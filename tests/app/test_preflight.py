@@ -34,15 +34,11 @@ def test_what_does_not_fit_leaves_older_results_and_can_be_resumed(snapin, tmp_p
     assert done.returncode == 0 and "nothing to do" not in done.stderr
 
 
-def test_what_does_not_fit_makes_no_folder(snapin, tmp_path):
-    (tmp_path / "d.nml").write_text(LARGE)
-    assert snapin("d.nml", cwd=tmp_path, preexec_fn=LITTLE).returncode == 1
-    assert not (tmp_path / "results").exists()
-
-
-def test_a_sweep_whose_last_case_does_not_fit_is_not_begun(snapin, tmp_path):
-    (tmp_path / "d.nml").write_text(
-        SMALL + "&sweep key = 'numerics.nodes', values = 100, 20000 /\n")
+@pytest.mark.parametrize("deck", [
+    LARGE, SMALL + "&sweep key = 'numerics.nodes', values = 100, 20000 /\n"],
+    ids=["run", "last case of a sweep"])
+def test_what_does_not_fit_makes_no_folder(snapin, tmp_path, deck):
+    (tmp_path / "d.nml").write_text(deck)
     refused = snapin("d.nml", cwd=tmp_path, preexec_fn=LITTLE)
     assert refused.returncode == 1 and "20000 nodes need" in refused.stderr
     assert not (tmp_path / "results").exists()

@@ -104,11 +104,3 @@ def test_the_paper_s_rule_has_the_largest_tension_of_its_own_states_and_says_wha
     told = float(re.search(r"left is ([\d.Ee+-]+) lengths", warning)[1])
     assert told == pytest.approx(worst, rel=5e-3)
     assert "small change" in result.stderr
-
-
-def test_a_resolved_grid_does_not_warn(run):
-    result = run(lennard_jones(STRONG, loading=loading(9, -2, 0.5), unloading={}))
-    assert result.summary["resolved"]
-    assert result.summary["spacing_over_neck"] < 0.2
-    assert result.warnings == []
-    assert "under-resolved" not in result.stderr

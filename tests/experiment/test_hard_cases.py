@@ -7,6 +7,7 @@ import math
 
 import numpy as np
 import pytest
+from support.decks_in_units import PLAIN, REAL, Units
 from support.scenes import JKR, agreeing, deck, exponential, lennard_jones, loading, path_of
 
 
@@ -106,29 +107,14 @@ def test_deep_indentation_with_adhesion_tends_to_jkr(run, sigma, depth):
 # --- Bodies
 
 
-def test_one_body_a_million_times_softer_deforms_alone(run):
+@pytest.mark.parametrize(("young", "poisson", "stiffness"), [
+    ([0.5e6, 0.5], 0.0, 1 / (1 + 1e-6)), ([0.5, 0.5e6], 0.0, 1 / (1 + 1e-6)), (0.75, 0.5, 1.0)])
+def test_moduli_enter_by_the_stiffness_alone(run, young, poisson, stiffness):
     """The compliances add: with a rigid partner the stiffness is twice that of the soft one."""
-
-    def scene(bodies):
-        return lennard_jones(0.87, bodies={"radius": 1.0, **bodies}, loading=loading(6, -2, 0.5),
-                             unloading={})
-
-    soft = check(run(scene({"young": [0.5e6, 0.5], "poisson": [0.0, 0.0]})))
-    one = check(run(scene({"stiffness": 1 / (1 + 1e-6)})))
-    np.testing.assert_allclose(soft["load"], one["load"], rtol=1e-9, atol=1e-9)
-    other = check(run(scene({"young": [0.5, 0.5e6], "poisson": [0.0, 0.0]})))
-    np.testing.assert_allclose(soft["load"], other["load"], rtol=1e-12, atol=1e-12)
-
-
-def test_poisson_ratio_enters_by_the_stiffness_alone(run):
-    def scene(bodies):
-        return deck(
-            bodies={"radius": 1.0, **bodies},
-            force={"law": "exponential", "p0": 1.0, "decay_length": 1.0}, loading=loading(4, -4, 1))
-
-    by_young = run(scene({"young": 0.75, "poisson": 0.5})).curve
-    by_stiffness = run(scene({"stiffness": 1.0})).curve
-    np.testing.assert_allclose(by_young["load"], by_stiffness["load"], rtol=1e-12)
+    by_young, by_stiffness = (check(run(lennard_jones(
+        0.87, bodies={"radius": 1.0, **bodies}, loading=loading(6, -2, 0.5), unloading={})))
+        for bodies in ({"young": young, "poisson": poisson}, {"stiffness": stiffness}))
+    np.testing.assert_allclose(by_young["load"], by_stiffness["load"], rtol=1e-9, atol=1e-9)
 
 
 def test_rigid_bodies_under_exponential_repulsion_obey_derjaguin_even_overlapping(run):
@@ -175,38 +161,21 @@ def test_cycle_at_any_accuracy(run, sigma, accuracy):
 # --- Invariance
 
 
-def scaled(length, pressure):
-    """A cycle at sigma 8.7, every length and every pressure of it multiplied; and its units."""
-    radius, z0, stiffness, sigma = 1.5e-2 * length, 0.5e-9 * length, 1e10 * pressure, 8.7
-    gamma = sigma * stiffness * math.sqrt(z0**3 / radius)
-    return deck(
-        bodies={"radius": radius, "stiffness": stiffness},
-        force={"law": "lennard_jones", "hamaker": 16 * math.pi * z0**2 * gamma, "z0": z0},
-        loading={"h0_start": 13 * z0, "h0_end": -4 * z0, "h0_step": 0.5 * z0},
-        unloading={}), (z0, gamma * radius, math.sqrt(radius * z0))
+@pytest.mark.parametrize("units", [
+    PLAIN, Units(15.0, 1e10, 5e-7), Units(1.5e-2, 1e13, 5e-10), Units(1.5e-5, 1e7, 5e-13),
+    Units(15.0, 1e4, 5e-7)])
+def test_units_do_not_matter(run, units):
+    """The dimensionless problem is the same: the same digits. Tests pose most scenes in units of
+    1."""
+    def cycle(units):
+        curve = check(run(units.deck(8.7, {"loading": loading(13, -4, 0.5), "unloading": {}})))
+        unit = {"load": units.load(8.7), "contact_radius": math.sqrt(units.radius * units.z0)}
+        return {name: curve[name] / unit.get(name, units.z0)
+                for name in ("h0", "h_centre", "displacement", "load", "contact_radius")}
 
-
-@pytest.mark.parametrize(("length", "pressure"), [(1e3, 1), (1, 1e3), (1e-3, 1e-3), (1e3, 1e-6)])
-def test_units_do_not_matter(run, length, pressure):
-    """The dimensionless problem is the same: the same digits."""
-    text, (z0, load, lateral) = scaled(1, 1)
-    one = check(run(text))
-    text, (z0_other, load_other, lateral_other) = scaled(length, pressure)
-    other = check(run(text))
-    for name, unit, unit_other in (
-            ("h0", z0, z0_other), ("h_centre", z0, z0_other), ("displacement", z0, z0_other),
-            ("load", load, load_other), ("contact_radius", lateral, lateral_other)):
-        np.testing.assert_allclose(
-            other[name] / unit_other, one[name] / unit, rtol=1e-9, atol=1e-9, err_msg=name)
-
-
-def test_unit_scene_is_the_scene_of_fig10(run):
-    """Tests pose most scenes with R = z0 = stiffness = 1: no digit depends on that."""
-    text, (z0, load, _) = scaled(1, 1)
-    real = check(run(text))
-    unit = check(run(lennard_jones(8.7, loading=loading(13, -4, 0.5), unloading={})))
-    np.testing.assert_allclose(real["h_centre"] / z0, unit["h_centre"], rtol=1e-9, atol=1e-9)
-    np.testing.assert_allclose(real["load"] / load, unit["load"] / 8.7, rtol=1e-9, atol=1e-9)
+    expected = cycle(REAL)
+    for name, values in cycle(units).items():
+        np.testing.assert_allclose(values, expected[name], rtol=1e-9, atol=1e-9, err_msg=name)
 
 
 @pytest.mark.parametrize("stiffness,diameter,h0,accuracy", [

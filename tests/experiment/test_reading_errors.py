@@ -6,7 +6,7 @@ import subprocess
 import numpy as np
 import pytest
 from support.processes import HANG
-from support.scenes import deck, lennard_jones, loading, path_of, several
+from support.scenes import lennard_jones, loading, path_of, several
 
 # Strength of adhesion, accuracy, stiffness over sigma, load over sigma.
 SCENES = [(0.02, 1e-4, 0.3, -1.0), (0.87, 1e-5, 3.0, 2.0), (8.7, 1e-6, 0.05, -3.0),

@@ -5,7 +5,6 @@ import re
 
 import numpy as np
 import pytest
-import snapin
 from support.measured import (  # noqa: F401 (`branches` is a fixture)
     BODIES, CONTACT_POINT, LENNARD_JONES, POINT, SPRING, STIFFNESS, STRENGTH, Branches, branches,
     fit_deck, fitted, run, states_of_device, write)
@@ -187,6 +186,8 @@ def test_conventions_do_not_matter(branches, tmp_path):
         "numbers, no segments": (write(tmp_path / "e.csv", z, force), {"columns": ["1", "2"]}),
         "units": (write(tmp_path / "f.csv", z * 1e9, force * 1e9, segment),
                   {"units": ["nm", "nN"]}),
+        "deflection": (write(tmp_path / "d.csv", z * 1e9, force * 1e9 / SPRING, segment),
+                       {"units": ["nm", "nm"], "sensitivity": 1.0}),
         "numpy": (table("g.csv", "# z force segment\n" + rows(" ", ".", z, force, segment)), {}),
         "semicolons": (table("h.csv", "z;force;segment\n" + rows(";", ",", z, force, segment)), {}),
         "empty cells": (table("i.csv", ",z,spare,force,segment\n" + "".join(
@@ -196,7 +197,8 @@ def test_conventions_do_not_matter(branches, tmp_path):
     for name, (file, measurement) in others.items():
         found = run(fit_deck(LENNARD_JONES, file, keys, measurement=measurement))
         # The same numbers in the same columns; of others rounding may go another way.
-        rel = 1e-6 if name in ("units", "numpy", "semicolons", "empty cells") else 1e-5
+        same = ("units", "deflection", "numpy", "semicolons", "empty cells")
+        rel = 1e-6 if name in same else 1e-5
         for key in (STRENGTH, STIFFNESS):
             assert values_of(found)[key] == pytest.approx(values_of(first)[key], rel=rel), name
         sign = -1 if name.startswith("grows") else 1
@@ -337,15 +339,3 @@ def test_rows_that_repeat_tell_nothing_new(branches, tmp_path):
         np.repeat(column, n) for column in (z, force, segment))), keys)).fitted["fit"]
         for n in (1, 5)]
     assert fits[1]["standard_error"] == pytest.approx(fits[0]["standard_error"], rel=1e-6)
-
-
-def test_a_deflection_has_units_of_length(branches, tmp_path):
-    z, force, segment = branches.measure(300, noise=6e-11, seed=2)
-    keys = [STRENGTH, POINT]
-    plain = run(fit_deck(LENNARD_JONES, write(tmp_path / "a.csv", z, force, segment), keys))
-    file = write(tmp_path / "b.csv", 1e9 * z, 1e9 * force / SPRING, segment)
-    units = {"units": ["nm", "nm"], "sensitivity": 1.0}
-    found = run(fit_deck(LENNARD_JONES, file, keys, measurement=units))
-    assert values_of(found)[STRENGTH] == pytest.approx(values_of(plain)[STRENGTH], rel=1e-6)
-    with pytest.raises(snapin.DeckError, match="needs sensitivity"):
-        run(fit_deck(LENNARD_JONES, file, keys, measurement={"units": ["nm", "nm"]}))

@@ -142,8 +142,9 @@ def test_a_baseline_as_steep_as_the_contact_is_no_exchange(branches, tmp_path):
 
 
 def test_units_and_skip_are_checked(tmp_path):
-    wrong = ({"units": ["N", "nN"]}, "not a unit of position"), ({"skip": [1e-9]}, "pairs")
-    for keys, said in wrong:
+    for keys, said in (
+            ({"units": ["N", "nN"]}, "not a unit of position"),
+            ({"units": ["nm", "nm"]}, "needs sensitivity"), ({"skip": [1e-9]}, "pairs")):
         with pytest.raises(snapin.DeckError, match=said):
             fitted(tmp_path, ([0.0], [0.0], [0]), started(), TRUTH, measurement=keys)
 

@@ -89,20 +89,6 @@ def test_hydration_and_hydrophobic_terms_add_up():
     claim(pressure(hydrophobic=groups), -exact)
     pressures = [w / d for w, d in zip(energies, lengths, strict=True)]
     claim(pressure(hydration={"pressure": pressures, "decay_length": lengths}), exact)
-    both = pressure(hydration={"energy": 5e-3, "decay_length": 1e-9},
-                    hydrophobic={"energy": 2e-2, "decay_length": 0.2e-9})
-    claim(both, energies[0] / 1e-9 * np.exp(-GAP / 1e-9) - 1e8 * np.exp(-GAP / 0.2e-9), exact)
-
-
-def test_a_list_of_terms_adds_to_other_forces():
-    groups = {
-        "hydrophobic": {"energy": [30e-3, 2e-3], "decay_length": [1e-9, 5e-9]},
-        "born": {"hamaker": 6.5e-20, "z0": 0.3e-9}}
-    alone = [pressure(**{name: keys}) for name, keys in groups.items()]
-    claim(pressure(**groups), sum(alone), sum(map(abs, alone)))
-    reverse = {"van_der_waals": {"hamaker": 1e-20}, "hydration": groups["hydrophobic"]}
-    alone = [pressure(**{name: keys}) for name, keys in reverse.items()]
-    claim(pressure(**reverse), sum(alone), sum(map(abs, alone)))
 
 
 def test_steric_force_is_that_of_brushes_and_ends_where_they_part():

@@ -184,14 +184,10 @@ def test_a_radius_given_twice_is_refused(run):
     assert "given in &bodies too" in stderr
 
 
-def test_the_approximations_are_refused(run):
-    ends = {"h0_start": 5.0, "h0_end": 3.0}
-    stderr = refused(run, {"kind": "cone", "half_angle": 1.0}, approximations=ends)
-    assert "those of the parabola" in stderr
-
-
-def test_the_regime_of_another_shape_is_refused(run):
-    assert "those of the parabola" in refused(run, {"kind": "cone", "half_angle": 1.0}, regime={})
+@pytest.mark.parametrize("groups", [
+    {"approximations": {"h0_start": 5.0, "h0_end": 3.0}}, {"regime": {}}])
+def test_formulas_of_the_parabola_are_refused_for_other_shapes(run, groups):
+    assert "those of the parabola" in refused(run, {"kind": "cone", "half_angle": 1.0}, **groups)
 
 
 R = np.linspace(0, 5, 21)

@@ -167,10 +167,9 @@ def test_endless_mistakes_are_cut_short(check):
     assert "further mistakes are not shown" in err
 
 
-@pytest.mark.parametrize("key, length", [("x" * 100, 100), ("x" * 100000, 100000)])
-def test_an_endless_name_is_shortened(check, key, length):
-    status, _, err = check(with_bodies(f"{key} = 1 /"))
+@pytest.mark.parametrize("length", [100, 100000])
+def test_an_endless_name_is_shortened(check, length):
+    status, _, err = check(with_bodies(f"{'x' * length} = 1 /"))
     assert status == 2
-    assert len(key) == length
     assert "no such key" in err
     assert max(map(len, err.splitlines())) < 250

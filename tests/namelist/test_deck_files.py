@@ -19,10 +19,6 @@ def refused_file(snapin, path, phrase):
     assert not RUNTIME_ERROR.search(done.stderr)
 
 
-def test_missing_file_is_refused(snapin, tmp_path):
-    refused_file(snapin, tmp_path / "none.nml", "no such file")
-
-
 def test_blanks_at_the_end_of_a_name_count(snapin, tmp_path):
     (tmp_path / "d.nml").write_text(GOOD)
     refused_file(snapin, f"{tmp_path}/d.nml ", "no such file")
@@ -53,9 +49,6 @@ def test_what_stands_in_the_way_of_a_file_is_said(snapin, tmp_path):
     refused_file(snapin, tmp_path / "loop", "symbolic links")
     refused_file(snapin, tmp_path / ("x" * 300), "too long")
     refused_file(snapin, tmp_path / ("x/" * 3000), "too long")
-
-
-def test_folder_is_refused(snapin, tmp_path):
     refused_file(snapin, tmp_path, "cannot")
 
 

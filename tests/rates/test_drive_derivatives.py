@@ -1,7 +1,7 @@
 """Claims about derivatives of the numbers of a drive."""
 
 import pytest
-from support.scenes import deck, lennard_jones
+from support.scenes import lennard_jones
 
 
 def test_derivatives_of_a_drive_keep_its_invariances(run):

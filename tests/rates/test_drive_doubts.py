@@ -4,7 +4,7 @@ import math
 
 import pytest
 from support.driven import scene
-from support.scenes import deck, lennard_jones
+from support.scenes import UNIT, deck, lennard_jones
 
 
 @pytest.mark.parametrize("change, message", [
@@ -23,14 +23,19 @@ from support.scenes import deck, lennard_jones
     ({"bodies": {"radius": 1.0, "rigid": True}}, "needs bodies that deform, or &fluid"),
     ({"bodies": {"radius": 1.0, "rigid": True}, "fluid": {"viscosity": 1.0},
       "viscoelastic": {"stiffness_relaxed": 1.0, "retardation_time": 1.0}}, "these are rigid"),
+    ({"fluid": {"slip_length": 1.0}}, '&fluid: key "viscosity"'),
+    ({"fluid": {"viscosity": 1.0, "slip_length": [1.0, 2.0, 3.0]}}, '&fluid: key "slip_length"'),
+    ({"fluid": {"viscosity": 1.0}, "drive": None, "equilibrium_path": {"h0_end": 0.0}},
+     "&fluid: needs &drive"),
+    ({"fluid": {"viscosity": 1.0}, "shape": {"kind": "rounded_punch", "flat_radius": 3.0}},
+     "&fluid: is for parabolas"),
+    ({"fluid": {"viscosity": 1.0}, "force": {"law": "exponential", "p0": 1.0, "decay_length": 1.0}},
+     "&fluid: needs a force that attracts"),
 ])
 def test_mistakes_are_named(run, change, message):
-    groups = {"drive": {"velocity": 1.0, "z_start": 10.0, "z_turn": -1.0}, **change}
-    bodies = groups.pop("bodies", None)
-    text = lennard_jones(0.1, **groups)
-    if bodies:
-        text = text.replace("stiffness = 1.0", "rigid = .true.")
-    assert message in run(text, status=2).stderr
+    groups = {"bodies": UNIT, "force": {"law": "lennard_jones", "surface_energy": 0.1, "z0": 1.0},
+              "drive": {"velocity": 1.0, "z_start": 10.0, "z_turn": -1.0}}
+    assert message in run(deck(**groups | change), status=2).stderr
 
 
 def test_a_start_in_contact_is_refused(run):

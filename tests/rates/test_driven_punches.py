@@ -1,9 +1,8 @@
 """Claims about drives of punches with a flat face, whose rim the edge of the contact passes."""
 
 import pytest
-from support.scenes import deck
+from support.scenes import FORCE, deck
 
-FORCE = {"law": "lennard_jones", "hamaker": 1e-19, "z0": 5e-10}
 SLOW, FAST = 1e-6, 1e-3
 
 

@@ -244,24 +244,6 @@ def test_cases_of_a_sweep_have_velocities_and_viscosities(run):
     assert (np.array(table["max_suction"]) > 0).all()
 
 
-@pytest.mark.parametrize("fluid, other, said", [
-    ({"slip_length": 1.0}, {}, "viscosity"),
-    ({"viscosity": 1.0, "slip_length": [1.0, 2.0, 3.0]}, {}, "slip_length"),
-    ({"viscosity": 1.0}, {"drive": None, "equilibrium_path": {"h0_end": 0.0}}, "needs &drive"),
-    ({"viscosity": 1.0}, {"shape": {"kind": "rounded_punch", "flat_radius": 3.0}},
-     "is for parabolas"),
-    ({"viscosity": 1.0}, {"force": {"law": "exponential", "p0": 1.0, "decay_length": 1.0}},
-     "a force that attracts"),
-])
-def test_mistakes_are_named(run, fluid, other, said):
-    drive = {"velocity": 1.0, "z_start": 10.0, "z_turn": -1.0}
-    groups = {"drive": drive, "fluid": fluid, **other}
-    text = lennard_jones(0.1, **groups) if "force" not in other else deck(
-        bodies={"radius": 1.0, "stiffness": 1.0}, **groups)
-    message = run(text, status=2).stderr
-    assert said in message and ":" in message and "&fluid" in message
-
-
 @pytest.mark.long
 @pytest.mark.parametrize("accuracy", [1e-3, 1e-4])
 def test_a_suction_that_is_not_determined_has_a_warning(run, accuracy):

@@ -94,17 +94,6 @@ def test_branches_are_named_and_in_order(full):
     assert branches == ["loading", "unloading_1", "unloading_2"]
 
 
-def test_every_row_has_every_cell_to_all_digits(full):
-    lines = (full.folder / "curve.csv").read_text().splitlines()
-    rows = [line.split(",") for line in lines if not line.startswith("#")][1:]
-    for row in rows:
-        assert len(row) == len(full.curve.names)
-        for cell in row[1:6]:
-            assert re.fullmatch(r"-?\d\.\d{16}E[+-]\d{3}", cell), cell
-            # Seventeen digits are the number.
-            assert float(f"{float(cell):.16e}") == float(cell)
-
-
 def test_numbers_of_any_size_are_written_to_the_last_digit(snapin, tmp_path):
     rng = random.Random(1)
     values = [rng.uniform(1, 10) * 10.0**order for order in range(-45, 25) for _ in range(8)]
@@ -192,23 +181,6 @@ def test_classical_pull_offs_are_those_of_the_textbook(full):
     assert full.summary["jkr_pull_off"] == pytest.approx(1.5 * 3.141592653589793 * 0.87, rel=1e-14)
     assert full.summary["dmt_pull_off"] == pytest.approx(2 * 3.141592653589793 * 0.87, rel=1e-14)
     assert full.summary["tabor"] == pytest.approx((4 * 0.87**2) ** (1 / 3), rel=1e-14)
-
-
-# --- Files
-
-
-def test_results_have_no_other_names(full):
-    assert full.files == ["classical.csv", "curve.csv", "profiles.csv", "summary.nml"]
-
-
-def test_files_of_an_earlier_run_do_not_stay_beside_those_of_another(snapin, tmp_path):
-    deck = tmp_path / "deck.nml"
-    deck.write_text(exponential(1, loading=loading(6, 4, 1), classical={}, profiles={"h0": [5.0]}))
-    assert snapin("deck.nml", cwd=tmp_path).returncode == 0
-    deck.write_text(exponential(1, loading=loading(6, 4, 1)))
-    assert snapin("deck.nml", cwd=tmp_path).returncode == 0
-    names = sorted(path.name for path in (tmp_path / "results/deck").iterdir())
-    assert names == ["curve.csv", "summary.nml"]
 
 
 # --- Failures

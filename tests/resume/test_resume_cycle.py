@@ -1,4 +1,4 @@
-"""Claims about cycles and paths that are killed and continued."""
+"""Claims about cycles, paths and drives in time that are killed and continued."""
 
 import random
 import struct
@@ -10,6 +10,14 @@ from support.interrupted import Bench, frames, sealed, short, SHORT, WORD  # noq
 from support.scenes import deck, exponential, lennard_jones, loading
 
 UNIFORM = {"grid": "uniform", "nodes": 120, "r_max": 12.0}
+CREEP = {"compliance": [2.0, 1.0], "retardation_time": [1.0, 0.1]}
+
+
+def driven(sigma=0.1, drive=(), **groups):
+    drive = {"velocity": 8.0, "z_start": 15.0, "z_turn": -1.0, "dwell": 0.3, **dict(drive)}
+    return lennard_jones(sigma, drive=drive, numerics={"accuracy": 1e-2}, **groups)
+
+
 CYCLES = {
     "first": SHORT,
     "two turning points, strong adhesion": lennard_jones(
@@ -30,6 +38,13 @@ CYCLES = {
         0.87, loading=loading(4, -1, 0.5), unloading={}, equilibrium_path={}, stability={},
         profiles={"h0": [1.0]}),
     "no state at the end": lennard_jones(0.87, part="attractive", loading=loading(6, -1, 0.25)),
+    "bodies that remember": driven(viscoelastic=CREEP,
+                                   sensitivity={"parameters": "drive.velocity"}),
+    "behind a spring": driven(viscoelastic=CREEP, drive={"stiffness": 0.5, "z_start": 40.0}),
+    "a fluid": driven(viscoelastic=CREEP, fluid={"viscosity": 0.01}),
+    "a fluid alone": driven(fluid={"viscosity": 0.01}),
+    "layers": driven(1.0, layer={"young": 4.0, "poisson": 0.3, "thickness": 3.0, "base": "rigid"},
+                     fluid={"viscosity": 0.01}),
 }
 FAILS = ("the paper's grid and rule", "no state at the end")
 
@@ -43,6 +58,7 @@ def cycle(request, snapin, snapin_path, tmp_path_factory):
 
 def test_a_cycle_goes_on_from_anywhere(cycle):
     parts = frames(cycle.journal)
+    assert len(parts) > 4
     rng = random.Random(3)
     for count in rng.sample(range(1, len(parts)), 4) + [len(parts)]:
         cycle.check(b"".join(parts[:count]))

@@ -70,16 +70,6 @@ def test_a_full_disk_stops_a_run_that_then_goes_on(short, tmp_path):
         subprocess.run(["umount", tmp_path], check=True)
 
 
-def test_results_of_an_earlier_run_outlive_one_that_cannot_write(short):
-    short.emptied()
-    assert short.run("cut").returncode == 0
-    done = short.run("cut", preexec_fn=limited("FSIZE", 9000))
-    assert done.returncode == 1
-    found = short.files("cut")
-    assert {name: found[name] for name in short.whole} == short.whole
-    assert "journal.partial" in found
-
-
 @pytest.mark.parametrize("out", ["/proc/none", "deck.nml"])
 def test_a_folder_that_cannot_be_made_is_told_at_once(short, out):
     done = short.run(out)

@@ -62,14 +62,14 @@ class Stand:
     Without `old` this folder does not exist before the run.
     """
 
-    def __init__(self, snapin, folder, old=OLD, new=NEW):
+    def __init__(self, snapin, folder, old=OLD):
         self.snapin, self.folder = snapin, pathlib.Path(folder)
         self.library = self.folder / "faults.so"
         subprocess.run([os.environ.get("CC", "cc"), "-O1", "-shared", "-fPIC", "-o", self.library,
                         HERE / "faults.c", "-ldl"], check=True)
         self.target = self.folder / "try/d"
         self.before = "old" if old else "none"
-        for name, text in (("old", old), ("new", new)):
+        for name, text in (("old", old), ("new", NEW)):
             if text:
                 (self.folder / "d.nml").write_text(text)
                 done = self.run(name)
@@ -100,12 +100,12 @@ class Stand:
         require(done.returncode == 0, done.stderr)
         return [line.split("\t") for line in path.read_text().splitlines()]
 
-    def number(self, call, **options):
+    def number(self, call):
         """The number of calls of a kind in a run."""
         self.reset()
         path = self.folder / "count.log"
         path.unlink(missing_ok=True)
-        self.run(call=call, at=0, under="try/d", log=path, **options)
+        self.run(call=call, at=0, under="try/d", log=path)
         return int(path.read_text().splitlines()[-1].split("\t")[1])
 
     def state(self):
@@ -235,19 +235,19 @@ KINDS = ("mkdir", "open", "write", "fsync", "close", "rename", "unlink", "ftrunc
 ERRORS = {"killed": KILL, "EIO": errno.EIO, "ENOSPC": errno.ENOSPC, "EACCES": errno.EACCES}
 
 
-def campaign(stand, kinds=KINDS, errors=tuple(ERRORS), every=1, lasting=True):
+def campaign(stand, every=1):
     """Yields (call, event, number of tries, ends of the runs, broken promises)."""
-    for call in kinds:
+    for call in KINDS:
         number = stand.number(call)
         if number == 0:
             continue
-        for name in errors:
-            for lasts in (False, True) if lasting and name != "killed" else (False,):
+        for name, code in ERRORS.items():
+            for lasts in (False, True) if name != "killed" else (False,):
                 ends, broken = collections.Counter(), []
                 points = range(1, number + 1, every)
                 for at in points:
                     try:
-                        ends[stand.attempt(call, at, ERRORS[name], lasts)] += 1
+                        ends[stand.attempt(call, at, code, lasts)] += 1
                     except (Broken, subprocess.TimeoutExpired) as problem:
                         broken.append(f"{call} {at} {name}: {problem}")
                 yield call, name + (" from then on" if lasts else ""), len(points), ends, broken

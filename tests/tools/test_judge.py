@@ -22,10 +22,8 @@ KNOWN = {
 }
 
 
-@pytest.fixture(autouse=True)
-def judged_program(snapin_path):
-    """Fails early where there is no program."""
-    return snapin_path
+# Fails early where there is no program.
+pytestmark = pytest.mark.usefixtures("snapin_path")
 
 
 def wrong_in(findings):

@@ -1,10 +1,56 @@
-"""Claims about the form of the sources."""
+"""Claims about the form of the sources: lines are short, and a module uses its own room of src/ and
+those above it, none below."""
+
+import re
 
 import pytest
 from conftest import ROOT
 
 COLUMNS = 100
 KINDS = {".f90", ".in", ".c", ".py", ".build", ".sh"}
+
+SOURCE = ROOT / "src"
+# The order in which src/meson.build goes through the rooms is the order in which they may use each
+# other.
+ROOMS = re.findall(r"^subdir\('(\w+)'\)", (SOURCE / "meson.build").read_text(), re.MULTILINE)
+MODULES = {path.name.split(".")[0]: path for path in SOURCE.rglob("*.f90*")}
+
+
+def room_of(name):
+    return MODULES[name].relative_to(SOURCE).parts[0]
+
+
+def used_by(name):
+    """The modules of this project that a module names in its use lines."""
+    found = re.findall(r"^ *use +(\w+)", MODULES[name].read_text(), re.MULTILINE | re.IGNORECASE)
+    return {other for other in found if other in MODULES}
+
+
+def test_every_module_is_in_a_room_that_meson_knows():
+    assert {room_of(name) for name in MODULES} == set(ROOMS)
+    for path in MODULES.values():
+        # Meson makes what ends in .in, and builds the program itself.
+        if path.suffix == ".f90" and path.stem != "snapin":
+            # Laws and shapes are listed by the names of their modules.
+            by_name = path.parent.name in ("laws", "shapes")
+            listed = f"'{path.stem}'" if by_name else f"'{path.name}'"
+            assert listed in (path.parent / "meson.build").read_text(), path
+
+
+def test_no_import_runs_backwards():
+    backwards = [
+        f"{name} uses {other} of {room_of(other)}"
+        for name in MODULES
+        for other in used_by(name)
+        if ROOMS.index(room_of(other)) > ROOMS.index(room_of(name))
+    ]
+    assert not backwards
+
+
+def test_a_module_is_named_like_its_file():
+    for name, path in MODULES.items():
+        declared = re.search(r"^(?:module|program) (\w+)", path.read_text(), re.MULTILINE)
+        assert declared[1] == name
 
 
 @pytest.mark.parametrize("folder", ["src", "pywrap", "tests"])
