@@ -71,6 +71,7 @@ contains
     queue%scene => scene
     queue%results => results
     queue%columns = columns_of(scene)
+    allocate (queue%waiting(0:15))
     call recall_cases(queue)
     if (allocated(scene%sweep%file)) call queue%rows%open(scene%sweep%file%path, scene%deck, error)
     if (allocated(error)) then
@@ -258,8 +259,7 @@ contains
     integer, intent(in) :: number
 
     has = number <= self%written
-    if (.not. has .and. allocated(self%waiting)) &
-      has = self%waiting(mod(number, size(self%waiting)))%number == number
+    if (.not. has) has = self%waiting(mod(number, size(self%waiting)))%number == number
   end function has
 
   !> Adds a case that has ended, and writes all rows that are next.
@@ -267,7 +267,6 @@ contains
     class(queue_t), intent(inout) :: self
     type(case_t), intent(in) :: case
 
-    if (.not. allocated(self%waiting)) allocate (self%waiting(0:15))
     call make_room(self%waiting, case%number - self%written)
     self%waiting(mod(case%number, size(self%waiting))) = case
     do
