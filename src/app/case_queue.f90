@@ -129,13 +129,14 @@ contains
     call self%results%progress%step('case', failed=.not. case%converged)
   end subroutine enter
 
-  !> Takes the completed cases of an interrupted run.
+  !> Begins the queue with the completed cases of an interrupted run.
   subroutine recall_cases(self)
     class(case_queue_t), intent(inout) :: self
     type(byte_record_t) :: record
     type(case_t) :: case
     logical :: found
 
+    allocate (self%waiting(0:15))
     do
       call self%results%folder%journal%next(record, found)
       if (.not. found) exit
@@ -151,8 +152,7 @@ contains
     integer, intent(in) :: number
 
     has = number <= self%written
-    if (.not. has .and. allocated(self%waiting)) &
-      has = self%waiting(mod(number, size(self%waiting)))%number == number
+    if (.not. has) has = self%waiting(mod(number, size(self%waiting)))%number == number
   end function has
 
   !> Adds a case that has ended, and writes all rows that are next.
@@ -160,7 +160,6 @@ contains
     class(case_queue_t), intent(inout) :: self
     type(case_t), intent(in) :: case
 
-    if (.not. allocated(self%waiting)) allocate (self%waiting(0:15))
     call make_room(self%waiting, case%number - self%written)
     self%waiting(mod(case%number, size(self%waiting))) = case
     do

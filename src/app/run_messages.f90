@@ -39,16 +39,12 @@ contains
     real(wp) :: took
     integer :: i
 
-    if (allocated(summary%warnings)) then
-      do i = 1, size(summary%warnings)
-        call destination%say('warning: '//summary%warnings(i)%text)
-      end do
-    end if
-    if (allocated(summary%notes)) then
-      do i = 1, size(summary%notes)
-        call destination%say('note: '//summary%notes(i)%text)
-      end do
-    end if
+    do i = 1, size(summary%warnings)
+      call destination%say('warning: '//summary%warnings(i)%text)
+    end do
+    do i = 1, size(summary%notes)
+      call destination%say('note: '//summary%notes(i)%text)
+    end do
     if (summary%has('grid')) call destination%say('grid '//summary%text('grid')//', method '// &
       summary%text('method')//': '//summary%text('chosen_because'))
     if (summary%has('path_traced_h0')) call destination%say( &

@@ -95,8 +95,8 @@ contains
       case%failure = first_line(error%message)
     else if (.not. case%converged) then
       case%failure = 'not converged'
-      if (allocated(summary%warnings)) case%failure = summary%warnings(1)%text
-    else if (allocated(summary%warnings)) then
+      if (size(summary%warnings) > 0) case%failure = summary%warnings(1)%text
+    else if (size(summary%warnings) > 0) then
       case%warning = summary%warnings(1)%text
     end if
     !$omp end critical (one_at_a_time)

@@ -23,7 +23,7 @@ contains
     real(wp), intent(out) :: value
     character(len=:), allocatable, intent(out) :: what
     character(len=len(token)) :: small
-    integer :: i, mark, point, before, after, order, status
+    integer :: i, mark, point, before, after, order
 
     value = 0.0_wp
     small = lower(token)
@@ -75,11 +75,8 @@ contains
       ! A zero needs no exponent, and `read` fails on 0e999.
       small = '0'
     end if
-    read (small, *, iostat=status) value
-    what = token // ' is not a number'
-    if (status /= 0) return
-    if (.not. abs(value) <= huge(value)) return
-    deallocate (what)
+    read (small, *) value
+    if (allocated(what)) deallocate (what)
   end subroutine parse_real
 
   !> Reads one integer; `what` as in `parse_real`.
@@ -88,7 +85,7 @@ contains
     integer, intent(out) :: value
     character(len=:), allocatable, intent(out) :: what
     integer(long) :: wide
-    integer :: i, status
+    integer :: i
 
     value = 0
     what = clip(token) // ' is not a whole number'
@@ -98,8 +95,7 @@ contains
     if (verify(token(i:), '0123456789') /= 0) return
     what = clip(token) // ' is too large for a whole number'
     if (len(token) > 18) return
-    read (token, *, iostat=status) wide
-    if (status /= 0) return
+    read (token, *) wide
     if (abs(wide) > huge(value)) return
     value = int(wide)
     deallocate (what)

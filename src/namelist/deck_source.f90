@@ -52,11 +52,9 @@ contains
     descriptor = c_open(file // nul, as_input)
     if (descriptor < 0) then
       call explain(descriptor, sort, reason)
-      if (sort == not_there) then
-        call fail(error, file_trouble, source%file // ': no such file')
-      else
-        call fail(error, file_trouble, source%file // ': cannot be opened: ' // reason)
-      end if
+      reason = 'cannot be opened: ' // reason
+      if (sort == not_there) reason = 'no such file'
+      call fail(error, file_trouble, source%file // ': ' // reason)
       return
     end if
     n = largest_deck

@@ -146,10 +146,9 @@ contains
   pure subroutine get_optional_real(self, group, key, value)
     class(deck_t), intent(in) :: self
     character(len=*), intent(in) :: group, key
-    real(wp), allocatable, intent(inout) :: value
+    real(wp), allocatable, intent(out) :: value
     integer :: row
 
-    if (allocated(value)) deallocate (value)
     row = self%held(group, key)
     if (row > 0) value = self%values(row)%reals(1)
   end subroutine get_optional_real
@@ -157,10 +156,9 @@ contains
   pure subroutine get_optional_integer(self, group, key, value)
     class(deck_t), intent(in) :: self
     character(len=*), intent(in) :: group, key
-    integer, allocatable, intent(inout) :: value
+    integer, allocatable, intent(out) :: value
     integer :: row
 
-    if (allocated(value)) deallocate (value)
     row = self%held(group, key)
     if (row > 0) value = self%values(row)%whole
   end subroutine get_optional_integer

@@ -45,14 +45,13 @@ contains
   !> The text of fit.nml: a group for the fit of the path, and one for the fit of each theory.
   function fit_text(outcome, title) result(text)
     type(fit_outcome_t), intent(in) :: outcome
-    character(len=*), intent(in) :: title
-    character(len=:), allocatable :: text, name
+    character(len=:), allocatable, intent(in) :: title
+    character(len=:), allocatable :: text
     type(line_t), allocatable :: doubts(:)
     integer :: i
 
-    name = title
     text = '! A fit by snapin, SI units. Values that do not exist are NaN or left out.' // nl // &
-      '&fit' // nl // assignment_of('title', name) // &
+      '&fit' // nl // assignment_of('title', title) // &
       of_fitted(outcome%curve%unknown, outcome%fitted)
     associate (curve => outcome%curve)
       text = text // numbers('outliers', [real(count(curve%data%measured%outlier()), wp)])

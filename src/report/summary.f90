@@ -28,7 +28,7 @@ module summary
   !> A row without a value is absent from the file. If one value of an array does not exist, such as
   !> the jump out of an unloading without one, it is NaN.
   type :: summary_t
-    !> One element for each row, after the first value has been set. It is allocatable, since
+    !> One element for each row. It is allocated, with the others, as the first value is set, since
     !> several summaries at once would need a larger stack, which a limit of memory can forbid.
     type(value_t), allocatable, private :: value(:)
     type(line_t), allocatable :: warnings(:), notes(:)
@@ -56,7 +56,8 @@ contains
     character(len=*), intent(in) :: key
     integer, intent(out) :: i
 
-    if (.not. allocated(self%value)) allocate (self%value(size(rows)))
+    if (.not. allocated(self%value)) &
+      allocate (self%value(size(rows)), self%warnings(0), self%notes(0))
     i = row_of(key)
   end subroutine find
 
@@ -207,7 +208,6 @@ contains
     type(line_t) :: line
     integer :: i
 
-    if (.not. allocated(self%warnings)) allocate (self%warnings(0))
     if (size(self%warnings) == most_warnings) return
     do i = 1, size(self%warnings)
       if (self%warnings(i)%text == text) return
@@ -225,7 +225,6 @@ contains
     character(len=*), intent(in) :: text
     type(line_t) :: line
 
-    if (.not. allocated(self%notes)) allocate (self%notes(0))
     line%text = text
     self%notes = [self%notes, line]
   end subroutine note
