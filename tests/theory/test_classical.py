@@ -20,7 +20,8 @@ UNIT_F = math.pi * GAMMA * R
 UNIT_D = UNIT_A**2 / R
 
 MATERIAL = {"hertz": BODIES, "jkr": ADHESIVE, "dmt": ADHESIVE}
-RADII = UNIT_A * np.geomspace(1.3, 50, 40)
+# Far from folds too, where digits can be lost.
+RADII = UNIT_A * np.geomspace(1.3, 1e6, 60)
 
 
 def strength_of(lam):
@@ -97,13 +98,6 @@ def test_jkr_states_exist_up_to_each_pull_off_and_not_beyond():
     assert at[0] == pytest.approx(fold, rel=1e-7)
     assert np.isnan(at[1])
     assert np.isnan(snapin.load_at_displacement("jkr", [2 * least], **ADHESIVE))
-
-
-def test_jkr_at_fixed_displacement_keeps_its_digits_far_from_the_fold():
-    a = UNIT_A * np.geomspace(1, 1e6, 30)
-    _, displacement = snapin.contact_curve("jkr", a, **ADHESIVE)
-    back = snapin.contact_radius("jkr", "displacement", displacement, **ADHESIVE)
-    np.testing.assert_allclose(back, a, rtol=1e-13)
 
 
 def test_jkr_without_adhesion_is_hertz():
