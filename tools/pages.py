@@ -40,10 +40,11 @@ PAGES = {
 # is listed here.
 _NO_NUMBERS = (
     "byte_record", "c_library", "case_rows", "checksums", "clock", "command_line", "decimal",
-    "deck", "deck_keys", "deck_number", "deck_numbers", "deck_scan", "deck_source",
-    "deck_store", "deck_values", "dispatch", "failure", "files", "folder_lock", "journal",
-    "launch", "namelist_writer", "preflight", "progress", "publication", "ranks",
-    "result_rows", "result_tables", "run_identity", "snapin", "state_records",
+    "deck", "deck_characters", "deck_keys", "deck_number", "deck_numbers", "deck_scan",
+    "deck_source", "deck_store", "deck_values", "dispatch", "failure", "files", "folder_lock",
+    "journal", "journal_frame", "launch", "namelist_writer", "preflight", "progress",
+    "publication", "ranks", "result_folder", "result_rows", "result_tables", "run_identity",
+    "snapin", "state_records",
     "text", "text_file",
 )
 _MARK = re.compile(r"<!-- measured at (\w+) -->")

@@ -2,7 +2,8 @@
 !> integral of the polynomial of node j times J0(k_q t) t. Waves shorter than the distance of nodes
 !> are not contained in pressures that the mesh resolves, but at the nodes alone they cannot be
 !> distinguished from long waves. Therefore the polynomials are integrated with as many nodes as the
-!> waves need.
+!> waves need. Which waves a place has, and their values there, are asked for pressures here and for
+!> displacements by `mesh_waves`, with other limits.
 module wave_transforms
   use kinds, only: wp
   use quadrature, only: lagrange_basis
@@ -15,14 +16,14 @@ module wave_transforms
   private
   public :: add_spectrum, find_wave, last_on
 
-  !> Outside the mesh's centre, waves whose phase changes by more than `passing` from node to node
-  !> are omitted from the transform of pressures, with a smooth transition that begins at the
-  !> fraction `from` of this value. In the transition the product with a pressure is multiplied by a
+  !> Outside the mesh's centre, waves whose phase changes by more than `passing_pressure` from node
+  !> to node are omitted from the transform of pressures, with a smooth transition that begins at
+  !> the fraction `from_of_pressure` of this value. In the transition the product with a pressure is multiplied by a
   !> window that moves with the wave; the window must be wide enough for the product to contain
   !> nothing of the wave. Inside the centre, where bodies are in contact, no wave is omitted: for
   !> thin films the second part of the operator is nearly the negative of the first part, which has
   !> all waves.
-  real(wp), parameter :: passing = 20, from = 0.6_wp
+  real(wp), parameter :: passing_pressure = 20, from_of_pressure = 0.6_wp
   !> On a panel to infinity this is valid for pressures that decrease as this power of the position.
   !> Pressures that decrease more slowly are larger where waves are omitted; for these, waves are
   !> omitted only farther out.
@@ -80,7 +81,7 @@ contains
     associate (panel => grid%panel(p), local => grid%local(grid%which(p)))
       first = grid%first(p)
       last = first + size(local%node) - 1
-      waves = count(k < maxval(last_on(grid, p, ends, passing)))
+      waves = count(k < maxval(last_on(grid, p, ends, passing_pressure)))
       needed = nodes_for(grid, p, ends, k)
       before = 0
       n = 0
@@ -91,14 +92,14 @@ contains
         fine%node = ends(1) + (ends(2) - ends(1))*fine%node
         x = grid%centre + panel%offset(fine%node)
         weight = (ends(2) - ends(1))*fine%weight*panel%speed(fine%node)*x
-        last_of = last_on(grid, p, fine%node, passing)
+        last_of = last_on(grid, p, fine%node, passing_pressure)
         allocate (basis(size(local%node), n), rows(now - before, n))
         allocate (part(size(local%node), now - before), source=0.0_wp)
         do i = 1, n
           basis(:, i) = weight(i)*lagrange_basis(local%node, local%barycentric, fine%node(i))
           if (panel%kind == algebraic_map) basis(:, i) = basis(:, i)* &
             ((1 - fine%node(i))/(1 - local%node))**panel%decay
-          call find_wave(bessel, x(i), last_of(i), from, k(before + 1:now), rows(:, i))
+          call find_wave(bessel, x(i), last_of(i), from_of_pressure, k(before + 1:now), rows(:, i))
         end do
         call add_by_transposed(basis, rows, part)
         ! Neighbouring hat functions share a node.
@@ -124,7 +125,7 @@ contains
       of_pressure = min(1.0_wp*size(local%node), sqrt(length)*size(local%node) + more_degrees)
       ! On a panel to infinity the phase of the last included wave changes equally at all places.
       associate (places => merge(min(ends, 0.95_wp), ends, panel%kind == algebraic_map))
-        last = last_on(grid, p, places, passing)
+        last = last_on(grid, p, places, passing_pressure)
         speed = panel%speed(places)
       end associate
       nodes = max(hat + 1, ceiling(0.5_wp*(of_pressure + more_degrees + degrees*length* &

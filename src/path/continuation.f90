@@ -9,7 +9,7 @@ module continuation
   use equilibrium, only: equations_t
   use solver, only: solver_t
   use next_mesh, only: radius_for, locked_alike, beyond_passage
-  use path_coordinate, only: path_control, coordinate_of, axis_gap_rate
+  use path_coordinate, only: coordinate_of, axis_gap_rate
   use path_tangent, only: tangent_t, tangent_along
   use arc, only: arc_t
   implicit none

@@ -159,13 +159,13 @@ contains
       call summary%set('jkr_pull_off', -a*problem%load)
     delta = (problem%law%origin - range%h0_end)/problem%length
     if (.not. delta > 0) return
+    ! At a contact radius the displacement is smaller with adhesion.
+    if (contact%value_of(of_displacement, merge(jkr, hertz, problem%law%work > 0), contact%last) &
+      < delta) call summary%note('classical: theories of layers are computed up to a contact ' // &
+      'radius of ' // rounded(contact%last*problem%lateral) // ' m, which these bodies reach ' // &
+      'before h0_end')
     a = contact%radius_at(hertz, delta)
-    if (ieee_is_nan(a)) then
-      if (contact%value_of(of_displacement, hertz, contact%last) < delta) call summary%note( &
-        'classical: theories of layers are computed up to a contact radius of ' // &
-        rounded(contact%last*problem%lateral) // ' m, which these bodies have before h0_end')
-      return
-    end if
+    if (ieee_is_nan(a)) return
     homogeneous = hertz_like_load(problem, problem%shape%contact_radius(delta))
     call summary%set('effective_modulus', &
       0.5_wp*problem%stiffness*contact%value_of(of_load, hertz, a)/homogeneous)

@@ -144,13 +144,13 @@ contains
       type is (layered_body_t)
         reach = range_of(problem)
         thinnest = huge(thinnest)
-        total = huge(total)
+        total = 0
         strain = 0
         do i = 1, 2
           if (size(body%surface(i)%thickness) == 0) cycle
           associate (thickness => body%surface(i)%thickness*problem%lateral)
             thinnest = min(thinnest, minval(thickness))
-            total = min(total, sum(thickness))
+            total = total + sum(thickness)
             strain = max(strain, strain_below(body%surface(i), thickness, quality%load, &
               quality%contact_radius))
           end associate

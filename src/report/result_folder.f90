@@ -38,8 +38,9 @@ module result_folder
 
 contains
 
-  !> Creates and locks the folder and opens its journal. `owner` is the run's identity; resume: the
-  !> journal of an interrupted run, if there is one, is continued.
+  !> Creates and locks the folder and opens its journal; to be called once. `owner` is the run's
+  !> identity; resume: the journal of an interrupted run, if there is one, is continued. After an
+  !> error the caller unlocks the folder.
   subroutine open_folder(self, folder, owner, resume, error)
     class(result_folder_t), intent(inout) :: self
     character(len=*), intent(in) :: folder, owner

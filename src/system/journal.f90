@@ -13,7 +13,7 @@ module journal
   use c_library, only: c_open, c_write, c_sync, c_close, c_size, c_cut, check_status, &
     as_output, as_kept_output, nul
   use byte_record, only: byte_record_t
-  use journal_frame, only: frame, word, read_frame
+  use journal_frame, only: frame_words, word_bytes, read_frame
   use checksums, only: checksum
   use files, only: sync_names
   use clock, only: seconds
@@ -137,7 +137,7 @@ contains
     self%path = path
     self%descriptor = c_open(path // nul, how)
     call check_status('cannot write ' // path, self%descriptor, error)
-    if (self%is_open()) self%room = c_size(self%descriptor)/word
+    if (self%is_open()) self%room = c_size(self%descriptor)/word_bytes
   end subroutine start
 
   !> Whether records can be read or added.
@@ -205,7 +205,7 @@ contains
     integer :: length
 
     if (.not. self%is_open()) return
-    length = frame + record%held
+    length = frame_words + record%held
     if (self%held + length > size(self%gathered)) then
       allocate (larger(self%held + length))
       larger(:self%held) = self%gathered(:self%held)
@@ -216,7 +216,7 @@ contains
       words(1) = record%held
       words(2) = 0
       words(3) = transfer(self%earlier + now - self%began, 0_long)
-      words(frame + 1:) = record%words(:record%held)
+      words(frame_words + 1:) = record%words(:record%held)
     end associate
     self%held = self%held + length
     if (self%held > most_gathered .or. now - self%handed > hand_interval) call self%hand_over(now)
@@ -233,11 +233,11 @@ contains
 
     first = 1
     do while (first < self%held)
-      last = first - 1 + frame + int(self%gathered(first))
+      last = first - 1 + frame_words + int(self%gathered(first))
       self%gathered(first + 1) = checksum(self%gathered(first:last))
       first = last + 1
     end do
-    call c_f_pointer(c_loc(self%gathered), bytes, [word*self%held])
+    call c_f_pointer(c_loc(self%gathered), bytes, [word_bytes*self%held])
     self%held = 0
     self%handed = now
     status = c_write(self%descriptor, bytes, size(bytes, kind=c_long))

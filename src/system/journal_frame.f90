@@ -8,10 +8,10 @@ module journal_frame
   use checksums, only: checksum
   implicit none
   private
-  public :: frame, word, read_frame
+  public :: frame_words, word_bytes, read_frame
 
   !> Number of words of a frame, and of bytes of a word.
-  integer, parameter :: frame = 3, word = storage_size(0_long)/8
+  integer, parameter :: frame_words = 3, word_bytes = storage_size(0_long)/8
 
 contains
 
@@ -25,21 +25,21 @@ contains
     real(wp), intent(inout) :: time
     integer(c_long), intent(inout) :: whole
     logical, intent(out) :: found
-    integer(long) :: head(frame)
+    integer(long) :: head(frame_words)
     integer(long), allocatable :: words(:)
 
     found = .false.
     call record%clear()
     if (.not. read_words(descriptor, head)) return
     if (head(1) < 0 .or. head(1) > most) return
-    allocate (words(frame + head(1)))
-    words(:frame) = head
+    allocate (words(frame_words + head(1)))
+    words(:frame_words) = head
     words(2) = 0
-    if (.not. read_words(descriptor, words(frame + 1:))) return
+    if (.not. read_words(descriptor, words(frame_words + 1:))) return
     if (checksum(words) /= head(2)) return
-    call record%fill(words(frame + 1:))
+    call record%fill(words(frame_words + 1:))
     time = transfer(head(3), time)
-    whole = whole + size(words)*word
+    whole = whole + size(words)*word_bytes
     found = .true.
   end subroutine read_frame
 
@@ -47,7 +47,7 @@ contains
   logical function read_words(descriptor, words) result(complete)
     integer(c_int), intent(in) :: descriptor
     integer(long), intent(out) :: words(:)
-    character :: bytes(word*size(words))
+    character :: bytes(word_bytes*size(words))
 
     complete = c_read(descriptor, bytes, size(bytes, kind=c_long)) == size(bytes)
     if (complete) words = transfer(bytes, words)

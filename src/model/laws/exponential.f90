@@ -4,7 +4,7 @@ module exponential
   use kinds, only: wp
   use deck, only: deck_t
   use deck_keys, only: key_spec, real_value
-  use force_law, only: force_law_t, of_pressure, of_slope
+  use force_law, only: force_law_t, of_slope
   use force_sum, only: add_term
   use group_reading, only: is_law, require, refuse_foreign, accept_law
   implicit none
