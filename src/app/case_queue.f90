@@ -31,7 +31,7 @@ module case_queue
     procedure :: put_next
     procedure :: take_answer
     procedure :: enter
-    procedure :: recall_cases
+    procedure :: begin
     procedure, private :: next_row
     procedure, private :: has
     procedure, private :: add
@@ -130,7 +130,7 @@ contains
   end subroutine enter
 
   !> Begins the queue with the completed cases of an interrupted run.
-  subroutine recall_cases(self)
+  subroutine begin(self)
     class(case_queue_t), intent(inout) :: self
     type(byte_record_t) :: record
     type(case_t) :: case
@@ -144,7 +144,7 @@ contains
       call self%add(case)
       call self%results%progress%step('case', failed=.not. case%converged, given=.true.)
     end do
-  end subroutine recall_cases
+  end subroutine begin
 
   !> Whether a case has ended, in this run or in the interrupted one.
   pure logical function has(self, number)

@@ -49,7 +49,7 @@ contains
     queue%scene => scene
     queue%results => results
     queue%columns = columns_of(scene)
-    call queue%recall_cases()
+    call queue%begin()
     if (allocated(scene%sweep%file)) call queue%rows%open(scene%sweep%file%path, scene%deck, error)
     if (allocated(error)) then
       call move_alloc(error, results%trouble)
