@@ -197,6 +197,21 @@ def test_a_large_strain_is_said_of_either_body(run, young):
     assert "strain below the top layer is about" in str(run(skins).summary["warnings"])
 
 
+@pytest.mark.parametrize("times", (1e-3, 1e3))
+def test_the_unit_of_length_does_not_matter(run, times):
+    """Two layers of unlike materials: all lengths in another unit, and pressures as they are."""
+    def tension(unit):
+        return run(deck(
+            bodies={"radius": 1e-4 * unit, "young": 1e8, "poisson": 0.3},
+            layer={"thickness": [1e-6 * unit, 3e-6 * unit], "young": [1e9, 2e7],
+                   "poisson": [0.3, 0.45]},
+            force={"law": "lennard_jones", "surface_energy": 0.05 * unit, "z0": 1e-8 * unit},
+            equilibrium_path={"h0_end": -1e-7 * unit},
+            numerics={"accuracy": 1e-6})).summary["max_tension"]
+
+    assert tension(times) == pytest.approx(times**2 * tension(1.0), rel=1e-6)
+
+
 # Young's moduli of the bodies; a layer on the first; what is read.
 DEEP = {
     "film": ([1e11, 1e11], {"thickness": 3e-6, "young": 1e10, "poisson": 0.3, "base": "rigid"},
