@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from support.calculus import hermite
 from support.half_space import path_by_axis
-from support.scenes import agreeing, deck, lennard_jones, loading
+from support.scenes import agreeing, changed, deck, lennard_jones, loading, value_in
 
 AXIS = (*np.linspace(12, 3, 12), *np.linspace(2.8, 1.1, 18), *np.linspace(1.09, 0.98, 16))
 ENDS = (*np.arange(0, 3.6, 0.15), 3.8, 4.4, *np.geomspace(6, 150, 7))
@@ -136,12 +136,44 @@ def test_a_cycle_and_a_spring_are_read_from_the_same_states(run):
     assert cycle["load"][0] == pytest.approx(path["load"][deepest], rel=1e-7)
 
 
+COATED = {
+    "bodies": {"radius": 1.0, "young": 0.3, "poisson": 0.4},
+    "layer": {"thickness": [1.0, 1.5], "young": [2.0, 0.8], "poisson": [0.3, 0.5], "body": "1"},
+    "force": {"law": "lennard_jones", "hamaker": 16 * math.pi, "z0": 1.0},
+    "equilibrium_path": PATH,
+}
+NUMBERS = ["layer.thickness(1)", "layer.thickness(2)", "layer.young(1)", "layer.young(2)",
+           "layer.poisson(1)", "bodies.young"]
+
+
+def coated(key=None, factor=1.0, **groups):
+    groups = COATED | groups
+    return deck(**changed(groups, {key: factor * value_in(groups, key)} if key else {}))
+
+
+@pytest.mark.parametrize("key", NUMBERS)
+def test_derivatives_are_differences_of_runs(run, key):
+    step, accurate = 2e-4, {"numerics": {"accuracy": 1e-9}}
+    near, far = (run(coated(key, factor, **accurate)).summary for factor in (1 - step, 1 + step))
+    rates = run(coated(sensitivity={"parameters": NUMBERS}, **accurate)).table("sensitivity.csv")
+    for quantity in ("max_tension", "max_tension_h0", "jump_in_h0", "jump_out_h0", "end_load"):
+        row = (rates["parameter"] == key) & (rates["quantity"] == quantity)
+        difference = (far[quantity] - near[quantity]) / (2 * step)
+        assert rates["logarithmic"][row][0] * far[quantity] == pytest.approx(
+            difference, rel=1e-4, abs=1e-6)
+
+
+def test_cases_of_a_sweep_are_runs_of_their_own(run):
+    thickness = [0.4, 1.6]
+    rows = run(coated(sweep={"key": "layer.thickness(2)", "values": thickness})).table("sweep.csv")
+    for i, value in enumerate(thickness):
+        alone = run(coated("layer.thickness(2)", value / 1.5)).summary
+        for key in ("max_tension", "jump_out_h0", "top_modulus", "bottom_modulus"):
+            assert rows[key][i] == pytest.approx(alone[key], rel=1e-7)
+
+
 def test_a_table_has_the_loads_of_a_cycle_and_their_slopes(run):
-    run = run(deck(
-        bodies={"radius": 1.0, "young": 0.3, "poisson": 0.4},
-        layer={"thickness": [1.0, 1.5], "young": [2.0, 0.8], "poisson": [0.3, 0.5], "body": "1"},
-        force={"law": "lennard_jones", "hamaker": 16 * math.pi, "z0": 1.0},
-        equilibrium_path=PATH, table={}, loading=loading(6, -1, 0.25)))
+    run = run(coated(table={}, loading=loading(6, -1, 0.25)))
     table, cycle = run.table("table.csv").rows("approach"), run.table("curve.csv").rows("loading")
     here = (cycle["h0"] < run.summary["jump_in_h0"] - 0.2) & (cycle["h0"] > -1 + 1e-9)
     found = hermite(-cycle["h0"][here],

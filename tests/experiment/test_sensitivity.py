@@ -114,13 +114,6 @@ CASES = {
          "morse": {"surface_energy": 0.05, "z0": 0.3e-9, "decay_length": 0.2e-9},
          "equilibrium_path": {"h0_end": -4e-9}, "fixed_load": {"load": [2e-8]}},
         ["shape.exponent", "shape.radius", "morse.decay_length", "bodies.stiffness"]),
-    "layers": (
-        {"bodies": {"radius": 1.0, "young": 0.3, "poisson": 0.4},
-         "layer": {"thickness": [1.0, 1.5], "young": [2.0, 0.8], "poisson": [0.3, 0.5]},
-         "force": {"law": "lennard_jones", "hamaker": 16 * math.pi, "z0": 1.0},
-         "equilibrium_path": {"h0_end": -1.0}},
-        ["layer.thickness(1)", "layer.thickness(2)", "layer.young(1)", "layer.young(2)",
-         "layer.poisson(1)", "bodies.young"]),
     "Morse law on a sphere": (
         {"bodies": {"stiffness": 5e7}, "shape": {"kind": "sphere", "radius": 1e-7},
          "morse": {"surface_energy": 0.05, "z0": 0.3e-9, "decay_length": 0.2e-9},
