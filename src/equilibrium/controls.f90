@@ -17,6 +17,7 @@ module controls
   !> H0 is prescribed, the contact radius c is unknown.
   integer, parameter :: at_h0_with_edge = 4
 
+  !> What is prescribed.
   type :: control_t
     integer :: kind = at_h0
     !> The prescribed value: H0, the gap on the axis, or the contact radius.

@@ -2,8 +2,8 @@
 !> integral of the polynomial of node j times J0(k_q t) t. Waves shorter than the distance of nodes
 !> are not contained in pressures that the mesh resolves, but at the nodes alone they cannot be
 !> distinguished from long waves. Therefore the polynomials are integrated with as many nodes as the
-!> waves need. Which waves a place has, and their values there, are asked for pressures here and for
-!> displacements by `mesh_waves`, with other limits.
+!> waves need. `last_on` says which waves a place has, and `find_wave` gives their values there;
+!> `mesh_waves` uses both for displacements, with other limits.
 module wave_transforms
   use kinds, only: wp
   use quadrature, only: lagrange_basis

@@ -342,3 +342,8 @@ def test_a_table_has_words_in_columns_of_words(run, folder, models):
     assert list(table["double_layer.model"]) == ["nonlinear", "linear", "superposition"]
     np.testing.assert_array_equal(table["double_layer.salt"], [10, 1, 1])
     np.testing.assert_array_equal(table["end_load"][1:], models.table("sweep.csv")["end_load"][:2])
+
+
+def test_two_threads_leave_the_same_bytes(run):
+    one, two = (run(scene(GRID), threads=threads) for threads in (1, 2))
+    assert rows_of(one) == rows_of(two)

@@ -183,3 +183,24 @@ def test_the_uniform_mesh_tends_to_the_same_state_at_second_order():
         assert state.converged
         errors.append(abs(state.load - exact.load))
     assert (np.log2(np.divide(errors[:-1], errors[1:])) > 1.8).all()
+
+
+@every_method
+def test_exponential_law_depends_on_lambda_alone(method):
+    # A shift of h0 is a factor on the pressure: only coupling exp(-h0) counts, (39).
+    shifted = snapin.equilibrium(
+        LAW["exponential"], MESH, 1.5, 10.0, method=method, tolerance=1e-11, most_iterations=5000)
+    plain = snapin.equilibrium(
+        LAW["exponential"], MESH, 0.0, 10.0 * math.exp(-1.5), method=method, tolerance=1e-11,
+        most_iterations=5000)
+    np.testing.assert_allclose(shifted.gap - 1.5, plain.gap, atol=1e-9)
+    assert shifted.load == pytest.approx(plain.load * math.exp(-1.5), rel=1e-9)
+
+
+@pytest.mark.parametrize("law", PRESSURE)
+def test_soft_bodies_tend_to_rigid_ones_in_proportion_to_the_coupling(law):
+    def load(coupling):
+        return snapin.equilibrium(LAW[law], MESH, 1.5, coupling, tolerance=1e-12).load
+
+    differences = np.array([load(c) - load(0.0) for c in (1e-3, 1e-4, 1e-5)])
+    np.testing.assert_allclose(differences[:-1] / differences[1:], 10, rtol=0.05)

@@ -5,10 +5,12 @@ import pytest
 from support.half_space import lennard_jones as lennard_jones_law
 from support.half_space import exponential as exponential_law
 from support.half_space import path_by_axis
-from support.scenes import JKR, exponential, lennard_jones, loading, several
+from support.scenes import JKR, deck, exponential, lennard_jones, loading, several
 
 # sigma of the two rows of the reference table: attraction with a jump, and with much adhesion.
 WEAK, STRONG = 0.87, 8.7
+STRONG_PULL_OFF = 1.01124487  # In units of JKR's.
+FIG1 = {"radius": 1.5e-2, "stiffness": 1e10}
 
 
 # --- Independent solutions
@@ -172,3 +174,22 @@ def test_profiles_fit_together_and_to_the_curve(profiled, branch):
         # The nodes are few, and quintics through them leave this.
         assert load == pytest.approx(curve["load"][row][0], abs=6e-3 * WEAK)
         assert -2 * u[0] == pytest.approx(curve["displacement"][row][0], abs=1e-12)
+
+
+def penetration_scene(step=0.2, **numerics):
+    """Fig. 10(c) without the paper's grid: sigma 8.7, four turning points."""
+    return deck(
+        bodies=FIG1, force={"law": "lennard_jones", "hamaker": 1e-19, "z0": 0.5e-9},
+        loading={"h0_start": 6.5e-9, "h0_end": -10e-9, "h0_step": step * 0.5e-9},
+        unloading={"from_": [1e-9, -2e-9, -4e-9, -10e-9], "h0_end": 6.5e-9}, numerics=numerics)
+
+
+def test_pull_off_does_not_depend_on_penetration(run):
+    summary = run(penetration_scene()).summary
+    pull_off = np.array(summary["unload_max_tension"])
+    assert len(pull_off) == 4
+    np.testing.assert_allclose(pull_off, pull_off.mean(), rtol=1e-6)
+    # The deck's sigma is 8.717, not 8.7: the pull-off varies by -1.4e-3 from 8.7 to 10.
+    assert pull_off[0] / summary["jkr_pull_off"] == pytest.approx(STRONG_PULL_OFF, rel=3e-5)
+    jump_out = np.array(summary["unload_jump_out_h0"])
+    np.testing.assert_allclose(jump_out, jump_out[0], rtol=1e-6)

@@ -217,3 +217,8 @@ def test_strength_of_lennard_jones_makes_lambda_1_157_times_tabors_parameter():
     assert strength == pytest.approx(tension.max(), rel=1e-9)
     tabor = (R * GAMMA**2 / ((STIFFNESS / 2) ** 2 * z0**3)) ** (1 / 3)
     assert lam / tabor == pytest.approx(1.157, abs=5e-4)
+
+
+def test_figure_1_pull_offs_are_those_of_the_paper():
+    assert snapin.pull_off("jkr", **ADHESIVE) == pytest.approx(-56e-6, abs=0.5e-6)
+    assert snapin.pull_off("dmt", **ADHESIVE) == pytest.approx(-75e-6, abs=0.5e-6)

@@ -109,3 +109,9 @@ def test_turning_value_may_be_repeated_or_not(there_and_back):
     np.testing.assert_allclose(
         once.load, np.delete(there_and_back.load, 61), atol=1e-7 * scale, rtol=0)
     np.testing.assert_allclose(once.jumps, there_and_back.jumps, rtol=1e-6)
+
+
+def test_the_second_of_two_calls_does_not_know_of_the_first(there_and_back):
+    snapin.force_curve([3.0, -1.0], **UNIT, law=law_of(3.0), method="newton")
+    again = snapin.force_curve(np.r_[DOWN, DOWN[::-1]], **BODIES, law=LAW)
+    np.testing.assert_array_equal(again.load, there_and_back.load)

@@ -86,7 +86,7 @@ compiler() {
   builds "build-$name" -Dpython=enabled || return
   # LLVM's OpenMP leaves an empty file if a process is killed during its start, and a later process
   # with the same number crashes because of the file (SIGBUS).
-  rm -f /dev/shm/__KMP_REGISTERED_LIB_* /tmp/__KMP_REGISTERED_LIB_*
+  rm -f /*/__KMP_REGISTERED_LIB_* /*/*/__KMP_REGISTERED_LIB_*
   tests_of "build-$name" -p no:cacheprovider "$@"
   tested=$?
   "$venv/bin/python" "$here/levels.py" --builds "$build/snapin" "$name=build-$name/snapin" \
