@@ -77,18 +77,19 @@ contains
     !> ends, where the ways meet, the approach lies above the retreat, for any baseline. If the
     !> difference is within the noise, a contact at the far end decides.
     subroutine check_ways()
-      real(wp) :: position(size(measured%z)), above(parts), error(parts), slope(2), slope_error(2)
-      real(wp) :: taken(2), sure
+      real(wp) :: position(size(measured%z)), slope(2), slope_error(2), taken(2), sure
+      real(wp), allocatable :: above(:), error(:)
 
       if (.not. (any(measured%inward) .and. .not. all(measured%inward))) return
       position = measured%facing*measured%z
       call compare_ways(measured, noise, above, error)
+      if (size(above) == 0) return
       call slope_at(position, slope(1), slope_error(1))
       call slope_at(-position, slope(2), slope_error(2))
       ! The signal has the opposite sign: both ends bend down.
       if (sum(slope) < 0) return
-      taken = sum(above)/parts - above([1, parts])
-      sure = surely*maxval(error([1, parts]))
+      taken = sum(above)/size(above) - above([1, size(above)])
+      sure = surely*maxval(error([1, size(error)]))
       if (all(taken < -sure)) then
         trouble = 'a cycle would gain energy, as the adhesion is stronger on the way in than ' // &
           'on the way out: the rows of the file are in reverse order, or approach and retreat ' // &
@@ -133,19 +134,18 @@ contains
 
   end subroutine check_measured
 
-  !> Height of the approach above the retreat in each part of the travel, nearest first, without
-  !> their common slope; zeros where one of them has no samples.
+  !> Height of the approach above the retreat, without their common slope, and its error, in each
+  !> part of the travel in which both have samples, nearest first.
   pure subroutine compare_ways(measured, noise, above, error)
     type(measured_t), intent(in) :: measured
     type(noise_t), intent(in) :: noise
-    real(wp), intent(out) :: above(parts), error(parts)
+    real(wp), allocatable, intent(out) :: above(:), error(:)
     real(wp), dimension(size(measured%z)) :: position, x, y
     logical, dimension(size(measured%z)) :: mask, mine
-    real(wp) :: least, width, middle(2, 2), slope
+    real(wp) :: least, width, middle(2, 2), slope, variance
     integer :: part, way
 
-    above = 0
-    error = 0
+    allocate (above(0), error(0))
     position = measured%facing*measured%z
     least = minval(position)
     width = (maxval(position) - least)/parts
@@ -154,6 +154,7 @@ contains
       if (all(measured%inward .or. .not. mask) .or. .not. any(measured%inward .and. mask)) cycle
       x = 0
       y = 0
+      variance = 0
       do way = 1, 2
         mine = mask .and. (measured%inward .eqv. way == 1)
         middle(:, way) = [sum(position, mine), sum(measured%signal, mine)]/count(mine)
@@ -161,11 +162,11 @@ contains
           x = position - middle(1, way)
           y = measured%signal - middle(2, way)
         end where
-        error(part) = error(part) + noise%long_deviation()**2/count(mine)
+        variance = variance + noise%long_deviation()**2/count(mine)
       end do
       slope = sum(x*y)/max(sum(x**2), tiny(1.0_wp))
-      above(part) = middle(2, 1) - middle(2, 2) - slope*(middle(1, 1) - middle(1, 2))
-      error(part) = sqrt(error(part))
+      above = [above, middle(2, 1) - middle(2, 2) - slope*(middle(1, 1) - middle(1, 2))]
+      error = [error, sqrt(variance)]
     end do
   end subroutine compare_ways
 
@@ -174,11 +175,11 @@ contains
   pure real(wp) function open_end(measured, noise) result(below)
     type(measured_t), intent(in) :: measured
     type(noise_t), intent(in) :: noise
-    real(wp) :: above(parts), error(parts)
+    real(wp), allocatable :: above(:), error(:)
     integer :: last
 
     call compare_ways(measured, noise, above, error)
-    last = findloc(error > 0, .true., 1, back=.true.)
+    last = size(above)
     below = 0
     if (last == 0) return
     above = above - above(1)

@@ -169,6 +169,17 @@ def test_a_retreat_that_ends_before_the_bodies_part_is_named(branches, tmp_path)
         assert named or np.abs(errors_off(result)).max() < 4
 
 
+def test_gaps_between_samples_are_no_gain_of_energy(branches, tmp_path):
+    """The parts without samples once lay between the baselines of both ways."""
+    z, force, segment = branches.measure(SAMPLES, NOISE, seed=3)
+    part = np.floor(20 * (z - z.min()) / np.ptp(z))
+    kept = ~np.isin(part, [6, 10, 13, 16])
+    force = force + 50 * NOISE * (segment == 0)
+    result = fitted(tmp_path, (z[kept], force[kept], segment[kept]), started(), TRUTH)
+    assert np.abs(errors_off(result)).max() < 4
+    assert not result.summary.get("warnings")
+
+
 @pytest.mark.parametrize("start, gap", [(0.2, 1e-10), (1.0, 1e-10), (1.0, 2e-9), (5.0, 2e-9)])
 def test_a_curve_that_ends_before_the_jump_is_on_the_outer_branch(branches, tmp_path, start, gap):
     """The last sample once was said to be after a jump, and the nearest one to be in contact."""
