@@ -57,7 +57,8 @@ contains
     back = jumps_in(-measured%signal)
     if (before - near > steep*stiffness*travel .or. any(back%before > 0)) trouble = &
       'the force falls where the bodies are pressed together, but repulsion must be positive; ' // &
-      'a minus before the name of a column changes its sign'
+      'a minus before the name of a column changes its sign; if they are not in contact ' // &
+      'there, but only attract each other, skip the nearest twentieth of the travel'
 
   contains
 

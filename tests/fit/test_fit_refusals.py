@@ -53,6 +53,20 @@ def test_data_that_cannot_be_fitted_are_refused_with_the_reason(branches, tmp_pa
         fitted(tmp_path, curve, LENNARD_JONES, [STRENGTH, POINT])
 
 
+def test_a_steep_attraction_before_contact_can_be_fitted_without_its_end(branches, tmp_path):
+    """It is like the contact of a signal with the opposite sign, whose fit would find nothing."""
+    z, force, segment = branches.measure(3000, noise=1e-12, seed=2)
+    near = branches.outer[0][0] + 2e-11
+    apart = (segment == 0) & (z > near) & (z < near + 5e-9)
+    curve = z[apart], force[apart], segment[apart]
+    with pytest.raises(snapin.SnapinError, match="skip the nearest twentieth of the travel"):
+        fitted(tmp_path, curve, LENNARD_JONES, [STRENGTH, POINT])
+    twentieth = [near - 1e-9, near + 0.051 * 5e-9]
+    fit = fitted(tmp_path, curve, LENNARD_JONES, [STRENGTH, POINT],
+                 measurement={"skip": twentieth}).fitted["fit"]
+    assert np.abs((fit["estimate"] - [1e-19, 0.0]) / fit["standard_error"]).max() < 4
+
+
 VOLT = 1 / (SPRING * 5e-8)
 # Unit of the signal over newtons, keys of &measurement, and what is said.
 BAD_SIGNALS = {
