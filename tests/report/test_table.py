@@ -48,3 +48,15 @@ def test_indentation_is_minus_h0_wherever_the_law_has_its_well(run):
     assert approach["indentation"][-1] == pytest.approx(-1.5e-9, rel=1e-12)
     jump = np.isnan(approach["stiffness"])
     assert approach["indentation"][jump][0] == pytest.approx(-found.summary["jump_in_h0"], rel=1e-9)
+
+
+@pytest.mark.parametrize("sigma, h0_start, most", [(0.87, None, 0.05), (2.0, None, 0.05),
+                                                   (2.0, 30.0, 2e-3)])
+def test_the_first_load_is_nearly_that_of_undeformed_bodies(run, sigma, h0_start, most):
+    found = run(lennard_jones(sigma, equilibrium_path={"h0_start": h0_start, "h0_end": -8.0},
+                              table={}))
+    approach = found.table("table.csv").rows("approach")
+    gap, load = -approach["indentation"][0], approach["load"][0]
+    rigid = 2 * np.pi * sigma * (gap**-8 - 4 * gap**-2) / 3
+    assert 0 < (load - rigid) / rigid < most
+    assert rigid - load < 3.5e-3 * found.summary["max_tension"]
