@@ -38,8 +38,9 @@ module anderson
   integer, parameter :: few_iterations = 2, unknowns_an_iteration = 20
   !> Largest number of rejected steps; after more, the iteration stops.
   integer, parameter :: most_rejections = 4
-  !> A plain step of this length, over the tolerance, is the last step.
-  real(wp), parameter :: few_roundings = 10
+  !> A plain step of the length `last_step`, over the tolerance, is the last step; so is one of the
+  !> length `few_roundings` that is hardly shorter than the one before it.
+  real(wp), parameter :: last_step = 0.1_wp, few_roundings = 10, hardly_shorter = 0.5_wp
 
 contains
 
@@ -54,6 +55,7 @@ contains
     type(state_t), intent(inout) :: state
     logical, intent(out) :: converged
     type(iterate_t) :: now
+    real(wp) :: before
     integer :: iteration
 
     now%z = unknowns_of(control, state)
@@ -72,9 +74,10 @@ contains
       end if
       if (.not. frozen%factors%valid .or. now%since_renewal >= options%patience) &
         call renew(equations, control, state, frozen, now)
+      before = now%length
       call take_plain_step(equations, control, state, frozen, now)
       if (.not. frozen%factors%valid .or. now%rejections > most_rejections) exit
-      if (allocated(equations%drainage) .and. now%length <= few_roundings*options%tolerance) then
+      if (allocated(equations%drainage) .and. is_last(options%tolerance, before, now%length)) then
         call finish(equations, control, state, now)
         converged = .true.
         return
@@ -87,6 +90,15 @@ contains
     frozen%excess = frozen%excess + max(0, state%iterations - few_iterations)
     if (unknowns_an_iteration*frozen%excess > size(now%z)) call frozen%forget()
   end subroutine solve_anderson
+
+  !> Whether a plain step is so short that it is the last one. Rates divide what is left of the gaps
+  !> by the step of time, so it must be near rounding, where plain steps become no shorter.
+  pure logical function is_last(tolerance, before, length)
+    real(wp), intent(in) :: tolerance, before, length
+
+    is_last = length <= last_step*tolerance .or. &
+      (length <= few_roundings*tolerance .and. length > hardly_shorter*before)
+  end function is_last
 
   !> Makes the last plain step. In a short step of time a fluid multiplies the rounding of gaps in
   !> the residual but not in the plain step, whose length then counts as the residual.

@@ -268,3 +268,17 @@ def test_the_error_estimate_includes_the_suction(run):
     found = run(scene(0.01, 0.1)).summary
     assert found["max_suction_error"] <= found["error_estimate"] * found["max_suction"] * (1 + 1e-9)
     assert found["error_estimate"] < 1e-3
+
+
+def test_a_short_dwell_does_not_lose_the_finer_passes(run):
+    # In the first steps of a way the rounding of gaps is a rate that the load of the film shows.
+    found = run(scene(0.1, 0.5, velocity=0.1, turn=7.5, dwell=1e-7, accuracy=1e-4)).summary
+    assert found["converged"]
+    assert found["error_estimate"] < 1e-4
+
+
+def test_steps_do_not_follow_what_the_iteration_leaves(run):
+    rows = of_way(run(scene(0.01, 0.1)).table("curve.csv"), "approach")
+    steps = np.diff(rows["time"])
+    # The relaxation of stiff bodies after the first step needs shorter steps, but not much.
+    assert steps.min() > 0.1 * steps[0]
