@@ -237,8 +237,10 @@ contains
 
     now%error = margin*abs(now%number - before%number)
     where (before%error < huge(1.0_wp)) now%error = max(now%error, before%error/4)
-    ! A suction at an unresolved jump of an early pass says nothing about later passes.
-    now%error(of_suction) = margin*abs(now%number(of_suction) - before%number(of_suction))
+    ! An undetermined suction, at an unresolved jump of an early pass, says nothing about later
+    ! passes.
+    if (before%error(of_suction) > before%number(of_suction)) now%error(of_suction) = &
+      margin*abs(now%number(of_suction) - before%number(of_suction))
     now%error(of_tension) = now%error(of_tension) + now%lifted + &
       of_meshes*accuracy*now%number(of_tension)
     now%error(of_work) = now%error(of_tension)/(1.5_wp*pi)

@@ -282,3 +282,10 @@ def test_steps_do_not_follow_what_the_iteration_leaves(run):
     steps = np.diff(rows["time"])
     # The relaxation of stiff bodies after the first step needs shorter steps, but not much.
     assert steps.min() > 0.1 * steps[0]
+
+
+def test_the_error_of_the_suction_holds_where_two_passes_agree_by_chance(run):
+    case = {"sigma": 0.026, "viscosity": 4.6095e-4, "slip": [0.0, 0.5], "z_end": 30.0}
+    rough, fine = (run(scene(**case, accuracy=accuracy)).summary for accuracy in (1e-3, 1e-4))
+    off = abs(rough["max_suction"] - fine["max_suction"])
+    assert off <= rough["max_suction_error"] + fine["max_suction_error"]
