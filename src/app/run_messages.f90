@@ -1,7 +1,7 @@
 !> What a run says on standard error: each line begins with the folder of the results.
 module run_messages
   use kinds, only: wp
-  use text, only: brief, rounded
+  use text, only: counted, rounded
   use files, only: file_exists, own_path, whole_path, write_stderr
   use scene_groups, only: scene_t
   use equilibrium, only: cost_t
@@ -34,7 +34,8 @@ contains
     type(destination_t), intent(in) :: destination
     type(summary_t), intent(in) :: summary
     type(cost_t), intent(in) :: cost
-    character(len=160) :: found, tension
+    character(len=160) :: tension
+    character(len=12) :: seconds
     character(len=:), allocatable :: command
     real(wp) :: took
     integer :: i
@@ -54,13 +55,13 @@ contains
     if (summary%has('regime_reason')) &
       call destination%say('regime: '//summary%text('regime_reason'))
     took = summary%number('wall_seconds')
-    write (found, '(i0, a, f0.2, a)') cost%states, ' states in ', took, ' s'
-    if (took < 1) write (found, '(i0, a, f5.3, a)') cost%states, ' states in ', took, ' s'
+    write (seconds, merge('(f5.3)', '(f0.2)', took < 1)) took
     tension = ''
     if (summary%has('max_tension')) write (tension, '(a, es11.4, a, es12.4, a)') &
       ', largest tension', summary%number('max_tension'), ' N at h0 =', &
       summary%number('max_tension_h0'), ' m'
-    call destination%say(trim(found)//trim(tension))
+    call destination%say(counted(int(cost%states), 'state')//' in '//trim(seconds)//' s'// &
+      trim(tension))
     if (allocated(scene%sweep)) then
       command = ''
       if (.not. destination%to_stream) then
@@ -68,7 +69,7 @@ contains
         if (command /= '') command = '; to draw it: '//command
         command = ': '//destination%folder//'/sweep.csv'//command
       end if
-      call destination%say(brief(scene%sweep%cases())//' cases, '// &
+      call destination%say(counted(scene%sweep%cases(), 'case')//', '// &
         rounded(scene%sweep%cases()/max(took, 1e-3_wp))//' a second'//command)
     end if
 

@@ -5,7 +5,7 @@ module simulation
   use build_info, only: version, compiler, blas, options
   use dimensionless_problem, only: problem_t, calm_gap
   use scene_groups, only: scene_t
-  use text, only: brief
+  use text, only: brief, counted
   use experiment_result, only: experiment_result_t
   use experiment, only: run_experiment
   use resumable_stepper, only: resumable_stepper_t
@@ -174,10 +174,10 @@ contains
         cost = tally%cost
         summary = summary_of(scene, problem, outcome)
         if (tally%failed > 0) call summary%fail_with(brief(tally%failed)//' of '// &
-          brief(scene%sweep%cases())// &
-          ' cases failed: their rows in sweep.csv say converged = 0, and why')
+          counted(scene%sweep%cases(), 'case')// &
+          ' failed: rows of sweep.csv with converged = 0 say why')
         if (tally%warned > 0) call summary%warn(brief(tally%warned)//' of '// &
-          brief(scene%sweep%cases())//' cases gave a warning; the first, case '// &
+          counted(scene%sweep%cases(), 'case')//' gave a warning; the first, case '// &
           brief(tally%first_warned)//': '//trim(tally%warning))
         left_out = groups_left_out(scene)
         if (left_out /= '') call summary%note('sweep: no number in sweep.csv comes from '// &

@@ -4,8 +4,8 @@ module text
   use decimal, only: put_real, put_whole, longest_real
   implicit none
   private
-  public :: lower, quoted, unquoted, brief, rounded, rounded_to, full, guess, clip, listing, &
-    printable, word_count, word_of, first_line
+  public :: lower, quoted, unquoted, brief, counted, rounded, rounded_to, full, guess, clip, &
+    listing, printable, word_count, word_of, first_line
 
   !> brief(x), brief(n): a number for a message, with the fewest digits that read back as the same.
   interface brief
@@ -121,6 +121,16 @@ contains
     call put_whole(n, buffer, length)
     text = buffer(:length)
   end function brief_integer
+
+  !> '1 case', '3 cases' for the noun 'case'.
+  pure function counted(n, noun) result(text)
+    integer, intent(in) :: n
+    character(len=*), intent(in) :: noun
+    character(len=:), allocatable :: text
+
+    text = brief(n) // ' ' // noun
+    if (n /= 1) text = text // 's'
+  end function counted
 
   !> `x` for a message to three digits.
   pure function rounded(x) result(text)

@@ -5,13 +5,12 @@ module data_table
   use kinds, only: wp
   use checksums, only: checksum
   use failure, only: failure_t
-  use text, only: brief, lower, quoted, clip, guess
+  use text, only: brief, counted, lower, quoted, clip, guess
   use deck_number, only: parse_real, parse_integer
   use deck_scan, only: span_t
   use deck_source, only: source_t, load_source
   use deck_store, only: deck_t
-  use table_line, only: split, after_mark, uncommented, ends_empty, point_decimals, counted, &
-    miscount
+  use table_line, only: split, after_mark, uncommented, ends_empty, point_decimals, miscount
   implicit none
   private
   public :: data_table_t, read_data_table, largest_table, read_columns, is_header
@@ -76,9 +75,9 @@ contains
           end if
         end if
         if (header .and. any(verify(wanted, '-0123456789 ') > 0)) then
-          call table%source%complain(named, counted(size(names)) // ' where ' // &
-            counted(table%columns) // ' are expected; number the columns if names have ' // &
-            'blanks; a comment begins with #', error)
+          call table%source%complain(named, counted(size(names), 'column') // ' where ' // &
+            counted(table%columns, 'column') // ' are expected; number the columns if names ' // &
+            'have blanks; a comment begins with #', error)
           return
         end if
         named = first
@@ -152,7 +151,8 @@ contains
         end if
         if (at(i) >= 1 .and. at(i) <= size(spans)) cycle
         call table%source%complain(start, 'no column ' // quoted(clip(name)) // &
-          guess(name, names(2:), '') // '; this line has ' // counted(size(spans)), error)
+          guess(name, names(2:), '') // '; this line has ' // counted(size(spans), 'column'), &
+          error)
       end do
     end subroutine find_columns
 
@@ -195,7 +195,7 @@ contains
     if (allocated(error)) return
     call deck%note_file(group, key, checksum(table%source%text))
     if (size(table%place) > 0 .and. table%columns > 2) then
-      call table%source%complain(table%place(1), counted(table%columns) // &
+      call table%source%complain(table%place(1), counted(table%columns, 'column') // &
         ' where 2 columns are expected', error)
     else if (size(table%place) < fewest) then
       call table%source%complain(len(table%source%text) + 1, 'fewer than ' // brief(fewest) // &

@@ -2,11 +2,11 @@
 !> semicolons separate and which may stand in double quotes. In a line with semicolons or tabs
 !> between cells, a comma within a number is a decimal comma.
 module table_line
-  use text, only: brief
+  use text, only: counted
   use deck_scan, only: span_t
   implicit none
   private
-  public :: split, blanks, after_mark, uncommented, ends_empty, point_decimals, counted, miscount
+  public :: split, blanks, after_mark, uncommented, ends_empty, point_decimals, miscount
 
   character(len=*), parameter :: newline = new_line('a')
   !> Separators of cells: blank and tab; comma and semicolon.
@@ -126,16 +126,8 @@ contains
     integer, intent(in) :: found, expected
     character(len=:), allocatable :: what
 
-    what = counted(found) // ' where ' // counted(expected) // ' are expected'
+    what = counted(found, 'column') // ' where ' // counted(expected, 'column') // ' are expected'
     if (found < expected .and. ends_empty(line)) what = what // '; the last cell is empty'
   end function miscount
-
-  !> '1 column', '3 columns'.
-  pure function counted(n)
-    integer, intent(in) :: n
-    character(len=:), allocatable :: counted
-
-    counted = brief(n) // ' column' // trim(merge(' ', 's', n == 1))
-  end function counted
 
 end module table_line

@@ -1,7 +1,7 @@
 !> The results of a fit: fit.csv, sample by sample; fit.nml, the unknowns; and messages.
 module fit_rows
   use kinds, only: wp
-  use text, only: rounded, rounded_to, brief
+  use text, only: rounded, rounded_to, counted
   use dimensionless_problem, only: adhesion_strength, tabor_parameter
   use namelist_writer, only: line_t, assignment_of
   use results, only: results_t
@@ -153,10 +153,10 @@ contains
 
     allocate (lines(0))
     associate (curve => outcome%curve)
-      line%text = brief(size(curve%data%sample)) // ' samples, noise ' // &
+      line%text = counted(size(curve%data%sample), 'sample') // ', noise ' // &
         rounded(curve%data%noise%deviation) // ', correlation of neighbours ' // &
-        rounded(curve%data%noise%correlation(1)) // ', ' // brief(count( &
-        curve%data%measured%outlier())) // ' outliers left out'
+        rounded(curve%data%noise%correlation(1)) // ', ' // counted(count( &
+        curve%data%measured%outlier()), 'outlier') // ' left out'
       lines = [lines, line]
       do i = 1, size(curve%unknown)
         line%text = curve%unknown(i)%name // ' = ' // rounded_to(outcome%fitted%value(i), &

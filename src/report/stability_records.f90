@@ -9,7 +9,7 @@ module stability_records
   use contact_state, only: state_t
   use equilibrium, only: cost_t
   use records, only: observer_t, record_t, stable_yes, stable_no, stable_unasked
-  use text, only: brief
+  use text, only: counted
   use summary, only: summary_t
   use journal, only: journal_t, of_eigenvalue
   use byte_record, only: byte_record_t
@@ -87,9 +87,9 @@ contains
     type(summary_t), intent(inout) :: summary
 
     if (self%uncertain > 0) call summary%warn('the smallest eigenvalue of '// &
-      brief(self%uncertain)//' states could not be verified: their rows have NaN')
+      counted(self%uncertain, 'state')//' could not be verified and is NaN')
     if (self%contradicted > 0) call summary%warn('the eigenvalue of '// &
-      brief(self%contradicted)//' states contradicts their column stable')
+      counted(self%contradicted, 'state')//' contradicts the column stable')
   end subroutine warn
 
   !> The smallest eigenvalue of a state, from the journal if it is there.

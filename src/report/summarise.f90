@@ -4,7 +4,7 @@ module summarise
   use dimensionless_problem, only: problem_t
   use numerics_choice, only: grid_names, unchosen, edge_locked
   use scene_groups, only: scene_t
-  use text, only: brief, rounded
+  use text, only: brief, counted, rounded
   use experiment_result, only: experiment_result_t
   use records, only: quality_t
   use stepped_branch, only: branch_t
@@ -130,7 +130,7 @@ contains
 
       if (branch%unconverged > 0) &
         call summary%fail_with(name//': '//brief(branch%unconverged)//' of '// &
-          brief(branch%states)//' states did not converge, the first at h0 = '// &
+          counted(branch%states, 'state')//' did not converge, the first at h0 = '// &
           rounded(problem%law%separation_of(branch%first_unconverged))// &
           ' m; the largest residual is '//rounded(branch%quality%residual)// &
           ' lengths of the force law')

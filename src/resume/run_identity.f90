@@ -56,7 +56,7 @@ contains
       text = 'program made of ' // old(len(libraries_line) + 1:) // ', this one is made of ' // &
         new(len(libraries_line) + 1:) // '; continue with that one'
     else if (index(old, threads_line) == 1) then
-      text = 'run with ' // old(len(threads_line) + 1:) // ' threads, this one has ' // &
+      text = 'run with OMP_NUM_THREADS=' // old(len(threads_line) + 1:) // ', this one has ' // &
         new(len(threads_line) + 1:) // '; set OMP_NUM_THREADS=' // old(len(threads_line) + 1:)
     else
       text = 'deck, ' // change(group, old, new, now) // '; put that back'

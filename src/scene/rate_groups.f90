@@ -2,7 +2,7 @@
 !> drains from between them.
 module rate_groups
   use kinds, only: wp
-  use text, only: brief
+  use text, only: brief, counted
   use deck_keys, only: key_spec, real_value, real_list
   use creep, only: creep_t
   use scene_groups, only: scene_t
@@ -130,8 +130,8 @@ contains
         compliance = [1/relaxed - 1/bodies%stiffness]
       end if
       if (.not. allocated(scene%deck%error) .and. size(compliance) /= size(time)) &
-        call deck%mistake('viscoelastic', 'retardation_time', 'has ' // brief(size(time)) // &
-        ' values for ' // brief(size(compliance)) // ' terms')
+        call deck%mistake('viscoelastic', 'retardation_time', 'has ' // &
+        counted(size(time), 'value') // ' for ' // counted(size(compliance), 'term'))
       if (allocated(scene%deck%error)) return
       scene%creep = creep_t(compliance*bodies%stiffness, time)
     end associate

@@ -5,7 +5,7 @@ module scene_problem
   use scene_groups, only: scene_t
   use kinds, only: wp
   use deck_keys, only: key_spec, real_value, real_list, logical_value, word_value
-  use text, only: brief
+  use text, only: brief, counted
   use deck, only: deck_t
   use layered_surface, only: layered_surface_t
   use dimensionless_problem, only: problem_t, new_problem
@@ -209,11 +209,11 @@ contains
 
     associate (deck => scene%deck, bodies => scene%bodies)
       if (size(young) /= size(thickness)) call deck%mistake('layer', 'young', &
-        brief(size(young)) // ' for ' // brief(size(thickness)) // &
-        ' layers; give one value for each thickness, from the top down')
+        brief(size(young)) // ' for ' // counted(size(thickness), 'layer') // &
+        '; give one value for each thickness, from the top down')
       if (size(poisson) /= size(thickness)) call deck%mistake('layer', 'poisson', &
-        brief(size(poisson)) // ' for ' // brief(size(thickness)) // &
-        ' layers; give one value for each thickness, from the top down')
+        brief(size(poisson)) // ' for ' // counted(size(thickness), 'layer') // &
+        '; give one value for each thickness, from the top down')
       call check_spread(scene, 'thickness', thickness)
       call check_spread(scene, 'young', young)
       if (allocated(bodies%young) .and. word_is(deck, 'base', 'elastic')) &

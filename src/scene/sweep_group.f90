@@ -3,7 +3,7 @@
 module sweep_group
   use kinds, only: wp
   use failure, only: failure_t
-  use text, only: brief, quoted, word_count, word_of
+  use text, only: brief, counted, quoted, word_count, word_of
   use deck, only: deck_t
   use deck_numbers, only: words_of, number_of_word
   use case_rows, only: case_rows_t
@@ -251,8 +251,8 @@ contains
       if (items == 0) then
         call deck%mistake('sweep', key, 'missing; give from, to and count, or values')
       else
-        call deck%mistake('sweep', key, brief(items) // ' for ' // brief(size(keys)) // &
-          ' keys; give one for each')
+        call deck%mistake('sweep', key, brief(items) // ' for ' // counted(size(keys), 'key') // &
+          '; give one for each')
       end if
     end subroutine check_size
 

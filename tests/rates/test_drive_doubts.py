@@ -14,7 +14,7 @@ from support.scenes import UNIT, deck, lennard_jones
      "h0 reaches 1e16 m, more than 1e15 of these lengths"),
     ({"drive": {"velocity": 1.0, "z_start": 10.0, "z_turn": -1e16}}, "more than 1e15"),
     ({"viscoelastic": {"retardation_time": 1.0}}, "give one of"),
-    ({"viscoelastic": {"compliance": [1.0, 2.0], "retardation_time": 1.0}}, "1 values for 2"),
+    ({"viscoelastic": {"compliance": [1.0, 2.0], "retardation_time": 1.0}}, "1 value for 2 terms"),
     ({"drive": None, "viscoelastic": {"stiffness_relaxed": 0.5, "retardation_time": 1.0},
       "equilibrium_path": {"h0_end": 0.0}}, "needs &drive"),
     ({"drive": {"velocity": 1.0, "z_start": 1.0, "z_turn": 2.0}}, "is not above z_turn"),
