@@ -20,6 +20,7 @@ module case_rows
 
   !> Largest number of bytes in memory.
   integer, parameter :: piece = 65536
+  character(len=*), parameter :: return = achar(13), newline = new_line('a')
 
   !> A file that is being read. An open one must not be copied.
   type :: case_rows_t
@@ -161,7 +162,8 @@ contains
     class(case_rows_t), intent(inout) :: self
     logical, intent(out) :: found
     type(failure_t), allocatable, intent(inout) :: error
-    character(len=:), allocatable :: bytes
+    character(len=:), allocatable :: bytes, reason
+    integer(c_int) :: sort
     integer :: length
 
     found = .false.
@@ -175,12 +177,14 @@ contains
       length = int(c_read(self%descriptor, self%buffer(self%held + 1:), &
         int(piece - self%held, c_long)))
       if (length < 0) then
-        call fail(error, file_trouble, printable(self%file) // ': cannot be read')
+        call explain(int(length, c_int), sort, reason)
+        call fail(error, file_trouble, printable(self%file) // ': cannot be read: ' // reason)
         return
       end if
       self%held = self%held + length
       length = line_length()
-      if (length < 0) length = self%held
+      ! The rest is the last line, perhaps with a return.
+      if (length < 0) length = index(self%buffer(:self%held) // return, return) - 1
       if (self%held == 0) return
     end if
     if (length == piece) then
@@ -188,10 +192,10 @@ contains
       return
     end if
     bytes = self%buffer(self%used + 1:self%used + length)
-    self%used = min(self%held, self%used + length + 1)
-    if (len(bytes) > 0) then
-      if (bytes(len(bytes):) == achar(13)) bytes = bytes(:len(bytes) - 1)
-    end if
+    self%used = self%used + length
+    ! CR LF is one end of a line.
+    length = 1 + index(self%buffer(self%used + 1:min(self%held, self%used + 2)), return // newline)
+    self%used = min(self%held, self%used + length)
     call take_source(self%file, bytes, self%line, error, lines_before=self%lines)
     self%lines = self%lines + 1
     if (allocated(error)) return
@@ -202,9 +206,12 @@ contains
 
   contains
 
-    !> Number of characters before the next line's end in the buffer; -1 if there is no line's end.
+    !> Number of characters before the next line's end (LF, CR LF or CR) in the buffer; -1 if there
+    !> is none, or if the line feed of CR LF may follow the buffer.
     integer function line_length()
-      line_length = index(self%buffer(self%used + 1:self%held), new_line('a')) - 1
+      line_length = scan(self%buffer(self%used + 1:self%held), return // newline) - 1
+      if (line_length < 0 .or. self%used + line_length + 1 < self%held) return
+      if (self%buffer(self%held:self%held) == return) line_length = -1
     end function line_length
 
   end subroutine next_line

@@ -102,7 +102,7 @@ def test_a_file_is_read_in_pieces_whatever_its_line_ends(run, folder):
     count = 4000
     rows = [f"{1e-6 * (1 + i / count)!r},\t{1e-20 * (i + 1)!r} # {i}" for i in range(count)]
     tables = []
-    for ends in ("\n", "\r\n"):
+    for ends in ("\n", "\r\n", "\r"):
         (folder / "many.csv").write_bytes(
             ends.join(["\ufeff# all", "Bodies.Radius, force.hamaker", "", *rows]).encode())
         tables.append(run(scene({"file": "many.csv"}, **RIGID)).table("sweep.csv"))
@@ -111,8 +111,22 @@ def test_a_file_is_read_in_pieces_whatever_its_line_ends(run, folder):
                                       [1e-6 * (1 + i / count) for i in range(count)])
         np.testing.assert_array_equal(table["force.hamaker"], [1e-20 * (i + 1)
                                                                for i in range(count)])
-    np.testing.assert_array_equal(tables[0]["end_load"], tables[1]["end_load"])
+    for table in tables:
+        np.testing.assert_array_equal(tables[0]["end_load"], table["end_load"])
     assert len(set(tables[0]["end_load"])) == count
+
+
+@pytest.mark.parametrize("ends", ["\n", "\r\n", "\r"])
+def test_a_mistake_in_a_file_is_named_by_its_line_whatever_the_line_ends(run, folder, ends):
+    (folder / "wrong.csv").write_bytes(
+        ends.join(["bodies.radius,force.hamaker", "1e-6,1e-19", "", "1e-6,x"]).encode())
+    said = run(scene({"file": "wrong.csv"}, **RIGID), status=2).stderr
+    assert "wrong.csv:4: x is not a number" in said
+
+
+def test_a_single_case_is_a_case(run, folder):
+    (folder / "single.csv").write_text("bodies.radius,force.hamaker\n1e-6,1e-19\n")
+    assert ": 1 case, " in run(scene({"file": "single.csv"}, **RIGID)).stderr
 
 
 @pytest.mark.parametrize("sweep", [GRID, {"file": "cases.csv"}], ids=["keys", "file"])
@@ -180,7 +194,7 @@ def test_a_case_that_fails_is_a_row_that_says_why(run):
     assert "h0_end" in table["failure"][1] and "below" in table["failure"][1]
     assert [bool(text) for text in table["failure"]] == [False, True, False, False]
     assert np.isnan(table["end_load"][1])
-    assert any("1 of 4 cases failed" in text for text in result.warnings)
+    assert any("1 of 4 cases failed: rows of" in text for text in result.warnings)
 
 
 def test_a_terminal_shows_how_far_a_sweep_is(snapin_path, tmp_path):
@@ -216,6 +230,7 @@ WRONG = {
     "bounds": ({**GRID, "from": [-1e9, 1e-20], "scale": "linear"}, "out of range"),
     "too many": ({**GRID, "count": [10000, 10000]}, "more than 10000000 cases"),
     "no file": ({"file": "nowhere.csv"}, "no such file"),
+    "folder": ({"file": "."}, ".: cannot be read: Is a directory"),
     "both": ({"file": "nowhere.csv", "key": "force.hamaker"}, "not together with file"),
     "no names": ("1e9\n", "no line of names"),
     "cell": ("bodies.stiffness\nsoft\n", "cases.csv:2"),
