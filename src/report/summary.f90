@@ -25,8 +25,8 @@ module summary
     real(wp), allocatable :: error(:), rate(:, :)
   end type value_t
 
-  !> A row without a value is absent from the file. If one value of an array does not exist, such as
-  !> the jump out of an unloading without one, it is NaN.
+  !> A row without a value is absent from the file. If one of several values of an array does not
+  !> exist, such as the jump out of an unloading without one, it is NaN.
   type :: summary_t
     !> One element for each row. It is allocated, with the others, as the first value is set, since
     !> several summaries at once would need a larger stack, which a limit of memory can forbid.
@@ -84,8 +84,8 @@ contains
     end if
   end subroutine set_number
 
-  !> Sets numbers with their errors and derivatives. A single error that is not known is left out;
-  !> without parameters there are no derivatives.
+  !> Sets numbers with their errors and derivatives. Numbers of which none exists are left out, and
+  !> so are errors of which none is known; without parameters there are no derivatives.
   subroutine set_numbers(self, key, values, error, rate)
     class(summary_t), intent(inout) :: self
     character(len=*), intent(in) :: key
@@ -94,9 +94,10 @@ contains
     integer :: i
 
     call self%find(key, i)
+    if (all(ieee_is_nan(values))) return
     self%value(i)%number = values
     if (present(error)) then
-      if (rows(i)%list .or. .not. any(ieee_is_nan(error))) self%value(i)%error = error
+      if (.not. all(ieee_is_nan(error))) self%value(i)%error = error
     end if
     if (.not. present(rate)) return
     if (size(rate, 1) > 0) self%value(i)%rate = rate

@@ -91,4 +91,4 @@ def test_a_spring_pulls_bodies_of_any_shape_together_for_good(run, shape):
     said = " ".join(found.warnings)
     assert FALLS in said and "no stable state is known" in said
     assert found.summary["device_jump_in_z"] > 0
-    assert np.isnan(found.summary["device_jump_in_load_after"])
+    assert "device_jump_in_load_after" not in found.summary

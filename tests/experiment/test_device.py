@@ -119,8 +119,7 @@ def test_the_softest_springs_jump_in_from_the_attraction_of_undeformed_bodies(ru
 
 def test_nothing_catches_the_bodies_that_a_dead_load_lets_go(run):
     found = run(springs(0.87, [0]))
-    assert np.isnan(numbers(found, "jump_out_load_after")[0])
-    assert np.isnan(numbers(found, "energy_lost")[0])
+    assert not {"device_jump_out_load_after", "device_energy_lost"} & set(found.summary)
     assert "no stable state is known" in found.warnings[0]
 
 

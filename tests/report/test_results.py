@@ -173,6 +173,11 @@ def test_what_does_not_exist_is_absent(run):
     for key in ("big_lambda", "jump_in_h0", "jump_in_load", "jump_out_h0", "jump_out_load"):
         assert key not in attraction, key
     assert attraction["max_tension"] > 0
+    # Lists with a value for each turning point or load, but no value.
+    for key in ("unload_jump_out_h0", "unload_jump_out_h0_error"):
+        assert key not in attraction, key
+    torn = run(lennard_jones(1, equilibrium_path={"h0_end": -1.0}, fixed_load={"load": -100.0}))
+    assert torn.summary["fixed_load_equilibria"] == 0 and "fixed_load_h0" not in torn.summary
 
 
 def test_classical_pull_offs_are_those_of_the_textbook(full):

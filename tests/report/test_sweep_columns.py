@@ -43,7 +43,8 @@ def test_every_number_of_a_row_is_that_of_the_same_deck_alone(run, table):
             value = table[name][row]
             key, _, turn = name.rpartition("_")
             if key in ("unload_max_tension", "unload_jump_out_h0"):
-                expected = several(summary[key])[int(turn) - 1]
+                values = several(summary.get(key, math.nan))
+                expected = values[min(int(turn), len(values)) - 1]
             elif name in ("resolved", "converged"):
                 expected = 1.0 if summary[name] else 0.0
             else:
@@ -202,9 +203,10 @@ def held(sigma=0.87, stiffness=(0.5, 0.1), load=(0.0, -1.0, 0.5), **groups):
 
 
 def as_alone(swept, row, summary):
-    """Compares the lists in a row of a sweep with those of a case alone."""
+    """Compares the lists in a row of a sweep with those of a case alone; a list without any value
+    is absent."""
     for key in DRIVEN + LOADED:
-        for k, value in enumerate(several(summary[key]), 1):
+        for k, value in enumerate(several(summary.get(key, math.nan)), 1):
             assert swept[f"{key}_{k}"][row] == pytest.approx(value, rel=1e-8, nan_ok=True), (key, k)
 
 

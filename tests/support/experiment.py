@@ -84,6 +84,9 @@ def reported(found):
         numbers["unload_max_tension_h0"] = [p.h0 if p else math.nan for p in branches[1:]]
         numbers["unload_jump_out_h0"] = [
             path.jump_out.h0 if len(legs) > 1 else math.nan for legs in found.unloadings]
+        # A list without any value is absent.
+        numbers.update({key: None for key, values in numbers.items()
+                        if isinstance(values, list) and all(map(math.isnan, values))})
     return numbers
 
 
