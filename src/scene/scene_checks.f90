@@ -17,6 +17,9 @@ module scene_checks
 
   !> Decimal order of the largest h0 in the law's lengths; beyond, rounding exceeds this length.
   integer, parameter :: most_lengths = 15
+  !> Decimal order of the largest sigma of bodies whose states are searched for. Above 3e8 states in
+  !> contact are lost in rounding, which takes seconds to find here, and minutes at 1e45.
+  integer, parameter :: most_adhesion = 39
   !> The groups, and their keys, that have the h0 or the positions of a drive.
   character(len=*), parameter :: groups(*) = [character(len=16) :: 'loading', 'unloading', &
     'equilibrium_path', 'device', 'drive', 'classical', 'approximations'], &
@@ -28,15 +31,19 @@ contains
   !> overflow.
   subroutine check_derived(scene)
     type(scene_t), intent(inout) :: scene
-    real(wp) :: length, pressure, radius, farthest, position
+    real(wp) :: length, pressure, radius, coupling, farthest, position
     integer :: i, k
 
     radius = log10(scene%shape%radius)
     length = log10(scene%law%length)
     pressure = log10(scene%law%pressure_unit)
     call check(pressure + radius + length, 'loads', ' N')
-    if (.not. scene%bodies%rigid) call check(pressure - log10(scene%bodies%stiffness) + &
-      0.5_wp*(radius - length), 'a coupling of law and bodies (sigma or Lambda)', '')
+    if (.not. scene%bodies%rigid) then
+      coupling = pressure - log10(scene%bodies%stiffness) + 0.5_wp*(radius - length)
+      call check(coupling, 'a coupling of law and bodies (sigma or Lambda)', '')
+      if (scene%finds_states() .and. scene%law%adhesion > 0) &
+        call check_adhesion(coupling + log10(scene%law%adhesion))
+    end if
     farthest = 0
     do i = 1, size(groups)
       if (.not. scene%deck%has_group(trim(groups(i)))) cycle
@@ -59,6 +66,16 @@ contains
       call check_decades(scene%deck, trim(scene%law%group), trim(scene%law%strength_key), decades, &
         what, unit)
     end subroutine check
+
+    !> Refuses a strength of adhesion, sigma, of so many decimal orders.
+    subroutine check_adhesion(decades)
+      real(wp), intent(in) :: decades
+
+      if (decades > most_adhesion) call scene%deck%mistake(trim(scene%law%group), &
+        trim(scene%law%strength_key), 'these values of &bodies and &'//trim(scene%law%group)// &
+        ' make a strength of adhesion sigma of 1e'//brief(nint(decades))// &
+        '; allowed: up to 1e'//brief(most_adhesion))
+    end subroutine check_adhesion
 
   end subroutine check_derived
 

@@ -60,11 +60,10 @@ def test_check_says_what_does_not_fit_and_what_fills_the_disk(snapin, tmp_path):
 
 @pytest.mark.slow
 def test_whatever_takes_long_says_so_and_goes_on_saying_so(snapin, tmp_path):
-    """Meshes for a hopeless strength of adhesion take minutes before the first state."""
+    """The matrix of many nodes takes seconds before the first state, and its factors minutes."""
+    numerics = {"grid": "uniform", "nodes": 4000, "method": "newton"}
     (tmp_path / "d.nml").write_text(
-        "&bodies radius = 1.5e-2, stiffness = 1.0e10 /\n"
-        "&force law = 'lennard_jones', hamaker = 2e49, z0 = 0.5e-9 /\n"
-        "&equilibrium_path h0_end = -2e-9 /\n")
+        lennard_jones(0.87, loading=loading(8, -4, 0.02), numerics=numerics))
     with pytest.raises(Exception) as ended:
         snapin("d.nml", cwd=tmp_path, timeout=6)
     said = (ended.value.stderr or b"").decode()

@@ -29,6 +29,14 @@ def test_units_that_would_overflow_together_are_refused(run):
     assert "a pressure of 1e" in run(scene, status=2).stderr
 
 
+def test_adhesion_far_beyond_rounding_is_refused_by_sigma(run):
+    """Bodies were searched for states for minutes."""
+    said = run(lennard_jones(1e45, equilibrium_path={"h0_end": -2.0}), status=2).stderr
+    assert "sigma of 1e45; allowed: up to 1e39" in said and '&force: key "hamaker"' in said
+    assert not run(lennard_jones(1e38, loading=loading(9e14, 8e14, 1e14))).warnings
+    run(lennard_jones(1e45, classical={"h0_start": 1.0, "h0_end": -2.0}))
+
+
 def test_h0_of_more_lengths_than_digits_is_refused(run):
     scene = lennard_jones(1.0, loading=loading(1e16, 1, 1e16))
     assert "lost in rounding" in run(scene, status=2).stderr
