@@ -75,7 +75,8 @@ contains
       end associate
     end subroutine describe_numerics
 
-    !> Adds all numbers that are read at places, with their errors and derivatives.
+    !> Adds all numbers that are read at places, with their errors and derivatives. The h0 of the
+    !> end is given, without an error.
     subroutine take_places(places)
       type(places_t), intent(in) :: places
       type(readings_t) :: found
@@ -90,6 +91,9 @@ contains
           call summary%set(trim(rows(i)%key), found%value, found%error, found%rate)
         end if
       end do
+      if (.not. places%has('end')) return
+      found = places%read_numbers(problem, 'end', of_h0)
+      call summary%set('end_h0', found%value)
     end subroutine take_places
 
     subroutine tell_branches()

@@ -200,6 +200,15 @@ def test_a_spring_driven_slowly_is_the_device(run):
         found["max_tension"] > -device["device_jump_out_load"]
 
 
+def test_h0_at_the_end_of_a_drive_has_an_error_only_behind_a_spring(run):
+    loose, close = (run(scene(0.2, 0.3, stiffness=0.4, start=20.0, accuracy=accuracy)).summary
+                    for accuracy in (1e-2, 1e-4))
+    off = abs(loose["end_h0"] - close["end_h0"])
+    assert 0 < off <= loose["end_h0_error"] + close["end_h0_error"]
+    assert loose["end_h0_error"] < 1e-2
+    assert "end_h0_error" not in run(scene(0.2, 0.3, start=20.0, accuracy=1e-2)).summary
+
+
 @pytest.mark.parametrize("stiffness", [1e-4, 0.01])
 def test_a_soft_spring_takes_the_bodies_through_both_jumps(run, stiffness):
     # In the jumps the spring would yield by thousands of lengths of the law, or millions.
