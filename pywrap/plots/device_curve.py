@@ -32,6 +32,8 @@ def draw_device_curve(folder):
     load, load_unit = scale(driven, "N")
     for panel, stiffness, colour in zip(panels, springs, _COLOURS * len(springs)):
         _draw_spring(panel, stiffness, colour, curve, jumps, load, load_unit)
+        if not panel.get_subplotspec().is_first_col():
+            panel.set_ylabel("")
     for panel in panels[len(springs):]:
         panel.remove()
     # All panels share this axis.

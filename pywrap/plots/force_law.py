@@ -174,23 +174,23 @@ def _marks(deck, numbers, gap, values):
     return marks
 
 
-def results_of(deck):
-    """Return the folder of the results that ./run writes for a deck's file."""
-    return pathlib.Path("results") / deck.stem
+def results_of(deck, out="results"):
+    """Return the folder of the results that ./run --out OUT writes for a deck's file."""
+    return pathlib.Path(out) / deck.stem
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("deck", nargs="+", type=pathlib.Path)
-    parser.add_argument(
-        "--out", type=pathlib.Path, help="folder for the pictures; default: results/DECK")
+    parser.add_argument("--out", default="results", help="pictures are OUT/DECK/force_law.png; "
+                        "default: results")
     options = parser.parse_args()
     for deck in options.deck:
         try:
             figure = draw_force_law(forces_of(deck), title_of(deck))
         except (snapin.SnapinError, OSError, ValueError) as trouble:
             sys.exit(f"{parser.prog}: {deck}: {trouble}")
-        file = (options.out or results_of(deck)) / "force_law.png"
+        file = results_of(deck, options.out) / "force_law.png"
         file.parent.mkdir(parents=True, exist_ok=True)
         figure.savefig(file, dpi=150)
         print(file)

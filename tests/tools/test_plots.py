@@ -131,6 +131,8 @@ def test_the_panels_of_springs_share_the_loads_of_all(tmp_path):
     for axes in figure.axes:
         low, high = axes.get_ylim()
         assert low < -60.7 and high > 0
+    # The label in the second panel touched the curve of the first.
+    assert [axes.get_ylabel() for axes in figure.axes] == ["load [\N{MICRO SIGN}N]", ""]
 
 
 def test_a_title_is_drawn_as_it_is_written_and_inside_the_picture(tmp_path):
@@ -272,8 +274,12 @@ def test_the_forces_of_every_deck_are_drawn(plot, snapin, tmp_path):
     groups = set(re.findall(r"^&(\w+)", snapin("--keys").stdout, re.MULTILINE))
     laws = {law.stem for law in (ROOT / "src/model/laws").glob("*.f90")}
     assert groups - OTHERS == laws - {"lennard_jones", "exponential"} | {"force"}
-    done = plot("force_law.py", ROOT / "inputs/examples/drainage.nml", "--out", "here")
-    assert (done.returncode, done.stdout) == (0, "here/force_law.png\n"), done.stderr
+    decks = [ROOT / f"inputs/examples/{name}.nml" for name in ("drainage", "morse")]
+    done = plot("force_law.py", *decks, "--out", "here")
+    # The picture of the second deck replaced that of the first.
+    pictures = [f"here/{deck.stem}/force_law.png" for deck in decks]
+    assert (done.returncode, done.stdout.split()) == (0, pictures), done.stderr
+    assert all((tmp_path / picture).exists() for picture in pictures)
 
 
 @pytest.mark.parametrize("deck", [b"&bodies radius = 1\n", b"\xf7\n"], ids=["open", "bytes"])
