@@ -10,7 +10,8 @@ module data_table
   use deck_scan, only: span_t
   use deck_source, only: source_t, load_source
   use deck_store, only: deck_t
-  use table_line, only: split, after_mark, uncommented, ends_empty, point_decimals, miscount
+  use table_line, only: split, after_mark, uncommented, ends_empty, point_decimals, miscount, &
+    columns_where
   implicit none
   private
   public :: data_table_t, read_data_table, largest_table, read_columns, is_header
@@ -75,9 +76,8 @@ contains
           end if
         end if
         if (header .and. any(verify(wanted, '-0123456789 ') > 0)) then
-          call table%source%complain(named, counted(size(names), 'column') // ' where ' // &
-            counted(table%columns, 'column') // ' are expected; number the columns if names ' // &
-            'have blanks; a comment begins with #', error)
+          call table%source%complain(named, columns_where(size(names), table%columns) // &
+            '; number the columns if names have blanks; a comment begins with #', error)
           return
         end if
         named = first
@@ -195,8 +195,7 @@ contains
     if (allocated(error)) return
     call deck%note_file(group, key, checksum(table%source%text))
     if (size(table%place) > 0 .and. table%columns > 2) then
-      call table%source%complain(table%place(1), counted(table%columns, 'column') // &
-        ' where 2 columns are expected', error)
+      call table%source%complain(table%place(1), columns_where(table%columns, 2), error)
     else if (size(table%place) < fewest) then
       call table%source%complain(len(table%source%text) + 1, 'fewer than ' // brief(fewest) // &
         ' points', error)

@@ -92,7 +92,7 @@ contains
     end if
     call straighten(bytes, source%text)
     n = index(source%text, achar(0))
-    if (n > 0) call source%complain(n, 'a NUL byte: a deck is plain text', error)
+    if (n > 0) call source%complain(n, 'a NUL byte, which plain text does not have', error)
   end subroutine take_source
 
   !> Makes every line end (LF, CR LF or CR) a single line feed and drops a byte-order mark.

@@ -6,7 +6,8 @@ module table_line
   use deck_scan, only: span_t
   implicit none
   private
-  public :: split, blanks, after_mark, uncommented, ends_empty, point_decimals, miscount
+  public :: split, blanks, after_mark, uncommented, ends_empty, point_decimals, miscount, &
+    columns_where
 
   character(len=*), parameter :: newline = new_line('a')
   !> Separators of cells: blank and tab; comma and semicolon.
@@ -126,8 +127,17 @@ contains
     integer, intent(in) :: found, expected
     character(len=:), allocatable :: what
 
-    what = counted(found, 'column') // ' where ' // counted(expected, 'column') // ' are expected'
+    what = columns_where(found, expected)
     if (found < expected .and. ends_empty(line)) what = what // '; the last cell is empty'
   end function miscount
+
+  !> '1 column where 3 columns are expected'.
+  pure function columns_where(found, expected) result(what)
+    integer, intent(in) :: found, expected
+    character(len=:), allocatable :: what
+
+    what = counted(found, 'column') // ' where ' // counted(expected, 'column') // ' are expected'
+    if (expected == 1) what = counted(found, 'column') // ' where 1 column is expected'
+  end function columns_where
 
 end module table_line

@@ -15,7 +15,7 @@ module result_tables
   !> described as 'name [unit] meaning'. After '+ ' follow columns that exist only in some cases.
   character(len=*), parameter :: tables(*) = [character(len=200) :: &
     '= curve.csv | with &loading, &equilibrium_path or &drive | One row for each equilibrium.', &
-    'branch [] loading, unloading_1, unloading_2, ..., or path', &
+    'branch [] loading, unloading_1, unloading_2, ..., path; of a drive approach, dwell, retreat', &
     'h0 [m] separation that undeformed bodies would have on the axis', &
     'h_centre [m] separation on the axis', &
     'displacement [m] h_centre - h0', &

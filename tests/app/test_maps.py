@@ -239,7 +239,7 @@ WRONG = {
     "void": ("", "has no cases"),
     "late": ("bodies.stiffness\n" + "1e9\n" * 20000 + "1e\n",
              "cases.csv:20002: 1e is not a number"),
-    "columns": ("bodies.stiffness\n1e9, 2\n", "2 columns where 1 column are expected"),
+    "columns": ("bodies.stiffness\n1e9, 2\n", "2 columns where 1 column is expected"),
     "last cell": ("bodies.stiffness,force.hamaker\n1e9,\n", "cases.csv:2: 1 column where 2 columns "
                                                             "are expected; the last cell is empty"),
     "quoted last cell": ('bodies.stiffness,force.hamaker\n1e9,""\n', "the last cell is empty"),
@@ -250,7 +250,7 @@ WRONG = {
     "twice": ({**GRID, "key": ["force.hamaker", "Force.Hamaker"]}, "is there twice"),
     "column twice": ("bodies.stiffness, bodies.stiffness\n1e9, 2e9\n",
                      "'bodies.stiffness' is there twice"),
-    "nul": ("bodies.stiffness\n1e9\n2e9\0\n", "cases.csv:3: a NUL byte"),
+    "nul": ("bodies.stiffness\n1e9\n2e9\0\n", "cases.csv:3: a NUL byte, which plain text does"),
     "unknown": ({"key": "force.law", "words": ["lennard_jones", "exponentail"]},
                 'did you mean "exponential"'),
     "no words": ({"key": "force.law"}, "missing"),
