@@ -34,7 +34,7 @@ contains
     type(destination_t), intent(in) :: destination
     type(summary_t), intent(in) :: summary
     type(cost_t), intent(in) :: cost
-    character(len=160) :: tension
+    character(len=160) :: found, tension
     character(len=12) :: seconds
     character(len=:), allocatable :: command
     real(wp) :: took
@@ -56,12 +56,14 @@ contains
       call destination%say('regime: '//summary%text('regime_reason'))
     took = summary%number('wall_seconds')
     write (seconds, merge('(f5.3)', '(f0.2)', took < 1)) took
+    found = 'done'
+    if (cost%states > 0) write (found, '(i0, a)') cost%states, &
+      merge(' state ', ' states', cost%states == 1)
     tension = ''
     if (summary%has('max_tension')) write (tension, '(a, es11.4, a, es12.4, a)') &
       ', largest tension', summary%number('max_tension'), ' N at h0 =', &
       summary%number('max_tension_h0'), ' m'
-    call destination%say(counted(int(cost%states), 'state')//' in '//trim(seconds)//' s'// &
-      trim(tension))
+    call destination%say(trim(found)//' in '//trim(seconds)//' s'//trim(tension))
     if (allocated(scene%sweep)) then
       command = ''
       if (.not. destination%to_stream) then

@@ -188,7 +188,8 @@ contains
     end do
     write (unit, '(/, a, /, 4x, a)', iostat=status) '&summary', 'Results of the run.'
     call list_rows(unit, in_summary)
-    write (unit, '(/, a, /, 4x, a)', iostat=status) '&cost', 'Time and work of the run.'
+    write (unit, '(/, a, /, 4x, a)', iostat=status) '&cost', &
+      'Time and work of the run; the work of a fit is not counted, only its time.'
     call list_rows(unit, in_cost)
   end subroutine write_result_listing
 
