@@ -195,7 +195,7 @@ module result_rows
       'and contact radius'), &
     row_t('regime_formula_error', '', 'the larger of its errors in these two', regime), &
     row_t('end_h0', 'm', 'h0 of the last equilibrium of the loading; without a loading, of ' // &
-      'the path', always, error=judged), &
+      'the path or drive', always, error=judged), &
     row_t('end_displacement', 'm', 'displacement of the last equilibrium', always, &
       place='end', quantity=of_displacement, error=judged), &
     row_t('end_load', 'N', 'load of the last equilibrium', always, &
