@@ -100,12 +100,12 @@ contains
       if (whole == 1) cycle
       call compare(request%numerics%accuracy, before%result, now%result)
       ! The first two passes may agree by chance.
-      enough = (relative_error(now%result) <= request%numerics%accuracy .and. whole > 2) .or. &
-        allocated(request%drive%time_step)
+      enough = (relative_error(now%result, request%numerics%accuracy) <= &
+        request%numerics%accuracy .and. whole > 2) .or. allocated(request%drive%time_step)
       if (enough .or. 2*now%held > most_steps) exit
     end do
     result = now%result
-    result%estimate = relative_error(result)
+    result%estimate = relative_error(result, request%numerics%accuracy)
     nodes = sum(steps%meshes%grid%nodes)
     do i = 1, now%held
       now%row(i)%time = now%row(i)%time + &
@@ -250,11 +250,13 @@ contains
   end subroutine compare
 
   !> The largest relative error: of loads over the largest load, and of the dissipated energy over
-  !> itself or, if larger, over the largest load times the law's length; of a suction over itself.
-  !> A suction with an error larger than itself is not determined, and does not count: more passes
-  !> rarely help, and the summary has a warning.
-  pure real(wp) function relative_error(now) result(largest)
+  !> itself or, if larger, over the largest load times the law's length; of a suction over itself
+  !> or, if larger, over the part of the law's pressure that is the accuracy: smaller suctions are
+  !> not felt. A suction with an error larger than itself is not determined, and does not count:
+  !> more passes rarely help, and the summary has a warning.
+  pure real(wp) function relative_error(now, accuracy) result(largest)
     type(timed_result_t), intent(in) :: now
+    real(wp), intent(in) :: accuracy
 
     ! Of a pass that was compared with no other the errors are unknown.
     largest = huge(1.0_wp)
@@ -263,7 +265,7 @@ contains
       max(now%largest_load, tiny(1.0_wp)), now%error(of_dissipation)/ &
       max(abs(now%number(of_dissipation)), now%largest_load, tiny(1.0_wp)))
     associate (suction => now%number(of_suction), error => now%error(of_suction))
-      if (error <= suction) largest = max(largest, error/max(suction, tiny(1.0_wp)))
+      if (error <= suction) largest = max(largest, error/max(suction, accuracy))
     end associate
   end function relative_error
 
