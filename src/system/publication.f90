@@ -133,6 +133,7 @@ contains
     character(len=*), parameter :: advice = '; if ' // intent_name // &
       ' is removed the deck can be run again from the beginning'
     character(len=:), allocatable :: text, name
+    logical :: there
     integer :: i
 
     call read_file(folder%path_of(intent_name), text)
@@ -140,8 +141,11 @@ contains
     do i = 1, size(new)
       name = trim(result_files(i))
       new(i) = index(text, nl // name // nl) > 0
-      if (new(i) .and. .not. (folder%contains_file(name) .or. folder%contains_file(name // &
-        partial))) call fail(error, file_trouble, folder%path_of(name) // ' is missing' // advice)
+      if (.not. new(i)) cycle
+      there = folder%contains_file(name)
+      if (.not. there) there = folder%contains_file(name // partial)
+      if (.not. there) &
+        call fail(error, file_trouble, folder%path_of(name) // ' is missing' // advice)
     end do
     if (.not. any(new)) call fail(error, file_trouble, folder%path_of(intent_name) // &
       ' lists no results' // advice)
