@@ -47,7 +47,7 @@ module experiment_result
   !> Numbers of each drive that may not exist.
   character(len=*), parameter :: of_each_way(*) = [character(len=18) :: 'device_jump_in', &
     'device_landing_in', 'device_jump_out', 'device_landing_out']
-  !> Number of rows of a leg of a table that are judged.
+  !> Number of rows of a leg of a table that are judged, and of intervals between them.
   integer, parameter :: judged_rows = 16
 
 contains
@@ -162,6 +162,7 @@ contains
     type(path_readings_t), intent(inout) :: readings
     type(places_t), intent(inout) :: places
     type(path_state_t), allocatable :: nodes(:)
+    real(wp), allocatable :: suspect(:)
     integer :: i, k, row, last
 
     if (.not. allocated(readings%prescribed)) return
@@ -175,6 +176,11 @@ contains
         if (row == last) cycle
         last = row
         call places%add('table', place_on_curve(nodes(row), h0_alone))
+      end do
+      suspect = bends(nodes)
+      do k = 1, min(judged_rows, size(suspect))
+        row = maxloc(suspect, 1)
+        suspect(row) = -1
         call hold(readings%prescribed%leg(i), nodes(row), nodes(row + 1))
       end do
     end do
@@ -198,5 +204,25 @@ contains
     end subroutine hold
 
   end subroutine enter_table
+
+  !> A measure of the error of the cubic between each row and the next: the larger change of its
+  !> third derivative to a neighbour over their distance, times the fourth power of its width.
+  pure function bends(rows) result(bend)
+    type(path_state_t), intent(in) :: rows(:)
+    real(wp), dimension(size(rows) - 1) :: bend, width, third
+    real(wp), dimension(size(rows)) :: slope, change
+    integer :: n
+
+    n = size(rows)
+    width = rows(2:)%h0 - rows(:n - 1)%h0
+    slope = rows%slopes(2)/rows%slopes(1)
+    third = 0
+    where (abs(width) > 0) third = (slope(:n - 1) + slope(2:) - &
+      2*(rows(2:)%load - rows(:n - 1)%load)/width)/width**2
+    change = 0
+    change(2:n - 1) = abs(third(2:) - third(:n - 2))/ &
+      max(abs(rows(3:)%h0 - rows(:n - 2)%h0), tiny(1.0_wp))
+    bend = width**4*max(change(:n - 1), change(2:))
+  end function bends
 
 end module experiment_result
