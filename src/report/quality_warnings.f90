@@ -36,6 +36,8 @@ module quality_warnings
   real(wp), parameter :: clearly = 3
   !> Residual below which there is no warning.
   real(wp), parameter :: usual_residual = 1.0e-8_wp
+  !> Power of the position down to which a force falls slowly far away.
+  real(wp), parameter :: slow = 4
 
 contains
 
@@ -95,6 +97,7 @@ contains
     call judge_layers()
     if (.not. outcome%differentiated) &
       call summary%fail_with('sensitivity: not all derivatives were found')
+    call judge_derivatives()
     call judge_resolution(outcome%chosen%grid == edge_locked)
     call judge_accuracy()
     if (.not. outcome%chosen%options%stop_on_change) return
@@ -133,6 +136,29 @@ contains
           ' m, the points to ' // rounded(law%known_from) // ' m; below, the pressure is a power')
       end associate
     end subroutine judge_files
+
+    !> Warns of parameters that change the power with which a force falls slowly far away: the
+    !> mesh's tail integrates only the power of its own problem accurately.
+    subroutine judge_derivatives()
+      integer :: i
+
+      if (.not. (allocated(scene%varied) .and. allocated(outcome%path))) return
+      if (.not. decay(problem) <= slow) return
+      do i = 1, size(scene%varied)
+        associate (varied => scene%varied(i))
+          if (abs(decay(varied%problem(1)) - decay(problem)) > 0) call summary%warn( &
+            'sensitivity: ' // varied%parameter%name // ' changes the power of a force that ' // &
+            'falls slowly far away; derivatives by it have two to five digits')
+        end associate
+      end do
+    end subroutine judge_derivatives
+
+    !> The power of the position with which the pressure falls far away.
+    pure real(wp) function decay(of)
+      type(problem_t), intent(in) :: of
+
+      decay = of%shape%growth*of%law%tail_power
+    end function decay
 
     !> Warns of layers thinner than the range of the force, of soft layers compressed by a part of
     !> their thickness that is not small, and of strains below the top layer that are not small.

@@ -268,6 +268,28 @@ def test_the_curve_has_no_derivative_at_its_folds(run, accuracy):
     assert np.isnan(table["load_derivative"]).sum() < folds.size + 3
 
 
+def test_a_power_of_a_force_that_falls_slowly_has_few_digits_and_a_warning(run):
+    """Between cones the load far out is an integral of h^-2, that by its exponent of h^-2 ln h."""
+    def law(exponent):
+        return {"law": "lennard_jones", "surface_energy": 0.02, "z0": 1e-9,
+                "exponents": [9.0, exponent]}
+
+    def found(exponent, **groups):
+        return run(deck(bodies={"stiffness": 1e8}, shape={"kind": "cone", "half_angle": 1.4},
+                        force=law(exponent), equilibrium_path={"h0_end": -2e-9}, **groups))
+    step = 1e-3
+    above, below = (found(3 + change).summary["jump_in_load"] for change in (step, -step))
+    known = found(3.0, sensitivity={"parameters": ["force.exponents(2)", "force.exponents(1)"]})
+    rate = derivatives(known, "derivative")["jump_in_load"]["force.exponents(2)"]
+    assert rate == pytest.approx((above - below) / (2 * step), rel=2e-2)
+    assert [text for text in known.warnings if "sensitivity" in text] == [
+        "sensitivity: force.exponents(2) changes the power of a force that falls slowly far away; "
+        "derivatives by it have two to five digits"]
+    parabola = path_of(1e10, -2e-9, radius=1e-6, force=law(3.0),
+                       sensitivity={"parameters": "force.exponents(2)"})
+    assert not any("sensitivity" in text for text in run(parabola).warnings)
+
+
 def test_a_path_without_states_has_no_derivatives(run):
     """It ended by a segmentation fault."""
     found = run(lennard_jones(1.0, equilibrium_path={"h0_end": -1.0}, numerics={
