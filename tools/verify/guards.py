@@ -30,7 +30,7 @@ NO_LENGTH = ("model/test_forces.py"
 POWER_CUT = ("system/test_faults.py"
              "::test_a_power_failure_at_any_call_leaves_one_set_of_results_or_says_so")
 LIMITED = ("resume/test_unwritable.py"
-           "::test_a_limit_on_the_size_of_files_stops_a_run_that_then_goes_on")
+           "::test_a_journal_that_cannot_grow_stops_a_run_that_then_goes_on")
 FAULTS = "system/test_faults.py"
 
 
