@@ -225,7 +225,7 @@ contains
           advice = '; ask for a higher accuracy'
         else
           advice = ', which is then pinned between them; use '// &
-            rounded(spacing/resolved_spacing)//' times as many nodes or grid = ''panels'''
+            rounded(spacing/resolved_spacing)//' times as many nodes or grid = ''auto'''
         end if
         call summary%warn('under-resolved: nodes are '//rounded(spacing)// &
           ' neck widths apart at the contact edge'//advice)
