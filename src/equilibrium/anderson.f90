@@ -38,8 +38,9 @@ module anderson
   integer, parameter :: few_iterations = 2, unknowns_an_iteration = 20
   !> Largest number of rejected steps; after more, the iteration stops.
   integer, parameter :: most_rejections = 4
-  !> A plain step of the length `last_step`, over the tolerance, is the last step; so is one of the
-  !> length `few_roundings` that is hardly shorter than the one before it.
+  !> With a fluid: a plain step of the length `last_step`, over the tolerance, is the last step; so
+  !> is one of the length `few_roundings` that is hardly shorter than the one before it. The
+  !> tolerance is some roundings of a gap; with longer last steps, rates were seen to be noise.
   real(wp), parameter :: last_step = 0.1_wp, few_roundings = 10, hardly_shorter = 0.5_wp
 
 contains
@@ -91,8 +92,9 @@ contains
     if (unknowns_an_iteration*frozen%excess > size(now%z)) call frozen%forget()
   end subroutine solve_anderson
 
-  !> Whether a plain step is so short that it is the last one. Rates divide what is left of the gaps
-  !> by the step of time, so it must be near rounding, where plain steps become no shorter.
+  !> Whether a plain step is so short that it is the last one. Rates are differences of gaps over
+  !> the step of time, so the remaining error of the gaps must be near rounding, where plain steps
+  !> become no shorter.
   pure logical function is_last(tolerance, before, length)
     real(wp), intent(in) :: tolerance, before, length
 

@@ -30,6 +30,9 @@ module equilibrium
   !> not overflow.
   real(wp), parameter :: largest_unknown = 1.0e80_wp
 
+  !> The fraction of a gap's excess over `far_gap` by which the gap may decrease in one step.
+  real(wp), parameter :: harmless = 0.3_wp
+
   !> Counts of work.
   type :: cost_t
     integer(long) :: operator_products = 0, operator_columns = 0, pressure_evaluations = 0
@@ -214,7 +217,8 @@ contains
       real(wp), intent(in) :: gap(:), step(:)
       real(wp) :: room(size(gap))
 
-      room = problem%law%closure(gap)
+      ! A large gap may decrease by many of the law's lengths without any effect.
+      room = max(problem%law%closure(gap), harmless*(gap - far_gap))
       ! The quotient could overflow for a step that increases a gap.
       limit = min(1.0_wp, minval(room/max(-step, room, tiny(1.0_wp))))
     end function limit

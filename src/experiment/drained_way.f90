@@ -29,7 +29,8 @@ module drained_way
   !> Fraction of a contact's radius by which the edge may move, even if the smallest feature is
   !> smaller.
   real(wp), parameter :: part_of_radius = 0.01_wp
-  !> Rounding of the rate of gaps, in roundings of the gap over the step.
+  !> Rounding of the rate of gaps, in roundings of the gap over the step: the rate is that of a
+  !> parabola through three gaps, each with an error of a few roundings.
   real(wp), parameter :: of_rate = 8
 
 contains

@@ -205,8 +205,9 @@ contains
 
   end subroutine enter_table
 
-  !> A measure of the error of the cubic between each row and the next: the larger change of its
-  !> third derivative to a neighbour over their distance, times the fourth power of its width.
+  !> A measure of the error of the cubic between each row and the next, up to a factor that is the
+  !> same for all: the larger change of its third derivative to a neighbour over their distance,
+  !> times the fourth power of its width.
   pure function bends(rows) result(bend)
     type(path_state_t), intent(in) :: rows(:)
     real(wp), dimension(size(rows) - 1) :: bend, width, third

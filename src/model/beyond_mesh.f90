@@ -89,7 +89,8 @@ contains
     type(problem_t), intent(in) :: problem
     real(wp), parameter :: falls_well = 4
 
-    falls_slowly = problem%shape%growth*(problem%law%tail_power - 1) < falls_well
+    ! The power of a law without a tail is too large for a product.
+    falls_slowly = problem%law%tail_power < 1 + falls_well/problem%shape%growth
   end function falls_slowly
 
   !> The rule for r = from/x.

@@ -60,18 +60,24 @@ contains
   end subroutine refuse_foreign
 
   !> Refuses `what`, a quantity of 10^decades `unit` that follows from values of &bodies and of the
-  !> group, if it is out of range.
-  pure subroutine check_decades(deck, group, key, decades, what, unit)
+  !> group, if it is out of range. most: the largest decimal order; `most_decades` if absent.
+  pure subroutine check_decades(deck, group, key, decades, what, unit, most)
     type(deck_t), intent(inout) :: deck
     character(len=*), intent(in) :: group, key, what, unit
     real(wp), intent(in) :: decades
+    integer, intent(in), optional :: most
+    integer :: largest
+
+    largest = most_decades
+    if (present(most)) largest = most
 
     if (ieee_is_nan(decades)) then
       call deck%mistake(group, key, 'these values make no finite '//what(index(what, ' ') + 1:)// &
         '; do forces cancel each other?')
-    else if (.not. abs(decades) <= most_decades) then
+    else if (.not. (decades >= -most_decades .and. decades <= largest)) then
       call deck%mistake(group, key, 'these values of &bodies and &'//group//' make '//what// &
-        ' of 1e'//brief(nint(decades))//unit//'; allowed: from 1e-100 to 1e100')
+        ' of about 1e'//brief(merge(ceiling(decades), floor(decades), decades > 0))//unit// &
+        '; allowed: from 1e-100 to 1e'//brief(largest))
     end if
   end subroutine check_decades
 

@@ -42,7 +42,8 @@ contains
       coupling = pressure - log10(scene%bodies%stiffness) + 0.5_wp*(radius - length)
       call check(coupling, 'a coupling of law and bodies (sigma or Lambda)', '')
       if (scene%finds_states() .and. scene%law%adhesion > 0) &
-        call check_adhesion(coupling + log10(scene%law%adhesion))
+        call check(coupling + log10(scene%law%adhesion), 'a strength of adhesion (sigma)', '', &
+        most_adhesion)
     end if
     farthest = 0
     do i = 1, size(groups)
@@ -59,23 +60,14 @@ contains
 
   contains
 
-    subroutine check(decades, what, unit)
+    subroutine check(decades, what, unit, most)
       real(wp), intent(in) :: decades
       character(len=*), intent(in) :: what, unit
+      integer, intent(in), optional :: most
 
       call check_decades(scene%deck, trim(scene%law%group), trim(scene%law%strength_key), decades, &
-        what, unit)
+        what, unit, most)
     end subroutine check
-
-    !> Refuses a strength of adhesion, sigma, of so many decimal orders.
-    subroutine check_adhesion(decades)
-      real(wp), intent(in) :: decades
-
-      if (decades > most_adhesion) call scene%deck%mistake(trim(scene%law%group), &
-        trim(scene%law%strength_key), 'these values of &bodies and &'//trim(scene%law%group)// &
-        ' make a strength of adhesion sigma of 1e'//brief(nint(decades))// &
-        '; allowed: up to 1e'//brief(most_adhesion))
-    end subroutine check_adhesion
 
   end subroutine check_derived
 

@@ -60,7 +60,7 @@ def test_check_says_what_does_not_fit_and_what_fills_the_disk(snapin, tmp_path):
 
 @pytest.mark.slow
 def test_whatever_takes_long_says_so_and_goes_on_saying_so(snapin, tmp_path):
-    """The matrix of many nodes takes seconds before the first state, and its factors minutes."""
+    """Each of hundreds of states needs factors of a matrix for 4000 nodes, which take seconds."""
     numerics = {"grid": "uniform", "nodes": 4000, "method": "newton"}
     (tmp_path / "d.nml").write_text(
         lennard_jones(0.87, loading=loading(8, -4, 0.02), numerics=numerics))

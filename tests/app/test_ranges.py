@@ -26,13 +26,14 @@ def test_units_that_would_overflow_together_are_refused(run):
         bodies={"radius": 1.0, "stiffness": 1.0},
         force={"law": "lennard_jones", "hamaker": 1.0, "z0": 1e-50},
         loading={"h0_start": 3e-50, "h0_end": 1e-50, "h0_step": 1e-50})
-    assert "a pressure of 1e" in run(scene, status=2).stderr
+    assert "a pressure of about 1e149 Pa" in run(scene, status=2).stderr
 
 
 def test_adhesion_far_beyond_rounding_is_refused_by_sigma(run):
     """Bodies were searched for states for minutes."""
     said = run(lennard_jones(1e45, equilibrium_path={"h0_end": -2.0}), status=2).stderr
-    assert "sigma of 1e45; allowed: up to 1e39" in said and '&force: key "hamaker"' in said
+    assert '&force: key "hamaker"' in said
+    assert "(sigma) of about 1e45; allowed: from 1e-100 to 1e39" in said
     assert not run(lennard_jones(1e38, loading=loading(9e14, 8e14, 1e14))).warnings
     run(lennard_jones(1e45, classical={"h0_start": 1.0, "h0_end": -2.0}))
 
@@ -64,6 +65,14 @@ def test_adhesion_beyond_rounding_is_refused_at_once_on_a_fixed_grid_too(run, me
     # It is one state that shows it, of hundreds of steps and halvings.
     assert result.cost["states"] <= 1
     assert result.cost["operator_products"] < 1000 and result.cost["factorisations"] < 1000
+
+
+def test_gaps_of_a_million_lengths_do_not_limit_steps(run):
+    """A step may close a gap by some lengths of the law where forces act, and by more far away."""
+    text = deck(bodies={"radius": 1e-6, "stiffness": 1e9},
+                force={"law": "exponential", "p0": 5e7, "decay_length": 1e-9},
+                loading={"h0_start": 1e-3, "h0_end": 1e-4, "h0_step": 1e-4})
+    assert len(run(text).curve["h0"]) == 10
 
 
 def test_no_residual_above_a_thousandth_is_put_down_to_rounding(run):

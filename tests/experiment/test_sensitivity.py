@@ -288,6 +288,11 @@ def test_a_power_of_a_force_that_falls_slowly_has_few_digits_and_a_warning(run):
     parabola = path_of(1e10, -2e-9, radius=1e-6, force=law(3.0),
                        sensitivity={"parameters": "force.exponents(2)"})
     assert not any("sensitivity" in text for text in run(parabola).warnings)
+    # An exponent at the end of its range is varied to one side.
+    power = deck(bodies={"stiffness": 1e8}, force=law(3.0), equilibrium_path={"h0_end": -2e-9},
+                 shape={"kind": "power", "exponent": 1.0, "coefficient": 0.17},
+                 sensitivity={"parameters": "shape.exponent"})
+    assert any("shape.exponent changes the power" in text for text in run(power).warnings)
 
 
 def test_a_path_without_states_has_no_derivatives(run):
