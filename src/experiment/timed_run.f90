@@ -17,7 +17,6 @@ module timed_run
   use numerics_choice, only: choice_t, size_grid, fixed_mesh, panels
   use experiment_request, only: request_t, numerics_t
   use path_demand, only: h0_in_contact
-  use creep, only: creep_t
   use motion, only: new_motion, names_of_ways
   use time_stepper, only: time_stepper_t
   use material, only: new_material
@@ -124,8 +123,11 @@ contains
       associate (asked => request%drive, law => problem%law)
         steps%problem = problem
         steps%instant = problem%coupling
-        steps%creep = creep_t([real(wp) ::], [real(wp) ::])
-        if (allocated(request%creep)) steps%creep = request%creep
+        if (allocated(request%creep)) then
+          steps%creep = request%creep
+        else
+          allocate (steps%creep%share(0), steps%creep%time(0))
+        end if
         steps%options = chosen%options
         steps%options%mixing = .false.
         if (allocated(asked%stiffness)) &

@@ -141,24 +141,24 @@ contains
     real(wp) :: last(size(s))
 
     last = huge(last)
-    if (grid%panel(p)%left >= 0) last = passing/step_on(grid, p, s)
+    if (grid%panel(p)%left >= 0) last = passing*density_on(grid, p, s)
     if (grid%panel(p)%kind == algebraic_map) last = last*max(1.0_wp, steep/grid%panel(p)%decay)**2
   end function last_on
 
-  !> The distance between nodes at places s of a panel. A panel to infinity begins with the distance
-  !> at the end of the previous panel.
-  pure function step_on(grid, p, s)
+  !> Nodes per length at places s of a panel. A panel to infinity begins with the density at the end
+  !> of the previous panel.
+  pure function density_on(grid, p, s) result(density)
     type(discretisation_t), intent(in) :: grid
     integer, intent(in) :: p
     real(wp), intent(in) :: s(:)
-    real(wp) :: step_on(size(s))
+    real(wp) :: density(size(s))
 
     if (grid%panel(p)%kind == algebraic_map) then
-      step_on = grid%panel(p - 1)%speed(1.0_wp)/size(grid%local(grid%which(p - 1))%node)/(1 - s)**2
+      density = size(grid%local(grid%which(p - 1))%node)/grid%panel(p - 1)%speed(1.0_wp)*(1 - s)**2
     else
-      step_on = grid%panel(p)%speed(s)/size(grid%local(grid%which(p))%node)
+      density = size(grid%local(grid%which(p))%node)/grid%panel(p)%speed(s)
     end if
-  end function step_on
+  end function density_on
 
   !> J0(k x) with a smooth transition to zero between a fraction of `last` and `last`; k ascending.
   subroutine find_wave(bessel, x, last, from, k, wave)

@@ -221,7 +221,7 @@ contains
 
     sums = 0
     if (self%plain) return
-    range = self%wave_range(huge(1.0_wp))
+    range = self%wave_range(real(precision(x), wp))
     call wave_rule([max(maxval(x), maxval(y))], [huge(1.0_wp)], swing, nodes, 0.0_wp, range(1), &
       range(2), k, weight)
     weight = 2*weight*self%beside_half_space(k)

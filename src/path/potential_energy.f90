@@ -65,8 +65,8 @@ contains
       problem => equations%problem)
       reference = 1
       ! Where pressures fall more slowly than this, load and energy beyond the mesh have few digits.
-      if (falls_slowly(problem) .and. max(problem%shape%exponent, problem%shape%growth)* &
-        problem%law%tail_power >= falls_far) &
+      if (falls_slowly(problem) .and. problem%law%tail_power >= &
+        falls_far/max(problem%shape%exponent, problem%shape%growth)) &
         reference = max(problem%shape%height(c), calm_gap(problem))
       terms = 2*pi*c**2*grid%weight(:n)*energy_density(problem, state%gap, c*grid%x(:n), reference)
       energy = sum(terms)

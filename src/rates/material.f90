@@ -127,7 +127,7 @@ contains
 
       found = 0
       do j = 1, size(radii)
-        if (radii(j) <= scale*grid%end) found(j) = grid%interpolate(pressure, radii(j)/scale)
+        if (radii(j)/scale <= grid%end) found(j) = grid%interpolate(pressure, radii(j)/scale)
       end do
     end function at
 

@@ -3,8 +3,8 @@
 !> keys are in the module that reads it.
 module scene
   use kinds, only: wp
-  use failure, only: failure_t, fail, bad_input
   use text, only: brief, quoted, listing, first_line, word_count, word_of
+  use failure, only: failure_t, fail, bad_input
   use deck, only: deck_t, read_deck
   use deck_numbers, only: find_number, set_number
   use deck_keys, only: key_spec, ignored_group, text_value
