@@ -164,6 +164,8 @@ contains
 
     load = 0
     gap = max(problem%law%edge_gap, problem%law%rest_gap)
+    ! Bodies that only attract each other have no barrier.
+    if (.not. gap > 0) return
     do step = 1, 200
       load = max(load, load_undeformed(problem, gap))
       gap = ratio*gap

@@ -107,7 +107,7 @@ contains
     do i = 1, places
       z = from + (i - 0.5_wp)*step
       away = max(1.0_wp, minval(abs(rims - d*sinh(z))))
-      panels(i) = panels(i - 1) + step/(longest*min(1.0_wp, away/(d*cosh(z))))
+      panels(i) = panels(i - 1) + step*d*cosh(z)/(longest*min(d*cosh(z), away))
     end do
     n = ceiling(panels(places))
     lengths = [(place_of(i*panels(places)/n) - place_of((i - 1)*panels(places)/n), i=1, n)]

@@ -194,8 +194,7 @@ contains
       real(wp), intent(in) :: errors(:, :)
       real(wp) :: largest(size(errors, 2))
 
-      largest = maxval(abs(errors), 1)
-      where (.not. all(abs(errors) < huge(1.0_wp), 1)) largest = huge(1.0_wp)
+      largest = maxval(merge(huge(1.0_wp), abs(errors), ieee_is_nan(errors)), 1)
     end function largest_of_each
 
   end subroutine summarise_regime
