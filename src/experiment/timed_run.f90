@@ -236,13 +236,14 @@ contains
     real(wp), intent(in) :: accuracy
     type(timed_result_t), intent(in) :: before
     type(timed_result_t), intent(inout) :: now
+    logical :: known(size(now%error))
 
-    now%error = margin*abs(now%number - before%number)
-    where (before%error < huge(1.0_wp)) now%error = max(now%error, before%error/4)
+    known = before%error < huge(1.0_wp)
     ! An undetermined suction, at an unresolved jump of an early pass, says nothing about later
     ! passes.
-    if (before%error(of_suction) > before%number(of_suction)) now%error(of_suction) = &
-      margin*abs(now%number(of_suction) - before%number(of_suction))
+    if (before%error(of_suction) > before%number(of_suction)) known(of_suction) = .false.
+    now%error = margin*abs(now%number - before%number)
+    where (known) now%error = max(now%error, before%error/4)
     now%error(of_tension) = now%error(of_tension) + now%lifted + &
       of_meshes*accuracy*now%number(of_tension)
     now%error(of_work) = now%error(of_tension)/(1.5_wp*pi)

@@ -127,7 +127,9 @@ contains
 
       found = 0
       do j = 1, size(radii)
-        if (radii(j)/scale <= grid%end) found(j) = grid%interpolate(pressure, radii(j)/scale)
+        associate (x => radii(j)/scale)
+          if (x <= grid%end) found(j) = grid%interpolate(pressure, x)
+        end associate
       end do
     end function at
 
