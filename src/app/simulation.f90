@@ -224,6 +224,7 @@ contains
       type(line_t), allocatable :: lines(:)
       integer :: i
 
+      call destination%say('fit: ' // scene%measured%understood)
       call family_of_fit(scene%deck, family, error)
       call run_fit(scene%measured, scene%fit, scene%numerics, family, &
         widened(family), problem, results, outcome)

@@ -124,6 +124,8 @@ contains
         said = trouble%message
       else if (options%check .and. crew%rank == 0) then
         call print_line(output_unit, options%decks(i)%name // ': ok')
+        if (allocated(scenes(i)%measured)) call print_line(error_unit, 'snapin: ' // &
+          options%decks(i)%name // ': ' // scenes(i)%measured%understood)
         call check_room(scenes(i), folder_of(i), trouble)
         if (allocated(trouble)) call print_line(error_unit, 'snapin: ' // options%decks(i)%name // &
           ': ' // trouble%message)

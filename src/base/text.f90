@@ -5,7 +5,10 @@ module text
   implicit none
   private
   public :: lower, quoted, unquoted, brief, counted, rounded, rounded_to, full, guess, clip, &
-    listing, printable, word_count, word_of, first_line
+    listing, printable, word_count, word_of, first_line, held_blank, spelled
+
+  !> Stands for a blank within a name, where blanks separate the names of a list.
+  character, parameter :: held_blank = achar(31)
 
   !> brief(x), brief(n): a number for a message, with the fewest digits that read back as the same.
   interface brief
@@ -184,6 +187,18 @@ contains
     end do
     word = list(first:first + length - 1)
   end function word_of
+
+  !> A name of a list with its blanks.
+  pure function spelled(word) result(name)
+    character(len=*), intent(in) :: word
+    character(len=len(word)) :: name
+    integer :: i
+
+    name = word
+    do i = 1, len(word)
+      if (word(i:i) == held_blank) name(i:i) = ' '
+    end do
+  end function spelled
 
   !> The words of `list` as `<before>w1<after>, <before>w2<after>, ...`.
   pure function listing(list, before, after) result(text)

@@ -12,13 +12,18 @@ module fit_request
   !> &measurement [SI]. sensitivity: of a signal in volts; not allocated: the signal is the force.
   type :: measurement_t
     character(len=:), allocatable :: file, segment
-    character(len=48), allocatable :: columns(:)
+    character(len=64), allocatable :: columns(:)
+    !> Labels of the approach and of the retreat in the column of segments, in lower case; not
+    !> allocated: those that are known, or what the position does.
+    character(len=64), allocatable :: approach(:), retreat(:)
+    !> Number of lines at the begin of the file that do not count.
+    integer :: skip_lines = 0
     real(wp) :: spring_constant = 0
     real(wp), allocatable :: sensitivity, contact_point
     !> Pairs of positions; the samples between them do not count.
     real(wp), allocatable :: skip(:)
-    !> Units of position and signal in the file.
-    real(wp) :: unit(2) = 1
+    !> Units of position and signal in the file; 0: as the names of the columns say, or SI.
+    real(wp) :: unit(2) = 0
   end type measurement_t
 
   !> The role of an unknown: a number of the problem, contact point, detector, spring.

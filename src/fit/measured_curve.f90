@@ -4,7 +4,9 @@ module measured_curve
   use kinds, only: wp
   use noise, only: median_of
   use failure, only: failure_t, fail, bad_input
-  use data_table, only: data_table_t, read_data_table
+  use text, only: counted
+  use curve_rows, only: curve_rows_t, read_curve_rows, fewest, of_approach, of_retreat, of_pause
+  use curve_segments, only: find_segments
   use fit_request, only: measurement_t
   implicit none
   private
@@ -21,19 +23,19 @@ module measured_curve
     logical, allocatable :: far(:)
     !> Samples in use: neither outliers nor skipped by the deck.
     logical, allocatable :: usable(:), skipped(:)
+    !> How the file was understood, for the user: columns, units, rows of each segment and rows that
+    !> are left out.
+    character(len=:), allocatable :: understood
   contains
     procedure :: outlier
   end type measured_t
 
-  !> Smallest number of samples of a way.
-  integer, parameter :: fewest = 20
   !> Median over mean of the changes from part to part of a curve, and the number of parts: a base
   !> moves evenly, and a signal changes mostly near contact. Shortest and longest travel of a base
   !> [m].
   real(wp), parameter :: even = 0.5_wp, uneven = 0.25_wp, shortest = 1.0e-12_wp, longest = 1.0e-3_wp
   integer, parameter :: parts = 20
-  !> The part of a way's samples at either end within which a turn does not count, and over which
-  !> the ends are averaged.
+  !> The part of a way's samples at either end over which the ends are averaged.
   real(wp), parameter :: end_part = 0.1_wp
 
 contains
@@ -46,53 +48,67 @@ contains
     outlier = .not. (self%usable .or. self%skipped)
   end function outlier
 
-  !> Reads the samples of a curve from its file. A third column has the way of each sample: 0
-  !> approach, 1 retreat. Without it the ways are separated at the turn of z.
+  !> Reads the samples of a curve from its file.
   subroutine read_measured(measured, error)
     type(measured_t), intent(inout) :: measured
     type(failure_t), allocatable, intent(out) :: error
-    type(data_table_t) :: table
-    logical, allocatable :: wanted(:)
+    type(curve_rows_t) :: rows
+    logical, allocatable :: wanted(:), repeated(:)
     integer :: i
 
-    call read_data_table(measured%file, measured%columns, table, error)
+    call read_curve_rows(measured%measurement_t, rows, error)
     if (allocated(error)) return
-    table%value(:, 1) = table%value(:, 1)*measured%unit(1)
-    table%value(:, 2) = table%value(:, 2)*measured%unit(2)
-    associate (z => table%value(:, 1), signal => table%value(:, 2))
-      if (size(z) < fewest) then
-        call fail(error, bad_input, table%source%file // ': a curve needs 20 samples or more')
-        return
-      end if
-      call check_columns(table%source%file, z, signal, error)
-      if (allocated(error)) return
-      if (size(measured%columns) > 2) then
-        do i = 1, size(z)
-          if (any(abs(table%value(i, 3) - [0, 1]) <= 0)) cycle
-          call table%source%complain(table%place(i), &
-            'the segment is neither 0, approach, nor 1, retreat', error)
-          return
-        end do
-        measured%inward = nint(table%value(:, 3)) == 0
-      else
-        measured%inward = before_turn(z, measured%segment)
-      end if
+    call check_columns(rows%file, rows%z, rows%signal, error)
+    if (allocated(error)) return
+    call find_segments(rows, measured%measurement_t, error)
+    if (allocated(error)) return
+    associate (z => rows%z, signal => rows%signal, kind => rows%kind)
       ! A row that repeats the one before it tells nothing new.
-      wanted = [.true., (abs(z(i) - z(i - 1)) > 0 .or. abs(signal(i) - signal(i - 1)) > 0 .or. &
-        (measured%inward(i) .neqv. measured%inward(i - 1)), i=2, size(z))]
-      if (measured%segment == 'approach') wanted = wanted .and. measured%inward
-      if (measured%segment == 'retreat') wanted = wanted .and. .not. measured%inward
-      measured%z = [pack(z, measured%inward .and. wanted), &
-        pack(z, wanted .and. .not. measured%inward)]
-      measured%signal = [pack(signal, measured%inward .and. wanted), &
-        pack(signal, wanted .and. .not. measured%inward)]
-      measured%inward = [pack(measured%inward, measured%inward .and. wanted), &
-        pack(measured%inward, wanted .and. .not. measured%inward)]
+      repeated = [.false., (.not. (abs(z(i) - z(i - 1)) > 0 .or. abs(signal(i) - signal(i - 1)) > &
+        0 .or. kind(i) /= kind(i - 1)), i=2, size(z))]
+      wanted = .not. repeated .and. kind /= of_pause
+      if (measured%segment == 'approach') wanted = wanted .and. kind == of_approach
+      if (measured%segment == 'retreat') wanted = wanted .and. kind == of_retreat
+      measured%z = [pack(z, wanted .and. kind == of_approach), pack(z, wanted .and. kind == &
+        of_retreat)]
+      measured%signal = [pack(signal, wanted .and. kind == of_approach), pack(signal, wanted .and. &
+        kind == of_retreat)]
+      measured%inward = [(.true., i=1, count(wanted .and. kind == of_approach)), &
+        (.false., i=1, count(wanted .and. kind == of_retreat))]
     end associate
+    measured%unit = rows%unit
     measured%skipped = [(any(measured%z(i) >= measured%skip(1::2) .and. &
       measured%z(i) <= measured%skip(2::2)), i=1, size(measured%z))]
     measured%usable = .not. measured%skipped
-    call find_facing(table%source%file, measured, error)
+    call find_facing(rows%file, measured, error)
+    if (.not. allocated(error)) call describe()
+
+  contains
+
+    !> Says how the file was understood.
+    subroutine describe()
+      measured%understood = rows%file // ': ' // rows%columns_read // '; ' // &
+        counted(count(measured%inward), 'sample') // ' of the approach, ' // &
+        counted(count(.not. measured%inward), 'sample') // ' of the retreat'
+      call add(rows%incomplete, 'with an empty cell or NaN')
+      call add(count(rows%kind == of_pause), 'of pauses or other segments')
+      call add(count(repeated), 'like the row before')
+      call add(count(measured%skipped), 'in skip')
+    end subroutine describe
+
+    subroutine add(n, which)
+      integer, intent(in) :: n
+      character(len=*), intent(in) :: which
+
+      if (n == 0) return
+      if (index(measured%understood, '; left out: ') == 0) then
+        measured%understood = measured%understood // '; left out: '
+      else
+        measured%understood = measured%understood // ', '
+      end if
+      measured%understood = measured%understood // counted(n, 'row') // ' ' // which
+    end subroutine add
+
   end subroutine read_measured
 
   !> Refuses columns that are exchanged, and positions that are not in metres.
@@ -126,20 +142,6 @@ contains
     end function evenness_of
 
   end subroutine check_columns
-
-  !> Marks the samples before the turn of z; without a turn `segment` decides.
-  pure function before_turn(z, segment) result(inward)
-    real(wp), intent(in) :: z(:)
-    character(len=*), intent(in) :: segment
-    logical :: inward(size(z))
-    integer :: turn, i, margin
-
-    margin = max(1, nint(end_part*size(z)))
-    turn = maxloc(z, 1)
-    if (min(turn, size(z) - turn) < margin) turn = minloc(z, 1)
-    if (min(turn, size(z) - turn) < margin) turn = merge(0, size(z), segment == 'retreat')
-    inward = [(i <= turn, i=1, size(z))]
-  end function before_turn
 
   !> Finds the direction of z on the approach. Fails if a way is too short or goes back, or if both
   !> ways have the same direction.

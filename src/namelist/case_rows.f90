@@ -12,7 +12,7 @@ module case_rows
   use deck_scan, only: span_t
   use deck_source, only: source_t, take_source
   use deck_store, only: deck_t
-  use data_table, only: is_header
+  use table_layout, only: is_header
   use table_line, only: split, blanks, after_mark, uncommented, point_decimals, miscount
   implicit none
   private

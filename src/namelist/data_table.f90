@@ -1,32 +1,46 @@
 !> A text file with a table of numbers, as measuring programs write it: comments after #, perhaps a
 !> line with the names of the columns, which may itself be a comment, then one row a line
-!> (`table_line`).
+!> (`table_line`, `table_layout`).
 module data_table
   use kinds, only: wp
   use checksums, only: checksum
   use failure, only: failure_t
-  use text, only: brief, counted, lower, quoted, clip, guess
-  use deck_number, only: parse_real, parse_integer
+  use text, only: brief, lower, spelled
+  use deck_number, only: parse_real
   use deck_scan, only: span_t
   use deck_source, only: source_t, load_source
   use deck_store, only: deck_t
-  use table_line, only: split, after_mark, uncommented, ends_empty, point_decimals, miscount, &
-    columns_where
+  use column_names, only: find_columns, longest_name
+  use table_layout, only: layout_t, find_layout, next_line, line_of, is_missing
+  use table_line, only: split_at, split, uncommented, point_decimals, miscount, columns_where
+  use units, only: unit_in
   implicit none
   private
-  public :: data_table_t, read_data_table, largest_table, read_columns, is_header
+  public :: data_table_t, style_t, read_data_table, largest_table, read_columns, plain_label
+
+  !> How a file is read. skip_lines: number of lines at its begin that do not count. of_instrument:
+  !> whether lines may stand before the names, words beside the numbers, and cells be empty.
+  !> labels: the wanted column whose cells are labels and not numbers; 0: none.
+  type :: style_t
+    integer :: skip_lines = 0, labels = 0
+    logical :: of_instrument = .false.
+  end type style_t
 
   !> The columns asked for, value(row, column), the position of each row in the file's text, and the
-  !> number of columns in the file.
+  !> number of columns in the file. missing(row, column): whether a cell has no value; the value is
+  !> 0. name, unit: of each wanted column, as in the file; blank if there is none. label: the
+  !> different labels; the value of the labels' column is an index of this list.
   type :: data_table_t
     integer :: columns = 0
     type(source_t) :: source
     real(wp), allocatable :: value(:, :)
+    logical, allocatable :: missing(:, :)
     integer, allocatable :: place(:)
+    character(len=longest_name), allocatable :: name(:), unit(:), label(:)
   end type data_table_t
 
-  !> Largest number of bytes of a table.
-  integer, parameter :: largest_table = 64*2**20
+  !> Largest number of bytes of a table, and of different labels.
+  integer, parameter :: largest_table = 64*2**20, most_labels = 64
   character(len=*), parameter :: newline = new_line('a')
 
 contains
@@ -34,145 +48,87 @@ contains
   !> Reads the columns `wanted` of `file`: names from its header line, in upper or lower case, or
   !> numbers counted from 1; a minus before either changes the column's sign. error: the mistake in
   !> the file, with its line.
-  subroutine read_data_table(file, wanted, table, error)
+  subroutine read_data_table(file, wanted, style, table, error)
     character(len=*), intent(in) :: file, wanted(:)
+    type(style_t), intent(in) :: style
     type(data_table_t), intent(out) :: table
     type(failure_t), allocatable, intent(out) :: error
-    type(span_t), allocatable :: cells(:), names(:)
+    type(layout_t) :: layout
+    type(span_t), allocatable :: cells(:)
+    character(len=:), allocatable :: line
     integer, allocatable :: at(:)
     logical, allocatable :: turned(:)
-    integer :: first, next, n, comment, named, i
-    logical :: header
+    integer :: first, next, n, unused, i
 
     call load_source(file, table%source, error, largest_table)
     if (allocated(error)) return
     call point_decimals(table%source%text)
     n = count([(table%source%text(i:i) == newline, i=1, len(table%source%text))]) + 1
-    allocate (table%place(n), table%value(n, size(wanted)), at(size(wanted)))
-    turned = index(adjustl(wanted), '-') == 1
+    allocate (table%place(n), table%value(n, size(wanted)), table%missing(n, size(wanted)), &
+      at(size(wanted)), turned(size(wanted)), table%label(0))
+    call find_layout(table%source, style%skip_lines, style%of_instrument, &
+      any(verify(wanted, '-0123456789 ') > 0), layout, error)
+    if (allocated(error)) return
     n = 0
-    comment = 0
-    next = 1
-    call next_row()
-    if (first > 0) then
-      named = first
-      names = cells
-      header = is_header(table%source, first, cells)
-      if (header) then
-        call next_row()
-      else if (comment > 0) then
-        ! The last comment before the rows may have the names.
-        named = comment
-        call split(after_mark(table%source%part(comment, first - 2)), names)
-      end if
-      table%columns = size(names)
-      if (first > 0) table%columns = size(cells)
-      if (size(names) /= table%columns) then
-        if (header .and. first > 0 .and. size(cells) < size(names)) then
-          if (ends_empty(this_line())) then
-            call table%source%complain(first, miscount(this_line(), size(cells), &
-              size(names)), error)
-            return
-          end if
-        end if
-        if (header .and. any(verify(wanted, '-0123456789 ') > 0)) then
-          call table%source%complain(named, columns_where(size(names), table%columns) // &
-            '; number the columns if names have blanks; a comment begins with #', error)
-          return
-        end if
-        named = first
-        names = cells
-      end if
-      call find_columns(named, names)
+    if (layout%first > 0) then
+      table%columns = layout%columns
+      call find_columns(table%source, layout%named, layout%name, wanted, at, turned, error)
       if (allocated(error)) return
+      table%name = layout%name(at)
+      allocate (table%unit(size(at)))
+      do i = 1, size(at)
+        table%unit(i) = unit_in(layout%unit(at(i)))
+      end do
+      next = layout%first
+      do
+        call next_line(table%source, next, first, unused)
+        if (first == 0) exit
+        call take_cells()
+        if (allocated(error)) return
+        n = n + 1
+        table%place(n) = first
+        call read_row(table%value(n, :), table%missing(n, :))
+        if (allocated(error)) return
+      end do
     end if
-    do while (first > 0)
-      if (size(cells) /= table%columns) then
-        call table%source%complain(first, miscount(this_line(), size(cells), &
-          table%columns), error)
-        return
-      end if
-      n = n + 1
-      call read_row(table%value(n, :))
-      if (allocated(error)) return
-      table%place(n) = first
-      call next_row()
-    end do
     table%value = table%value(:n, :)
+    table%missing = table%missing(:n, :)
     table%place = table%place(:n)
 
   contains
 
-    !> Finds the next line with cells at or after the position `next`, and moves `next` behind it.
-    !> first: the position of the line; 0 if there is none. comment: the position of the last
-    !> comment before the line, unchanged if there is none.
-    subroutine next_row()
-      associate (source => table%source)
-        do while (next <= len(source%text))
-          first = next
-          next = first + scan(source%text(first:), newline)
-          if (next == first) next = len(source%text) + 2
-          call split(uncommented(source%part(first, next - 2)), cells)
-          if (size(cells) > 0) return
-          if (index(source%part(first, next - 2), '#') > 0) comment = first
-        end do
-      end associate
-      first = 0
-    end subroutine next_row
-
-    pure function this_line() result(line)
-      character(len=:), allocatable :: line
-
-      line = table%source%part(first, first + scan(table%source%text(first:) // newline, newline) &
-        - 2)
-    end function this_line
-
-    !> The column of each wanted name or number; the names are in the line at position `start`.
-    subroutine find_columns(start, spans)
-      integer, intent(in) :: start
-      type(span_t), intent(in) :: spans(:)
-      character(len=:), allocatable :: names, name, what
-      logical :: found(size(spans))
-      integer :: i, k
-
-      names = ''
-      do k = 1, size(spans)
-        names = names // ' ' // lower(cell(start, spans(k)))
-      end do
-      do i = 1, size(wanted)
-        name = trim(adjustl(wanted(i)))
-        if (turned(i)) name = trim(adjustl(name(2:)))
-        call parse_integer(name, at(i), what)
-        if (allocated(what)) then
-          found = [(lower(cell(start, spans(k))) == lower(name), k=1, size(spans))]
-          at(i) = findloc(found, .true., 1)
-          if (count(found) > 1) call table%source%complain(start, 'more than one column ' // &
-            quoted(clip(name)) // '; give its number', error)
-        end if
-        if (at(i) >= 1 .and. at(i) <= size(spans)) cycle
-        call table%source%complain(start, 'no column ' // quoted(clip(name)) // &
-          guess(name, names(2:), '') // '; this line has ' // counted(size(spans), 'column'), &
-          error)
-      end do
-    end subroutine find_columns
-
-    !> The text of a span in the line at position `start`.
-    pure function cell(start, span)
-      integer, intent(in) :: start
-      type(span_t), intent(in) :: span
-      character(len=:), allocatable :: cell
-
-      cell = table%source%part(start + span%first - 1, start + span%last - 1)
-    end function cell
+    !> The cells of the line at `first`. Lines that have another number of cells by the separator of
+    !> the first row are divided at any separator.
+    subroutine take_cells()
+      line = uncommented(line_of(table%source, first))
+      call split_at(line, layout%separator, cells)
+      if (size(cells) == table%columns) return
+      i = size(cells)
+      call split(line, cells)
+      if (size(cells) == table%columns) return
+      if (layout%separator == ' ') i = size(cells)
+      call table%source%complain(first, miscount(line, i, table%columns), error)
+    end subroutine take_cells
 
     !> The wanted numbers of the present row, some with the sign changed.
-    subroutine read_row(row)
+    subroutine read_row(row, missing)
       real(wp), intent(out) :: row(:)
+      logical, intent(out) :: missing(:)
       character(len=:), allocatable :: what
       integer :: i
 
+      row = 0
       do i = 1, size(at)
-        call parse_real(cell(first, cells(at(i))), row(i), what)
+        associate (cell => line(cells(at(i))%first:cells(at(i))%last))
+          missing(i) = style%of_instrument
+          if (missing(i)) missing(i) = is_missing(cell)
+          if (missing(i)) cycle
+          if (i == style%labels) then
+            call take_label(cell, row(i), what)
+          else
+            call parse_real(cell, row(i), what)
+          end if
+        end associate
         if (allocated(what)) then
           call table%source%complain(first + cells(at(i))%first - 1, what, error)
           return
@@ -181,7 +137,41 @@ contains
       end do
     end subroutine read_row
 
+    !> The index of a label in the list, which takes it up; numbers that are equal are one label.
+    subroutine take_label(cell, number, what)
+      character(len=*), intent(in) :: cell
+      real(wp), intent(out) :: number
+      character(len=:), allocatable, intent(out) :: what
+      character(len=longest_name) :: label
+      integer :: i
+
+      label = plain_label(cell)
+      i = findloc(table%label == label, .true., 1)
+      if (i == 0) then
+        if (size(table%label) == most_labels) then
+          what = 'the column of segments has more than ' // brief(most_labels) // &
+            ' different values, so it does not number the segments; columns chooses another'
+          return
+        end if
+        table%label = [table%label, label]
+        i = size(table%label)
+      end if
+      number = i
+    end subroutine take_label
+
   end subroutine read_data_table
+
+  !> A label in lower case, or a number with no more digits than it needs.
+  pure function plain_label(cell) result(label)
+    character(len=*), intent(in) :: cell
+    character(len=longest_name) :: label
+    character(len=:), allocatable :: what
+    real(wp) :: value
+
+    call parse_real(trim(cell), value, what)
+    label = lower(cell)
+    if (.not. allocated(what)) label = brief(value)
+  end function plain_label
 
   !> Reads the file of two columns, with at least `fewest` rows, that a key of the deck names.
   subroutine read_columns(deck, group, key, fewest, table, error)
@@ -191,7 +181,7 @@ contains
     type(data_table_t), intent(out) :: table
     type(failure_t), allocatable, intent(out) :: error
 
-    call read_data_table(deck%path_of(group, key), ['1', '2'], table, error)
+    call read_data_table(deck%path_of(group, key), ['1', '2'], style_t(), table, error)
     if (allocated(error)) return
     call deck%note_file(group, key, checksum(table%source%text))
     if (size(table%place) > 0 .and. table%columns > 2) then
@@ -201,22 +191,5 @@ contains
         ' points', error)
     end if
   end subroutine read_columns
-
-  !> Whether a line has names, and not a number.
-  logical function is_header(source, start, cells)
-    type(source_t), intent(in) :: source
-    integer, intent(in) :: start
-    type(span_t), intent(in) :: cells(:)
-    character(len=:), allocatable :: what
-    real(wp) :: number
-    integer :: i
-
-    is_header = .true.
-    do i = 1, size(cells)
-      call parse_real(source%part(start + cells(i)%first - 1, start + cells(i)%last - 1), number, &
-        what)
-      is_header = is_header .and. allocated(what)
-    end do
-  end function is_header
 
 end module data_table

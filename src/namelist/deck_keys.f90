@@ -32,6 +32,8 @@ module deck_keys
     !> Largest number of values in a list, of numbers or names; of characters in a text.
     integer :: most = 1
     logical :: required = .false.
+    !> For names: whether they may contain blanks.
+    logical :: spaced = .false.
     !> For a group: its defaults hold and are written even if the deck does not name it.
     logical :: always = .false.
   end type key_spec

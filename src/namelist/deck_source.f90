@@ -95,13 +95,20 @@ contains
     if (n > 0) call source%complain(n, 'a NUL byte, which plain text does not have', error)
   end subroutine take_source
 
-  !> Makes every line end (LF, CR LF or CR) a single line feed and drops a byte-order mark.
-  pure subroutine straighten(bytes, text)
+  !> Makes every line end (LF, CR LF or CR) a single line feed and drops a byte-order mark. Text in
+  !> UTF-16, which a mark or zero bytes show, becomes UTF-8.
+  pure recursive subroutine straighten(bytes, text)
     character(len=*), intent(in) :: bytes
     character(len=:), allocatable, intent(out) :: text
     character(len=*), parameter :: mark = char(239) // char(187) // char(191)
     character(len=1), parameter :: return = achar(13)
-    integer :: i, n, first
+    integer :: i, n, first, high
+
+    high = high_byte_of_16(bytes)
+    if (high >= 0) then
+      call straighten(narrowed(bytes, high), text)
+      return
+    end if
 
     first = 1
     if (len(bytes) >= 3) then
@@ -119,6 +126,54 @@ contains
     end do
     text = text(:n)
   end subroutine straighten
+
+  !> Position (0 or 1) of the high byte in the pairs of bytes of text in UTF-16; -1 if a text does
+  !> not begin so: with a byte-order mark, or with pairs of a character and a zero byte.
+  pure integer function high_byte_of_16(bytes) result(high)
+    character(len=*), intent(in) :: bytes
+    integer, parameter :: enough = 8
+    logical :: is_zero(enough)
+    integer :: i
+
+    high = -1
+    if (len(bytes) < 2 .or. mod(len(bytes), 2) > 0) return
+    if (bytes(:2) == char(255) // char(254)) high = 1
+    if (bytes(:2) == char(254) // char(255)) high = 0
+    if (high >= 0 .or. len(bytes) < enough) return
+    is_zero = [(bytes(i:i) == achar(0), i=1, enough)]
+    if (all(is_zero(2::2)) .and. .not. any(is_zero(1::2))) high = 1
+    if (all(is_zero(1::2)) .and. .not. any(is_zero(2::2))) high = 0
+  end function high_byte_of_16
+
+  !> UTF-8 for text in UTF-16; high: the position of the high byte in each pair. Characters outside
+  !> the basic plane become question marks.
+  pure function narrowed(bytes, high) result(text)
+    character(len=*), intent(in) :: bytes
+    integer, intent(in) :: high
+    character(len=:), allocatable :: text
+    integer :: i, n, code
+
+    allocate (character(len=3*(len(bytes)/2)) :: text)
+    n = 0
+    do i = 1, len(bytes) - 1, 2
+      code = 256*iachar(bytes(i + high:i + high)) + iachar(bytes(i + 1 - high:i + 1 - high))
+      if (code < 128) then
+        text(n + 1:n + 1) = achar(code)
+        n = n + 1
+      else if (code < 2048) then
+        text(n + 1:n + 2) = char(192 + code/64) // char(128 + mod(code, 64))
+        n = n + 2
+      else if (code >= 55296 .and. code < 57344) then
+        text(n + 1:n + 1) = '?'
+        n = n + 1
+      else
+        text(n + 1:n + 3) = char(224 + code/4096) // char(128 + mod(code/64, 64)) // &
+          char(128 + mod(code, 64))
+        n = n + 3
+      end if
+    end do
+    text = text(:n)
+  end function narrowed
 
   !> The text from position `first` to `last`.
   pure function part(self, first, last) result(text)

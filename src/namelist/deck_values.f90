@@ -2,7 +2,8 @@
 !> table, and written as text.
 module deck_values
   use kinds, only: wp
-  use text, only: lower, quoted, unquoted, brief, full, guess, clip, word_count, word_of
+  use text, only: lower, quoted, unquoted, brief, full, guess, clip, word_count, word_of, &
+    held_blank, spelled
   use deck_number, only: parse_real, parse_integer, parse_logical
   use deck_source, only: source_t
   use deck_scan, only: span_t
@@ -69,12 +70,13 @@ contains
     end do
   end subroutine interpret
 
-  !> Whether a token is a word of digits, for which quotes are optional.
+  !> Whether a token is a word or name of digits, for which quotes are optional.
   pure logical function is_number(spec, token)
     type(key_spec), intent(in) :: spec
     character(len=*), intent(in) :: token
 
-    is_number = spec%kind == word_value .and. verify(token, '0123456789') == 0
+    is_number = any(spec%kind == [word_value, names_value]) .and. &
+      verify(token, '0123456789') == 0
   end function is_number
 
   !> Converts one token, without quotes, and checks it against the bounds of `spec`. Elements of a
@@ -84,6 +86,7 @@ contains
     character(len=*), intent(in) :: token
     type(value_t), intent(inout) :: value
     character(len=:), allocatable, intent(out) :: what
+    character(len=:), allocatable :: name
     real(wp) :: x
     integer :: star, times, i
 
@@ -124,12 +127,16 @@ contains
       value%text = trim(token)
       if (len(value%text) > spec%most) what = 'the text is too long'
     case (names_value)
-      if (word_count(token) /= 1) then
+      if (word_count(token) == 0 .or. (word_count(token) > 1 .and. .not. spec%spaced)) then
         what = quoted(clip(token)) // ' is not one name'
       else if (word_count(value%text) == spec%most) then
         what = 'too many values'
       else
-        value%text = value%text // ' ' // trim(adjustl(token))
+        name = trim(adjustl(token))
+        do i = 1, len(name)
+          if (name(i:i) == ' ') name(i:i) = held_blank
+        end do
+        value%text = value%text // ' ' // name
       end if
     end select
   end subroutine convert
@@ -165,7 +172,7 @@ contains
     case (names_value)
       do i = 1, word_count(value%text)
         if (i > 1) text = text // ', '
-        text = text // quoted(word_of(value%text, i))
+        text = text // quoted(spelled(word_of(value%text, i)))
       end do
     case default
       text = text // quoted(value%text)

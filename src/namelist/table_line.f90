@@ -1,17 +1,18 @@
-!> One line of a table of numbers: its comment, and its cells, which blanks, tabs, commas or
-!> semicolons separate and which may stand in double quotes. In a line with semicolons or tabs
-!> between cells, a comma within a number is a decimal comma.
+!> One line of a table: its comment, and its cells, which blanks, tabs, commas or semicolons
+!> separate and which may stand in double quotes. In a line with semicolons, tabs or blanks between
+!> cells, a comma within a number is a decimal comma.
 module table_line
   use text, only: counted
   use deck_scan, only: span_t
   implicit none
   private
-  public :: split, blanks, after_mark, uncommented, ends_empty, point_decimals, miscount, &
-    columns_where
+  public :: split, split_at, separator_of, blanks, after_mark, uncommented, ends_empty, &
+    point_decimals, miscount, columns_where
 
   character(len=*), parameter :: newline = new_line('a')
   !> Separators of cells: blank and tab; comma and semicolon.
-  character(len=*), parameter :: blanks = ' ' // achar(9), marks = ',;', between = blanks // marks
+  character, parameter :: tab = achar(9)
+  character(len=*), parameter :: blanks = ' ' // tab, marks = ',;', between = blanks // marks
 
 contains
 
@@ -37,11 +38,10 @@ contains
     end do
   end function after_mark
 
-  !> Replaces decimal commas by points: commas between digits in lines with semicolons, or tabs
-  !> between cells. Comments stay, and say nothing about the line.
+  !> Replaces decimal commas by points: commas between digits in lines with other separators of
+  !> cells. Comments stay, and say nothing about the line.
   pure subroutine point_decimals(text)
     character(len=*), intent(inout) :: text
-    character(len=*), parameter :: digits = '0123456789'
     character(len=:), allocatable :: line
     integer :: first, next, last, i
 
@@ -52,31 +52,116 @@ contains
       if (next == first) next = len(text) + 2
       line = uncommented(text(first:next - 2))
       last = verify(line, blanks, back=.true.)
-      if (scan(line(max(1, verify(line, blanks)):last), ';' // achar(9)) == 0) cycle
+      if (last == 0) cycle
+      if (.not. has_decimal_commas(line(verify(line, blanks):last))) cycle
       do i = first + 1, first + last - 2
-        if (text(i:i) /= ',') cycle
-        if (scan(text(i - 1:i - 1), digits) > 0 .and. scan(text(i + 1:i + 1), digits) > 0) &
-          text(i:i) = '.'
+        if (between_digits(text(first:first + last - 1), i - first + 1)) text(i:i) = '.'
       end do
     end do
   end subroutine point_decimals
+
+  !> Whether commas between digits are decimal commas: semicolons or tabs separate the cells, or
+  !> blanks do and no comma stands elsewhere. line: without blanks at its ends.
+  pure logical function has_decimal_commas(line) result(has)
+    character(len=*), intent(in) :: line
+    integer :: i
+
+    has = scan(line, ';' // tab) > 0
+    if (has .or. index(line, ' ') == 0) return
+    has = all([(line(i:i) /= ',' .or. between_digits(line, i), i=1, len(line))])
+  end function has_decimal_commas
+
+  !> Whether character i of a line is a comma between two digits.
+  pure logical function between_digits(line, i)
+    character(len=*), intent(in) :: line
+    integer, intent(in) :: i
+    character(len=*), parameter :: digits = '0123456789'
+
+    between_digits = .false.
+    if (i < 2 .or. i >= len(line)) return
+    if (line(i:i) == ',') between_digits = scan(line(i - 1:i - 1), digits) > 0 .and. &
+      scan(line(i + 1:i + 1), digits) > 0
+  end function between_digits
+
+  !> The character that separates the cells of a line: a semicolon, else a comma, else a tab, else a
+  !> blank.
+  pure character function separator_of(line) result(separator)
+    character(len=*), intent(in) :: line
+    character(len=*), parameter :: known = ';,' // tab
+    integer :: i
+
+    separator = ' '
+    do i = len(known), 1, -1
+      if (index(trim(line), known(i:i)) > 0) separator = known(i:i)
+    end do
+  end function separator_of
+
+  !> The cells of a line between `separator`s, without blanks at their ends and without their double
+  !> quotes; an empty cell has last < first. The separator ' ' means `split`.
+  subroutine split_at(line, separator, cells)
+    character(len=*), intent(in) :: line
+    character, intent(in) :: separator
+    type(span_t), allocatable, intent(out) :: cells(:)
+    integer :: i, n, first
+    logical :: quoted
+
+    if (separator == ' ') then
+      call split(line, cells)
+      return
+    end if
+    allocate (cells(0))
+    if (verify(line, blanks) == 0) return
+    deallocate (cells)
+    allocate (cells(count([(line(i:i) == separator, i=1, len(line))]) + 1))
+    n = 0
+    first = 1
+    quoted = .false.
+    do i = 1, len(line) + 1
+      if (i <= len(line)) then
+        if (line(i:i) == '"') quoted = .not. quoted
+        if (line(i:i) /= separator .or. quoted) cycle
+      end if
+      n = n + 1
+      cells(n) = trimmed(first, i - 1)
+      first = i + 1
+    end do
+    cells = cells(:n)
+
+  contains
+
+    !> The part of the line from `first` to `last` without blanks at its ends, and without quotes.
+    pure type(span_t) function trimmed(first, last) result(cell)
+      integer, intent(in) :: first, last
+
+      cell = span_t(first, first - 1)
+      if (verify(line(first:last), blanks) == 0) return
+      cell%first = first - 1 + verify(line(first:last), blanks)
+      cell%last = first - 1 + verify(line(first:last), blanks, back=.true.)
+      if (cell%last == cell%first .or. line(cell%first:cell%first) /= '"' .or. &
+        line(cell%last:cell%last) /= '"') return
+      cell = span_t(cell%first + 1, cell%last - 1)
+    end function trimmed
+
+  end subroutine split_at
 
   !> The cells of a line up to the last that is not empty, without their double quotes. A comma or
   !> semicolon after another, or before the first cell, is that of an empty cell.
   subroutine split(line, cells)
     character(len=*), intent(in) :: line
     type(span_t), allocatable, intent(out) :: cells(:)
-    integer :: first, next, inside
+    integer :: first, next, inside, n, i
 
-    allocate (cells(0))
+    allocate (cells(1 + count([(scan(line(i:i), between) > 0, i=1, len(line))])))
+    n = 0
     first = after_blanks(1)
     do while (first <= len(line))
-      next = first + scan(line(first:) // ' ', between) - 1
+      next = scan(line(first:), between)
+      next = merge(first + next - 1, len(line) + 1, next > 0)
       inside = quoted_length(line(first:))
-      if (inside < 0) then
-        cells = [cells, span_t(first, next - 1)]
-      else
-        cells = [cells, span_t(first + 1, first + inside)]
+      n = n + 1
+      cells(n) = span_t(first, next - 1)
+      if (inside >= 0) then
+        cells(n) = span_t(first + 1, first + inside)
         next = first + inside + 2
       end if
       next = after_blanks(next)
@@ -84,7 +169,7 @@ contains
       if (next > len(line)) exit
       if (scan(line(next:next), marks) > 0) first = after_blanks(next + 1)
     end do
-    cells = cells(:findloc(cells%last >= cells%first, .true., 1, back=.true.))
+    cells = cells(:findloc(cells(:n)%last >= cells(:n)%first, .true., 1, back=.true.))
 
   contains
 
@@ -104,7 +189,8 @@ contains
     pure integer function after_blanks(at)
       integer, intent(in) :: at
 
-      after_blanks = at + verify(line(at:) // marks, blanks) - 1
+      after_blanks = verify(line(at:), blanks)
+      after_blanks = merge(at + after_blanks - 1, len(line) + 1, after_blanks > 0)
     end function after_blanks
 
   end subroutine split

@@ -3,17 +3,19 @@ module measurement_group
   use kinds, only: wp
   use checksums, only: checksum
   use failure, only: failure_t
-  use text, only: quoted, word_count, word_of
+  use text, only: lower, quoted, spelled, word_count, word_of
   use deck, only: deck_t
   use deck_source, only: source_t, load_source
-  use data_table, only: largest_table
-  use deck_keys, only: key_spec, real_value, real_list, word_value, text_value, names_value
+  use data_table, only: largest_table, plain_label
+  use deck_keys, only: key_spec, real_value, real_list, integer_value, word_value, &
+    text_value, names_value
   use scene_groups, only: scene_t
+  use units, only: find_unit
   implicit none
   private
   public :: measurement_keys, take_measurement
 
-  integer, parameter :: most_skipped = 40
+  integer, parameter :: most_skipped = 40, most_labels = 8
 
   !> The rows of &measurement.
   type(key_spec), parameter :: measurement_keys(*) = [ &
@@ -22,9 +24,17 @@ module measurement_group
       'before comments, perhaps a line of names; a relative path begins at the deck''s folder.', &
       most=1000, required=.true.), &
     key_spec('measurement', 'columns', names_value, 'Name or number of the columns of the ' // &
-      'base''s position [m], the signal (force [N], positive: repulsion, or [V]) and, if ' // &
-      'there is one, the segment: 0 approach, 1 retreat. A minus changes the sign.', most=3, &
-      otherwise='the first two'), &
+      'base''s position, the signal (force, positive: repulsion, or deflection) and, if there ' // &
+      'is one, the segment; or position and signal of approach and of retreat. A minus ' // &
+      'changes the sign.', most=4, otherwise='the first two', spaced=.true.), &
+    key_spec('measurement', 'approach', names_value, 'Numbers or words that the approach has ' // &
+      'in the column of segments.', most=most_labels, spaced=.true., &
+      otherwise='0, a word for it, or by the position'), &
+    key_spec('measurement', 'retreat', names_value, 'Numbers or words that the retreat has in ' // &
+      'the column of segments; rows with other numbers or words are left out.', &
+      most=most_labels, spaced=.true., otherwise='1, a word for it, or by the position'), &
+    key_spec('measurement', 'skip_lines', integer_value, 'Number of lines at the begin of the ' // &
+      'file that are left out.', default='0', low=0.0_wp, high=1.0e5_wp), &
     key_spec('measurement', 'spring_constant', real_value, 'Stiffness of the spring.', 'N/m', &
       above=0.0_wp, required=.true.), &
     key_spec('measurement', 'sensitivity', real_value, 'Deflection of the spring for one ' // &
@@ -34,7 +44,7 @@ module measurement_group
       'undeformed bodies would touch.', 'm', otherwise='an unknown of &fit, in its parameters'), &
     key_spec('measurement', 'units', names_value, 'Units of position (m, mm, um, nm, pm) and ' // &
       'signal (N, mN, uN, nN, pN, V, mV, or as of position) in the file.', most=2, &
-      otherwise='m and N or V'), &
+      otherwise='those in the names, or m and N or V'), &
     key_spec('measurement', 'skip', real_list, 'Pairs of positions of the base, SI; samples ' // &
       'between the two of a pair are left out.', 'm', most=most_skipped, otherwise='none'), &
     key_spec('measurement', 'segment', word_value, 'The branches to fit.', &
@@ -69,6 +79,15 @@ contains
       do i = 1, size(measurement%columns)
         measurement%columns(i) = word_of(names, i)
       end do
+      call deck%get('measurement', 'skip_lines', measurement%skip_lines)
+      call take_labels(deck, 'approach', measurement%approach)
+      call take_labels(deck, 'retreat', measurement%retreat)
+      if (size(measurement%columns) /= 3) then
+        if (deck%is_set('measurement', 'approach')) call deck%mistake('measurement', 'approach', &
+          'needs a column of segments, the third of columns')
+        if (deck%is_set('measurement', 'retreat')) call deck%mistake('measurement', 'retreat', &
+          'needs a column of segments, the third of columns')
+      end if
       call deck%get('measurement', 'spring_constant', measurement%spring_constant)
       call deck%get_optional('measurement', 'sensitivity', measurement%sensitivity)
       call deck%get_optional('measurement', 'contact_point', measurement%contact_point)
@@ -84,29 +103,43 @@ contains
     end associate
   end subroutine take_measurement
 
+  !> Reads labels of segments; numbers without superfluous digits.
+  subroutine take_labels(deck, key, labels)
+    type(deck_t), intent(inout) :: deck
+    character(len=*), intent(in) :: key
+    character(len=*), allocatable, intent(out) :: labels(:)
+    character(len=:), allocatable :: names
+    integer :: i
+
+    call deck%get('measurement', key, names)
+    if (word_count(names) == 0) return
+    allocate (labels(word_count(names)))
+    do i = 1, size(labels)
+      labels(i) = plain_label(spelled(word_of(names, i)))
+    end do
+  end subroutine take_labels
+
   !> Reads the units of the file's columns: metres, newtons and volts, with SI prefixes.
   subroutine take_units(deck, unit)
     type(deck_t), intent(inout) :: deck
     real(wp), intent(out) :: unit(2)
-    character(len=*), parameter :: prefixes = 'munp', bases(2) = ['m  ', 'NVm']
-    integer, parameter :: powers(*) = [-3, -6, -9, -12]
+    character(len=*), parameter :: bases(2) = ['m  ', 'NVm']
     character(len=:), allocatable :: names, name
-    integer :: i, k
+    character :: base
+    integer :: i
 
-    unit = 1
+    unit = 0
     call deck%get('measurement', 'units', names)
     do i = 1, min(2, word_count(names))
       name = word_of(names, i)
-      k = 0
-      if (len(name) == 2) k = index(prefixes, name(1:1))
-      if (k > 0) unit(i) = 10.0_wp**powers(k)
-      if (index(trim(bases(i)), name(len(name):)) == 0 .or. (k == 0 .and. len(name) /= 1)) &
+      call find_unit(name, unit(i), base)
+      if (base == ' ' .or. index(trim(bases(i)), base) == 0) &
         call deck%mistake('measurement', 'units', quoted(name) // ' is not a unit of ' // &
         trim(merge('position', 'signal  ', i == 1)) // ' such as ' // &
         trim(merge('nm', 'nN', i == 1)))
     end do
     if (word_count(names) < 2 .or. deck%is_set('measurement', 'sensitivity')) return
-    if (scan(name(len(name):), 'Vm') > 0) call deck%mistake('measurement', 'units', 'a signal in ' &
+    if (scan(base, 'Vm') > 0) call deck%mistake('measurement', 'units', 'a signal in ' &
       // 'volts needs sensitivity, the deflection of the spring for one volt, and a ' // &
       'deflection sensitivity = 1')
   end subroutine take_units

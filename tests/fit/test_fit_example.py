@@ -1,36 +1,8 @@
-"""Claims about the measured curve that comes with the program, its picture, and the reader of
-instruments' files."""
-
-import re
-import subprocess
-import sys
+"""Claims about the measured curve that comes with the program, and its picture."""
 
 import pytest
 from conftest import ROOT
 from snapin import read_results
-from support.processes import HANG
-
-# What afmformats hands over: the columns of a curve by name, with what is known of it.
-FAKE_AFMFORMATS = '''
-import pathlib
-
-
-class Curve(dict):
-    columns = property(lambda self: list(self))
-    metadata = {"spring constant": 0.5}
-    path = pathlib.Path("some.jpk-force")
-
-
-def load_data(path):
-    curve = Curve({"height (piezo)": [2e-6, 1e-6, 2e-6], "force": [0.0, 3e-9, -1e-9],
-                   "segment": [0, 0, 1], "time": [0, 1, 2]})
-    if path == "other.xyz":
-        raise BaseException("no recipe")
-    if path == "volts.jpk-force":
-        del curve["force"]
-    return [curve]
-'''
-
 
 @pytest.fixture(scope="module")
 def example(snapin, tmp_path_factory):
@@ -65,40 +37,3 @@ def test_the_fit_is_drawn(example, called):
     done = called(ROOT / "pywrap/plots/fit.py", folder)
     assert (done.returncode, done.stderr) == (0, "")
     assert (folder / "fit.png").stat().st_size > 2e4
-
-
-@pytest.fixture
-def convert(tmp_path):
-    """Runs the reader of instruments' files on a file with the fake afmformats."""
-    (tmp_path / "afmformats.py").write_text(FAKE_AFMFORMATS)
-    for name in ("some.jpk-force", "volts.jpk-force", "other.xyz"):
-        (tmp_path / name).touch()
-
-    def run(*args):
-        script = ROOT / "pywrap/scripts/afm_to_table.py"
-        return subprocess.run(
-            [sys.executable, str(script), *args], capture_output=True, text=True, timeout=HANG,
-            check=False, cwd=tmp_path, env={"PYTHONPATH": str(tmp_path)})
-
-    return run
-
-
-def test_a_file_of_an_instrument_becomes_a_table(convert):
-    done = convert("some.jpk-force")
-    assert done.returncode == 0, done.stderr
-    lines = done.stdout.splitlines()
-    assert lines[1] == "# spring_constant = 0.5"
-    assert lines[2:] == ["z,force,segment", "2.000000000e-06,0.000000000e+00,0",
-                         "1.000000000e-06,3.000000000e-09,0", "2.000000000e-06,-1.000000000e-09,1"]
-
-
-@pytest.mark.parametrize(("args", "phrase"), [
-    (["nowhere.jpk-force"], "No such file"),
-    (["some.jpk-force", "--number", "1"], "--number 1: the file has 1 curves"),
-    (["other.xyz"], "no recipe"),
-    (["volts.jpk-force"], "needs force, .* this one has height \\(piezo\\), segment, time"),
-])
-def test_a_file_without_such_a_curve_is_refused_in_one_line(convert, args, phrase):
-    done = convert(*args)
-    assert (done.returncode, done.stdout) == (1, "")
-    assert re.fullmatch(rf"afm_to_table.py: {args[0]}: .*{phrase}.*\n", done.stderr), done.stderr

@@ -16,7 +16,6 @@ BAD_DATA = {
     "no contact": (lambda z, f, s, rng: (z, flat(rng, z), s), "no contact in the data"),
     "wrong sign": (lambda z, f, s, rng: (z, -f, s), "repulsion must be positive"),
     "too few": (lambda z, f, s, rng: (z[:10], f[:10], s[:10]), "needs 20 samples or more"),
-    "segments": (lambda z, f, s, rng: (z, f, 2 + s), "neither 0, approach, nor 1, retreat"),
     "same way": (lambda z, f, s, rng: (np.append(z[:300], z[:300]), np.append(f[:300], f[:300]), s),
                  "z goes the same way"),
     "exchanged columns": (lambda z, f, s, rng: (f, z, s), "columns exchanged"),
@@ -41,7 +40,7 @@ BAD_DATA = {
                                              s[z < 1e-9]),
                        "from a straight line by no more than the noise"),
     "picometres": (lambda z, f, s, rng: (1e-9 * z, f, s), "less than a picometre"),
-    "heights": (lambda z, f, s, rng: (z, f, 1e6 * z), "neither 0, approach, nor 1, retreat"),
+    "heights": (lambda z, f, s, rng: (z, f, 1e6 * z), "more than 64 different values"),
 }
 
 
@@ -91,14 +90,16 @@ def test_a_signal_in_a_wrong_unit_is_refused_with_both_loads(branches, tmp_path,
 BAD_FILES = {
     "no such column": ("z,load,segment\n1,2,0\n", "no column 'force'"),
     "cells": ("z,force,segment\n1,2,0\n1,2\n", "2 columns where 3 columns are expected"),
-    "names of several words": ("z [m],force [N],segment\n1,2,0\n",
-                               "5 columns where 3 .*; number the columns if names have blanks"),
+    "names of several words": ("base height,force,segment\n1 2 0\n1 2 0\n",
+                               "no column 'z'; the file has 'base height', 'force', 'segment'"),
+    "names that cannot be divided": ("z of base, force\n1 2 0\n1 2 0\n",
+                                     "4 columns where 3 .*; number the columns if the line of"),
     "words": ("z,force,segment\n1,two,0\n", "two is not a number"),
-    "nan": ("z,force,segment\n1,nan,0\n", "not a finite number"),
-    "empty cell": ("z,force,segment\n1,,0\n", "nothing where a number is expected"),
-    "empty last cell": ("z,force,segment\n1,2,0\n1,2,\n", "3 columns are expected; the last cell "),
-    "first row with an empty last cell": (
-        "z,force,segment\n1,2,\n", "3 columns are expected; the last cell is empty"),
+    "nan": ("z,force,segment\n1,nan,0\n", "0 rows, and 1 row with an empty cell or NaN"),
+    "empty cell": ("z,force,segment\n1,,0\n", "0 rows, and 1 row with an empty cell or NaN"),
+    "empty last cell": ("z,force,segment\n1,2,0\n1,2,\n", "has 1 row, and 1 row with an empty"),
+    "missing last cell": ("z force segment\n1 2 0\n1 2\n",
+                          "2 columns where 3 columns are expected"),
     "two columns of a name": ("z,force,segment,force\n1,2,0,3\n", "more than one column 'force'"),
 }
 

@@ -43,6 +43,8 @@ ACCEPTED = {
     "old mac line ends": GOOD.replace("\n", "\r"),
     "tabs": GOOD.replace(" ", "\t"),
     "byte-order mark": b"\xef\xbb\xbf" + GOOD.encode(),
+    "utf-16 with a mark": ("! Müller, µ\n" + GOOD).encode("utf-16"),
+    "utf-16, high byte first": GOOD.encode("utf-16-be"),
     "accents in a comment": "! Müller, σ = 1\n" + GOOD,
     "&end": GOOD.replace("/", "&end"),
     "&END at the end of the file": BODIES + FORCE + LOADING.replace("/\n", "&END"),

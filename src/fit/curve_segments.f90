@@ -1,0 +1,154 @@
+!> The segments of a measured curve: which of its rows belong to the approach and which to the
+!> retreat. Labels in the file say so, or the position of the base, which goes to the other body and
+!> back, and rests in a pause.
+module curve_segments
+  use kinds, only: wp
+  use failure, only: failure_t, fail, bad_input
+  use text, only: brief, counted, quoted
+  use curve_rows, only: curve_rows_t, of_approach, of_retreat, of_pause
+  use fit_request, only: measurement_t
+  implicit none
+  private
+  public :: find_segments
+
+  !> Words that instruments write for the segments of a curve, between blanks; 0 and 1 are the
+  !> numbers of afmformats.
+  character(len=*), parameter :: words(of_pause:of_retreat) = [character(len=110) :: &
+    ' pause hold dwell wait ', &
+    ' 0 false approach extend extending ext advance advancing forward load loading ', &
+    ' 1 true retreat retract retracting ret withdraw withdrawing backward unload unloading ']
+  !> The base rests where it travels less than this part of its range.
+  real(wp), parameter :: resting = 0.1_wp
+  !> The part of a curve at either end within which a turn does not count.
+  real(wp), parameter :: end_part = 0.1_wp
+
+contains
+
+  !> Finds the kind of each row's segment. error: why the segments cannot be told.
+  subroutine find_segments(rows, measurement, error)
+    type(curve_rows_t), intent(inout) :: rows
+    type(measurement_t), intent(in) :: measurement
+    type(failure_t), allocatable, intent(out) :: error
+    character(len=:), allocatable :: what
+    integer, allocatable :: of_label(:)
+    logical :: chosen
+
+    ! Columns side by side are an approach and a retreat.
+    if (allocated(rows%kind)) return
+    chosen = allocated(measurement%approach) .or. allocated(measurement%retreat)
+    allocate (of_label(0))
+    if (allocated(rows%label)) call know_labels()
+    if (allocated(what)) then
+      continue
+    else if (size(of_label) <= 1 .and. .not. chosen) then
+      ! One label for all rows tells nothing if the base turns.
+      rows%kind = merge(of_approach, of_retreat, before_turn(rows%z, measurement%segment))
+      if (size(of_label) == 1 .and. all(rows%kind == rows%kind(1))) then
+        if (of_label(1) >= of_approach) rows%kind = of_label(1)
+      end if
+    else if (all(of_label >= 0)) then
+      rows%kind = of_label(rows%code)
+    else
+      call segments_by_travel(rows%z, rows%code, rows%kind, what)
+    end if
+    if (allocated(what)) call fail(error, bad_input, rows%file // ': ' // what)
+
+  contains
+
+    !> The kind of segment that each label means by the deck or as a known word; -1: not known.
+    subroutine know_labels()
+      integer :: k
+
+      of_label = spread(of_pause, 1, size(rows%label))
+      if (allocated(measurement%approach)) call mark(measurement%approach, of_approach)
+      if (allocated(measurement%retreat)) call mark(measurement%retreat, of_retreat)
+      if (chosen) return
+      do k = 1, size(of_label)
+        of_label(k) = findloc(index(words, ' ' // trim(rows%label(k)) // ' ') > 0, .true., 1) - 1
+      end do
+    end subroutine know_labels
+
+    subroutine mark(labels, kind)
+      character(len=*), intent(in) :: labels(:)
+      integer, intent(in) :: kind
+      integer :: i, at
+
+      do i = 1, size(labels)
+        at = findloc(rows%label == labels(i), .true., 1)
+        if (at == 0) then
+          what = 'no row has the segment ' // quoted(trim(labels(i))) // &
+            '; those of the file are ' // listed(rows%label)
+          return
+        end if
+        of_label(at) = kind
+      end do
+    end subroutine mark
+
+  end subroutine find_segments
+
+  !> The segments by what the base does: each run of equal labels is an approach, a retreat or a
+  !> pause. The first run that moves is an approach.
+  subroutine segments_by_travel(z, code, kind, what)
+    real(wp), intent(in) :: z(:)
+    integer, intent(in) :: code(:)
+    integer, allocatable, intent(out) :: kind(:)
+    character(len=:), allocatable, intent(inout) :: what
+    real(wp) :: range, travel, direction
+    integer :: first, last, changes, latest
+
+    allocate (kind(size(z)))
+    range = maxval(z) - minval(z)
+    direction = 0
+    changes = 0
+    latest = of_pause
+    first = 1
+    do while (first <= size(z))
+      last = first
+      do while (last < size(z))
+        if (code(last + 1) /= code(first)) exit
+        last = last + 1
+      end do
+      travel = z(last) - z(first)
+      kind(first:last) = of_pause
+      if (abs(travel) > resting*range) then
+        if (changes == 0) direction = travel
+        kind(first:last) = merge(of_approach, of_retreat, travel*direction > 0)
+        if (kind(first) /= latest) changes = changes + 1
+        latest = kind(first)
+      end if
+      first = last + 1
+    end do
+    if (changes <= 2 .and. changes > 0) return
+    what = 'the position goes back and forth in ' // counted(changes, 'segment') // ', where ' // &
+      'one approach and one retreat are expected; approach and retreat choose them by their labels'
+  end subroutine segments_by_travel
+
+  !> Marks the samples before the turn of z; without a turn `segment` decides.
+  pure function before_turn(z, segment) result(inward)
+    real(wp), intent(in) :: z(:)
+    character(len=*), intent(in) :: segment
+    logical :: inward(size(z))
+    integer :: turn, i, margin
+
+    margin = max(1, nint(end_part*size(z)))
+    turn = maxloc(z, 1)
+    if (min(turn, size(z) - turn) < margin) turn = minloc(z, 1)
+    if (min(turn, size(z) - turn) < margin) turn = merge(0, size(z), segment == 'retreat')
+    inward = [(i <= turn, i=1, size(z))]
+  end function before_turn
+
+  !> Labels for a message, the first ones of many.
+  pure function listed(label) result(list)
+    character(len=*), intent(in) :: label(:)
+    character(len=:), allocatable :: list
+    integer, parameter :: most = 8
+    integer :: k
+
+    list = quoted(trim(label(1)))
+    do k = 2, min(most, size(label))
+      list = list // ', ' // quoted(trim(label(k)))
+    end do
+    if (size(label) > most) list = list // ' and ' // brief(size(label) - most) // ' more'
+  end function listed
+
+end module curve_segments
