@@ -13,6 +13,7 @@ from .approximations import approximation_rows, jump_estimates, slow_deformation
 from .arguments import DeckError, SnapinError, SnapinWarning
 from .classical import (
     cohesive_zone, contact_curve, contact_radius, load_at_displacement, profile, pull_off)
+from .curve_fit import Fit, fit
 from .deck import deck_text, exponential, lennard_jones
 from .experiment import EquilibriumPath, ForceCurve, equilibrium_path, force_curve, run
 from .numerics import (
@@ -25,9 +26,9 @@ if hasattr(os, "register_at_fork"):
     os.register_at_fork(after_in_child=_snapin.flat_deck.use_one_thread)
 
 __all__ = [
-    "DeckError", "EquilibriumPath", "ForceCurve", "Result", "SnapinError", "SnapinWarning",
+    "DeckError", "EquilibriumPath", "Fit", "ForceCurve", "Result", "SnapinError", "SnapinWarning",
     "approximation_rows", "cohesive_zone", "contact_curve", "contact_radius", "deck_text",
-    "equilibrium", "equilibrium_path", "exponential", "force_curve", "force_law", "gauss_rule",
+    "equilibrium", "equilibrium_path", "exponential", "fit", "force_curve", "force_law", "gauss_rule",
     "jump_estimates", "kernel", "kernel_log_coefficient", "law_numbers", "lennard_jones",
     "load_at_displacement", "panel_mesh", "panel_weights", "profile", "pull_off",
     "read_results", "run", "slow_deformation", "turning_intervals", "uniform_mesh"]

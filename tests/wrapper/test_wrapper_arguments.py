@@ -19,7 +19,7 @@ from support.wrapper_registry import GATHERED, LEFT_OUT, REGISTRY
 
 # Modules of checks, which the callables of the others go through, and of what has decks and files
 # for arguments.
-CHECKS = {"snapin.arguments", "snapin.deck", "snapin.results"}
+CHECKS = {"snapin.arguments", "snapin.convert", "snapin.deck", "snapin.results"}
 
 
 def public_callables():
@@ -52,7 +52,7 @@ def entries_of(name):
 
 
 # A plain helper that takes nothing from users, and what takes or makes decks and folders.
-HELPERS = {"bytes_for", "run", "deck_text", "lennard_jones", "exponential", "read_results"}
+HELPERS = {"bytes_for", "fit", "run", "deck_text", "lennard_jones", "exponential", "read_results"}
 
 
 @pytest.mark.parametrize(

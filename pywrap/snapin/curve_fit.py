@@ -1,0 +1,106 @@
+"""Fits of measured curves in memory."""
+
+import os
+import pathlib
+import tempfile
+import warnings
+from collections.abc import Mapping
+from typing import NamedTuple
+
+import numpy as np
+
+from .arguments import DeckError, SnapinWarning, vector
+from .deck import deck_of, deck_text
+from .experiment import run
+from .results import Result
+
+# Keys of &measurement and &fit that are arguments of `fit`.
+_OWN = ("measurement", "fit")
+
+
+class Fit(NamedTuple):
+    """The result of a fit, SI. Dictionaries have the parameters of the fit as keys."""
+
+    estimate: dict
+    standard_error: dict
+    #: The ends of the 95 % interval of each parameter.
+    interval_95: dict
+    correlation: np.ndarray
+    chi_squared: float
+    degrees_of_freedom: float
+    #: Standard deviation of the signal.
+    noise: float
+    #: What limits the result; empty where the model describes the data.
+    warnings: list
+    #: Position [m], signal as measured and by the model, and residual of each sample.
+    samples: np.ndarray
+    #: The whole result: `result.fitted` has the classical theories too.
+    result: Result
+
+
+def fit(z, force, *, spring_constant, deck, parameters, segment=None, sensitivity=None,
+        contact_point=None, branches=None, lower=None, upper=None, prior=None, noise=None):
+    """Fit numbers of a deck to a measured curve and return a `Fit`.
+
+    z: position of the base of the spring [m]; force: force [N], repulsion positive, or the signal
+    [V] if `sensitivity` [m/V] is given; segment: 0 for each sample of the approach, 1 for the
+    retreat; without it the curve is divided where z turns. deck: the scene as a dictionary of
+    groups, a text or a path, without &measurement and &fit. parameters: the unknowns, such as
+    "force.surface_energy", "bodies.stiffness", "measurement.contact_point"; lower, upper, prior:
+    one number for each. branches: "both", "approach" or "retreat". noise: standard deviation of the
+    signal, if it is known.
+
+    Samples without a finite z and force do not count. A wrong deck raises `DeckError`, a curve that
+    cannot be fitted `SnapinError` with the reason.
+    """
+    columns = [np.asarray(z, float), np.asarray(force, float)]
+    for name, column in zip(("z", "force"), columns):
+        if column.ndim != 1:
+            raise ValueError(f"{name}: one dimension is needed, not shape {column.shape}")
+    if segment is not None:
+        columns.append(vector("segment", segment))
+    if len({len(column) for column in columns}) > 1:
+        raise ValueError("z, force and segment: " + ", ".join(str(len(c)) for c in columns)
+                         + " values; the numbers must be equal")
+    with tempfile.TemporaryDirectory() as folder:
+        file = pathlib.Path(folder, "curve.csv")
+        np.savetxt(file, np.column_stack(columns), "%.17g", ",",
+                   header="z,force,segment" if segment is not None else "z,force", comments="")
+        groups = {
+            "measurement": {
+                "file": os.fspath(file),
+                "columns": ["z", "force", "segment"][:len(columns)],
+                "spring_constant": spring_constant, "sensitivity": sensitivity,
+                "contact_point": contact_point, "segment": branches},
+            "fit": {"parameters": [parameters] if isinstance(parameters, str) else list(parameters),
+                    "lower": lower, "upper": upper, "prior": prior, "noise": noise}}
+        with warnings.catch_warnings(record=True) as said:
+            warnings.simplefilter("always", SnapinWarning)
+            result = run(_with(deck, groups))
+    return _fit_of(result, [str(one.message) for one in said])
+
+
+def _with(deck, groups):
+    """Return the text of a deck and further groups."""
+    if isinstance(deck, Mapping):
+        for name in _OWN:
+            if deck.get(name) is not None:
+                raise DeckError(f"deck: &{name} is made of the arguments of fit")
+        return deck_text({**deck, **groups})
+    return deck_of(deck)[1].decode() + "\n" + deck_text(groups)
+
+
+def _fit_of(result, said):
+    found = result.fitted["fit"]
+    names = found["parameters"]
+    names = [names] if isinstance(names, str) else list(names)
+
+    def of_each(key):
+        return dict(zip(names, map(float, found[key])))
+
+    low, high = of_each("lower_95"), of_each("upper_95")
+    return Fit(
+        of_each("estimate"), of_each("standard_error"),
+        {name: (low[name], high[name]) for name in names}, found["correlation"],
+        float(found["chi_squared"][0]), float(found["degrees_of_freedom"][0]),
+        float(found["noise"][0]), said, result.tables["fit"], result)
