@@ -72,7 +72,7 @@ def test_an_approach_alone_is_an_approach():
 
 @pytest.mark.parametrize("facing", [1, -1])
 def test_a_height_of_the_tip_is_not_the_position_of_the_base(facing):
-    """Of two heights the one that moves before contact is taken; of one, the deflection is added."""
+    """Of two heights the one that moves before contact counts; to one the deflection is added."""
     base = facing * BASE
     tip = base + facing * FORCE / SPRING
     tip[facing * base > 0] = 0

@@ -1,4 +1,4 @@
-"""Fits of curves in memory: the same numbers as from a file, and what is said of wrong arguments."""
+"""Fits of curves in memory: the numbers of a file, and what is said of wrong arguments."""
 
 import numpy as np
 import pytest
