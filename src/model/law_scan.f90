@@ -208,6 +208,8 @@ contains
     through = law%step_at + law%step_width*[(0.5_wp*i, i=-16, 16)]
     ! A wide step begins at contact.
     through = pack(through, through > gap(1))
+    ! A step nearer than all gaps is part of contact.
+    if (size(through) == 0) return
     gap = [pack(gap, gap < through(1)), through, pack(gap, gap > through(size(through)))]
   end function gaps_of
 
