@@ -83,6 +83,8 @@ module result_rows
       place='max_tension', quantity=of_tension, error=judged), &
     row_t('max_tension_h0', 'm', 'h0 at the largest tension', always, &
       place='max_tension', quantity=of_h0, error=judged), &
+    row_t('max_tension_at_end', '', 'whether max_tension is that of the first or last row of a ' // &
+      'branch, and no pull-off (sweep.csv: 1 or 0)', always), &
     row_t('jump_in_h0', 'm', 'h0 at which the approaching bodies jump into contact', always, &
       place='jump_in', quantity=of_h0, error=judged), &
     row_t('jump_in_load', 'N', 'load just before the jump into contact', always, &
@@ -100,6 +102,8 @@ module result_rows
       list=.true., place='unload_max_tension', quantity=of_tension, error=judged), &
     row_t('unload_max_tension_h0', 'm', 'h0 at the largest tension of each unloading', &
       list=.true., place='unload_max_tension', quantity=of_h0, error=judged), &
+    row_t('unload_max_tension_at_end', '', 'the same for each unloading, 1 or 0', turning, &
+      list=.true.), &
     row_t('unload_jump_out_h0', 'm', 'h0 at which the bodies jump apart in each unloading', &
       turning, list=.true., place='unload_jump_out', quantity=of_h0, error=judged), &
     row_t('folds_h0', 'm', 'h0 of all folds of the path, in order', list=.true., &
