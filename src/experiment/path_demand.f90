@@ -19,8 +19,8 @@ module path_demand
   !> theory.
   real(wp), parameter :: ratio = 1.1_wp, margin = 0.1_wp
   !> Slope of the bodies at the edge of a contact above which a drive does not bring them through a
-  !> barrier: this is beyond the model.
-  real(wp), parameter :: too_steep = 1.0_wp/3
+  !> barrier: it is no longer small, and paths through such wide contacts take minutes.
+  real(wp), parameter :: too_steep = 0.1_wp
   !> Gaps at which the pressure of a barrier is evaluated, and their ratio.
   integer, parameter :: gaps = 600
   real(wp), parameter :: gap_ratio = 1.02_wp
@@ -112,8 +112,8 @@ contains
 
   contains
 
-    !> Adds a spring that yields by `softness` under the unit of load. Its base comes to z_end or, if
-    !> there is none, closer than to where the highest barrier gives way.
+    !> Adds a spring that yields by `softness` under the unit of load. Its base comes to z_end or,
+    !> if there is none, closer than to where the highest barrier gives way.
     subroutine add_spring(softness)
       real(wp), intent(in) :: softness
 

@@ -103,8 +103,8 @@ contains
       call enter_ends(branch, fresh, places)
     end subroutine run_branch
 
-    !> Notes whether the tension is largest in the first or in the last row. It cannot grow beyond if
-    !> it is level there, or where bodies touch that a repulsion does not keep apart.
+    !> Notes whether the tension is largest in the first or in the last row. It cannot grow beyond
+    !> if it is level there, or where bodies touch that a repulsion does not keep apart.
     pure subroutine judge_ends(first, last, branch)
       real(wp), intent(in) :: first, last
       type(branch_t), intent(inout) :: branch

@@ -38,8 +38,8 @@ module dimensionless_problem
   !> Bodies are in contact, as in the paper's Fig. 6, at gaps below this multiple of the gap at
   !> rest.
   real(wp), parameter :: contact_gap = 1.1_wp
-  !> Distance from the gap at rest to that of largest tension, over the range (depth of the well over
-  !> largest tension), above which the tension is as large from contact to there: 0.2 for the
+  !> Distance from the gap at rest to that of largest tension, over the range (depth of the well
+  !> over largest tension), above which the tension is as large from contact to there: 0.2 for the
   !> Lennard-Jones law, 0.35 for Morse's, 0.9 and more for a step.
   real(wp), parameter :: even = 0.5_wp
   !> Width of the neck times sigma, lateral units.

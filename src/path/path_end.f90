@@ -22,7 +22,7 @@ module path_end
   public :: demand_t, touches, outer_end, astray, collapsed
 
   !> What is read from a path: undeformed bodies fill the range from h0 = `farthest` to its start,
-  !> and at its end D = by_h0*h0 - by_load*load is at most `until`, for each element; where `closes`,
+  !> and at its end D = by_h0*h0 - by_load*load is at most `until`, for each element. If `closes`,
   !> the bodies are also in contact within all barriers, and D is below all its earlier values, so
   !> that bodies that jump anywhere on the path land on it.
   type :: demand_t

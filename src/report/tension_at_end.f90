@@ -1,5 +1,5 @@
-!> Whether the largest tension is a pull-off. If it is that of the first or the last row of a branch,
-!> the tension may grow beyond this row, and the number depends on where the branch ends.
+!> Whether the largest tension is a pull-off. If it is that of the first or last row of a branch,
+!> tension may grow beyond this row, and the number depends on where the branch ends.
 module tension_at_end
   use kinds, only: wp, nan
   use text, only: brief, rounded
@@ -61,7 +61,8 @@ contains
       type(branch_t), intent(in) :: branch
 
       if (.not. (branch%lowest_first .or. branch%lowest_last)) return
-      if (branch%lowest%at(of_load) > largest%at(of_load)) return
+      ! The same state is solved twice at a turn.
+      if (abs(branch%lowest%at(of_h0) - largest%at(of_h0)) > 0) return
       if (branch%lowest_first) then
         call tell(name, .true., at_first, branch%ending%early())
       else
