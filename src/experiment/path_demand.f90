@@ -29,12 +29,13 @@ module path_demand
 
 contains
 
-  !> The h0 [m] at which the shown path starts: beyond any contact, or the deck's value.
+  !> The h0 [m] at which the shown path starts: beyond any contact and any largest tension, or the
+  !> deck's value.
   real(wp) function path_start(request, problem) result(start)
     class(request_t), intent(in) :: request
     type(problem_t), intent(in) :: problem
 
-    start = problem%law%separation_of(beyond_contact(problem))
+    start = problem%law%separation_of(beyond_pull(problem, beyond_contact(problem)))
     if (.not. allocated(request%path)) return
     if (allocated(request%path%h0_start)) then
       start = request%path%h0_start
@@ -42,6 +43,25 @@ contains
       start = max(start, maxval(request%profile_h0))
     end if
   end function path_start
+
+  !> An h0 beyond another one, and beyond the largest tension of undeformed bodies that are as far
+  !> apart: over a barrier bodies may pull most far outside contact.
+  pure real(wp) function beyond_pull(problem, from) result(h0)
+    type(problem_t), intent(in) :: problem
+    real(wp), intent(in) :: from
+    real(wp) :: most, load
+    integer :: k
+
+    h0 = from
+    if (.not. problem%law%adhesion > 0) return
+    most = load_undeformed(problem, from)
+    do k = 1, tried
+      load = load_undeformed(problem, from*ratio**k)
+      if (.not. load < min(most, 0.0_wp)) cycle
+      most = load
+      h0 = from*ratio**(k + 1)
+    end do
+  end function beyond_pull
 
   !> The range of H0 of a scene that must be traced, in the law's lengths.
   subroutine range_of(request, problem, low, high)
