@@ -82,9 +82,18 @@ class Curve:
         dress(panel, f"{name} [{self.lengths[x][1]}]", f"load [{self.loads[1]}]")
         for branch in self.branches:
             branch.draw(panel, x, length, load)
+        self._draw_open_end(panel, x, length, load)
         if self.theories:
             _draw_theories(panel, self.theories, x, length, load)
         _frame(panel, self.table, self.theories, x, length, load)
+
+    def _draw_open_end(self, panel, x, length, load):
+        """Mark the largest tension where it is that of a first or last row, and no pull-off."""
+        if self.summary.get("max_tension_at_end"):
+            row = np.argmin(self.table["load"])
+            panel.plot(self.table[x][row] / length, self.table["load"][row] / load, "o",
+                       color=GREY, markersize=9, fillstyle="none", zorder=8,
+                       label="tension largest at an end: no pull-off")
 
     def draw_arrows(self, panel, x):
         """Draw the arrows of jumps and directions; the panel must have its final size."""

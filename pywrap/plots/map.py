@@ -8,7 +8,8 @@
 Without `--over` the axes are the keys of the sweep. Any column of sweep.csv may be an axis, the
 value, or the divisor of the value (`--per`). Over one key there is a curve for every value of the
 other keys. `--where KEY=VALUE` keeps the cases nearest to a value of a key. Failed cases are
-crosses; cases without the value are dots.
+crosses; cases without the value are dots. Where a largest tension is that of the first or last row
+of a branch, it is no pull-off: such cases are open circles, outside colours and curves.
 """
 
 import itertools
@@ -26,6 +27,10 @@ from matplotlib.tri import Triangulation
 from snapin.results import ResultsError, read_summary, read_table
 
 _COLOURS = (BLUE, VERMILION, GREEN, ORANGE, PURPLE, SKY, BLACK)
+# Cases whose largest tension is that of an end of a branch.
+_NO_PULL_OFF = {"color": GREY, "marker": "o", "markersize": 4, "fillstyle": "none",
+                "linestyle": "none",
+                "label": "tension largest in the first or last row: no pull-off"}
 # Values with a larger ratio of the largest to the smallest are shown on a logarithmic scale.
 _DECADES = 30.0
 # With more values of the second column a map is drawn, not curves; as many curves have labels.
@@ -54,10 +59,12 @@ def draw_map(folder, value="max_tension", per=None, over=None, where=()):
     units = _units(folder)
     label = _label(value, units) if not per else f"{_words(value)} over {_words(per)}"
     failed = columns["converged"] != 1
-    good = np.isfinite(shown) & ~failed
+    at_end = np.isfinite(shown) & ~failed & _at_end(columns, [value, per, *over])
+    good = np.isfinite(shown) & ~failed & ~at_end
     if not good.any():
-        raise ResultsError(f"{folder}/sweep.csv: no case has " + " and ".join(
-            f"the column {name!r}" for name in (value, per) if name))
+        names = " and ".join(f"the column {name!r}" for name in (value, per) if name)
+        why = "; tensions are largest in first or last rows, and no pull-offs" * int(at_end.any())
+        raise ResultsError(f"{folder}/sweep.csv: no case has {names}{why}")
     others = [name for name in keys
               if {*over} <= {*keys} and name not in over and len(np.unique(columns[name])) > 1]
     if len(over) == 2 and (_has_words(columns[over[1]])
@@ -67,21 +74,32 @@ def draw_map(folder, value="max_tension", per=None, over=None, where=()):
     axes = figure.subplots()
     if len(over) == 1:
         _draw_curves(axes, columns[over[0]], shown, good, [columns[name] for name in others],
-                     joined=over[0] in keys)
-        if others:
-            axes.legend(title=", ".join(_label(name, units) for name in others), frameon=False,
-                        fontsize="small")
+                     joined=over[0] in keys, at_end=at_end)
+        if others or at_end.any():
+            axes.legend(title=", ".join(_label(name, units) for name in others) or None,
+                        frameon=False, fontsize="small")
     elif others:
         raise ResultsError(f"{', '.join(others)} was swept too: choose with --where "
                            f"{others[0]}=VALUE")
     else:
         varied = [columns[name] for name in keys if len(np.unique(columns[name])) > 1]
         _draw_colours(figure, axes, [columns[name] for name in over], varied, shown, good, failed,
-                      label)
+                      at_end, label)
         label = _label(over[1], units)
     axes.set(xlabel=_label(over[0], units), ylabel=label)
     entitle(figure, title_of(folder, read_summary(folder)))
     return figure
+
+
+def _at_end(columns, names):
+    """Return in which cases one of the columns `names` is a largest tension, or its h0, that is of
+    the first or last row of a branch."""
+    found = np.zeros(len(columns["converged"]), bool)
+    for name in filter(None, names):
+        said = re.sub(r"^((?:unload_)?max_tension)(?:_h0)?(_\d+)?$", r"\1_at_end\2", name)
+        if said != name and said in columns:
+            found |= columns[said] == 1
+    return found
 
 
 def _has_words(column):
@@ -109,7 +127,7 @@ def _chosen(columns, keys, where):
     return columns
 
 
-def _draw_colours(figure, axes, places, keys, values, good, failed, label):
+def _draw_colours(figure, axes, places, keys, values, good, failed, at_end, label):
     """Draw values over two columns: colours, contours, and marks of cases without a value."""
     x, y = (_as_drawn(place, axis) for place, axis in zip(places, (axes.xaxis, axes.yaxis)))
     there = np.isfinite(x) & np.isfinite(y)
@@ -117,7 +135,8 @@ def _draw_colours(figure, axes, places, keys, values, good, failed, label):
     triangles = _triangles(x / (np.ptp(x) or 1.0), y / (np.ptp(y) or 1.0), there, keys)
     # A triangle with a corner without value or place is left out.
     mesh = Triangulation(x, y, triangles, mask=~(good & there)[triangles].all(axis=1))
-    good, failed, nothing = good & there, failed & there, there & ~good & ~failed
+    good, failed, at_end = good & there, failed & there, at_end & there
+    nothing = there & ~good & ~failed & ~at_end
     low, high = values[good].min(), values[good].max()
     norm = LogNorm() if _wide(values[good]) else None
     filled = np.where(good, values, low)
@@ -130,6 +149,9 @@ def _draw_colours(figure, axes, places, keys, values, good, failed, label):
         bar.add_lines(axes.tricontour(mesh, filled, levels=levels, colors="white", linewidths=0.7))
     axes.plot(x[failed], y[failed], "x", color=VERMILION, markersize=4)
     axes.plot(x[nothing], y[nothing], ".", color=GREY, markersize=2)
+    if at_end.any():
+        axes.plot(x[at_end], y[at_end], **_NO_PULL_OFF)
+        figure.legend(loc="outside lower center", frameon=False, fontsize="small")
 
 
 def _triangles(x, y, there, keys):
@@ -163,7 +185,7 @@ def _as_drawn(place, axis):
     return np.log10(np.where(place > 0, place, np.nan))
 
 
-def _draw_curves(axes, x, values, good, others, *, joined):
+def _draw_curves(axes, x, values, good, others, *, joined, at_end):
     """Draw values over one column, one curve for each combination of values of the others; if not
     `joined`, only the cases."""
     of_each = sorted(set(zip(*others))) or [()]
@@ -179,7 +201,9 @@ def _draw_curves(axes, x, values, good, others, *, joined):
                   color=_COLOURS[i] if few else colormaps["viridis"](i / (len(of_each) - 1)),
                   label=", ".join(word if isinstance(word, str) else f"{word:.3g}" for word in one)
                   if i in named else None)
-    for place in np.unique(x[~good]):
+    if at_end.any():
+        axes.plot(x[at_end], values[at_end], **_NO_PULL_OFF)
+    for place in np.unique(x[~good & ~at_end]):
         axes.axvline(place, color=GREY, linewidth=0.5, linestyle=":")
     axes.set(xscale="log" if _wide(x) else "linear",
              yscale="log" if _wide(values[good]) else "linear")

@@ -21,8 +21,8 @@ module numerics_choice
     'uniform', 'panels']
 
   type :: choice_t
-    !> The range of H0 of the experiment, law's lengths.
-    real(wp) :: low = 0, high = 0
+    !> The range of H0 of the experiment, and where its path ends, law's lengths.
+    real(wp) :: low = 0, high = 0, ends_at = 0
     integer :: grid = unchosen
     !> The name of the iteration in results, and the reason for the grid.
     character(len=:), allocatable :: method, because
@@ -55,6 +55,8 @@ contains
     type(numerics_t) :: numerics
 
     call range_of(request, problem, chosen%low, chosen%high)
+    chosen%ends_at = chosen%low
+    if (allocated(request%path)) chosen%ends_at = problem%law%gap_of(request%path%h0_end)
     if (problem%rigid) then
       chosen%grid = no_grid
       chosen%method = 'integral'

@@ -3,9 +3,12 @@
 !> between these for a smooth curve.
 module path
   use kinds, only: wp
+  use force_law, only: of_pressure
+  use contact_state, only: state_t
   use traced_path, only: traced_path_t
   use ending, only: ending_t, state_lost
   use path_tangent, only: of_h0
+  use path_end, only: outer_end
   use driven_pieces, only: drive_t, piece_with
   use known_path, only: known_path_t, interval_at
   use path_stepper, only: path_stepper_t
@@ -25,6 +28,9 @@ module path
     !> Largest tension, which is the pull-off at controlled load; the first state; the last state,
     !> if it is stable.
     type(place_t), allocatable :: lowest, start, finish
+    !> The least h0 below the end at which the bodies are stable outside a barrier; the end if the
+    !> path does not go there.
+    real(wp) :: deepest_outside = 0
     !> The stable pieces on which the path begins and ends; 0 if it is unstable there.
     integer :: first_piece = 0, last_piece = 0
     type(quality_t) :: quality
@@ -54,11 +60,12 @@ contains
     logical :: ends_between
 
     allocate (path%unstable_after(0))
+    path%deepest_outside = h0_end
     path%fallen = steps%known%fallen
     if (.not. path%fallen) path%ending = steps%known%ending
     first = steps%known%path%undeformed + 1
     if (present(h0_start)) first = first_crossing(steps%known%path, h0_start)
-    call find_end(steps%known, h0_end, last, ends_between)
+    call find_end(steps, h0_end, last, ends_between)
     if (last < first) return
     widest = steps%known%path%point(last)%state%scale
     do i = first, last
@@ -154,6 +161,7 @@ contains
         if (.not. path%ending%early()) path%ending%cause = state_lost
         return
       end if
+      if (row%modes == 0) call look_outside(row%state)
       if (row%for_curve) return
       reported = place_of_row(steps, row)
       if (row%profile) call places%add('profiles', reported)
@@ -178,24 +186,40 @@ contains
       end associate
     end subroutine take
 
+    !> Notes how far the path goes below its end while a barrier keeps the bodies apart.
+    subroutine look_outside(state)
+      type(state_t), intent(in) :: state
+
+      associate (law => steps%problem%law)
+        if (.not. (state%h0 < path%deepest_outside .and. law%rest_gap > 0 .and. &
+          state%axis_gap > law%edge_gap)) return
+        if (law%at(of_pressure, state%axis_gap) > 0) path%deepest_outside = state%h0
+      end associate
+    end subroutine look_outside
+
   end subroutine follow_path
 
-  !> The last point before the innermost stable equilibrium at h0_end; ends_between: the end is
+  !> The last point before the stable contact at h0_end (`path_end`); ends_between: the end is
   !> between this point and the next one.
-  pure subroutine find_end(known, h0_end, last, ends_between)
-    type(known_path_t), intent(in) :: known
+  subroutine find_end(steps, h0_end, last, ends_between)
+    class(path_stepper_t), intent(inout) :: steps
     real(wp), intent(in) :: h0_end
     integer, intent(out) :: last
     logical, intent(out) :: ends_between
     integer :: k
 
-    last = known%path%held
-    k = piece_with(known%piece, drive_t(of_h0), h0_end, size(known%piece) + 1, .false.)
-    ends_between = k > 0 .and. .not. known%ending%early()
-    if (ends_between) last = interval_at(known, k, h0_end)
+    associate (known => steps%known)
+      last = outer_end(steps%solver_t, known%path, h0_end)
+      ends_between = last > 0
+      if (ends_between) return
+      last = known%path%held
+      k = piece_with(known%piece, drive_t(of_h0), h0_end, size(known%piece) + 1, .false.)
+      ends_between = k > 0 .and. .not. known%ending%early()
+      if (ends_between) last = interval_at(known, k, h0_end)
+    end associate
   end subroutine find_end
 
-  !> The innermost stable equilibrium at h0_end as a place; found: it is on the path.
+  !> The end of the path at h0_end as a place; found: it is on the path.
   subroutine find_finish(steps, h0_end, finish, found)
     class(path_stepper_t), intent(inout) :: steps
     real(wp), intent(in) :: h0_end
@@ -204,7 +228,7 @@ contains
     type(row_t) :: row
     integer :: last
 
-    call find_end(steps%known, h0_end, last, found)
+    call find_end(steps, h0_end, last, found)
     if (.not. found) return
     row = row_at_h0(steps, last, h0_end)
     found = row%converged

@@ -18,17 +18,24 @@ module path_demand
   !> Ratio of successive trial radii of the contact; and margin for the error of an h0 of JKR
   !> theory.
   real(wp), parameter :: ratio = 1.1_wp, margin = 0.1_wp
+  !> Slope of the bodies at the edge of a contact above which a drive does not bring them through a
+  !> barrier: it is no longer small, and paths through such wide contacts take minutes.
+  real(wp), parameter :: too_steep = 0.1_wp
+  !> Gaps at which the pressure of a barrier is evaluated, and their ratio.
+  integer, parameter :: gaps = 600
+  real(wp), parameter :: gap_ratio = 1.02_wp
   !> Number of h0 at which the tension of rigid bodies is evaluated.
   integer, parameter :: tried = 100
 
 contains
 
-  !> The h0 [m] at which the shown path starts: beyond any contact, or the deck's value.
+  !> The h0 [m] at which the shown path starts: beyond any contact and any largest tension, or the
+  !> deck's value.
   real(wp) function path_start(request, problem) result(start)
     class(request_t), intent(in) :: request
     type(problem_t), intent(in) :: problem
 
-    start = problem%law%separation_of(beyond_contact(problem))
+    start = problem%law%separation_of(beyond_pull(problem, beyond_contact(problem)))
     if (.not. allocated(request%path)) return
     if (allocated(request%path%h0_start)) then
       start = request%path%h0_start
@@ -36,6 +43,25 @@ contains
       start = max(start, maxval(request%profile_h0))
     end if
   end function path_start
+
+  !> An h0 beyond another one, and beyond the largest tension of undeformed bodies that are as far
+  !> apart: over a barrier bodies may pull most far outside contact.
+  pure real(wp) function beyond_pull(problem, from) result(h0)
+    type(problem_t), intent(in) :: problem
+    real(wp), intent(in) :: from
+    real(wp) :: most, load
+    integer :: k
+
+    h0 = from
+    if (.not. problem%law%adhesion > 0) return
+    most = load_undeformed(problem, from)
+    do k = 1, tried
+      load = load_undeformed(problem, from*ratio**k)
+      if (.not. load < min(most, 0.0_wp)) cycle
+      most = load
+      h0 = from*ratio**(k + 1)
+    end do
+  end function beyond_pull
 
   !> The range of H0 of a scene that must be traced, in the law's lengths.
   subroutine range_of(request, problem, low, high)
@@ -77,43 +103,55 @@ contains
   type(demand_t) function demand_of(request, problem) result(demand)
     class(request_t), intent(in) :: request
     type(problem_t), intent(in) :: problem
-    real(wp) :: softness, until
+    real(wp) :: h0_behind, load_before
+    logical :: closes
     integer :: i
 
     demand%farthest = farthest_wanted(request, problem)
     demand%by_h0 = [real(wp) ::]
     demand%by_load = [real(wp) ::]
     demand%until = [real(wp) ::]
+    demand%closes = [logical ::]
     if (allocated(request%fixed_loads)) then
       do i = 1, size(request%fixed_loads)
-        call add(0.0_wp, 1.0_wp, -max(request%fixed_loads(i)/problem%load, 0.0_wp))
+        call add(0.0_wp, 1.0_wp, -max(request%fixed_loads(i)/problem%load, 0.0_wp), .false.)
       end do
     end if
     if (.not. allocated(request%device)) return
+    call pass_barrier(problem, h0_behind, load_before, closes)
     associate (device => request%device)
-      if (allocated(device%z_end) .and. size(device%stiffness) == 0) &
-        call add(1.0_wp, 0.0_wp, problem%law%gap_of(device%z_end))
+      if (size(device%stiffness) == 0) call add_spring(0.0_wp)
       do i = 1, size(device%stiffness)
         if (device%stiffness(i) > 0) then
-          ! The drive comes at least this close, behind the highest barrier.
-          softness = problem%load/(device%stiffness(i)*problem%length)
-          until = 1 - softness*barrier_load(problem)
-          if (allocated(device%z_end)) until = min(until, problem%law%gap_of(device%z_end))
-          call add(1.0_wp, softness, until)
-        else
-          call add(0.0_wp, 1.0_wp, -barrier_load(problem))
+          call add_spring(problem%load/(device%stiffness(i)*problem%length))
+        else if (closes) then
+          call add(0.0_wp, 1.0_wp, -load_before, .true.)
         end if
       end do
     end associate
 
   contains
 
-    subroutine add(by_h0, by_load, until)
+    !> Adds a spring that yields by `softness` under the unit of load. Its base comes to z_end or,
+    !> if there is none, closer than to where the highest barrier gives way.
+    subroutine add_spring(softness)
+      real(wp), intent(in) :: softness
+
+      if (allocated(request%device%z_end)) then
+        call add(1.0_wp, softness, problem%law%gap_of(request%device%z_end), .false.)
+      else if (closes) then
+        call add(1.0_wp, softness, h0_behind - softness*load_before, .true.)
+      end if
+    end subroutine add_spring
+
+    subroutine add(by_h0, by_load, until, closes)
       real(wp), intent(in) :: by_h0, by_load, until
+      logical, intent(in) :: closes
 
       demand%by_h0 = [demand%by_h0, by_h0]
       demand%by_load = [demand%by_load, by_load]
       demand%until = [demand%until, until]
+      demand%closes = [demand%closes, closes]
     end subroutine add
 
   end function demand_of
@@ -155,6 +193,38 @@ contains
       gap = ratio*gap
     end do
   end function gap_of_load
+
+  !> Estimates of the h0 and the load at which the highest barrier outside contact gives way: under
+  !> undeformed bodies, or where the pressure on the axis of a Hertz contact is that of the barrier.
+  !> passed: the second contact is within the model.
+  pure subroutine pass_barrier(problem, h0, load, passed)
+    type(problem_t), intent(in) :: problem
+    real(wp), intent(out) :: h0, load
+    logical, intent(out) :: passed
+    real(wp) :: pressure, hertz, from, c
+    integer :: k
+
+    h0 = 1
+    load = barrier_load(problem)
+    passed = .true.
+    if (problem%rigid) return
+    from = max(problem%law%edge_gap, problem%law%rest_gap)
+    if (.not. from > 0) return
+    pressure = maxval(problem%law%pressure(from*gap_ratio**[(k, k=1, gaps)]))
+    if (.not. pressure > 0) return
+    c = 1/ratio**60
+    do k = 1, 400
+      passed = problem%shape%slope(c)*problem%length/problem%lateral < too_steep
+      hertz = problem%shape%indentation_load(c)/coupling_over(problem, c)
+      if (.not. passed) exit
+      if (1.5_wp*hertz > pi*c**2*pressure) exit
+      c = ratio*c
+    end do
+    ! The pressure under a cone does not grow with the contact.
+    if (.not. passed .or. k > 400) return
+    h0 = min(h0, 1 - problem%shape%indentation(c))
+    load = max(load, hertz)
+  end subroutine pass_barrier
 
   !> The largest repulsion between undeformed bodies outside the contact; 0 if there is none.
   pure real(wp) function barrier_load(problem) result(load)

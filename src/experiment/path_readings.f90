@@ -13,6 +13,7 @@ module path_readings
   use records, only: quality_t
   use device, only: driven_t, states_on, drive_bodies
   use path_stepper, only: path_stepper_t
+  use path_end, only: outer_end
   implicit none
   private
   public :: path_readings_t, loaded_state_t, read_path
@@ -67,15 +68,25 @@ contains
       if (allocated(request%device)) call run_device()
       if (allocated(request%fixed_loads)) call find_loaded(request%fixed_loads/ &
         steps%problem%load)
-      if (request%table) then
-        allocate (readings%prescribed)
-        call drive_between(drive_t(), readings%prescribed)
-        readings%solved = readings%solved .and. readings%prescribed%solved
-      end if
+      if (request%table) call make_table()
     end associate
     if (allocated(readings%loaded)) steps%cost%states = steps%cost%states + size(readings%loaded)
 
   contains
+
+    !> &table: moves bodies at prescribed h0 to the end of the path; springs may need more of it.
+    subroutine make_table()
+      integer :: whole, last
+
+      whole = steps%known%path%last
+      last = outer_end(steps%solver_t, steps%known%path, steps%problem%law%gap_of( &
+        request%path%h0_end))
+      if (last > 0) steps%known%path%last = last + 1
+      allocate (readings%prescribed)
+      call drive_between(drive_t(), readings%prescribed)
+      readings%solved = readings%solved .and. readings%prescribed%solved
+      steps%known%path%last = whole
+    end subroutine make_table
 
     !> &fixed_load: finds all equilibria under each load.
     subroutine find_loaded(load)

@@ -53,9 +53,9 @@ module path_stepper
 contains
 
   !> Traces the path from chosen%high, or from where the bodies hardly deform, until it is stable at
-  !> chosen%low; into_contact: until the bodies are also in contact; accuracy, demand: see `trace`;
-  !> with `demand` the points define a smooth curve. To be called before the first step. The
-  !> listener receives messages about the progress.
+  !> chosen%low; into_contact: until the bodies are also in contact, at chosen%ends_at; accuracy,
+  !> demand: see `trace`; with `demand` the points define a smooth curve. To be called before the
+  !> first step. The listener receives messages about the progress.
   subroutine know_path(self, chosen, into_contact, accuracy, listener, demand)
     class(path_stepper_t), intent(inout) :: self
     type(choice_t), intent(in) :: chosen
@@ -72,7 +72,7 @@ contains
     call self%begin_afar(chosen%high, position, event)
     if (.not. event%ending%early()) then
       call trace(self%solver_t, position%state, chosen%low, into_contact, accuracy, listener, &
-        self%known, demand)
+        self%known, demand, chosen%ends_at)
       call know_pieces(self%solver_t, self%known)
     else
       self%known%ending = event%ending

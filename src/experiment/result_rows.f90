@@ -46,7 +46,8 @@ module result_rows
     row_t('converged', '', &
       'whether every equilibrium was solved to the tolerance (sweep.csv: 1 or 0)', always), &
     row_t('sigma', '', 'strength of adhesion, (40) of the paper', always), &
-    row_t('tabor', '', 'Tabor''s parameter, (4 sigma^2)^(1/3)', always), &
+    row_t('tabor', '', 'Tabor''s parameter, (4 sigma^2)^(1/3); of a step beside a z0 with the ' // &
+      'range of the step', always), &
     row_t('big_lambda', '', &
       'strength of exponential repulsion, (39) of the paper at h0 = 0', always), &
     row_t('top_modulus', 'Pa', 'with &layer: E* of half-spaces of the top layers', layer), &
@@ -83,6 +84,8 @@ module result_rows
       place='max_tension', quantity=of_tension, error=judged), &
     row_t('max_tension_h0', 'm', 'h0 at the largest tension', always, &
       place='max_tension', quantity=of_h0, error=judged), &
+    row_t('max_tension_at_end', '', 'whether max_tension is that of the first or last row of ' // &
+      'a branch, and no pull-off (sweep.csv: 1 or 0)', always), &
     row_t('jump_in_h0', 'm', 'h0 at which the approaching bodies jump into contact', always, &
       place='jump_in', quantity=of_h0, error=judged), &
     row_t('jump_in_load', 'N', 'load just before the jump into contact', always, &
@@ -100,6 +103,8 @@ module result_rows
       list=.true., place='unload_max_tension', quantity=of_tension, error=judged), &
     row_t('unload_max_tension_h0', 'm', 'h0 at the largest tension of each unloading', &
       list=.true., place='unload_max_tension', quantity=of_h0, error=judged), &
+    row_t('unload_max_tension_at_end', '', 'the same for each unloading, 1 or 0', turning, &
+      list=.true.), &
     row_t('unload_jump_out_h0', 'm', 'h0 at which the bodies jump apart in each unloading', &
       turning, list=.true., place='unload_jump_out', quantity=of_h0, error=judged), &
     row_t('folds_h0', 'm', 'h0 of all folds of the path, in order', list=.true., &
@@ -159,7 +164,7 @@ module result_rows
     row_t('table_load_error', 'N', 'largest estimated error of a load in table.csv', table), &
     row_t('table_interpolation_error', 'N', 'largest error of a load between the rows, by ' // &
       'cubic polynomials with their slopes', table), &
-    row_t('regime_tabor', '', 'Tabor''s parameter with the length of the law', regime), &
+    row_t('regime_tabor', '', 'the same as tabor', regime), &
     row_t('regime_tabor_range', '', &
       'Tabor''s parameter with the range, surface energy over largest tension', regime), &
     row_t('regime_maugis_lambda', '', 'Maugis'' parameter', regime), &

@@ -17,7 +17,7 @@ module rigid_bodies
   use records, only: observer_t, record_t, stable_yes, stable_unasked
   use experiment_request, only: request_t
   use experiment_result, only: experiment_result_t
-  use stepped_branch, only: branch_t, h0_schedule_t, enter_ends
+  use stepped_branch, only: branch_t, h0_schedule_t, compare_ends, enter_ends
   use h0_schedule, only: path_plan, loading_plan, unloading_plan
   use clock, only: seconds
   implicit none
@@ -99,8 +99,24 @@ contains
       if (branch%states == 0) return
       branch%finish = place_at(plan%h0(branch%states))
       call find_largest_tension(plan%h0(:branch%states), load(:branch%states), branch)
+      call judge_ends(plan%h0(1), plan%h0(branch%states), branch)
       call enter_ends(branch, fresh, places)
     end subroutine run_branch
+
+    !> Notes whether the tension is largest in the first or in the last row. It cannot grow beyond
+    !> if it is level there, or where bodies touch that a repulsion does not keep apart.
+    pure subroutine judge_ends(first, last, branch)
+      real(wp), intent(in) :: first, last
+      type(branch_t), intent(inout) :: branch
+      type(measured_t) :: slope
+      logical :: touches
+
+      if (.not. allocated(branch%lowest)) return
+      slope = measured_slope(problem, branch%lowest%at(of_h0))
+      touches = .not. problem%law%rest_gap > 0 .and. (branch%ending%early() .or. &
+        branch%lowest%at(of_h0) <= max(problem%law%gap_of(0.0_wp), problem%law%smallest_gap))
+      if (abs(slope%value) > slope%error .and. .not. touches) call compare_ends(branch, first, last)
+    end subroutine judge_ends
 
     !> Gives step i of a branch to the observer, with positions if its profile is requested.
     subroutine show(plan, i, load)

@@ -6,12 +6,13 @@ module stepped_branch
   use stepper, only: stepper_t, branch_point_t, step_result_t
   use ending, only: ending_t
   use tension_search, only: tension_search_t
-  use reported_place, only: place_t, place_of_state, place_without_state, point_of_path, of_load
+  use reported_place, only: place_t, place_of_state, place_without_state, point_of_path, &
+    of_h0, of_load
   use places, only: places_t
   use records, only: observer_t, record_t, quality_t, record_of, stable_yes, stable_unasked
   implicit none
   private
-  public :: h0_schedule_t, branch_t, run_branch, enter_ends
+  public :: h0_schedule_t, branch_t, run_branch, compare_ends, enter_ends
 
   !> The values of h0 of a branch, and those with a profile; in the law's lengths.
   type :: h0_schedule_t
@@ -25,8 +26,10 @@ module stepped_branch
   !> The results of a branch, in the units of `dimensionless_problem`. A component that is not
   !> allocated does not exist.
   type :: branch_t
-    !> Largest tension (a negative load).
+    !> Largest tension (a negative load), and whether it is that of the first or of the last row,
+    !> beyond which the tension may grow.
     type(place_t), allocatable :: lowest
+    logical :: lowest_first = .false., lowest_last = .false.
     !> The first jump: h0 and the load just before it; and the uncertainty of h0 if the path is not
     !> known.
     type(place_t), allocatable :: jump
@@ -63,10 +66,11 @@ contains
     type(branch_point_t) :: previous, last
     type(step_result_t) :: event
     type(record_t) :: record
-    real(wp) :: last_h0
+    real(wp) :: last_h0, ends(2)
     integer, allocatable :: place(:)
     integer :: i, k
 
+    ends = huge(ends)
     allocate (place(0))
     if (present(keep)) place = [(minloc(abs(plan%h0 - keep(k)), 1), k=1, size(keep))]
     last_h0 = plan%h0(1)
@@ -99,6 +103,8 @@ contains
         call last%state%become(position%state)
         last%mesh = position%mesh
         branch%last_piece = position%piece
+        ends(2) = position%state%h0
+        if (.not. ends(1) < huge(ends)) ends(1) = ends(2)
         if (plan%profile(i)) call places%add('profiles', place_of_state(last%mesh, last%state))
         if (position%piece == 0 .and. any(i == [1, (1 + size(plan%h0))/2])) &
           call places%add('samples', place_of_state(last%mesh, last%state))
@@ -116,6 +122,7 @@ contains
       branch%lowest = search%lowest
       branch%lowest%searched = .true.
     end if
+    call compare_ends(branch, ends(1), ends(2))
     call enter_ends(branch, fresh, places)
 
   contains
@@ -156,6 +163,19 @@ contains
     end subroutine lower
 
   end subroutine run_branch
+
+  !> Compares the place of the largest tension with the h0 of the first and of the last row. An
+  !> extremum, a fold and a landing are points of the path.
+  pure subroutine compare_ends(branch, first, last)
+    type(branch_t), intent(inout) :: branch
+    real(wp), intent(in) :: first, last
+
+    if (.not. allocated(branch%lowest)) return
+    if (branch%lowest%point > 0) return
+    branch%lowest_last = abs(branch%lowest%at(of_h0) - last) <= 0
+    branch%lowest_first = .not. branch%lowest_last .and. &
+      abs(branch%lowest%at(of_h0) - first) <= 0
+  end subroutine compare_ends
 
   !> Enters the largest tension and the last state of a branch; fresh: of a new experiment.
   subroutine enter_ends(branch, fresh, places)

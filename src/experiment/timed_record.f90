@@ -44,6 +44,9 @@ module timed_record
     real(wp) :: lost_at = 0
     !> Whether the tension is largest at the end of the drive.
     logical :: still_held = .false.
+    !> Estimated relative change of the largest tension by the deformation of the bodies at their
+    !> start (`frozen_start`).
+    real(wp) :: of_start = 0
   end type timed_result_t
 
   !> The progress of a pass: number of rows, the last three loads, the present way and the time [s]

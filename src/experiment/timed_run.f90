@@ -22,6 +22,7 @@ module timed_run
   use material, only: new_material
   use solver_options, only: tightened
   use drainage, only: farthest_pole
+  use frozen_start, only: effect_of_start
   use timed_pass, only: go_through
   use timed_record, only: timed_result_t, pass_t, most_steps, of_tension, of_end_load, &
     of_dissipation, of_suction, of_work
@@ -115,6 +116,8 @@ contains
     steps%cost%states = now%held
     steps%cost%solve_seconds = seconds() - began
     cost = steps%cost
+    if (.not. result%lost .and. problem%law%adhesion > 0) &
+      result%of_start = effect_of_start(steps, blank%drive%position(0), now%row(:now%held))
 
   contains
 

@@ -14,7 +14,7 @@ module dimensionless_problem
   implicit none
   private
   public :: problem_t, new_problem, neck_width, spacing_over_neck, tabor_parameter, &
-    adhesion_strength, coupling_over, surface_energy, largest_tension, calm_gap, &
+    adhesion_strength, coupling_over, surface_energy, largest_tension, tension_is_even, calm_gap, &
     yielding_gap, contact_level_of
 
   type :: problem_t
@@ -38,6 +38,10 @@ module dimensionless_problem
   !> Bodies are in contact, as in the paper's Fig. 6, at gaps below this multiple of the gap at
   !> rest.
   real(wp), parameter :: contact_gap = 1.1_wp
+  !> Distance from the gap at rest to that of largest tension, over the range (depth of the well
+  !> over largest tension), above which the tension is as large from contact to there: 0.2 for the
+  !> Lennard-Jones law, 0.35 for Morse's, 0.9 and more for a step.
+  real(wp), parameter :: even = 0.5_wp
   !> Width of the neck times sigma, lateral units.
   real(wp), parameter :: neck = 0.375_wp
 
@@ -116,7 +120,8 @@ contains
   end function spacing_over_neck
 
   !> Tabor's parameter (R gamma^2/(E*^2 L^3))^(1/3) = (4 sigma^2)^(1/3); for a gap B r^n it is
-  !> ((gamma/E*)^n/(2 B L^(2n-1)))^(1/(2n-1)) = (2 sigma)^(n/(2n-1)). 0 without adhesion.
+  !> ((gamma/E*)^n/(2 B L^(2n-1)))^(1/(2n-1)) = (2 sigma)^(n/(2n-1)). 0 without adhesion. Where the
+  !> tension is even, L is its range, even if a repulsion gives the law another length.
   pure real(wp) function tabor_parameter(problem)
     type(problem_t), intent(in) :: problem
 
@@ -127,7 +132,25 @@ contains
         tabor_parameter = (4*sigma**2)**(1.0_wp/3)
       end if
     end associate
+    if (tension_is_even(problem)) tabor_parameter = tabor_parameter/range_of(problem)
   end function tabor_parameter
+
+  !> The depth of the well of contact over the largest tension, law's lengths.
+  pure real(wp) function range_of(problem)
+    type(problem_t), intent(in) :: problem
+
+    range_of = problem%law%adhesion/(-problem%law%at(of_pressure, problem%law%edge_gap))
+  end function range_of
+
+  !> Whether the tension is about as large from contact to a far gap, as under a step. Then it is
+  !> largest at this gap, outside the contact of the theories.
+  pure logical function tension_is_even(problem)
+    type(problem_t), intent(in) :: problem
+
+    tension_is_even = problem%law%edge_gap > 0 .and. problem%law%rest_gap > 0
+    if (tension_is_even) tension_is_even = problem%law%edge_gap - problem%law%rest_gap > &
+      even*range_of(problem)
+  end function tension_is_even
 
   !> A gap beyond which bodies hardly deform: twice the gap at which parabolas jump into contact
   !> under an r^-3 attraction, (37). For any shape and attractive law, the deformation there is

@@ -1,47 +1,141 @@
 !> Where a path ends: what is read from it decides how far it goes; it is given up where the contact
 !> is larger than any, and has no further states where bodies collapse.
+!>
+!> A path for a contact at a given h0 ends there in the innermost stable state, within all barriers.
+!> Soft bodies may already be in contact outside a barrier: they repel each other at gaps beyond the
+!> well of contact, and deform instead of coming nearer. The path ends in such an outer contact if
+!> it is stable at this h0. Only the law and the path decide this, not the meshes of the path.
 module path_end
   use kinds, only: wp
+  use interpolation, only: hermite_t
   use dimensionless_problem, only: problem_t
+  use force_law, only: force_law_t, of_slope
   use contact_state, only: state_t
   use equilibrium, only: equations_t
+  use solver, only: solver_t
+  use path_coordinate, only: coordinate_of
+  use path_span, only: path_span_t, new_path_span
+  use path_tangent, only: tangent_t
   use traced_path, only: traced_path_t, path_point_t
   implicit none
   private
-  public :: demand_t, touches, astray, collapsed
+  public :: demand_t, touches, outer_end, astray, collapsed
 
   !> What is read from a path: undeformed bodies fill the range from h0 = `farthest` to its start,
-  !> and at its end by_h0*h0 - by_load*load is at most `until`, for each element.
+  !> and at its end D = by_h0*h0 - by_load*load is at most `until`, for each element. If `closes`,
+  !> the bodies are also in contact within all barriers, and D is below all its earlier values, so
+  !> that bodies that jump anywhere on the path land on it.
   type :: demand_t
     real(wp) :: farthest = 0
     real(wp), allocatable :: by_h0(:), by_load(:), until(:)
+    logical, allocatable :: closes(:)
   contains
     procedure :: is_met
   end type demand_t
 
+  !> Largest change of the gap on the axis over that of h0 in an outer contact: nine tenths of the
+  !> approach deform the bodies. (Where meshes are locked to the edge of an outer contact is a
+  !> question of cost: `further_meshes`.)
+  real(wp), parameter :: resting = 0.1_wp
+  !> Parts of an interval of the path at whose ends D is evaluated.
+  integer, parameter :: looks = 4
   !> Contact radius, over the largest expected, that no path reaches.
   real(wp), parameter :: too_large = 5
 
 contains
 
-  !> Whether a path that ends at a state goes as far as is read from it.
-  pure logical function is_met(self, state)
+  !> Whether a path, as it is, goes as far as is read from it.
+  pure logical function is_met(self, equations, path)
     class(demand_t), intent(in) :: self
-    type(state_t), intent(in) :: state
+    type(equations_t), intent(in) :: equations
+    type(traced_path_t), intent(in) :: path
+    integer :: k
 
-    is_met = all(self%by_h0*state%h0 - self%by_load*state%load <= self%until)
+    associate (last => path%point(path%held))
+      is_met = all(self%by_h0*last%state%h0 - self%by_load*last%state%load <= self%until)
+      if (is_met .and. any(self%closes)) is_met = touches(equations, last)
+      do k = 1, size(self%closes)
+        if (is_met .and. self%closes(k)) is_met = is_lowest([self%by_h0(k), -self%by_load(k)])
+      end do
+    end associate
+
+  contains
+
+    !> Whether weights(1) h0 + weights(2) load is least at the last point of the path.
+    pure logical function is_lowest(weights)
+      real(wp), intent(in) :: weights(2)
+      type(hermite_t) :: curve
+      real(wp) :: ends(2), at_end
+      integer :: i, j
+
+      associate (state => path%point(path%held)%state)
+        at_end = dot_product(weights, [state%h0, state%load])
+      end associate
+      is_lowest = .true.
+      do i = path%undeformed + 1, path%held - 1
+        if (.not. path%point(i)%leads_on) cycle
+        call path%curve_between(i, weights, curve, ends)
+        do j = 0, looks - 1
+          is_lowest = is_lowest .and. curve%value(ends(1) + (ends(2) - ends(1))*j/looks) > at_end
+        end do
+        if (.not. is_lowest) return
+      end do
+    end function is_lowest
+
   end function is_met
 
-  !> Whether the bodies are in contact, also in an outer minimum, at a point of the path. Under a
-  !> law with repulsion, bodies in contact repel each other somewhere. Bodies that are only near, as
+  !> The interval of the path in which it comes to h0_end in a stable outer contact; 0: there is
+  !> none.
+  integer function outer_end(solver, path, h0_end) result(i)
+    class(solver_t), intent(inout) :: solver
+    type(traced_path_t), intent(in) :: path
+    real(wp), intent(in) :: h0_end
+    type(path_span_t) :: span
+    type(state_t) :: state
+    type(tangent_t) :: tangent
+    logical :: done
+
+    if (.not. (solver%problem%law%edge_gap > 0 .and. path%held > 1)) then
+      i = 0
+      return
+    end if
+    do i = path%undeformed + 1, path%held - 1
+      associate (from => path%point(i), to => path%point(i + 1))
+        if (from%modes > 0 .or. .not. from%leads_on) cycle
+        if (.not. (from%state%h0 >= h0_end .and. to%state%h0 < h0_end)) cycle
+        ! Most laws have no barrier, and need no solve.
+        if (.not. any(solver%problem%law%slope([from%state%axis_gap, to%state%axis_gap]) < 0)) &
+          cycle
+        span = new_path_span(path, i)
+        call span%solve_at_h0(solver, h0_end, state, done)
+        if (done) call span%state_at(solver, coordinate_of(solver%problem, solver%meshes, &
+          span%mesh, state), state, tangent, done)
+        if (.not. done) cycle
+        if (rests_outside(solver%problem%law, state%axis_gap, tangent)) return
+      end associate
+    end do
+    i = 0
+  end function outer_end
+
+  !> Whether a state with this gap on the axis and this tangent of the path is an outer contact.
+  pure logical function rests_outside(law, axis_gap, tangent)
+    class(force_law_t), intent(in) :: law
+    real(wp), intent(in) :: axis_gap
+    type(tangent_t), intent(in) :: tangent
+
+    rests_outside = axis_gap > law%edge_gap .and. &
+      abs(tangent%axis_gap) < resting*abs(tangent%h0)
+    if (rests_outside) rests_outside = law%at(of_slope, axis_gap) < 0
+  end function rests_outside
+
+  !> Whether the bodies are in contact, within all barriers, at a point of the path. Under a law
+  !> with repulsion, bodies in contact repel each other somewhere. Bodies that are only near, as
   !> just before a barrier gives way, do not.
   pure logical function touches(equations, point)
     type(equations_t), intent(in) :: equations
     type(path_point_t), intent(in) :: point
 
     associate (meshes => equations%meshes, law => equations%problem%law, state => point%state)
-      touches = meshes%is_in_outer_contact(point%mesh)
-      if (touches) return
       if (law%rest_gap > 0) then
         touches = min(state%axis_gap, minval(state%gap)) < law%rest_gap
       else

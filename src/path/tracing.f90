@@ -17,7 +17,7 @@ module tracing
   use mesh_passage, only: has_come_to_next, pass_to_next
   use ending, only: ending_t, beyond_rounding, no_equilibrium, path_lost
   use traced_path, only: traced_path_t
-  use path_end, only: demand_t, touches, astray, collapsed
+  use path_end, only: demand_t, touches, outer_end, astray, collapsed
   use path_growth, only: append, add_extrema
   use further_meshes, only: further_mesh_t, further_mesh
   use mending, only: mender_t, new_mender, left_on_path, left_in_state
@@ -52,10 +52,11 @@ module tracing
 contains
 
   !> Traces the path from a state at large separation, on the mesh for the approach, until it is
-  !> stable at h0_low; into_contact: until the bodies are also in contact. Meshes that miss too
-  !> much of the load for the accuracy are refined. demand: if present, the path goes as far as is
-  !> read from it, and its points are close enough for a smooth curve.
-  subroutine trace(solver, start, h0_low, into_contact, accuracy, listener, known, demand)
+  !> stable at h0_low; into_contact: until the bodies are also in contact, which may be an outer
+  !> contact at h0_end, or at h0_low if h0_end is absent. Meshes that miss too much of the load for
+  !> the accuracy are refined. demand: if present, the path goes as far as is read from it, and its
+  !> points are close enough for a smooth curve.
+  subroutine trace(solver, start, h0_low, into_contact, accuracy, listener, known, demand, h0_end)
     class(solver_t), intent(inout) :: solver
     type(state_t), intent(in) :: start
     real(wp), intent(in) :: h0_low, accuracy
@@ -63,15 +64,18 @@ contains
     class(listener_t), intent(inout) :: listener
     class(tracing_t), intent(inout) :: known
     type(demand_t), intent(in), optional :: demand
+    real(wp), intent(in), optional :: h0_end
     type(continuation_t) :: walker
     type(mender_t) :: mender
     character(len=40) :: so_far
     type(further_mesh_t) :: further
     logical :: lost, blind, finished, mended, adrift, leaving
     type(ending_t) :: going_on
-    real(wp) :: tolerance
+    real(wp) :: tolerance, contact_at
     integer :: steps
 
+    contact_at = h0_low
+    if (present(h0_end)) contact_at = h0_end
     ! Where rounding hides the contact, the path is useful up to its first fold only.
     blind = lost_in_rounding(solver%problem, &
       largest_radius(solver%problem, h0_low, solver%meshes%level))
@@ -125,8 +129,12 @@ contains
       associate (last => known%path%point(known%path%held))
         finished = last%modes == 0 .and. last%state%h0 <= h0_low .and. &
           last%tangent%h0 < 0
-        if (finished .and. present(demand)) finished = demand%is_met(last%state)
-        if (finished .and. into_contact) finished = touches(solver%equations_t, last)
+        if (finished .and. present(demand)) &
+          finished = demand%is_met(solver%equations_t, known%path)
+        if (finished .and. into_contact) then
+          finished = touches(solver%equations_t, last)
+          if (.not. finished) finished = outer_end(solver, known%path, contact_at) > 0
+        end if
       end associate
       if (.not. mended .and. (finished .or. known%ending%early())) &
         call mender%mend(solver%equations_t, known%path, walker%mesh, .false., lost, mended)

@@ -15,6 +15,9 @@ module rate_entries
   !> The part of the memory that the mesh may fail to resolve without a warning. Its effect on the
   !> gap is much smoother: in 100 random cycles with less no number was off by more than its error.
   real(wp), parameter :: unresolved = 0.7_wp
+  !> Effect of the start on the largest tension, over its error and over the accuracy, above which
+  !> there is a warning.
+  real(wp), parameter :: clearly = 3
   !> Atmospheric pressure [Pa].
   real(wp), parameter :: atmosphere = 101325
 
@@ -55,8 +58,13 @@ contains
       call take('max_tension', of_tension)
       call take('max_tension_h0', of_tension_h0)
       if (problem%shape%parabolic) call take('effective_work_of_adhesion', of_work)
+      call summary%set('max_tension_at_end', timed%still_held)
       if (timed%still_held) call summary%warn('drive: the tension is largest at the end, so ' // &
         'it is not the tension at which the bodies separate; raise z_end')
+      if (timed%of_start > clearly*max(scene%numerics%accuracy, timed%estimate)) call &
+        summary%warn('drive: at z_start the relaxed bodies are already drawn out; what they keep ' &
+        // 'of this may change max_tension by a part of ' // rounded(timed%of_start) // &
+        ', which its error does not include; raise z_start')
     end if
     call take('energy_dissipated', of_dissipation)
     ! Without a spring h0 is that of the drive, without an error.

@@ -3,7 +3,8 @@
 module regime_rows
   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
   use kinds, only: wp, pi, nan
-  use dimensionless_problem, only: problem_t, surface_energy, largest_tension, tabor_parameter
+  use dimensionless_problem, only: problem_t, surface_energy, largest_tension, tension_is_even, &
+    tabor_parameter
   use layered_contact, only: layered_contact_t, new_layered_contact, has_layers, of_displacement
   use classical, only: hertz, jkr, hertz_radius_at_load, hertz_displacement, jkr_radius_at_load, &
     jkr_displacement, jkr_pull_off, dmt_radius_at_load, dmt_pull_off
@@ -33,9 +34,10 @@ module regime_rows
 
 contains
 
-  !> Adds the regime to the summary. The contact radius is the radius of largest tension. In the
-  !> theories touching bodies have no separation, here that of the gap at rest; indentations count
-  !> from there, and their errors are relative to a^2/R.
+  !> Adds the regime to the summary. The contact radius is that of the theories, at which tension
+  !> begins: the radius of largest tension or, where the tension is even, as under a step, that of
+  !> contact. In the theories touching bodies have no separation, here that of the gap at rest;
+  !> indentations count from there, and their errors are relative to a^2/R.
   subroutine summarise_regime(problem, places, summary)
     type(problem_t), intent(in) :: problem
     type(places_t), intent(in) :: places
@@ -97,17 +99,19 @@ contains
     !> its end.
     subroutine measure()
       type(place_t) :: lowest, finish
+      integer :: edge
 
+      edge = merge(of_radius, of_edge, tension_is_even(problem))
       lowest = places%place_of('path_tension')
       finish = places%place_of('path_end')
       there = min(finish%at(of_edge), finish%at(of_radius)) > 0 .and. lowest%at(of_load) < 0
       load = finish%at(of_load)*problem%load
-      solved = [lowest%at(of_load)*problem%load, finish%at(of_edge)*problem%lateral, &
+      solved = [lowest%at(of_load)*problem%load, finish%at(edge)*problem%lateral, &
         (problem%law%rest_gap - finish%at(of_h0))*problem%length]
       associate (errors => finish%errors()*units_of(problem), &
         of_lowest => lowest%errors()*units_of(problem))
         load_error = errors(of_load)
-        uncertain = [of_lowest(of_load), errors(of_edge), errors(of_h0)]
+        uncertain = [of_lowest(of_load), errors(edge), errors(of_h0)]
       end associate
     end subroutine measure
 

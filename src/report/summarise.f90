@@ -11,6 +11,7 @@ module summarise
   use path, only: path_t
   use path_readings, only: path_readings_t
   use reported_place, only: place_t, of_h0, of_load
+  use tension_at_end, only: judge_tension
   use places, only: places_t, readings_t
   use problem_numbers, only: describe_problem
   use result_rows, only: rows
@@ -49,6 +50,7 @@ contains
     call describe_numerics()
     call take_places(outcome%places)
     call tell_branches()
+    call judge_tension(problem, outcome, summary)
     if (allocated(outcome%timed)) call summarise_timed(scene, problem, outcome%timed, summary)
     if (allocated(outcome%path)) call tell_path(outcome%path)
     if (allocated(outcome%readings)) call take_readings(outcome%readings, outcome%places)
@@ -148,27 +150,12 @@ contains
       if (path%ending%early()) call summary%fail_with('path: '//trim(path%ending%message()))
       if (path%fallen) call summary%warn('path: the bodies fall onto each other ' // &
         'under this law; the path ends there and has no state in contact')
-      if (problem%law%rest_gap > 0) then
-        if (.not. path%fallen .and. .not. path%quality%contact_radius > 0 .and. &
-          is_lowest(path, path%finish)) call summary%note('path: it ends at h0 = ' // &
-          rounded(problem%law%separation_of(path%finish%at(of_h0))) // ' m, before contact, ' // &
-          'with the largest tension in its last row; lower h0_end')
-        if (path%states > 1 .and. is_lowest(path, path%start)) call summary%note( &
-          'path: it begins at h0 = ' // rounded(problem%law%separation_of(path%start%at(of_h0))) &
-          // ' m with the largest tension; raise h0_start')
-      end if
+      if (allocated(path%finish) .and. path%deepest_outside < &
+        problem%law%gap_of(scene%path%h0_end)) call summary%warn('path: a barrier keeps the ' // &
+        'bodies apart down to h0 = ' // rounded(problem%law%separation_of(path%deepest_outside)) &
+        // ' m, below h0_end; the path goes there, and ends in the contact within')
       call summary%set('folds_stable', merge(1, 0, path%unstable_after == 0))
     end subroutine tell_path
-
-    !> Whether a path's largest tension is at this place, one of its ends, if the path has both.
-    pure logical function is_lowest(path, place)
-      type(path_t), intent(in) :: path
-      type(place_t), intent(in), optional :: place
-
-      is_lowest = allocated(path%lowest) .and. present(place)
-      if (is_lowest) is_lowest = path%lowest%at(of_load) < 0 .and. &
-        abs(path%lowest%at(of_h0) - place%at(of_h0)) <= 0
-    end function is_lowest
 
     subroutine take_readings(readings, places)
       type(path_readings_t), intent(in) :: readings

@@ -45,8 +45,9 @@ module curve_groups
       most=100, low=0.0_wp, otherwise='h0 is prescribed'), &
     key_spec('device', 'z_start', real_value, 'First position of the drive.', 'm', &
       otherwise='where the path starts'), &
-    key_spec('device', 'z_end', real_value, 'Position at which the drive turns.', 'm', &
-      otherwise='where the path ends'), &
+    key_spec('device', 'z_end', real_value, 'Position at which the drive turns. ' // &
+      'Without it, it goes on beyond h0_end until bodies are in contact within all barriers.', &
+      'm', otherwise='in contact, at h0_end or beyond'), &
     key_spec('fixed_load', meaning='All equilibria under given loads, stable or not; needs ' // &
       '&equilibrium_path.'), &
     key_spec('fixed_load', 'load', real_list, 'The loads; negative: tension.', 'N', most=1000, &

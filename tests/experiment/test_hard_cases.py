@@ -18,7 +18,8 @@ def check(result, may_warn=False):
         assert np.isfinite(curve[name]).all(), name
     assert curve["residual"].max() <= 1e-8
     assert result.summary["converged"]
-    assert may_warn or result.warnings == []
+    # A loading that begins in contact has no pull-off.
+    assert may_warn or all("no pull-off" in said for said in result.warnings)
     return curve
 
 

@@ -293,7 +293,8 @@ def test_no_fold_is_made_by_the_mesh(run, scene):
     runs = agreeing(run, lambda accuracy: path_of(stiffness, h0_end, accuracy, **forces),
                     (8e-4, 1e-4, 1e-5, 1e-7), ("max_tension", "end_load"),
                     lambda accuracy: 1.2 * accuracy, ["folds_h0"])
-    assert not any(one.warnings for one in runs)
+    # The barrier of a double layer gives way far below h0_end, and the path says so.
+    assert all("a barrier keeps" in said for one in runs for said in one.warnings)
 
 
 @pytest.mark.parametrize("accuracy", [1e-4, 3e-6, 1e-6, 1e-8])

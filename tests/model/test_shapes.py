@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from support.scenes import agreeing, lennard_jones, loading
+from support.scenes import agreeing, deck, lennard_jones, loading
 
 
 def scene(shape, sigma=1.0, **groups):
@@ -198,3 +198,39 @@ R = np.linspace(0, 5, 21)
 ])
 def test_a_profile_that_is_no_convex_body_is_refused(run, tmp_path, r, f, phrase):
     assert phrase in refused(run, write_profile(tmp_path, r, f))
+
+
+def blunted_cone(slope, cap, r):
+    """A parabola up to r = `cap`, then a cone that continues it."""
+    return np.where(r < cap, slope * r**2 / (2 * cap), slope * (r - cap / 2))
+
+
+def blunted_cone_contact(slope, cap, a):
+    """Indentation, and load over E*, of a contact of radius a > cap (Briscoe, Sebastian & Adams,
+    J. Phys. D 27, 1156 (1994); here Galin's integrals)."""
+    angle, root = np.arccos(cap / a), np.sqrt(a**2 - cap**2)
+    depth = slope / cap * a * (a - root) + slope * a * angle
+    inner = (2 * a**3 - root * (2 * a**2 + cap**2)) / (3 * cap)
+    return depth, 2 * slope * (inner + (a**2 * angle + cap * root) / 2)
+
+
+@pytest.mark.parametrize("points", [41, 100])
+@pytest.mark.parametrize(("slope", "cap"), [(1.4281, 2.8563e-8), (0.3, 5e-8)])
+def test_points_of_a_blunted_cone_are_a_blunted_cone(run, tmp_path, slope, cap, points):
+    """The flank is straight; the spline waved there, and the body was refused as not convex."""
+    r = cap * np.linspace(0, 10, points)
+    write = write_profile(tmp_path, r, blunted_cone(slope, cap, r))
+    depths = [1.2 * slope * cap, 4 * slope * cap]
+    found = run(deck(
+        bodies={"stiffness": 2e6}, shape=write, force={"law": "exponential", "p0": 1e7,
+                                                       "decay_length": 1e-12},
+        loading={"h0_start": 1e-9, "h0_end": -depths[1], "h0_step": 0.1 * depths[1]},
+        numerics={"accuracy": 1e-4}))
+    wide = np.linspace(1.001 * cap, 9 * cap, 4000)
+    depth, load = blunted_cone_contact(slope, cap, wide)
+    curve = found.curve
+    pressed = -curve["h0"] > 1.2 * slope * cap
+    # The cap has a kink in its curvature, which points do not show.
+    expected = 1e6 * np.interp(-curve["h0"][pressed], depth, load)
+    np.testing.assert_allclose(curve["load"][pressed], expected, rtol=0.01)
+    assert pressed.sum() > 5

@@ -97,16 +97,3 @@ def test_rows_go_one_way_where_meshes_change_from_step_to_step(run):
     # The gap on the axis is a coordinate of the path, and between its two folds nothing is stable.
     assert (np.diff(centre) < 0).all()
     assert np.count_nonzero(np.diff(stable)) == 2
-
-
-@pytest.mark.parametrize(("h0_start", "h0_end", "expected"), [
-    (1e-9, -3e-9, "path: it begins at h0 = 1e-9 m with the largest tension; raise h0_start"),
-    (None, 3e-9, "path: it ends at h0 = 3e-9 m, before contact, with the largest tension in its "
-                 "last row; lower h0_end"),
-    (None, -3e-9, None)])
-def test_a_range_that_leaves_out_the_largest_tension_says_so(run, h0_start, h0_end, expected):
-    path = {"h0_end": h0_end} | ({"h0_start": h0_start} if h0_start else {})
-    found = run(deck(bodies={"radius": 1e-6, "stiffness": 1e9}, equilibrium_path=path,
-                     force={"law": "lennard_jones", "surface_energy": 0.02, "z0": 0.5e-9}))
-    notes = several(found.summary.get("notes", []))
-    assert notes == ([expected] if expected else [])

@@ -105,3 +105,30 @@ def test_a_largest_tension_at_the_end_has_a_warning(run):
         last = -found.curve["load"][-1]
         assert (abs(found.summary["max_tension"] / last - 1) < 1e-12) == warned
     assert held.summary["max_tension"] < 0.9 * apart.summary["max_tension"]
+
+
+def test_what_bodies_keep_of_their_start_is_told_where_it_matters(run):
+    """Relaxed bodies are drawn out at z_start. Fast ones keep this and pull less than elastic ones,
+    by ten times the error or more; slow ones forget it; from farther away there is none."""
+    bodies = {"radius": 1e-6, "stiffness": 2.2e10}
+    force = {"law": "lennard_jones", "z0": 0.5e-9, "surface_energy": 0.05}
+    elastic = run(deck(bodies=bodies, force=force, equilibrium_path={"h0_end": -2e-9})).summary
+
+    def drive(velocity, start):
+        return run(deck(
+            bodies=bodies, force=force, numerics={"accuracy": 1e-3},
+            viscoelastic={"stiffness_relaxed": 2.2e9, "retardation_time": 1e-3},
+            drive={"velocity": velocity, "z_start": start, "z_turn": -2e-9, "z_end": 2e-8}))
+
+    for start in (2e-9, 4e-9):
+        fast = drive(0.1, start)
+        change = 1 - fast.summary["max_tension"] / elastic["max_tension"]
+        assert change > 10 * fast.summary["max_tension_error"] / fast.summary["max_tension"]
+        (said,) = [one for one in fast.warnings if "already drawn out" in one]
+        # The estimate is linear in the deformation.
+        told = float(said.split("a part of ")[1].split(",")[0])
+        assert change < told < 2.5 * change
+    near, far = drive(1e-7, 2e-9), drive(0.1, 4e-8)
+    assert not any("already drawn out" in one for one in near.warnings + far.warnings)
+    assert near.summary["max_tension"] == pytest.approx(
+        drive(1e-7, 1e-8).summary["max_tension"], rel=2e-3)

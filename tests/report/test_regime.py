@@ -3,7 +3,7 @@
 import math
 
 import pytest
-from support.scenes import JKR, lennard_jones, several
+from support.scenes import JKR, deck, lennard_jones, several
 
 
 def regime(sigma, h0_end):
@@ -63,3 +63,35 @@ def test_the_closed_form_recommended_is_the_nearest_in_pull_off_and_radius(run):
         assert summary["regime_recommended"] in ("hertz", "jkr", "dmt", "maugis")
         found.add(summary["regime_formula"])
     assert found & {"carpick", "pietrement"} and len(found) > 1
+
+
+@pytest.mark.parametrize("strength", [0.5, 1.0, 2.0])
+def test_for_the_law_of_maugis_the_theory_of_maugis_is_recommended(run, strength):
+    """A step of tension outside a steep repulsion. The contact of the theory ends where the tension
+    begins, not where the step ends; that radius made JKR theory the nearest."""
+    radius, stiffness, reach = 1e-6, 1e9, 2e-9
+    # lambda = 2 stress (9 R/(4 pi w E'^2))^(1/3), w = stress*reach.
+    stress = (strength / 2) ** 1.5 * (4 * math.pi * reach * stiffness**2 / (9 * radius)) ** 0.5
+    summary = run(deck(
+        bodies={"radius": radius, "stiffness": stiffness},
+        dugdale={"stress": stress, "range": reach, "smoothing": 0.01 * reach},
+        born={"hamaker": 1e-22, "z0": 0.02 * reach},
+        equilibrium_path={"h0_end": -3e-9}, regime={}, numerics={"accuracy": 1e-4})).summary
+    assert summary["regime_maugis_lambda"] == pytest.approx(strength, rel=0.1)
+    assert summary["regime_recommended"] == "maugis"
+    assert summary["regime_worst_maugis"] < 0.05
+    # Tabor's parameter with the range of the step, not with the z0 of the repulsion.
+    assert summary["tabor"] == summary["regime_tabor"] == pytest.approx(
+        summary["regime_tabor_range"], rel=1e-12)
+
+
+def test_a_meniscus_is_recognised(run):
+    """Between 1.5 and 2 pi w R; no theory was near, and Tabor's parameter that of the repulsion."""
+    summary = run(deck(
+        bodies={"radius": 10e-6, "young": 70e9, "poisson": 0.2},
+        capillary={"surface_tension": 0.0728, "humidity": 0.8},
+        born={"hamaker": 1e-20, "z0": 0.1e-9}, equilibrium_path={"h0_end": -2e-9}, regime={},
+        numerics={"accuracy": 1e-4})).summary
+    assert summary["max_tension"] == pytest.approx(8.552e-6, rel=0.005)
+    assert summary["regime_recommended"] == "maugis" and summary["regime_worst_maugis"] < 0.05
+    assert summary["tabor"] == pytest.approx(0.113, rel=0.01)

@@ -8,6 +8,7 @@ import pytest
 from support.scenes import deck, exponential, lennard_jones, loading, several
 
 JUMPS = ["jump_criterion_29", "jump_equation_37", "fold_closed_form", "fold_attractive_only"]
+OF_UNLOADINGS = ("unload_max_tension", "unload_max_tension_at_end", "unload_jump_out_h0")
 OF_APPROXIMATIONS = [f"{name}_{what}" for name in JUMPS for what in ("h0", "load")]
 OF_APPROXIMATIONS.insert(4, "jump_equation_37_gap")
 END = ["end_h0", "end_displacement", "end_load"]
@@ -42,10 +43,10 @@ def test_every_number_of_a_row_is_that_of_the_same_deck_alone(run, table):
         for name in table.names[1:-1]:
             value = table[name][row]
             key, _, turn = name.rpartition("_")
-            if key in ("unload_max_tension", "unload_jump_out_h0"):
+            if key in OF_UNLOADINGS:
                 values = several(summary.get(key, math.nan))
                 expected = values[min(int(turn), len(values)) - 1]
-            elif name in ("resolved", "converged"):
+            elif name in ("resolved", "converged", "max_tension_at_end"):
                 expected = 1.0 if summary[name] else 0.0
             else:
                 expected = summary.get(name, math.nan)
@@ -69,7 +70,7 @@ def test_a_group_that_is_absent_costs_no_column(run, table):
     sweep = {"key": "force.hamaker", "values": [hamaker(0.1), hamaker(0.2)]}
     bare = run(lennard_jones(0.1, loading=loading(7, 3, 1), sweep=sweep)).table("sweep.csv")
     extra = ["maugis_lambda", "maugis_pull_off", *OF_APPROXIMATIONS] + [
-        f"{name}_{k}" for k in (1, 2) for name in ("unload_max_tension", "unload_jump_out_h0")]
+        f"{name}_{k}" for k in (1, 2) for name in OF_UNLOADINGS]
     assert table.names == [*bare.names[:-1], *extra, "failure"] and bare.names[-1] == "failure"
     assert set(END) <= set(bare.names)
 

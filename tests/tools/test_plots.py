@@ -1,5 +1,6 @@
 """The plotting scripts: a picture from every kind of results, a clear message without them."""
 
+import contextlib
 import re
 import runpy
 import struct
@@ -288,3 +289,44 @@ def test_a_deck_that_cannot_be_read_has_no_picture_of_forces(plot, tmp_path, dec
     done = plot("force_law.py", "d.nml")
     assert done.returncode == 1
     assert re.fullmatch(r"force_law.py: d.nml: .*\n", done.stderr), done.stderr
+
+
+def test_largest_tensions_at_an_end_are_no_pull_offs_in_pictures(monkeypatch, tmp_path):
+    """They were part of the colours, of the curves and of quotients with JKR theory."""
+    monkeypatch.syspath_prepend(SCRIPTS)
+    draw_map = runpy.run_path(str(SCRIPTS / "map.py"))["draw_map"]
+    head = "a.x,a.y,converged,jkr_pull_off,max_tension,max_tension_at_end,failure\n"
+    (tmp_path / "summary.nml").write_text("&summary\n  converged = .true.\n/\n&cost\n/\n")
+
+    def table(rows):
+        (tmp_path / "sweep.csv").write_text(head + "".join(rows))
+
+    table(f"{i},{j},1,2,{i + j + 1},{int(i > 5)},\n" for i in range(10) for j in range(10))
+    for per in (None, "jkr_pull_off"):
+        figure = draw_map(tmp_path, per=per)
+        axes = figure.axes[0]
+        assert all(path.vertices[:, 0].max() <= 5 for path in axes.collections[0].get_paths())
+        (circles,) = [line for line in axes.lines if "no pull-off" in str(line.get_label())]
+        assert set(circles.get_xdata()) == {6, 7, 8, 9}
+        assert "no pull-off" in figure.legends[0].get_texts()[0].get_text()
+    table(f"{i},0,1,2,{i + 1},{int(i > 5)},\n" for i in range(10))
+    axes = draw_map(tmp_path, over=["a.x"]).axes[0]
+    assert max(axes.lines[0].get_xdata()) == 5
+    # Other values of these cases are good.
+    axes = draw_map(tmp_path, value="jkr_pull_off", over=["a.x"]).axes[0]
+    assert max(axes.lines[0].get_xdata()) == 9
+    table(f"{i},0,1,2,{i + 1},1,\n" for i in range(10))
+    with pytest.raises(snapin.results.ResultsError, match="no pull-offs"):
+        draw_map(tmp_path, over=["a.x"])
+
+
+def test_a_curve_that_ends_before_its_pull_off_has_a_mark(tmp_path):
+    for h0_end, marked in ((1.3e-9, True), (-2e-9, False)):
+        deck = BODIES + FORCE + f"&loading h0_start = 7e-9, h0_end = {h0_end}, h0_step = 0.2e-9 /\n"
+        with contextlib.ExitStack() as stack:
+            if marked:
+                stack.enter_context(pytest.warns(snapin.SnapinWarning, match="no pull-off"))
+            snapin.run(deck, out=tmp_path / str(marked))
+        figure = draw_force_curve(tmp_path / str(marked))
+        texts = [text.get_text() for text in figure.legends[0].get_texts()]
+        assert any("no pull-off" in text for text in texts) == marked

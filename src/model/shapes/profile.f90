@@ -1,5 +1,6 @@
 !> A shape from a file of positions and heights: a cubic spline of continuous curvature, flat on the
-!> axis, which continues beyond the last point as a parabola.
+!> axis, which continues beyond the last point as a parabola. Where the spline through a convex body
+!> is not convex, as beside a straight flank, it is replaced by convex pieces of continuous slope.
 module profile
   use kinds, only: wp, pi
   use failure, only: failure_t
@@ -29,6 +30,8 @@ module profile
   !> Largest curvature of the wrong sign, over the largest curvature, which may come from the digits
   !> of a table, or from a spline through a body that is flat at its tip.
   real(wp), parameter :: straight = 0.02_wp
+  !> Relative difference of the slopes between points below which a flank is straight.
+  real(wp), parameter :: same_slope = 1.0e-9_wp
 
   !> The row of a profile in &shape.
   type(key_spec), parameter :: keys(*) = [ &
@@ -101,15 +104,16 @@ contains
     end do
     this%taylor(:, n) = [(table%value(n, 2) - table%value(1, 2))/length, &
       -mirrored(1, 1), mirrored(2, 1), 0.0_wp]
-    associate (curvature => this%taylor(2, :))
-      do i = 1, n
-        if (curvature(i) >= -straight*maxval(curvature) .and. &
-          (i == 1 .or. this%taylor(1, i) > 0)) cycle
+    i = first_hollow(this)
+    if (i > 0) then
+      if (.not. are_convex(this%at, this%taylor(0, :))) then
         call table%source%complain(table%place(i), 'the profile is not convex ' // &
           'here; contacts with several edges are not computed', error)
         return
-      end do
-    end associate
+      end if
+      call make_convex(this)
+    end if
+    n = size(this%at)
     this%taylor(2, n) = max(this%taylor(2, n), 0.0_wp)
     unit = this%position_of(0.5_wp)
     this%at = this%at/unit
@@ -121,6 +125,91 @@ contains
     this%breaks = this%at(2:)
     this%known_to = this%at(n)
   end subroutine take_points
+
+  !> The first piece that begins with a curvature of the wrong sign, or falls; 0: there is none.
+  pure integer function first_hollow(this) result(i)
+    type(profile_t), intent(in) :: this
+
+    associate (curvature => this%taylor(2, :))
+      do i = 1, size(curvature)
+        if (curvature(i) < -straight*maxval(curvature) .or. i > 1 .and. &
+          .not. this%taylor(1, i) > 0) return
+      end do
+    end associate
+    i = 0
+  end function first_hollow
+
+  !> Whether the slopes between points never decrease, and grow beside the axis, where the body is
+  !> flat.
+  pure logical function are_convex(r, f)
+    real(wp), intent(in) :: r(:), f(:)
+    real(wp) :: slope(size(r) - 1)
+    integer :: n
+
+    n = size(r)
+    slope = (f(2:) - f(:n - 1))/(r(2:) - r(:n - 1))
+    are_convex = slope(2) > (1 + same_slope)*slope(1) .and. &
+      all(slope(2:) > (1 - same_slope)*slope(:n - 2))
+  end function are_convex
+
+  !> Replaces the pieces between the points of a convex profile by convex ones: by a cubic where the
+  !> one with the slopes at its ends is convex, else by two parabolas (Schumaker, SIAM J. Numer.
+  !> Anal. 20, 853 (1983)). The slopes are those of the spline, between those of the next chords.
+  subroutine make_convex(this)
+    type(profile_t), intent(inout) :: this
+    real(wp), allocatable :: at(:), taylor(:, :)
+    real(wp) :: chord(size(this%at) - 1), slope(size(this%at)), below, above, width, &
+      part, apart
+    integer :: n, i
+
+    n = size(this%at)
+    chord = (this%taylor(0, 2:) - this%taylor(0, :n - 1))/(this%at(2:) - this%at(:n - 1))
+    slope = this%taylor(1, :)
+    do i = 2, n - 1
+      apart = 0.1_wp*(chord(i) - chord(i - 1))
+      slope(i) = min(max(slope(i), chord(i - 1) + apart), chord(i) - apart)
+    end do
+    slope(n) = max(slope(n), 2*chord(n - 1) - slope(n - 1))
+    ! Two neighbouring chords of equal slope are a straight flank, with this slope at its ends.
+    do i = 2, n - 2
+      if (chord(i + 1) - chord(i) < same_slope*chord(i)) slope(i:i + 2) = chord(i)
+    end do
+    slope(1) = 0
+    allocate (at(0), taylor(0:3, 0))
+    do i = 1, n - 1
+      width = this%at(i + 1) - this%at(i)
+      below = chord(i) - slope(i)
+      above = slope(i + 1) - chord(i)
+      if (below <= same_slope*chord(i) .or. above <= same_slope*chord(i)) then
+        call add(this%at(i), [this%taylor(0, i), chord(i), 0.0_wp, 0.0_wp])
+      else if (below <= 2*above .and. above <= 2*below) then
+        call add(this%at(i), [this%taylor(0, i), slope(i), (2*below - above)/width, &
+          (above - below)/width**2])
+      else
+        ! The slope is that of the chord where the parabolas meet.
+        part = width*above/(below + above)
+        call add(this%at(i), [this%taylor(0, i), slope(i), 0.5_wp*below/part, 0.0_wp])
+        call add(this%at(i) + part, [this%taylor(0, i) + part*(slope(i) + 0.5_wp*below), &
+          chord(i), 0.5_wp*above/(width - part), 0.0_wp])
+      end if
+    end do
+    call add(this%at(n), [this%taylor(0, n), slope(n), this%taylor(2, n), 0.0_wp])
+    this%at = at
+    this%taylor = taylor
+
+  contains
+
+    subroutine add(position, coefficients)
+      real(wp), intent(in) :: position, coefficients(4)
+      real(wp) :: longer(0:3, size(at) + 1)
+
+      longer(:, :size(at)) = taylor
+      longer(:, size(at) + 1) = coefficients
+      at = [at, position]
+      taylor = longer
+    end subroutine add
+
+  end subroutine make_convex
 
   !> A cubic of the distance from its left end as a cubic of the distance from its right end, which
   !> is `width` away, to the left.

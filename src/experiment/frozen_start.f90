@@ -1,0 +1,68 @@
+!> What a drive of viscoelastic bodies keeps of its start. A drive begins with relaxed bodies, which
+!> the attraction has already drawn out towards each other where they start near. In a fast drive
+!> they keep this bulge, which makes their tips sharper, or blunter, than they are.
+module frozen_start
+  use kinds, only: wp
+  use contact_state, only: state_t
+  use creep, only: creep_t
+  use records, only: record_t
+  use time_instant, only: instant_t
+  use time_stepper, only: time_stepper_t
+  use rest, only: begin_at_rest
+  implicit none
+  private
+  public :: effect_of_start
+
+contains
+
+  !> Estimate of the relative change of the largest tension by what is left of the first deformation
+  !> at that time. The tension of a contact of radius a is about proportional to the radius of
+  !> curvature of the bodies, so the change is that of their height over a. row: of the drive, SI
+  !> units, with times since its start; position: of the start.
+  real(wp) function effect_of_start(steps, position, row) result(effect)
+    type(time_stepper_t), intent(inout) :: steps
+    real(wp), intent(in) :: position
+    type(record_t), intent(in) :: row(:)
+    type(instant_t) :: start
+    real(wp) :: radius
+    integer :: k
+    logical :: found
+
+    effect = 0
+    if (size(steps%creep%time) == 0 .or. size(row) == 0) return
+    k = minloc(row%load, 1)
+    if (.not. row(k)%load < 0) return
+    call begin_at_rest(steps, position, start, found)
+    if (.not. found) return
+    ! Before contact tension acts over about one lateral unit.
+    radius = max(1.0_wp, row(k)%contact_radius/steps%problem%lateral)
+    effect = kept_part(steps%creep, row(k)%time)*change_of_height(steps, start%mesh, start%state, &
+      radius)
+  end function effect_of_start
+
+  !> The part of the deformation of relaxed bodies that remains after a time, if no more is added.
+  pure real(wp) function kept_part(creep, time) result(part)
+    type(creep_t), intent(in) :: creep
+    real(wp), intent(in) :: time
+
+    part = sum(creep%share*exp(-time/creep%time))/creep%relaxed()
+  end function kept_part
+
+  !> The change of the bodies' height over a radius by their deformation, over this height.
+  pure real(wp) function change_of_height(steps, mesh, state, radius) result(change)
+    type(time_stepper_t), intent(in) :: steps
+    integer, intent(in) :: mesh
+    type(state_t), intent(in) :: state
+    real(wp), intent(in) :: radius
+    real(wp), allocatable :: height(:)
+    integer :: j
+
+    associate (r => steps%meshes%grid(mesh)%x*state%scale)
+      j = min(count(r < radius) + 1, size(r))
+      height = steps%problem%shape%height(r)
+      ! Measured on the axis the deformation is the gap there less h0.
+      change = abs((state%gap(j) - height(j)) - state%axis_gap)/height(j)
+    end associate
+  end function change_of_height
+
+end module frozen_start

@@ -1,0 +1,95 @@
+!> Whether the largest tension is a pull-off. If it is that of the first or last row of a branch,
+!> tension may grow beyond this row, and the number depends on where the branch ends.
+module tension_at_end
+  use kinds, only: wp, nan
+  use text, only: brief, rounded
+  use dimensionless_problem, only: problem_t
+  use reported_place, only: place_t, of_h0, of_load
+  use stepped_branch, only: branch_t
+  use path, only: path_t
+  use experiment_result, only: experiment_result_t
+  use summary, only: summary_t
+  implicit none
+  private
+  public :: judge_tension
+
+contains
+
+  !> Sets what tells of the ends, and warns if the largest tension of all branches is at one.
+  subroutine judge_tension(problem, outcome, summary)
+    type(problem_t), intent(in) :: problem
+    type(experiment_result_t), intent(in) :: outcome
+    type(summary_t), intent(inout) :: summary
+    type(place_t) :: largest
+    logical :: at_end
+    integer :: k
+
+    at_end = .false.
+    if (.not. outcome%places%has('max_tension')) return
+    largest = outcome%places%place_of('max_tension')
+    if (allocated(outcome%path)) call judge_path(outcome%path)
+    if (allocated(outcome%stepped_path)) call judge_branch('path', outcome%stepped_path, &
+      'raise h0_start', 'lower h0_end')
+    if (allocated(outcome%loading)) call judge_branch('loading', outcome%loading, &
+      'raise h0_start', 'lower h0_end')
+    if (allocated(outcome%unloading)) then
+      do k = 1, size(outcome%unloading)
+        call judge_branch('unloading_' // brief(k), outcome%unloading(k), &
+          'turn at a smaller h0', 'raise h0_end')
+      end do
+      call summary%set('unload_max_tension_at_end', [(of_unloading(outcome%unloading(k)), k=1, &
+        size(outcome%unloading))])
+    end if
+    call summary%set('max_tension_at_end', at_end)
+
+  contains
+
+    !> A path that ends in a collapse has its own warning.
+    subroutine judge_path(path)
+      type(path_t), intent(in) :: path
+      logical :: first
+
+      if (.not. allocated(path%lowest)) return
+      if (path%lowest%point > 0 .or. path%lowest%at(of_load) > largest%at(of_load)) return
+      first = abs(path%lowest%at(of_h0) - path%start%at(of_h0)) <= 0
+      call tell('path', first, merge('raise h0_start', 'lower h0_end  ', first), &
+        path%fallen .or. path%ending%early())
+    end subroutine judge_path
+
+    subroutine judge_branch(name, branch, at_first, at_last)
+      character(len=*), intent(in) :: name, at_first, at_last
+      type(branch_t), intent(in) :: branch
+
+      if (.not. (branch%lowest_first .or. branch%lowest_last)) return
+      ! The same state is solved twice at a turn.
+      if (abs(branch%lowest%at(of_h0) - largest%at(of_h0)) > 0) return
+      if (branch%lowest_first) then
+        call tell(name, .true., at_first, branch%ending%early())
+      else
+        call tell(name, .false., at_last, branch%ending%early())
+      end if
+    end subroutine judge_branch
+
+    !> told: another message says why the branch ends. One warning is enough.
+    subroutine tell(name, first, advice, told)
+      character(len=*), intent(in) :: name, advice
+      logical, intent(in) :: first, told
+
+      if (.not. (at_end .or. told)) call summary%warn(name // ': the tension is largest in its ' &
+        // trim(merge('first', 'last ', first)) // ' row, at h0 = ' // &
+        rounded(problem%law%separation_of(largest%at(of_h0))) // &
+        ' m, and may grow beyond: max_tension is no pull-off; ' // trim(advice))
+      at_end = .true.
+    end subroutine tell
+
+  end subroutine judge_tension
+
+  !> 1 or 0; NaN for an unloading without tension.
+  pure real(wp) function of_unloading(branch) result(at_end)
+    type(branch_t), intent(in) :: branch
+
+    at_end = nan
+    if (allocated(branch%lowest)) at_end = merge(1, 0, branch%lowest_first .or. branch%lowest_last)
+  end function of_unloading
+
+end module tension_at_end
