@@ -4,9 +4,10 @@
 !> from which another run can continue. Results may also go to standard output, alone or when they
 !> are in place.
 module result_folder
-  use, intrinsic :: iso_c_binding, only: c_int
+  use, intrinsic :: iso_c_binding, only: c_int, c_long
   use failure, only: failure_t, fail, file_trouble
-  use files, only: make_folder, file_exists, read_file
+  use c_library, only: c_open, c_read, c_close, check_status, as_input, nul
+  use files, only: make_folder, file_exists
   use folder_lock, only: folder_lock_t
   use publication, only: publish, check_names, clear_unfinished, result_files, journal_name, &
     unfinished
@@ -129,17 +130,25 @@ contains
   subroutine hand_over(self, error)
     class(result_folder_t), intent(in) :: self
     type(failure_t), allocatable, intent(inout) :: error
-    character(len=:), allocatable :: text
+    character(len=65536) :: piece
+    character(len=:), allocatable :: path
+    integer(c_int) :: file, closed
+    integer(c_long) :: length
     integer :: i
 
     do i = 1, size(result_files)
       if (.not. self%lock%contains_file(trim(result_files(i)))) cycle
-      call read_file(self%lock%path_of(trim(result_files(i))), text)
-      if (allocated(text)) then
-        call send(trim(result_files(i)), text, error)
-      else
-        call fail(error, file_trouble, 'cannot read ' // self%lock%path_of(trim(result_files(i))))
-      end if
+      path = self%lock%path_of(trim(result_files(i)))
+      file = c_open(path // nul, as_input)
+      call check_status('cannot read ' // path, file, error)
+      do while (.not. allocated(error))
+        length = c_read(file, piece, len(piece, kind=c_long))
+        call check_status('cannot read ' // path, int(min(length, 0_c_long), c_int), error)
+        if (.not. allocated(error) .and. length > 0) &
+          call send(trim(result_files(i)), piece(:length), error)
+        if (length < len(piece)) exit
+      end do
+      if (file >= 0) closed = c_close(file)
       if (allocated(error)) return
     end do
     call send(stream_end, '', error)

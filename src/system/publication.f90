@@ -49,9 +49,11 @@ contains
       call check_file(folder, trim(result_files(i)), .false., error)
       if (allocated(error)) return
     end do
-    if (folder%contains_file(unfinished)) then
-      call refuse(folder, unfinished, 'is not a folder', error)
-    else if (folder%contains_folder(unfinished)) then
+    if (.not. folder%contains_folder(unfinished)) then
+      call check_file(folder, unfinished, .false., error)
+      if (.not. allocated(error) .and. folder%contains_file(unfinished)) &
+        call refuse(folder, unfinished, 'is not a folder', error)
+    else
       do i = 1, size(result_files)
         call check_file(folder, unfinished // '/' // trim(result_files(i)), .true., error)
         if (allocated(error)) return
@@ -74,6 +76,8 @@ contains
       call refuse(folder, name, 'is a folder', error)
     else if (folder%contains_file(name)) then
       call folder%read_beginning(name, text, length)
+      ! Another run may just have moved its file.
+      if (.not. folder%contains_file(name)) return
       if (length == -not_regular) then
         call refuse(folder, name, 'is not a file but a link, a pipe or a device', error)
       else if (length < 0) then

@@ -70,10 +70,8 @@ def test_whatever_has_the_name_of_a_result_stays(snapin, folder, name, kind):
     place = folder / "mine" / name
     words = {"folder": "is a folder", "empty": "was not written by this program"}.get(
         kind, "is not a file but a link")
-    if name == "unfinished":
-        if kind == "folder":
-            pytest.skip("this is the folder itself")
-        words = "is not a folder"
+    if (name, kind) == ("unfinished", "folder"):
+        pytest.skip("this is the folder itself")
     (folder / "elsewhere.csv").write_text("# title: a result elsewhere\n")
     if kind == "folder":
         place.mkdir()
