@@ -143,9 +143,10 @@ class Stand:
         else:
             require(done.returncode in (0, 1, 2), done.returncode, done.stderr)
         state = self.state()
-        # A file that cannot be read may be another's.
+        # A file that cannot be read may be another's; without `fstat` nothing shows what it is.
         if done.returncode == 2:
-            require("cannot be read" in done.stderr and state == self.before, done.stderr)
+            require("cannot be read" in done.stderr or call == "fstat", done.stderr)
+            require(state == self.before, "refused, and changed")
         if done.returncode == 0:
             require(state == "new", "status 0 and no new results")
         if done.returncode == 1:
