@@ -49,11 +49,12 @@ contains
       call check_file(folder, trim(result_files(i)), .false., error)
       if (allocated(error)) return
     end do
-    if (.not. folder%contains_folder(unfinished)) then
+    ! Another run may just make it.
+    if (folder%contains_file(unfinished)) then
       call check_file(folder, unfinished, .false., error)
       if (.not. allocated(error) .and. folder%contains_file(unfinished)) &
         call refuse(folder, unfinished, 'is not a folder', error)
-    else
+    else if (folder%contains_folder(unfinished)) then
       do i = 1, size(result_files)
         call check_file(folder, unfinished // '/' // trim(result_files(i)), .true., error)
         if (allocated(error)) return
