@@ -10,7 +10,7 @@ from drawing import (
     smooth, title_of)
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from snapin.results import ResultsError, read_summary, read_table
+from snapin.results import ResultFiles, ResultsError
 
 _COLOURS = (BLUE, VERMILION, GREEN, PURPLE, ORANGE, SKY, BLACK)
 # Largest number of panels in a row.
@@ -19,8 +19,9 @@ _A_ROW = 3
 
 def draw_device_curve(folder):
     """Return a figure with a panel for each spring, or dead load, in `folder`."""
-    summary, curve = read_summary(folder), read_table(folder, "device.csv")
-    jumps = read_table(folder, "device_jumps.csv")
+    files = ResultFiles(folder)
+    summary, curve = files.summary(), files.table("device.csv")
+    jumps = files.table("device_jumps.csv")
     springs = list(dict.fromkeys(curve["stiffness"]))
     if not springs:
         raise ResultsError(f"{folder}/device.csv has no rows")

@@ -108,10 +108,9 @@ def arrow(panel, tail, head, color, linewidth=1.2, style="-|>", dashes="-", scal
 
 
 def states_of(rows):
-    """Return the rows of each state of profiles; a state begins on the axis."""
-    starts = np.flatnonzero(rows["r"] == 0)
-    ends = np.append(starts[1:], rows["r"].size)
-    return [{x: values[i:j] for x, values in rows.items()} for i, j in zip(starts, ends)]
+    """Return the rows of each state of profiles."""
+    return [{x: values[rows["state"] == state] for x, values in rows.items()}
+            for state in np.unique(rows["state"])]
 
 
 def run(draw, default_name, description, add_options=lambda parser: None):

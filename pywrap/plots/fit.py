@@ -4,13 +4,12 @@
     .venv/bin/python pywrap/plots/fit.py results/fit
 """
 
-import pathlib
 
 import f90nml
 import numpy as np
 from drawing import BLUE, GREY, SKY, VERMILION, dress, entitle, run, scale, title_of
 from matplotlib.figure import Figure
-from snapin.results import read_summary, read_table
+from snapin.results import ResultFiles
 
 _WAYS = {"approach": SKY, "retreat": BLUE}
 # Margin of the picture beyond the last sample with a force, over the extent of these samples.
@@ -23,10 +22,11 @@ _STANDS_OUT = 10
 
 def draw_fit(folder, whole=False):
     """Return a figure of the fit in `folder`; `whole` shows all of the baseline."""
-    summary, table = read_summary(folder), read_table(folder, "fit.csv")
+    files = ResultFiles(folder)
+    summary, table = files.summary(), files.table("fit.csv")
     force = table["measured"] - table["baseline"]
     lengths = scale(np.ptp(table["z"]), "m")
-    unit = _unit_of(folder)
+    unit = _unit_of(files)
     signals = scale(force, unit)
     lefts = scale(table["residual"][table["used"] == 1], unit)
     z = (table["z"] - table["z"].min()) / lengths[0]
@@ -64,9 +64,9 @@ def draw_fit(folder, whole=False):
     return figure
 
 
-def _unit_of(folder):
+def _unit_of(files):
     """Return the unit of the signal, from the deck in the summary."""
-    measurement = f90nml.read(pathlib.Path(folder) / "summary.nml")["measurement"]
+    measurement = f90nml.reads(files.text("summary.nml"))["measurement"]
     units, columns = (np.atleast_1d(measurement.get(key, [])) for key in ("units", "columns"))
     if len(units) > 1:
         return units[1][-1]

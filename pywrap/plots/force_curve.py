@@ -11,7 +11,7 @@ from drawing import (
     BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILION, arrow, dress, entitle, run, scale,
     smooth, title_of)
 from matplotlib.figure import Figure
-from snapin.results import ResultsError, read_summary, read_table
+from snapin.results import ResultFiles, ResultsError
 
 # Unloadings often coincide with each other and with the loading: later curves are thinner.
 _LOADING = {"color": BLUE, "linewidth": 1.5, "zorder": 5}
@@ -60,14 +60,13 @@ class Curve:
     """The curve in a folder of results, in short units, drawn against one of NAMES."""
 
     def __init__(self, folder):
-        self.summary, self.table = read_summary(folder), read_table(folder, "curve.csv")
+        files = ResultFiles(folder)
+        self.summary, self.table = files.summary(), files.table("curve.csv")
         if self.table["h0"].size == 0:
             raise ResultsError(f"{folder}/curve.csv has no rows")
-        try:
-            self.theories = read_table(folder, "classical.csv")
-        except ResultsError:
-            self.theories = None
-        if self.theories:
+        self.theories = None
+        if "classical.csv" in files.texts:
+            self.theories = files.table("classical.csv")
             rest = self.summary.get("rest_gap", 0.0)
             self.theories = dict(self.theories, h0=self.theories["h0"] + rest)
         self.lengths = {x: scale(self.table[x], "m") for x in NAMES}

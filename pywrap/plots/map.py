@@ -12,8 +12,6 @@ crosses; cases without the value are dots. Where a largest tension is that of th
 of a branch, it is no pull-off: such cases are open circles, outside colours and curves.
 """
 
-import itertools
-import pathlib
 import re
 
 import numpy as np
@@ -24,7 +22,7 @@ from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, MaxNLocator
 from matplotlib.tri import Triangulation
-from snapin.results import ResultsError, read_summary, read_table
+from snapin.results import ResultFiles, ResultsError
 
 _COLOURS = (BLUE, VERMILION, GREEN, ORANGE, PURPLE, SKY, BLACK)
 # Cases whose largest tension is that of an end of a branch.
@@ -41,7 +39,8 @@ _FLAT = 1e-12
 
 def draw_map(folder, value="max_tension", per=None, over=None, where=()):
     """Return a figure of the column `value` of the sweep in `folder`, over one or two others."""
-    columns = read_table(folder, "sweep.csv")
+    files = ResultFiles(folder)
+    columns = files.table("sweep.csv")
     # Keys with words come last, since words cannot be an axis.
     keys = sorted((name for name in columns if "." in name),
                   key=lambda name: _has_words(columns[name]))
@@ -56,7 +55,7 @@ def draw_map(folder, value="max_tension", per=None, over=None, where=()):
         raise ResultsError("--over takes one or two columns")
     columns = _chosen(columns, keys, where)
     shown = columns[value] / (columns[per] if per else 1)
-    units = _units(folder)
+    units = _units(files.text("sweep.csv"))
     label = _label(value, units) if not per else f"{_words(value)} over {_words(per)}"
     failed = columns["converged"] != 1
     at_end = np.isfinite(shown) & ~failed & _at_end(columns, [value, per, *over])
@@ -87,7 +86,7 @@ def draw_map(folder, value="max_tension", per=None, over=None, where=()):
                       at_end, label)
         label = _label(over[1], units)
     axes.set(xlabel=_label(over[0], units), ylabel=label)
-    entitle(figure, title_of(folder, read_summary(folder)))
+    entitle(figure, title_of(folder, files.summary()))
     return figure
 
 
@@ -216,11 +215,9 @@ def _wide(values):
     return len(values) > 0 and values.min() > 0 and values.max() > _DECADES * values.min()
 
 
-def _units(folder):
-    """Return the units of the columns by name."""
-    with open(pathlib.Path(folder) / "sweep.csv", encoding="utf-8") as lines:
-        heads = [line[2:] for line in itertools.takewhile(lambda line: line[0] == "#", lines)]
-    return dict(re.findall(r"^(\S+) \[(.*?)\]", "".join(heads), re.MULTILINE))
+def _units(text):
+    """Return the units of the columns of a table by name."""
+    return dict(re.findall(r"^# (\S+) \[(.*?)\]", text, re.MULTILINE))
 
 
 def _label(name, units):

@@ -10,7 +10,7 @@ from drawing import dress, entitle, run, scale, states_of, title_of
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import ListedColormap, Normalize
 from matplotlib.figure import Figure
-from snapin.results import ResultsError, read_summary, read_table
+from snapin.results import ResultFiles, ResultsError
 
 # The profiles are shown up to the last place with this share of the largest pressure.
 _FAINT = 0.02
@@ -20,7 +20,8 @@ _FEW = 12
 
 def draw_profiles(folder, branch=None):
     """Return a figure of the profiles of one branch in `folder`; default: loading, or the first."""
-    summary, table = read_summary(folder), read_table(folder, "profiles.csv")
+    files = ResultFiles(folder)
+    summary, table = files.summary(), files.table("profiles.csv")
     names = list(dict.fromkeys(table["branch"]))
     if not names:
         raise ResultsError(f"{folder}/profiles.csv has no rows")
@@ -30,7 +31,7 @@ def draw_profiles(folder, branch=None):
         raise ResultsError(f"no branch {branch!r} in {folder}/profiles.csv; there are "
                            f"{', '.join(names)}")
     states = states_of({x: values[table["branch"] == branch] for x, values in table.items()})
-    unstable = _unstable(folder, branch)
+    unstable = any(state["stable"][0] == 0 for state in states)
 
     seen = max(state["r"][abs(state["pressure"]) >= _FAINT * _largest(state)].max()
                for state in states) * 1.15
@@ -56,10 +57,9 @@ def draw_profiles(folder, branch=None):
         for state in states:
             # One more point, so that lines end at the frame.
             n = np.count_nonzero(state["seen"]) + 1
-            key = (_key(state["h0"][0]), _key(state["separation"][0]))
             panel.plot(state["r"][:n] / radii[0], state[y][:n] / factor, linewidth=1.4,
                        color=colors(norm(state["h0"][0] / lengths[0])),
-                       linestyle=(0, (3, 1.5)) if key in unstable else "-")
+                       linestyle=(0, (3, 1.5)) if state["stable"][0] == 0 else "-")
         panel.set_xlim(0, seen / radii[0])
     low = min(0, min(state["separation"].min() for state in states)) / gaps[0]
     high = max(state["separation"][state["seen"]].max() for state in states) / gaps[0]
@@ -78,20 +78,6 @@ def draw_profiles(folder, branch=None):
 
 def _largest(state):
     return abs(state["pressure"]).max()
-
-
-def _key(number):
-    return f"{number:.8e}"
-
-
-def _unstable(folder, branch):
-    """Return h0 and separation on the axis of the branch's unstable states."""
-    try:
-        curve = read_table(folder, "curve.csv")
-    except ResultsError:
-        return set()
-    rows = (curve["branch"] == branch) & (curve["stable"] == 0)
-    return {(_key(h0), _key(h)) for h0, h in zip(curve["h0"][rows], curve["h_centre"][rows])}
 
 
 def _add_options(parser):

@@ -9,7 +9,7 @@ import pathlib
 import numpy as np
 from drawing import GREY, VERMILION, entitle, run, title_of
 from matplotlib.figure import Figure
-from snapin.results import ResultsError, read_summary
+from snapin.results import ResultFiles, ResultsError
 
 # Limits of K. L. Johnson and J. A. Greenwood, J. Colloid Interface Sci. 192, 326 (1997): elastic
 # deformation over the length of the law, share of adhesion in the load, and Maugis' parameter.
@@ -24,7 +24,7 @@ _LAMBDA, _LOAD = (1e-3, 1e2), (1e-2, 1e5)
 
 def draw_regime(folder):
     """Return a figure of the map with the scene in `folder` on it."""
-    summary = read_summary(folder)
+    summary = ResultFiles(folder).summary()
     if "regime_recommended" not in summary:
         if (pathlib.Path(folder) / "sweep.csv").is_file():
             raise ResultsError(f"{folder} has results of a &sweep: see regime_... in sweep.csv")

@@ -4,6 +4,7 @@ A run starts the program. Its results come through a pipe, so that nothing is wr
 unless asked for, other threads continue meanwhile, and an interrupt ends the run.
 """
 
+import contextlib
 import os
 import pathlib
 import shutil
@@ -20,13 +21,14 @@ import numpy as np
 
 from .arguments import DeckError, SnapinError, SnapinWarning, folder_path, vector
 from .deck import deck_of, scene
-from .results import Result, read_results, result_of
+from .results import Result, result_of
 
-# The exit status of a wrong deck, the beginning of the message of a run without enough memory or
-# disk space, and the message of a finished run.
-_WRONG_DECK = 2
+# The exit statuses of a run with results, of one with failures and results, and of a wrong deck;
+# the beginning of the message of a run without enough memory or disk space.
+_DONE, _FAILED, _WRONG_DECK = 0, 1, 2
 _NO_ROOM = "not computed: "
-_FINISHED = "complete since an earlier run"
+# The last piece of a complete stream.
+_END = b"complete 0\n"
 # Largest difference of the steps of h0 over a step, which is the program's tolerance.
 _EQUAL = 1e-6
 
@@ -36,8 +38,8 @@ def run(deck, out=None, *, resume=False, quiet=True):
 
     `deck` is a dictionary of groups, such as {"bodies": {"radius": 1.5e-2, "rigid": True}, ...},
     the text of a deck, or the path of one. Nothing is left on the disk unless `out` names a folder
-    for the results; there `resume` continues an interrupted run. Without `quiet` progress and
-    messages go to standard error.
+    for the results; there `resume` continues an interrupted run, and files that no run has written
+    are left alone. Without `quiet` progress and messages go to standard error.
 
     A wrong deck raises `DeckError`; results that could not be written, or a calculation without
     results, `SnapinError`; a lack of memory `MemoryError`. Warnings of the program, also of states
@@ -53,33 +55,28 @@ def _run(deck, out=None, resume=False, quiet=True):
         raise DeckError(f"{name}: a NUL byte: a deck is plain text")
     if out is None and resume:
         raise ValueError("resume: out must name the folder of the interrupted run")
-    place = ("--out", "-") if out is None else ("--into", os.fspath(folder_path("out", out)))
-    if b"\0" in os.fsencode(place[1]):
-        raise ValueError("out: the name of a folder cannot have a NUL")
+    place = ["--out", "-"]
+    if out is not None:
+        folder = os.fspath(folder_path("out", out))
+        if "\0" in folder:
+            raise ValueError("out: the name of a folder cannot have a NUL")
+        if folder == "-":
+            raise ValueError("out: '-' is no folder; results are returned, './-' is a folder")
+        place += ["--into", folder]
     options = (["--quiet"] if quiet else []) + (["--resume"] if resume else [])
-    before = _stamp(out)
     status, streamed, said = _carry_out([*options, *place, "--name", name, "-"], text, quiet)
-    if out is None:
-        files = _files_in(streamed)
-        if "summary.nml" not in files:
-            _complain(status, said)
-        result = result_of(files, "the program's results")
-    else:
-        # If there was nothing to do, the results of the earlier run are those of this one.
-        if status and not (resume and _FINISHED in said) and _stamp(out) == before:
-            _complain(status, said)
-        result = read_results(out)
+    # Results in a folder come through the pipe too: another run may follow there at once.
+    result = _result_in(status, streamed, said)
     _tell(result)
     return result
 
 
-def _stamp(folder):
-    """Return a stamp of the summary in a folder, which changes with it; None without a summary."""
-    try:
-        found = os.stat(os.path.join(folder or "", "summary.nml"))
-    except OSError:
-        return None
-    return found.st_ino, found.st_mtime_ns
+def _result_in(status, streamed, said):
+    """Return the result in a stream, if the program has ended with results and the stream is whole.
+    """
+    if status not in (_DONE, _FAILED) or not streamed.endswith(_END):
+        _complain(status, said)
+    return result_of(_files_in(streamed), "the program's results")
 
 
 def _carry_out(arguments, text, quiet):
@@ -109,8 +106,9 @@ def _shown(program, text):
 
     reader = threading.Thread(target=show)
     reader.start()
-    program.stdin.write(text)
-    program.stdin.close()
+    # A program that refuses its arguments does not read the deck.
+    with contextlib.suppress(BrokenPipeError), program.stdin:
+        program.stdin.write(text)
     streamed = program.stdout.read()
     reader.join()
     return program.wait(), streamed, "".join(said).strip()
@@ -137,6 +135,7 @@ def _files_in(streamed):
         name, _, size = streamed[start:end].decode().rpartition(" ")
         start = end + 1 + int(size)
         pieces.setdefault(name, []).append(streamed[end + 1:start])
+    del pieces[_END.split()[0].decode()]
     return {name: b"".join(parts).decode() for name, parts in pieces.items()}
 
 
@@ -145,11 +144,19 @@ def _complain(status, said):
     if status == _WRONG_DECK:
         raise DeckError(said)
     if status < 0:
-        raise SnapinError(f"the program was ended by {signal.Signals(-status).name}")
+        raise SnapinError(f"the program was ended by {_name_of(-status)}")
     _, found, reason = said.rpartition(_NO_ROOM)
     if found:
         raise MemoryError(_NO_ROOM + reason)
-    raise SnapinError(said)
+    raise SnapinError(said or f"the program ended with status {status} and without results")
+
+
+def _name_of(number):
+    """Return the name of a signal."""
+    try:
+        return signal.Signals(number).name
+    except ValueError:
+        return f"signal {number}"
 
 
 def _tell(result):

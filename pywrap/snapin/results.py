@@ -1,7 +1,9 @@
 """The reader of the results of a run."""
 
+import os
 import pathlib
 import re
+import time
 
 import _snapin
 import numpy as np
@@ -9,11 +11,15 @@ import numpy as np
 from .arguments import SnapinError, folder_path
 
 _TEXT_COLUMNS = ("branch", "direction", "theory", "quantity", "parameter", "failure")
-# How the program's tables begin.
-_HEAD = b"# title:"
+# How the program's tables and its fits begin.
+_HEAD, _FIT_HEAD = b"# title:", b"! A fit by snapin"
 # A text in quotes, with quotes inside doubled, or another value.
 _WORD = re.compile(r"'((?:[^']|'')*)'|([^,\s]+)")
 _TRUTHS = {".true.": True, ".false.": False}
+# Where a run that has not ended keeps its files.
+_UNFINISHED = "unfinished"
+# Longest time [s] for which a set of results that is being replaced is waited for, and a pause.
+_PATIENCE, _PAUSE = 5.0, 0.005
 
 
 class ResultsError(SnapinError):
@@ -55,12 +61,62 @@ class Result:
 def read_results(folder):
     """Return the `Result` in a folder written by the program."""
     folder = folder_path("folder", folder)
-    _path_of(folder, "summary.nml")
-    files = {path.name: path.read_bytes() for path in sorted(folder.glob("*.*"))
-             if path.suffix == ".csv" or path.name in ("summary.nml", "fit.nml")}
-    # Other tables may be there, such as a measured curve.
-    return result_of({name: text.decode() for name, text in files.items()
-                      if name.endswith(".nml") or text.startswith(_HEAD)}, folder)
+    return result_of(ResultFiles(folder).texts, folder)
+
+
+class ResultFiles:
+    """The files of one run in a folder of results: `texts` has their texts by name.
+
+    A run that replaces results removes the old summary first and puts the new one there last. So
+    the files read while one summary is there are of one run. While it is open, no other file has
+    its number.
+    """
+
+    def __init__(self, folder):
+        self.folder = pathlib.Path(folder)
+        patience = time.monotonic() + _PATIENCE
+        while not self._have_been_read():
+            if time.monotonic() > patience:
+                raise ResultsError(f"the results in {folder} are not one set: a run was stopped "
+                                   "while it replaced them; run the deck again")
+            time.sleep(_PAUSE)
+
+    def _have_been_read(self):
+        """Read the files; return whether they are of one run."""
+        try:
+            with (self.folder / "summary.nml").open("rb") as summary:
+                found = _tables_in(self.folder)
+                found["summary.nml"] = summary.read()
+                whole = os.path.samestat(os.fstat(summary.fileno()), os.stat(summary.name))
+        except (FileNotFoundError, NotADirectoryError):
+            # Unless a run replaces the results: its summary is in one of these places.
+            if any((self.folder / place / "summary.nml").is_file() for place in (_UNFINISHED, "")):
+                return False
+            raise ResultsError(_absence(self.folder, "summary.nml")) from None
+        self.texts = {name: text.decode() for name, text in found.items()}
+        return whole
+
+    def text(self, name):
+        """Return the text of a file."""
+        if name not in self.texts:
+            raise ResultsError(_absence(self.folder, name))
+        return self.texts[name]
+
+    def table(self, name):
+        """Return the columns of a table as a dict of arrays, text for `_TEXT_COLUMNS`."""
+        return _columns(self.text(name), self.folder / name)
+
+    def summary(self):
+        """Return the group &summary of summary.nml as a dict."""
+        return _summary_groups(self.text("summary.nml"), self.folder / "summary.nml")["summary"]
+
+
+def _tables_in(folder):
+    """Return the contents of tables and of a fit; other files may be there, such as a curve."""
+    found = {path.name: path.read_bytes() for path in sorted(folder.glob("*.*"))
+             if path.is_file() and (path.suffix == ".csv" or path.name == "fit.nml")}
+    return {name: text for name, text in found.items()
+            if text.startswith(_HEAD if name.endswith(".csv") else _FIT_HEAD)}
 
 
 def result_of(files, place):
@@ -131,8 +187,10 @@ def _value(word):
 
 
 def read_table(folder, name):
-    """Return the columns of a table as a dict of arrays, text for `_TEXT_COLUMNS`."""
-    path = _path_of(folder, name)
+    """Return the columns of one table of a folder as a dict of arrays."""
+    path = pathlib.Path(folder) / name
+    if not path.is_file():
+        raise ResultsError(_absence(path.parent, name))
     return _columns(path.read_text(encoding="utf-8"), path)
 
 
@@ -160,12 +218,6 @@ def _has_text(column, cells):
     return column in _TEXT_COLUMNS or ("." in column and any(cell[:1].isalpha() for cell in cells))
 
 
-def read_summary(folder):
-    """Return the group &summary of summary.nml as a dict."""
-    path = _path_of(folder, "summary.nml")
-    return _summary_groups(path.read_text(encoding="utf-8"), path)["summary"]
-
-
 def _summary_groups(text, place):
     """Return &summary and &cost; a list stays a list, also with one value."""
     # The deck follows these groups.
@@ -184,21 +236,16 @@ def _summary_groups(text, place):
     }
 
 
-def _path_of(folder, name):
-    """Return the path of a file of complete results."""
-    path = pathlib.Path(folder) / name
-    if path.with_name("INCOMPLETE.txt").exists():
-        raise ResultsError(f"files in {folder} may not belong together: see INCOMPLETE.txt there")
-    if not path.is_file():
-        raise ResultsError(f"no {name} in {folder}{_hint(path)}")
-    return path
+def _absence(folder, name):
+    """Return what is to be said of a file that is not there."""
+    return f"no {name} in {folder}{_hint(folder / name)}"
 
 
 def _hint(path):
     if not path.parent.is_dir():
         return ": there is no such folder; ./run DECK writes results/<name of the deck>"
-    if path.with_name(path.name + ".partial").is_file():
-        return ": the run has not finished"
+    if (path.parent / _UNFINISHED / path.name).is_file():
+        return f": the run has not finished; its files are in {path.parent / _UNFINISHED}"
     if path.with_name("sweep.csv").is_file():
         return ": a &sweep writes one row for each case in sweep.csv, and no curves"
     if path.name == "sweep.csv":

@@ -4,7 +4,7 @@ module command_line
   use text, only: guess, printable
   implicit none
   private
-  public :: options_t, file_t, read_command_line, stem_of, write_help, write_usage
+  public :: options_t, file_t, read_command_line, stem_of, help_text, write_usage
 
   !> One file name.
   type :: file_t
@@ -14,7 +14,7 @@ module command_line
   !> The content of the command line.
   type :: options_t
     !> Folder in which each deck gets a folder of its own, or '-' for standard output; folder for
-    !> the results of a single deck.
+    !> the results of a single deck, which go to standard output too if the first is '-'.
     character(len=:), allocatable :: out, into
     !> The name of the deck on standard input in messages and results.
     character(len=:), allocatable :: name
@@ -92,7 +92,10 @@ contains
     if (options%informs()) return
     if (size(options%decks) == 0) then
       call fail(error, bad_input, 'no deck; name at least one file')
-    else if (allocated(options%out) .and. allocated(options%into)) then
+    else if (given(options%into, '-')) then
+      call fail(error, bad_input, '--into needs a folder; --out - writes to standard output')
+    else if (allocated(options%out) .and. allocated(options%into) .and. &
+      .not. given(options%out, '-')) then
       call fail(error, bad_input, 'give --out or --into, not both')
     else if (allocated(options%name) .and. &
       all([(options%decks(i)%name /= '-', i=1, size(options%decks))])) then
@@ -113,6 +116,15 @@ contains
     end if
 
   contains
+
+    !> Whether an option was given with this value.
+    pure logical function given(option, text)
+      character(len=:), allocatable, intent(in) :: option
+      character(len=*), intent(in) :: text
+
+      given = .false.
+      if (allocated(option)) given = option == text
+    end function given
 
     !> Takes the text after the sign of an option, or the next argument.
     subroutine take_value(taken)
@@ -198,18 +210,19 @@ contains
     write (unit, '(2a)', iostat=status) 'usage: ', usage
   end subroutine write_usage
 
-  !> Prints a description of the program, its options and a deck to start from.
-  subroutine write_help(unit)
-    integer, intent(in) :: unit
-    integer :: status, i
+  !> A description of the program, its options and a deck to start from.
+  function help_text() result(text)
+    character(len=:), allocatable :: text
+    integer :: i
     character(len=*), parameter :: lines(*) = [character(len=90) :: &
       '', &
       'Elastic deformation and adhesion of two bodies near and in contact. Each DECK, a', &
       'namelist file or - for standard input, is computed into results/<name of the deck>/.', &
       '', &
       '  --out DIR   write to DIR/<name of the deck>/ instead (-o); to standard output if DIR', &
-      '              is -: each piece of a file after a line with its name and its bytes', &
-      '  --into DIR  write the results of one deck into DIR itself', &
+      '              is -: each piece of a file after a line with its name and its bytes;', &
+      '              the last line is "complete 0"', &
+      '  --into DIR  write the results of one deck into DIR itself; with --out - to both', &
       '  --name NAME name of the deck on standard input', &
       '  --check     validate the decks, compute nothing', &
       '  --resume    continue an interrupted run; leave finished results as they are', &
@@ -231,10 +244,10 @@ contains
       '  &unloading /                                             ! back from h0_end', &
       '  &profiles h0 = 4.3e-9, 3.6e-9 /']
 
-    call write_usage(unit)
+    text = 'usage: ' // usage // new_line('a')
     do i = 1, size(lines)
-      write (unit, '(a)', iostat=status) trim(lines(i))
+      text = text // trim(lines(i)) // new_line('a')
     end do
-  end subroutine write_help
+  end function help_text
 
 end module command_line

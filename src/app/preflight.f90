@@ -1,5 +1,6 @@
 !> Checks before a run whether there is memory for its matrices and disk space for its files, and
-!> whether these would replace files that the deck reads. Such a run is not begun.
+!> whether these would replace files that the deck reads or that no run has written. Such a run is
+!> not begun.
 module preflight
   use kinds, only: wp
   use failure, only: failure_t, fail, bad_input, no_room
@@ -13,8 +14,9 @@ module preflight
   use h0_schedule, only: states_planned
   use decimal, only: longest_real
   use machine, only: available_memory, thread_count, blas_buffers
-  use files, only: free_disk, same_file
-  use publication, only: result_files, summary_name
+  use files, only: free_disk, same_file, file_exists
+  use folder_lock, only: folder_lock_t
+  use publication, only: result_files, summary_name, unfinished, check_names
   use result_folder, only: to_stream
   use case_columns, only: column_count
   implicit none
@@ -27,7 +29,7 @@ module preflight
   real(wp), parameter :: eigenvalue_matrices = 5
   !> Number of cells in a row of the curve, of a profile and of a table of theories; bytes of a step
   !> in the journal.
-  integer, parameter :: of_curve = 10, of_profile = 7, of_theory = 5, kept = 900
+  integer, parameter :: of_curve = 10, of_profile = 9, of_theory = 5, kept = 900
   !> Digits of meshes that are laid out only to count their nodes, whose number is taken as
   !> proportional to the digits.
   real(wp), parameter :: few_digits = 3
@@ -38,8 +40,9 @@ module preflight
 
 contains
 
-  !> Fails if results in `folder` would replace a file that the deck reads: the deck itself, `name`,
-  !> or a table. A summary may be the deck of its own folder, since its successor has the same deck.
+  !> Fails if results in `folder` would replace a file that no run has written, or one that the deck
+  !> reads: the deck itself, `name`, or a table. A summary may be the deck of its own folder, since
+  !> its successor has the same deck.
   subroutine check_inputs(scene, name, folder, error)
     type(scene_t), intent(in) :: scene
     character(len=*), intent(in) :: name, folder
@@ -54,6 +57,7 @@ contains
           call check(deck%path_of(trim(deck%specs(i)%group), trim(deck%specs(i)%key)), .false.)
       end do
     end associate
+    if (.not. allocated(error)) call check_target(name, folder, error)
 
   contains
 
@@ -64,13 +68,32 @@ contains
 
       do k = 1, size(result_files)
         if (is_summary .and. result_files(k) == summary_name) cycle
-        if (same_file(path, folder // '/' // trim(result_files(k)))) call fail(error, bad_input, &
-          name // ': results would replace ' // path // &
+        if (same_file(path, folder // '/' // trim(result_files(k))) .or. &
+          same_file(path, folder // '/' // unfinished // '/' // trim(result_files(k)))) &
+          call fail(error, bad_input, name // ': results would replace ' // path // &
           ', which the deck reads; rename it, or choose another folder')
       end do
     end subroutine check
 
   end subroutine check_inputs
+
+  !> Fails if something in `folder` has the name of a result and no run has written it. A folder
+  !> that cannot be opened is the run's own failure.
+  subroutine check_target(name, folder, error)
+    character(len=*), intent(in) :: name, folder
+    type(failure_t), allocatable, intent(out) :: error
+    type(failure_t), allocatable :: closed
+    type(folder_lock_t) :: target
+
+    if (.not. file_exists(folder // '/.')) return
+    call target%look_into(folder, closed)
+    if (allocated(closed)) return
+    call check_names(target, error)
+    call target%release()
+    if (.not. allocated(error)) return
+    error%kind = bad_input
+    error%message = name // ': ' // error%message
+  end subroutine check_target
 
   !> Fails if memory, or the disk with the folder of the results, does not suffice for a run.
   subroutine check_room(scene, folder, error)

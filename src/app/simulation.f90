@@ -13,7 +13,7 @@ module simulation
   use h0_schedule, only: states_planned
   use drive_rates, only: rate_drive
   use sweeps, only: run_sweep
-  use case_columns, only: groups_left_out
+  use case_columns, only: left_out
   use sweep_case, only: sweep_tally_t
   use ranks, only: crew_t
   use preflight, only: check_room, large_results
@@ -30,8 +30,8 @@ module simulation
   use problem_numbers, only: describe_problem
   use summary, only: summary_t
   use result_folder, only: journal_of, to_stream
+  use publication, only: clear_unfinished
   use results, only: results_t
-  use publication, only: mend
   use run_identity, only: identity_of, find_finished
   use progress, only: duration
   use run_messages, only: destination_t, tell
@@ -49,16 +49,17 @@ module simulation
 
 contains
 
-  !> Computes a scene and writes its results into the folder `out_dir`. If memory or disk space does
+  !> Computes a scene and writes its results into the folder `out_dir`, and with `handed_over` then
+  !> to standard output. If memory or disk space does
   !> not suffice, the folder is not changed. converged: .false. if a calculation failed; the results
   !> are kept and the summary says what failed. error: there are no results, or they could not be
   !> written. resume: an interrupted run in the folder is continued, and finished results are left
   !> as they are. crew: the processes that compute a sweep, for which `job` is the number of the
   !> scene.
-  subroutine run_scene(scene, out_dir, quiet, resume, crew, job, converged, error)
+  subroutine run_scene(scene, out_dir, handed_over, quiet, resume, crew, job, converged, error)
     type(scene_t), intent(in) :: scene
     character(len=*), intent(in) :: out_dir
-    logical, intent(in) :: quiet, resume
+    logical, intent(in) :: handed_over, quiet, resume
     type(crew_t), intent(in) :: crew
     integer, intent(in) :: job
     logical, intent(out) :: converged
@@ -74,6 +75,7 @@ contains
     began = seconds()
     converged = .false.
     destination = destination_t(out_dir, quiet, out_dir == to_stream)
+    results%folder%handed_over = handed_over
     if (destination%to_stream) then
       destination%folder = 'snapin'
     else
@@ -86,11 +88,8 @@ contains
     call open_folder()
     if (allocated(error)) return
     call compute()
-    if (allocated(scene%classical)) call write_classical(problem, scene%classical, &
-      path_start(scene, problem), results, summary)
-    ! Bodies are nearly undeformed only before the path comes to contact.
-    if (allocated(scene%approximations)) call write_approximations(problem, scene%approximations, &
-      max(path_start(scene, problem), problem%law%separation_of(calm_gap(problem))), results)
+    ! A table of the deck's own numbers would belong to no case of a sweep.
+    if (.not. allocated(scene%sweep)) call write_theories()
     if (allocated(scene%fit)) call fit_measured()
     call summary%set('version', version)
     call summary%set('compiler', compiler)
@@ -111,20 +110,21 @@ contains
 
   contains
 
-    !> Completes an interrupted replacement of results. With `resume` and a finished run in the
-    !> folder, finished = .true., and there is nothing to compute; converged is that of the finished
-    !> run.
+    !> With `resume` and a finished run in the folder, finished = .true., and there is nothing to
+    !> compute; converged is that of the finished run.
     subroutine take_up_earlier()
-      logical :: mended
-
       finished = .false.
-      call mend(destination%folder, mended, error)
-      if (allocated(error)) return
-      if (mended) call destination%say( &
-        'installed the results that an interrupted run had completed')
-      if (file_exists(journal_of(destination%folder))) return
-      if (.not. resume) return
-      call find_finished(destination%folder, scene%deck%resolved(), finished, converged)
+      if (.not. resume .or. file_exists(journal_of(destination%folder))) return
+      if (file_exists(destination%folder // '/.')) then
+        call results%folder%lock%take(destination%folder, error)
+        if (allocated(error)) return
+        call find_finished(destination%folder, scene%deck%resolved(), finished, converged)
+        if (finished) call clear_unfinished(results%folder%lock, error)
+        if (finished .and. handed_over .and. .not. allocated(error)) &
+          call results%folder%hand_over(error)
+        call results%folder%lock%release()
+        if (allocated(error)) return
+      end if
       if (finished) then
         call destination%say('complete since an earlier run; nothing to do')
         if (.not. converged) call destination%say('its summary says what failed')
@@ -161,7 +161,7 @@ contains
     !> Runs the experiments or the sweep; their records go into the results.
     subroutine compute()
       type(experiment_result_t) :: outcome
-      character(len=:), allocatable :: name, left_out
+      character(len=:), allocatable :: name
       type(sweep_tally_t) :: tally
 
       name = destination%folder(index(destination%folder, '/', .true.) + 1:)
@@ -179,9 +179,7 @@ contains
         if (tally%warned > 0) call summary%warn(brief(tally%warned)//' of '// &
           counted(scene%sweep%cases(), 'case')//' gave a warning; the first, case '// &
           brief(tally%first_warned)//': '//trim(tally%warning))
-        left_out = groups_left_out(scene)
-        if (left_out /= '') call summary%note('sweep: no number in sweep.csv comes from '// &
-          left_out//'; run a case alone to see states')
+        if (left_out(scene) /= '') call summary%note('sweep: '//left_out(scene))
       else
         call results%progress%start(states_planned(scene), name, destination%quiet)
         call run_observed()
@@ -215,6 +213,16 @@ contains
       cost = outcome%cost
       cost%factorisations = cost%factorisations + recorder%cost%factorisations
     end subroutine run_observed
+
+    !> Writes the tables of closed forms.
+    subroutine write_theories()
+      if (allocated(scene%classical)) call write_classical(problem, scene%classical, &
+        path_start(scene, problem), results, summary)
+      ! Bodies are nearly undeformed only before the path comes to contact.
+      if (allocated(scene%approximations)) call write_approximations(problem, &
+        scene%approximations, max(path_start(scene, problem), &
+        problem%law%separation_of(calm_gap(problem))), results)
+    end subroutine write_theories
 
     !> Makes the fit of &fit, its files and messages; without a fit the summary says why.
     subroutine fit_measured()

@@ -2,22 +2,23 @@
 !> command line is wrong.
 program snapin
   use, intrinsic :: iso_c_binding, only: c_int
-  use, intrinsic :: iso_fortran_env, only: output_unit, error_unit
+  use, intrinsic :: iso_fortran_env, only: error_unit
   use failure, only: failure_t, fail, bad_input
   use text, only: lower, quoted, clip, guess
-  use deck_keys, only: key_spec, write_keys, is_of, names_of
+  use deck_keys, only: key_spec, keys_text, is_of, names_of
   use scene, only: scene_t, keys_of_scene, read_scene
   use c_library, only: c_prepare, c_end_with_parent
-  use files, only: read_standard_input
+  use files, only: read_standard_input, write_stdout
   use result_folder, only: to_stream
   use machine, only: begin_with_one_thread
-  use result_tables, only: write_result_listing
-  use command_line, only: options_t, read_command_line, stem_of, write_help, write_usage
+  use result_tables, only: result_listing
+  use command_line, only: options_t, read_command_line, stem_of, help_text, write_usage
   use launch, only: own_rank
   use simulation, only: run_scene
   use sweeps, only: work_on_sweeps
   use dispatch, only: dismiss
   use ranks, only: crew_t
+  use case_columns, only: left_out
   use preflight, only: check_room, check_inputs, large_results
   use build_info, only: version, compiler, blas, options_of_build => options
   implicit none
@@ -31,6 +32,7 @@ program snapin
     end subroutine c_exit
   end interface
 
+  character(len=1), parameter :: nl = new_line('a')
   type(options_t) :: options
   type(crew_t) :: crew
   type(failure_t), allocatable :: error
@@ -49,20 +51,17 @@ program snapin
     if (own_rank() > 0) call leave(0)
   end if
   if (options%help) then
-    call write_help(output_unit)
+    call leave(status_of(help_text()))
   else if (options%version) then
-    call print_line(output_unit, 'snapin ' // version)
-    call print_line(output_unit, 'compiler: ' // compiler)
-    call print_line(output_unit, 'blas: ' // blas)
-    call print_line(output_unit, 'options: ' // options_of_build)
+    call leave(status_of('snapin ' // version // nl // 'compiler: ' // compiler // nl // &
+      'blas: ' // blas // nl // 'options: ' // options_of_build // nl))
   else if (options%keys) then
     call leave(show_keys())
   else if (options%results) then
-    call write_result_listing(output_unit)
+    call leave(status_of(result_listing()))
   else
     call leave(run_decks())
   end if
-  call leave(0)
 
 contains
 
@@ -85,7 +84,7 @@ contains
       end if
       shown = shown .or. is_of(specs, name)
     end do
-    if (status == 0) call write_keys(pack(specs, shown), output_unit)
+    if (status == 0) status = status_of(keys_text(pack(specs, shown)))
   end function show_keys
 
   !> Validates all decks, then computes them one by one; returns the exit status. All decks are read
@@ -95,9 +94,10 @@ contains
     type(failure_t), allocatable :: trouble
     character(len=:), allocatable :: folder, said
     logical :: converged
-    integer :: first, i
+    integer :: first, written, i
 
     status = 0
+    written = 0
     call crew%begin(trouble)
     if (.not. allocated(trouble) .and. crew%workers > 0 .and. &
       any([(options%decks(i)%name == '-', i=1, size(options%decks))])) &
@@ -123,7 +123,7 @@ contains
         if (crew%rank == 0) call print_line(error_unit, trouble%message)
         said = trouble%message
       else if (options%check .and. crew%rank == 0) then
-        call print_line(output_unit, options%decks(i)%name // ': ok')
+        written = max(written, status_of(options%decks(i)%name // ': ok' // nl))
         if (allocated(scenes(i)%measured)) call print_line(error_unit, 'snapin: ' // &
           options%decks(i)%name // ': ' // scenes(i)%measured%understood)
         call check_room(scenes(i), folder_of(i), trouble)
@@ -131,12 +131,15 @@ contains
           ': ' // trouble%message)
         if (large_results(scenes(i)) /= '') call print_line(error_unit, 'snapin: ' // &
           options%decks(i)%name // ': ' // large_results(scenes(i)))
+        if (left_out(scenes(i)) /= '') call print_line(error_unit, 'snapin: ' // &
+          options%decks(i)%name // ': ' // left_out(scenes(i)))
       end if
     end do
     ! A deck that one process cannot read stops all processes.
     first = crew%first_of(status /= 0)
     if (first > 0 .and. first == crew%rank) call print_line(error_unit, said)
     if (first >= 0) status = 2
+    if (status == 0) status = written
     if (options%check .or. status /= 0) return
     if (crew%rank > 0) then
       call work_on_sweeps(crew, scenes)
@@ -144,7 +147,8 @@ contains
     end if
     do i = 1, size(scenes)
       folder = folder_of(i)
-      call run_scene(scenes(i), folder, options%quiet, options%resume, crew, i, converged, trouble)
+      call run_scene(scenes(i), folder, options%out == to_stream, options%quiet, options%resume, &
+        crew, i, converged, trouble)
       if (allocated(trouble)) call print_line(error_unit, folder // ': ' // trouble%message)
       if (allocated(trouble) .or. .not. converged) status = 1
     end do
@@ -156,9 +160,21 @@ contains
     character(len=:), allocatable :: folder
 
     folder = options%out // '/' // stem_of(options%decks(i)%name)
-    if (allocated(options%into)) folder = options%into
     if (options%out == to_stream) folder = to_stream
+    if (allocated(options%into)) folder = options%into
   end function folder_of
+
+  !> Writes `text` to standard output; the exit status, 1 if that fails.
+  integer function status_of(text) result(status)
+    character(len=*), intent(in) :: text
+    type(failure_t), allocatable :: trouble
+
+    status = 0
+    call write_stdout(text, trouble)
+    if (.not. allocated(trouble)) return
+    call print_line(error_unit, 'snapin: ' // trouble%message)
+    status = 1
+  end function status_of
 
   !> Prints a line and ignores failures: a full disk behind a redirection must not end the program
   !> with a runtime error.
@@ -175,7 +191,6 @@ contains
     integer :: trouble
 
     call crew%end()
-    flush (output_unit, iostat=trouble)
     flush (error_unit, iostat=trouble)
     call c_exit(int(status, c_int))
   end subroutine leave

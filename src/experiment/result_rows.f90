@@ -17,7 +17,7 @@ module result_rows
   !> point, spring or load.
   character(len=*), parameter :: never = '', always = 'always', classical = 'classical', &
     approximations = 'approximations', regime = 'regime', forces = '(forces)', &
-    turning = 'unloading', spring = 'device', given_load = 'fixed_load', table = 'table', &
+    turning = 'unloading', spring = 'device', given_load = 'fixed_load', &
     layer = 'layer', drive = 'drive', fluid = 'fluid', viscoelastic = 'viscoelastic', &
     tabulated = 'tabulated', carpick = '(carpick)', pietrement_troyon = '(troyon)', &
     layered_regime = '(layers)'
@@ -161,9 +161,9 @@ module result_rows
       error=judged), &
     row_t('fixed_load_contact_radius', 'm', 'its contact radius', given_load, list=.true., &
       error=judged), &
-    row_t('table_load_error', 'N', 'largest estimated error of a load in table.csv', table), &
+    row_t('table_load_error', 'N', 'largest estimated error of a load in table.csv'), &
     row_t('table_interpolation_error', 'N', 'largest error of a load between the rows, by ' // &
-      'cubic polynomials with their slopes', table), &
+      'cubic polynomials with their slopes'), &
     row_t('regime_tabor', '', 'the same as tabor', regime), &
     row_t('regime_tabor_range', '', &
       'Tabor''s parameter with the range, surface energy over largest tension', regime), &
@@ -223,6 +223,8 @@ module result_rows
       'range of the force over the radius of the bodies, small in the model', always), &
     row_t('contact_over_radius', '', &
       'largest contact radius over the radius; for other shapes the slope there', always), &
+    row_t('classical_over_radius', '', &
+      'the same for the largest contact radius in classical.csv'), &
     row_t('pressure_over_stiffness', '', 'largest pressure over the stiffness, about the strain', &
       always), &
     row_t('worst_residual', '', &

@@ -5,7 +5,7 @@ module deck_keys
   implicit none
   private
   public :: key_spec, group_row, ignored_group, real_value, real_list, integer_value, &
-    logical_value, word_value, text_value, names_value, allowed, names_of, is_of, write_keys
+    logical_value, word_value, text_value, names_value, allowed, names_of, is_of, keys_text
 
   !> Kinds of row: a group, a group that is skipped, and seven kinds of key.
   integer, parameter :: group_row = 0, ignored_group = 1
@@ -110,28 +110,31 @@ contains
     end if
   end function default_text
 
-  !> Prints the table: a line `&group` for each group, then two lines for each of its keys.
-  subroutine write_keys(specs, unit)
+  !> The table as text: a line `&group` for each group, then two lines for each of its keys.
+  pure function keys_text(specs) result(text)
     type(key_spec), intent(in) :: specs(:)
-    integer, intent(in) :: unit
-    integer :: i, status
+    character(len=:), allocatable :: text
+    character(len=1), parameter :: nl = new_line('a')
+    integer :: i
 
+    text = ''
     do i = 1, size(specs)
       associate (spec => specs(i))
         select case (spec%kind)
         case (group_row)
-          write (unit, '(/, 3a, /, 4x, a)', iostat=status) '&', trim(spec%group), &
-            trim(merge(' (required)', '           ', spec%required)), trim(spec%meaning)
+          text = text // nl // '&' // trim(spec%group) // &
+            trim(merge(' (required)', '           ', spec%required)) // nl
+          text = text // '    ' // trim(spec%meaning) // nl
         case (ignored_group)
-          write (unit, '(/, 3a, /, 4x, a)', iostat=status) '&', trim(spec%group), ' (skipped)', &
-            trim(spec%meaning)
+          text = text // nl // '&' // trim(spec%group) // ' (skipped)' // nl
+          text = text // '    ' // trim(spec%meaning) // nl
         case default
-          write (unit, '(2x, 4a)', iostat=status) spec%key, allowed(spec), '; ', default_text(spec)
-          write (unit, '(26x, a)', iostat=status) trim(spec%meaning)
+          text = text // '  ' // spec%key // allowed(spec) // '; ' // default_text(spec) // nl
+          text = text // repeat(' ', 26) // trim(spec%meaning) // nl
         end select
       end associate
     end do
-  end subroutine write_keys
+  end function keys_text
 
   !> Whether each row belongs to the group or key `name`, 'group' or 'group.key'.
   pure function is_of(specs, name) result(rows)

@@ -13,7 +13,7 @@ module case_columns
   use summary, only: summary_t
   implicit none
   private
-  public :: columns_of, numbers_of, column_count, groups_left_out, column_width
+  public :: columns_of, numbers_of, column_count, left_out, column_width
 
   !> Number of characters of a column's description.
   integer, parameter :: column_width = 132
@@ -22,8 +22,10 @@ module case_columns
     'failure [] why results of the case are missing; blank if none is'
   !> The groups with a list, each element of which has its columns.
   character(len=*), parameter :: with_list(*) = [character(len=10) :: turning, spring, given_load]
-  !> The groups whose results are states and no numbers of a case; a sweep keeps no states.
-  character(len=*), parameter :: of_states(*) = [character(len=9) :: 'profiles', 'stability']
+  !> Groups with numbers in sweep.csv and tables, and these tables, which a sweep does not write.
+  character(len=*), parameter :: with_tables(2, 4) = reshape([character(len=27) :: &
+    'approximations', 'approximations.csv', 'classical', 'classical.csv', &
+    'device', 'device.csv device_jumps.csv', 'fixed_load', 'fixed_load.csv'], [2, 4])
 
   !> A number of the summary: row of `result_rows`, and element if this is a list.
   type :: number_t
@@ -71,18 +73,21 @@ contains
     column_count = size(scene%sweep%words) + size(chosen_numbers(scene)) + 1
   end function column_count
 
-  !> The groups of the scene that leave no number in sweep.csv, as 'profiles, stability'.
-  function groups_left_out(scene) result(text)
+  !> What a sweep of the scene leaves out, for a message; empty if nothing but the curves.
+  function left_out(scene) result(text)
     type(scene_t), intent(in) :: scene
     character(len=:), allocatable :: text
     integer :: i
 
     text = ''
-    do i = 1, size(of_states)
-      if (scene%deck%has_group(trim(of_states(i)))) text = text // trim(of_states(i)) // ' '
+    if (.not. allocated(scene%sweep)) return
+    do i = 1, size(with_tables, 2)
+      if (scene%deck%has_group(trim(with_tables(1, i)))) &
+        text = text // ' ' // trim(with_tables(2, i))
     end do
-    text = listing(trim(text), '', '')
-  end function groups_left_out
+    if (text /= '') text = 'sweep.csv has the numbers of each case; a sweep writes no ' // &
+      listing(text(2:), '', '') // '; run a case alone for these'
+  end function left_out
 
   !> The numbers of a case's summary, one for each of `columns_of(scene)` between keys and failure;
   !> NaN for a number that does not exist.

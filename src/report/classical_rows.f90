@@ -12,6 +12,7 @@ module classical_rows
   use layered_contact, only: layered_contact_t, new_layered_contact, has_layers, of_load, &
     of_displacement
   use scene_groups, only: range_t
+  use quality_warnings, only: judge_theories
   use results, only: results_t
   use summary, only: summary_t
   use text, only: rounded
@@ -32,7 +33,8 @@ contains
   !> its contact radius is that at the load of Maugis-Dugdale theory. `from` [m] replaces a start
   !> that the range does not have. No rows for rigid bodies, which have no displacement. For other
   !> shapes than the parabola there are Hertz and JKR for any convex body, for layered bodies Hertz
-  !> and JKR for layers. The summary has a note if there is no row.
+  !> and JKR for layers. The summary has a note if there is no row, and a warning if contacts are
+  !> too wide for the theories.
   subroutine write_classical(problem, range, from, results, summary)
     type(problem_t), intent(in) :: problem
     type(range_t), intent(in) :: range
@@ -40,8 +42,8 @@ contains
     type(results_t), intent(inout) :: results
     type(summary_t), intent(inout) :: summary
     type(layered_contact_t) :: contact
-    real(wp) :: start, h0, delta, gamma, strength, narrowest, a
-    logical :: layered, any_row
+    real(wp) :: start, h0, delta, gamma, strength, narrowest, a, widest
+    logical :: layered
     integer :: i
 
     call results%begin_table('classical.csv')
@@ -49,7 +51,7 @@ contains
       call summary%note('classical: rigid bodies have no displacement, and no theory has rows')
       return
     end if
-    any_row = .false.
+    widest = -1
     layered = has_layers(problem)
     if (layered) contact = new_layered_contact(problem, problem%law%origin - range%h0_end)
     start = from
@@ -70,7 +72,8 @@ contains
         call add_convex()
       end if
     end do
-    if (.not. any_row) call summary%note('classical: none of these theories has a state ' // &
+    if (widest > 0) call judge_theories(problem, widest, summary)
+    if (widest < 0) call summary%note('classical: none of these theories has a state ' // &
       'in this range of h0; if the law does not attract, only Hertz theory has states')
 
   contains
@@ -137,7 +140,7 @@ contains
       ! NaN: the theory has no state here.
       if (ieee_is_nan(load) .or. ieee_is_nan(contact_radius)) return
       if (.not. range%shown(theory)) return
-      any_row = .true.
+      widest = max(widest, contact_radius)
       call results%row(trim(theories(theory))//trim(merge('_layered', '        ', layered)), &
         [h0, delta, load, contact_radius])
     end subroutine add

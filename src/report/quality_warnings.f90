@@ -16,7 +16,7 @@ module quality_warnings
   use numerics_choice, only: edge_locked
   implicit none
   private
-  public :: judge_law, judge_run
+  public :: judge_law, judge_run, judge_theories
 
   !> Parts of the radius that give a note and a warning (a parabola differs from a circle by a
   !> quarter of the square); pressure over stiffness, which is about the strain, that gives a
@@ -261,6 +261,22 @@ contains
     end subroutine judge_accuracy
 
   end subroutine judge_run
+
+  !> Checks the rows of theories, whose widest contact has this radius [m].
+  subroutine judge_theories(problem, contact_radius, summary)
+    type(problem_t), intent(in) :: problem
+    real(wp), intent(in) :: contact_radius
+    type(summary_t), intent(inout) :: summary
+
+    associate (a => contact_radius/problem%lateral, shape => problem%shape)
+      call judge(summary, 'classical_over_radius', shape%slope(a)*problem%length/problem%lateral, &
+        'the slope at the edge of the widest contact in classical.csv', &
+        'the theories are for small slopes')
+      if (a > shape%known_to) call summary%warn('beyond the file of &shape: contacts in ' // &
+        'classical.csv reach ' // rounded(contact_radius) // ' m from the axis, the points ' // &
+        rounded(shape%known_to*problem%lateral) // ' m; there the body goes on as a parabola')
+    end associate
+  end subroutine judge_theories
 
   !> Sets a length over the radius, or a slope, and warns if it is not small.
   subroutine judge(summary, key, part, what, why)

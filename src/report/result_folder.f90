@@ -1,16 +1,19 @@
-!> The folder with the results of a run. All files are first written as `.partial` files; `close`
-!> gives the whole set its names (`publication`). Until then the results of an earlier run stay
-!> unchanged, and files of an interrupted run have partial names. One run at a time has the folder.
-!> A journal keeps the states found, from which another run can continue.
+!> The folder with the results of a run. All files are first written in the folder `unfinished`
+!> within it; `close` puts the whole set in place (`publication`). Until then the results of an
+!> earlier run stay unchanged. One run at a time has the folder. A journal keeps the states found,
+!> from which another run can continue. Results may also go to standard output, alone or when they
+!> are in place.
 module result_folder
-  use, intrinsic :: iso_c_binding, only: c_int
+  use, intrinsic :: iso_c_binding, only: c_int, c_long
   use failure, only: failure_t, fail, file_trouble
+  use c_library, only: c_open, c_read, c_close, check_status, as_input, nul
   use files, only: make_folder, file_exists
   use folder_lock, only: folder_lock_t
-  use publication, only: publish, result_files, journal_name
+  use publication, only: publish, check_names, clear_unfinished, result_files, journal_name, &
+    unfinished
   use journal, only: journal_t
   use run_identity, only: difference_between
-  use text_file, only: partial
+  use text_file, only: output_t
   implicit none
   private
   public :: result_folder_t, journal_of, to_stream
@@ -18,14 +21,19 @@ module result_folder
   !> Replaces a folder if results go to standard output, file by file in pieces (`text_file`).
   character(len=*), parameter :: to_stream = '-'
   integer(c_int), parameter :: standard_output = 1
+  !> The piece without bytes that ends a complete stream.
+  character(len=*), parameter :: stream_end = 'complete'
 
   type :: result_folder_t
     !> The states found by this run, and by an interrupted one.
     type(journal_t) :: journal
     !> Excludes other runs from the folder.
     type(folder_lock_t) :: lock
-    !> The descriptor, if results go to a stream. Then there is no folder and no journal.
+    !> The descriptor, if results go to a stream as they are made. Then there is no folder and no
+    !> journal.
     integer(c_int), allocatable :: stream
+    !> Whether results in the folder go to standard output too.
+    logical :: handed_over = .false.
     character(len=:), allocatable, private :: path
     !> Whether this run has made each of `result_files`.
     logical, private :: made(size(result_files)) = .false.
@@ -33,6 +41,7 @@ module result_folder
     procedure :: open => open_folder
     procedure :: new_file
     procedure :: check_presence
+    procedure :: hand_over
     procedure :: close => close_folder
   end type result_folder_t
 
@@ -46,7 +55,7 @@ contains
     character(len=*), intent(in) :: folder, owner
     logical, intent(in) :: resume
     type(failure_t), allocatable, intent(out) :: error
-    character(len=:), allocatable :: path, other
+    character(len=:), allocatable :: other
     logical :: continued
 
     self%path = folder
@@ -57,16 +66,18 @@ contains
     end if
     call make_folder(self%path, error)
     if (.not. allocated(error)) call self%lock%take(self%path, error)
+    if (.not. allocated(error)) call check_names(self%lock, error)
     if (allocated(error)) return
-    path = journal_of(self%path)
     continued = resume
-    if (resume) continued = file_exists(path)
+    if (resume) continued = file_exists(journal_of(self%path))
     if (continued) then
-      call self%journal%go_on(path, owner, other, error)
+      call self%journal%go_on(journal_of(self%path), owner, other, error)
       if (allocated(other)) call fail(error, file_trouble, 'cannot continue: the interrupted ' // &
         'run had another ' // difference_between(other, owner))
     else
-      call self%journal%begin(path, owner, error)
+      call clear_unfinished(self%lock, error)
+      if (.not. allocated(error)) call make_folder(self%path // '/' // unfinished, error)
+      if (.not. allocated(error)) call self%journal%begin(journal_of(self%path), owner, error)
     end if
   end subroutine open_folder
 
@@ -78,15 +89,14 @@ contains
     path = folder // '/' // journal_name
   end function journal_of
 
-  !> Path of a file that this run makes, while it is written: its partial name in the folder, or its
-  !> name in a stream.
+  !> Path of a file that this run makes, while it is written, or its name in a stream.
   function new_file(self, name) result(path)
     class(result_folder_t), intent(inout) :: self
     character(len=*), intent(in) :: name
     character(len=:), allocatable :: path
 
     where (result_files == name) self%made = .true.
-    path = self%path // '/' // name // partial
+    path = self%path // '/' // unfinished // '/' // name
     if (allocated(self%stream)) path = name
   end function new_file
 
@@ -101,8 +111,8 @@ contains
     do i = 1, size(result_files)
       if (allocated(error)) return
       if (.not. self%made(i)) cycle
-      if (.not. self%lock%contains_file(trim(result_files(i)) // partial)) &
-        call complain(trim(result_files(i)) // partial)
+      if (.not. self%lock%contains_file(unfinished // '/' // trim(result_files(i)))) &
+        call complain(unfinished // '/' // trim(result_files(i)))
     end do
 
   contains
@@ -116,16 +126,57 @@ contains
 
   end subroutine check_presence
 
-  !> Gives the files of this run their names, unless there is an error already. Files of an earlier
-  !> run that this run has not made are removed, and finally the journal. After an error the partial
-  !> files and the journal stay. The folder is unlocked.
+  !> Writes the results in the locked folder to standard output: each file, then the end.
+  subroutine hand_over(self, error)
+    class(result_folder_t), intent(in) :: self
+    type(failure_t), allocatable, intent(inout) :: error
+    character(len=65536) :: piece
+    character(len=:), allocatable :: path
+    integer(c_int) :: file, closed
+    integer(c_long) :: length
+    integer :: i
+
+    do i = 1, size(result_files)
+      if (.not. self%lock%contains_file(trim(result_files(i)))) cycle
+      path = self%lock%path_of(trim(result_files(i)))
+      file = c_open(path // nul, as_input)
+      call check_status('cannot read ' // path, file, error)
+      do while (.not. allocated(error))
+        length = c_read(file, piece, len(piece, kind=c_long))
+        call check_status('cannot read ' // path, int(min(length, 0_c_long), c_int), error)
+        if (.not. allocated(error) .and. length > 0) &
+          call send(trim(result_files(i)), piece(:length), error)
+        if (length < len(piece)) exit
+      end do
+      if (file >= 0) closed = c_close(file)
+      if (allocated(error)) return
+    end do
+    call send(stream_end, '', error)
+  end subroutine hand_over
+
+  !> Writes one piece to standard output.
+  subroutine send(name, text, error)
+    character(len=*), intent(in) :: name, text
+    type(failure_t), allocatable, intent(inout) :: error
+    type(output_t) :: file
+
+    call file%open(name, error, standard_output)
+    if (.not. allocated(error)) call file%piece(text, error)
+  end subroutine send
+
+  !> Puts the files of this run in place, unless there is an error already, and then removes files
+  !> of an earlier run and the journal. After an error the unfinished files and the journal stay.
+  !> The folder is unlocked.
   subroutine close_folder(self, error)
     class(result_folder_t), intent(inout) :: self
     type(failure_t), allocatable, intent(inout) :: error
 
-    if (any(self%made) .and. .not. allocated(self%stream)) then
+    if (allocated(self%stream)) then
+      if (.not. allocated(error)) call send(stream_end, '', error)
+    else if (any(self%made)) then
       if (.not. allocated(error)) call self%check_presence(error)
       if (.not. allocated(error)) call publish(self%lock, self%made, error)
+      if (self%handed_over .and. .not. allocated(error)) call self%hand_over(error)
     end if
     if (allocated(error)) then
       call self%journal%close()

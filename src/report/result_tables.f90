@@ -5,7 +5,9 @@ module result_tables
     pietrement_troyon, layered_regime
   implicit none
   private
-  public :: tables, columns_of, write_result_listing
+  public :: tables, columns_of, result_listing
+
+  character(len=1), parameter :: nl = new_line('a')
 
   !> The radius of contact; the separation is 1.1 z0 for Lennard-Jones.
   character(len=*), parameter :: in_contact = &
@@ -41,6 +43,8 @@ module result_tables
     'deformation [m] of each surface, outward positive; the mean if the bodies differ', &
     'pressure [Pa] negative: attraction', &
     'energy [J/m^2] of the surface force', &
+    'state [] number of the row of curve.csv with this state, from 1', &
+    'stable [] as in curve.csv', &
     '+ of bodies that are not alike', &
     'deformation_1 [m] of the first body''s surface, outward positive', &
     'deformation_2 [m] of the second body''s surface, outward positive', &
@@ -157,55 +161,56 @@ contains
     columns = pack(tables(:)(:len(columns)), listed)
   end function columns_of
 
-  !> Prints for each file a line with its name and the group that asks for it, a line with its
-  !> content, and two lines for each column or entry: name and unit, then the meaning.
-  subroutine write_result_listing(unit)
-    integer, intent(in) :: unit
+  !> For each file a line with its name and the group that asks for it, a line with its content, and
+  !> two lines for each column or entry: name and unit, then the meaning.
+  pure function result_listing() result(text)
+    character(len=:), allocatable :: text
     character(len=len(tables)) :: note
-    integer :: i, first, last, status
+    integer :: i, first, last
 
+    text = ''
     do i = 1, size(tables)
       associate (line => tables(i))
         first = scan(line, '|')
         last = scan(line, '|', back=.true.)
         select case (line(:2))
         case ('= ')
-          if (i > 1) write (unit, '()', iostat=status)
-          write (unit, '(a)', advance='no', iostat=status) trim(line(3:first - 1))
+          if (i > 1) text = text // nl
+          text = text // trim(line(3:first - 1))
           note = line(first + 2:last - 1)
-          if (note /= '') write (unit, '(3a)', advance='no', iostat=status) ' (', trim(note), ')'
-          write (unit, '(/, 4x, a)', iostat=status) trim(line(last + 2:))
+          if (note /= '') text = text // ' (' // trim(note) // ')'
+          text = text // nl // '    ' // trim(line(last + 2:)) // nl
           note = ''
         case ('+ ')
           note = line(3:)
         case default
           first = index(line, ' [')
           last = first + index(line(first:), ']') - 1
-          call list_one(unit, line(:first - 1), line(first + 2:last - 1), trim(note), &
+          text = text // listed(line(:first - 1), line(first + 2:last - 1), trim(note), &
             line(last + 2:))
         end select
       end associate
     end do
-    write (unit, '(/, a, /, 4x, a)', iostat=status) '&summary', 'Results of the run.'
-    call list_rows(unit, in_summary)
-    write (unit, '(/, a, /, 4x, a)', iostat=status) '&cost', &
-      'Time and work of the run; the work of a fit is not counted, only its time.'
-    call list_rows(unit, in_cost)
-  end subroutine write_result_listing
+    text = text // nl // '&summary' // nl // '    Results of the run.' // nl // &
+      listed_rows(in_summary) // nl // '&cost' // nl // '    Time and work of the run; the ' // &
+      'work of a fit is not counted, only its time.' // nl // listed_rows(in_cost)
+  end function result_listing
 
-  !> Prints the entries of a group of summary.nml.
-  subroutine list_rows(unit, group)
-    integer, intent(in) :: unit, group
+  !> The entries of a group of summary.nml.
+  pure function listed_rows(group) result(text)
+    integer, intent(in) :: group
+    character(len=:), allocatable :: text
     integer :: i
 
+    text = ''
     do i = 1, size(rows)
       if (rows(i)%group /= group) cycle
-      call list_one(unit, trim(rows(i)%key), trim(rows(i)%unit), sweep_note(rows(i)), &
+      text = text // listed(trim(rows(i)%key), trim(rows(i)%unit), sweep_note(rows(i)), &
         rows(i)%meaning)
-      if (rows(i)%error /= '') call list_one(unit, trim(rows(i)%key) // trim(rows(i)%error), &
+      if (rows(i)%error /= '') text = text // listed(trim(rows(i)%key) // trim(rows(i)%error), &
         trim(rows(i)%unit), '', 'estimated error of ' // trim(rows(i)%key))
     end do
-  end subroutine list_rows
+  end function listed_rows
 
   !> Says when a row is a column of sweep.csv; empty for never.
   pure function sweep_note(row) result(note)
@@ -234,17 +239,16 @@ contains
     end select
   end function sweep_note
 
-  subroutine list_one(unit, name, physical_unit, note, meaning)
-    integer, intent(in) :: unit
+  !> The lines of one column or entry.
+  pure function listed(name, physical_unit, note, meaning) result(text)
     character(len=*), intent(in) :: name, physical_unit, note, meaning
     character(len=:), allocatable :: text
-    integer :: status
 
-    text = name
+    text = '  ' // name
     if (physical_unit /= '') text = text // ' [' // physical_unit // ']'
     if (note /= '') text = text // '; ' // note
-    write (unit, '(2x, a)', iostat=status) text
-    if (meaning /= '') write (unit, '(26x, a)', iostat=status) trim(meaning)
-  end subroutine list_one
+    text = text // nl
+    if (meaning /= '') text = text // repeat(' ', 26) // trim(meaning) // nl
+  end function listed
 
 end module result_tables

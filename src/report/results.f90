@@ -32,6 +32,8 @@ module results
     type(result_folder_t) :: folder
     character(len=:), allocatable, private :: title, version
     type(table_t), private :: curve, shapes, cases, beside
+    !> Number of rows of the curve.
+    integer, private :: states = 0
   contains
     procedure :: open => open_results
     procedure :: take
@@ -106,9 +108,10 @@ contains
     end if
     if (allocated(self%trouble)) return
     call self%curve%line(curve_row(record), self%trouble)
+    self%states = self%states + 1
     if (.not. allocated(self%trouble)) call self%curve%show(self%trouble)
     if (profile .and. .not. allocated(self%trouble)) call write_profile(self%shapes, &
-      record%branch, record%h0, problem, grid, state, self%trouble)
+      record, self%states, problem, grid, state, self%trouble)
   end subroutine take
 
   !> Adds a case of a sweep to `sweep.csv`: the values of its keys, its numbers, and why it failed,

@@ -4,6 +4,7 @@
 module tables
   use, intrinsic :: iso_c_binding, only: c_int
   use kinds, only: wp
+  use text, only: brief
   use failure, only: failure_t
   use decimal, only: put_real, longest_real, put_whole
   use text_file, only: output_t, plain
@@ -151,21 +152,23 @@ contains
     alike = problem%body%is_alike() .and. .not. abs(problem%share(1) - problem%share(2)) > 0
   end function alike
 
-  !> Adds a state to a table of profiles: the axis, then the nodes. `h0` is in metres.
-  subroutine write_profile(table, branch, h0, problem, grid, state, error)
+  !> Adds a state to a table of profiles: the axis, then the nodes. `number` is that of the row of
+  !> its record in the curve.
+  subroutine write_profile(table, record, number, problem, grid, state, error)
     type(table_t), intent(inout) :: table
-    character(len=*), intent(in) :: branch
-    real(wp), intent(in) :: h0
+    type(record_t), intent(in) :: record
+    integer, intent(in) :: number
     type(problem_t), intent(in) :: problem
     type(discretisation_t), intent(in) :: grid
     type(state_t), intent(in) :: state
     type(failure_t), allocatable, intent(inout) :: error
     real(wp), dimension(size(state%gap) + 1) :: r, gap, deformation, pressure, energy
     real(wp) :: each(size(state%gap) + 1, 2)
-    character(len=:), allocatable :: row
+    character(len=:), allocatable :: row, which
     integer :: j
 
     if (.not. table%is_open()) return
+    which = ',' // brief(number) // ',' // brief(record%stable)
     associate (n => size(state%gap), law => problem%law)
       r = [0.0_wp, state%scale*grid%x(:n)]
       gap = [state%axis_gap, state%gap]
@@ -182,9 +185,9 @@ contains
     do j = 1, size(r)
       ! A mesh may have a node on the axis.
       if (j == 2 .and. .not. r(j) > 0) cycle
-      row = branch // ',' // cells([h0, r(j)*problem%lateral, problem%law%separation_of(gap(j)), &
-        deformation(j)*problem%length, pressure(j)*problem%pressure, &
-        energy(j)*problem%pressure*problem%length])
+      row = record%branch // ',' // cells([record%h0, r(j)*problem%lateral, &
+        problem%law%separation_of(gap(j)), deformation(j)*problem%length, &
+        pressure(j)*problem%pressure, energy(j)*problem%pressure*problem%length]) // which
       if (.not. alike(problem)) row = row // ',' // cells(each(j, :)*problem%length)
       call table%line(row, error)
       if (allocated(error)) return

@@ -18,6 +18,10 @@ module sweep_group
   real(wp), parameter :: most_cases = 1.0e7_wp
   character(len=*), parameter :: of_range(4) = ['from ', 'to   ', 'count', 'scale']
 
+  !> Groups that ask for tables and states alone. A sweep has the numbers of its cases.
+  character(len=*), parameter :: of_tables(*) = [character(len=9) :: 'profiles', 'stability', &
+    'table']
+
   !> The rows of &sweep.
   type(key_spec), parameter :: sweep_keys(*) = [ &
     key_spec('sweep', meaning='The same deck for several values of keys. Either key with ' // &
@@ -50,6 +54,11 @@ contains
     if (.not. scene%deck%has_group('sweep')) return
     scene%deck%varied = .true.
     allocate (scene%sweep)
+    do i = 1, size(of_tables)
+      if (scene%deck%has_group(trim(of_tables(i)))) call scene%deck%mistake(trim(of_tables(i)), &
+        '', 'not together with &sweep, whose results are numbers of each case and no tables; ' // &
+        'leave out this group, or run a case alone')
+    end do
     associate (deck => scene%deck, sweep => scene%sweep)
       if (deck%is_set('sweep', 'file')) then
         call refuse(deck, ['key   ', 'values', 'words ', of_range//' '], &

@@ -5,11 +5,12 @@ module c_library
   use failure, only: failure_t, fail, file_trouble
   implicit none
   private
-  public :: c_open, c_read, c_write, c_sync, c_sync_above, c_close, c_size, c_cut, c_make_folder, &
-    c_current_folder, c_own_path, c_lock, c_kind, c_same_file, c_rename, c_remove, c_free_disk, &
+  public :: c_open, c_read, c_write, c_sync, c_sync_in, c_sync_above, c_close, c_size, c_cut, &
+    c_make_folder, c_current_folder, c_own_path, c_lock, c_kind, c_same_file, c_rename, c_remove, &
+    c_remove_folder, c_beginning, c_free_disk, &
     c_is_terminal, c_prepare, c_end_with_parent, c_pause, c_openblas_threads, &
     c_openblas_end_threads, c_openblas_config, c_build_id, explain, check_status, nul, as_input, &
-    as_output, as_kept_output, as_folder, too_large, not_there, locked_elsewhere
+    as_output, as_kept_output, as_folder, too_large, not_there, locked_elsewhere, not_regular
 
   !> How a path is opened: a file of any kind for reading; a regular file for reading and writing,
   !> created or emptied; the same, unchanged; a folder.
@@ -18,6 +19,8 @@ module c_library
   !> Failures with advice or treatment of their own.
   integer(c_int), parameter :: too_large = 1, disk_full = 2, in_the_way = 3, not_there = 4, &
     locked_elsewhere = 5
+  !> Minus the status of a name that is a link, a pipe or a device where a file is needed.
+  integer(c_int), parameter :: not_regular = 100000
 
   interface
     !> The file descriptor.
@@ -48,6 +51,13 @@ module c_library
       import :: c_int
       integer(c_int), value :: descriptor
     end function c_sync
+
+    !> Waits until the names in the subfolder `name` are on the disk.
+    integer(c_int) function c_sync_in(folder, name) bind(c, name='snapin_sync_in')
+      import :: c_char, c_int
+      integer(c_int), value :: folder
+      character(kind=c_char), intent(in) :: name(*)
+    end function c_sync_in
 
     !> Waits until the names in the folder above `folder`, its own among them, are on the disk.
     integer(c_int) function c_sync_above(folder) bind(c, name='snapin_sync_above')
@@ -123,6 +133,22 @@ module c_library
       integer(c_int), value :: folder
       character(kind=c_char), intent(in) :: name(*)
     end function c_remove
+
+    !> Removes an empty folder from a folder.
+    integer(c_int) function c_remove_folder(folder, name) bind(c, name='snapin_remove_folder')
+      import :: c_char, c_int
+      integer(c_int), value :: folder
+      character(kind=c_char), intent(in) :: name(*)
+    end function c_remove_folder
+
+    !> Reads at most `count` bytes from the start of a file of a folder; the number of bytes read.
+    !> Nothing but a regular file is opened.
+    integer(c_int) function c_beginning(folder, name, bytes, count) bind(c, name='snapin_beginning')
+      import :: c_char, c_int
+      integer(c_int), value :: folder, count
+      character(kind=c_char), intent(in) :: name(*)
+      character(kind=c_char), intent(inout) :: bytes(*)
+    end function c_beginning
 
     !> Number of bytes that may still be written below a path; huge if it is not known.
     real(c_double) function c_free_disk(path) bind(c, name='snapin_free_disk')

@@ -1,19 +1,20 @@
-!> Folders, small files read whole, and standard error.
+!> Folders, small files read whole, and the standard streams.
 module files
   use, intrinsic :: iso_c_binding, only: c_int, c_long
   use, intrinsic :: iso_fortran_env, only: error_unit
   use kinds, only: wp, long
-  use failure, only: failure_t
+  use failure, only: failure_t, fail, file_trouble
   use c_library, only: c_make_folder, c_current_folder, c_own_path, c_same_file, c_free_disk, &
     c_is_terminal, c_write, c_open, c_read, c_sync, c_sync_above, c_close, as_folder, &
-    check_status, nul
+    check_status, explain, nul
   implicit none
   private
   public :: make_folder, sync_names, file_exists, same_file, free_disk, whole_path, own_path, &
-    read_file, read_standard_input, is_terminal, write_stderr
+    read_file, read_standard_input, is_terminal, write_stdout, write_stderr
 
   !> Numbers of the standard streams.
-  integer(c_int), parameter :: standard_input = 0, standard_error = 2
+  integer(c_int), parameter :: standard_input = 0, standard_output = 1, &
+    standard_error = 2
 
 contains
 
@@ -132,6 +133,20 @@ contains
   logical function is_terminal()
     is_terminal = c_is_terminal(standard_error) == 1
   end function is_terminal
+
+  !> Writes `text` unchanged to standard output.
+  subroutine write_stdout(text, error)
+    character(len=*), intent(in) :: text
+    type(failure_t), allocatable, intent(out) :: error
+
+    character(len=:), allocatable :: reason
+    integer(c_int) :: status, sort
+
+    status = c_write(standard_output, text, int(len(text), c_long))
+    if (status >= 0) return
+    call explain(status, sort, reason)
+    call fail(error, file_trouble, 'cannot write to standard output: ' // reason)
+  end subroutine write_stdout
 
   !> Writes `text` unchanged to standard error; a Fortran unit would add the end of a line. A
   !> failure to write is ignored.

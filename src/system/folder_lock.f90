@@ -4,8 +4,9 @@
 module folder_lock
   use, intrinsic :: iso_c_binding, only: c_int
   use failure, only: failure_t, fail, file_trouble
-  use c_library, only: c_open, c_lock, c_kind, c_rename, c_remove, c_sync, c_sync_above, c_close, &
-    explain, check_status, as_folder, locked_elsewhere, nul
+  use c_library, only: c_open, c_lock, c_kind, c_rename, c_remove, c_remove_folder, c_beginning, &
+    c_sync, c_sync_in, c_sync_above, c_close, explain, check_status, as_folder, &
+    locked_elsewhere, nul
   implicit none
   private
   public :: folder_lock_t
@@ -18,12 +19,15 @@ module folder_lock
     logical :: held = .false.
   contains
     procedure :: take
+    procedure :: look_into
     procedure :: is_held
     procedure :: path_of
     procedure :: contains_file
     procedure :: contains_folder
+    procedure :: read_beginning
     procedure :: rename_file
     procedure :: remove_file
+    procedure :: remove_folder
     procedure :: sync
     procedure :: sync_above
     procedure :: release
@@ -41,9 +45,7 @@ contains
     integer(c_int) :: status, sort
     character(len=:), allocatable :: reason
 
-    self%path = path
-    self%folder = c_open(path // nul, as_folder)
-    call check_status('cannot open the folder ' // path, self%folder, error)
+    call self%look_into(path, error)
     if (allocated(error)) return
     status = c_lock(self%folder)
     self%held = status == 0
@@ -54,6 +56,17 @@ contains
       'choose another folder with --out')
     call self%release()
   end subroutine take
+
+  !> Opens the folder `path` without locking it. Fails if it cannot be opened.
+  subroutine look_into(self, path, error)
+    class(folder_lock_t), intent(inout) :: self
+    character(len=*), intent(in) :: path
+    type(failure_t), allocatable, intent(out) :: error
+
+    self%path = path
+    self%folder = c_open(path // nul, as_folder)
+    call check_status('cannot open the folder ' // path, self%folder, error)
+  end subroutine look_into
 
   !> Whether this run holds the lock.
   pure logical function is_held(self)
@@ -90,6 +103,17 @@ contains
     found = c_kind(self%folder, name // nul) == 2
   end function contains_folder
 
+  !> Reads the first bytes of the file `name`, as many as it has and `text` can take. A negative
+  !> length is a failure: -not_regular if this is not a file but a link, a pipe or the like.
+  subroutine read_beginning(self, name, text, length)
+    class(folder_lock_t), intent(in) :: self
+    character(len=*), intent(in) :: name
+    character(len=*), intent(out) :: text
+    integer, intent(out) :: length
+
+    length = c_beginning(self%folder, name // nul, text, len(text, kind=c_int))
+  end subroutine read_beginning
+
   !> Renames the file `from` to `to` in one step, replacing a file of that name.
   subroutine rename_file(self, from, to, error)
     class(folder_lock_t), intent(in) :: self
@@ -110,12 +134,28 @@ contains
       error)
   end subroutine remove_file
 
-  !> Waits until files created, renamed and removed in the folder are so on the disk.
-  subroutine sync(self, error)
+  !> Removes the folder `name` if nothing is in it.
+  subroutine remove_folder(self, name)
+    class(folder_lock_t), intent(in) :: self
+    character(len=*), intent(in) :: name
+    integer(c_int) :: status
+
+    status = c_remove_folder(self%folder, name // nul)
+  end subroutine remove_folder
+
+  !> Waits until files created, renamed and removed in the folder, or in its subfolder `name`, are
+  !> so on the disk.
+  subroutine sync(self, error, name)
     class(folder_lock_t), intent(in) :: self
     type(failure_t), allocatable, intent(out) :: error
+    character(len=*), intent(in), optional :: name
 
-    call check_status('cannot write the folder ' // self%path, c_sync(self%folder), error)
+    if (present(name)) then
+      call check_status('cannot write the folder ' // self%path_of(name), &
+        c_sync_in(self%folder, name // nul), error)
+    else
+      call check_status('cannot write the folder ' // self%path, c_sync(self%folder), error)
+    end if
   end subroutine sync
 
   !> Waits until the folder's own name is on the disk.

@@ -247,14 +247,19 @@ contains
     call let_go(self)
   end subroutine hand_over
 
-  !> Waits until the journal is on the disk, the first time with its name and its folder's name.
+  !> Waits until the journal is on the disk, the first time with its name and those of its folder
+  !> and of the folder above.
   subroutine put_on_disk(self, status)
     class(journal_t), intent(inout) :: self
     integer(c_int), intent(out) :: status
+    integer :: place
 
     status = c_sync(self%descriptor)
-    if (status == 0 .and. .not. self%named) &
-      call sync_names(self%path(:index(self%path, '/', .true.)), .true., status)
+    if (.not. self%named) then
+      place = index(self%path, '/', .true.)
+      if (status == 0) call sync_names(self%path(:place), .true., status)
+      if (status == 0) call sync_names(self%path(:place) // '..', .false., status)
+    end if
     self%named = .true.
     self%synced = seconds()
   end subroutine put_on_disk

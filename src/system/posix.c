@@ -19,7 +19,7 @@
 #include <time.h>
 #include <unistd.h>
 
-/* Larger than every errno. */
+/* Larger than every errno; also in `c_library`. */
 enum { not_regular = 100000 };
 
 enum { too_large = 1, disk_full = 2, in_the_way = 3, not_there = 4, locked = 5 };
@@ -117,6 +117,15 @@ int snapin_cut(int fd, long length, long place) {
   return ftruncate(fd, length) < 0 || lseek(fd, place, SEEK_SET) < 0 ? -errno : 0;
 }
 
+int snapin_sync_in(int folder, const char *name) {
+  int status, fd = openat(folder, name, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (fd < 0)
+    return -errno;
+  status = snapin_sync(fd);
+  close(fd);
+  return status;
+}
+
 /* No failure if the parent folder cannot be opened. */
 int snapin_sync_above(int folder) {
   int status, above = openat(folder, "..", O_RDONLY | O_DIRECTORY | O_CLOEXEC);
@@ -164,6 +173,26 @@ int snapin_remove(int folder, const char *name) {
   return unlinkat(folder, name, 0) == 0 || errno == ENOENT ? 0 : -errno;
 }
 
+int snapin_remove_folder(int folder, const char *name) {
+  return status_of(unlinkat(folder, name, AT_REMOVEDIR));
+}
+
+/* What is no regular file is not opened, since opening a pipe or a device may have effects. */
+int snapin_beginning(int folder, const char *name, char *bytes, int count) {
+  struct stat found;
+  int status, fd;
+  if (fstatat(folder, name, &found, AT_SYMLINK_NOFOLLOW) != 0)
+    return -errno;
+  if (!S_ISREG(found.st_mode))
+    return -not_regular;
+  fd = openat(folder, name, O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
+  if (fd < 0)
+    return -errno;
+  status = (int)snapin_read(fd, bytes, count);
+  close(fd);
+  return status;
+}
+
 double snapin_free_disk(const char *path) {
   char above[PATH_MAX];
   struct statvfs disk;
@@ -207,14 +236,14 @@ int snapin_explain(int status, char *reason, int size) {
 }
 
 /* Writing to a pipe without a reader, or beyond the largest file size, fails instead of ending the
-   process. Closed standard streams are opened on /dev/null; otherwise another file would get their
-   number, and messages. */
+   process. Closed standard streams are opened on /dev/null, since another file would get their
+   number, and messages; only for reading, so that writing fails as before. */
 void snapin_prepare(void) {
   int fd;
   signal(SIGPIPE, SIG_IGN);
   signal(SIGXFSZ, SIG_IGN);
   do
-    fd = open("/dev/null", O_RDWR);
+    fd = open("/dev/null", O_RDONLY);
   while (fd >= 0 && fd <= STDERR_FILENO);
   if (fd > STDERR_FILENO)
     close(fd);

@@ -1,187 +1,201 @@
-!> Gives a set of results its names. While this happens, the folder has the file of intent,
-!> `INCOMPLETE.txt`. Without that file, all results that are not called `.partial` are one complete
-!> set on the disk.
+!> The files of a folder of results: their names, how a file that a run has written is known, and
+!> the step in which the files of a run take the place of older ones.
 !>
-!> The folder may hold other files, so that it cannot be replaced as a whole. The file of intent
-!> lists the new set: while it exists, the new file NAME is NAME.partial if that exists and NAME
-!> otherwise, and an interrupted replacement is repeated from the beginning. The steps, each on the
-!> disk before the next begins:
+!> A run writes into the folder `unfinished` within the folder of results; an interrupted run leaves
+!> its rows and its journal there. When all files are complete and on the disk, the old summary is
+!> removed, then the tables are replaced, and the new summary comes last. So the tables in a folder
+!> with a summary are one set, at every moment and after a power failure: each of these steps is on
+!> the disk before the next.
 !>
-!> 1. The new files, the list, their partial names, and the name of the folder are written.
-!> 2. The list is renamed to `INCOMPLETE.txt`.
-!> 3. New files get their names, the summary last; results of an earlier run without a successor,
-!>    other partial files and the journal are removed.
-!> 4. `INCOMPLETE.txt` is removed.
+!> The folder may have files of others. A file that no run has written is never replaced or removed,
+!> whatever its name.
 module publication
   use failure, only: failure_t, fail, file_trouble
-  use files, only: read_file, file_exists
+  use c_library, only: not_regular
   use folder_lock, only: folder_lock_t
-  use text_file, only: output_t, partial
   implicit none
   private
-  public :: publish, mend, result_files, summary_name, journal_name
+  public :: publish, check_names, clear_unfinished, result_files, summary_name, journal_name, &
+    unfinished
 
-  character(len=*), parameter :: summary_name = 'summary.nml'
+  character(len=*), parameter :: summary_name = 'summary.nml', fit_name = 'fit.nml'
   !> The files of a folder of results, the summary last.
   character(len=*), parameter :: result_files(*) = [character(len=21) :: 'curve.csv', &
     'profiles.csv', 'approximations.csv', 'classical.csv', 'device.csv', &
     'device_jumps.csv', 'fixed_load.csv', 'table.csv', 'sensitivity.csv', &
-    'curve_sensitivity.csv', 'fit.csv', 'fit.nml', 'sweep.csv', summary_name]
-  character(len=*), parameter :: journal_name = 'journal' // partial
-  character(len=*), parameter :: intent_name = 'INCOMPLETE.txt'
+    'curve_sensitivity.csv', 'fit.csv', fit_name, 'sweep.csv', summary_name]
+  !> The folder with the files of a run that has not ended, and the name of its journal.
+  character(len=*), parameter :: unfinished = 'unfinished', journal_name = unfinished // '/journal'
+
   character(len=1), parameter :: nl = new_line('a')
-  character(len=*), parameter :: explanation = &
-    'The files in this folder may not belong together: the program was stopped while it' // &
-    nl // 'replaced older results by new ones. Do not use them as they are.' // &
-    nl // 'Run the deck again, best with --resume: this first completes the replacement.' // &
-    nl // 'By hand: for each file NAME listed below, rename NAME.partial to NAME if it exists.' // &
-    nl // 'Then remove all other results, all files that end in .partial, and this file.' // nl
+  !> How files of runs begin: tables; the fit; the journal, after four words of eight bytes. A
+  !> summary has the group &summary, after lines of comment.
+  character(len=*), parameter :: of_table = '# title:', of_fit = '! A fit by snapin', &
+    of_journal = 'program: ', of_summary = '&summary'
+  integer, parameter :: words_before = 32
+  !> Number of bytes in which the beginning of a file is looked for.
+  integer, parameter :: enough = 4096
 
 contains
 
-  !> Gives the complete files of `folder` that are marked in `new` (one for each of `result_files`,
-  !> the summary among them) their final names instead of the partial ones. Files of an earlier run
-  !> and the journal are removed. If that fails, `error` says what the folder then holds.
+  !> Fails if something in the folder has the name of a result, and no run has written it. `error`
+  !> names it and says what to do.
+  subroutine check_names(folder, error)
+    type(folder_lock_t), intent(in) :: folder
+    type(failure_t), allocatable, intent(out) :: error
+    integer :: i
+
+    do i = 1, size(result_files)
+      call check_file(folder, trim(result_files(i)), .false., error)
+      if (allocated(error)) return
+    end do
+    ! Another run may just make it.
+    if (folder%contains_file(unfinished)) then
+      call check_file(folder, unfinished, .false., error)
+      if (.not. allocated(error) .and. folder%contains_file(unfinished)) &
+        call refuse(folder, unfinished, 'is not a folder', error)
+    else if (folder%contains_folder(unfinished)) then
+      do i = 1, size(result_files)
+        call check_file(folder, unfinished // '/' // trim(result_files(i)), .true., error)
+        if (allocated(error)) return
+      end do
+      call check_file(folder, journal_name, .true., error)
+    end if
+  end subroutine check_names
+
+  !> Fails if there is a file `name` that no run has written; if an interrupted run may have written
+  !> it (`cut`), its beginning may be incomplete.
+  subroutine check_file(folder, name, cut, error)
+    type(folder_lock_t), intent(in) :: folder
+    character(len=*), intent(in) :: name
+    logical, intent(in) :: cut
+    type(failure_t), allocatable, intent(out) :: error
+    character(len=enough) :: text
+    integer :: length
+
+    if (folder%contains_folder(name)) then
+      call refuse(folder, name, 'is a folder', error)
+    else if (folder%contains_file(name)) then
+      call folder%read_beginning(name, text, length)
+      ! Another run may just have moved its file.
+      if (.not. folder%contains_file(name)) return
+      if (length == -not_regular) then
+        call refuse(folder, name, 'is not a file but a link, a pipe or a device', error)
+      else if (length < 0) then
+        call refuse(folder, name, 'cannot be read, so that nothing shows who has written it', error)
+      else if (.not. is_of_run(name, text(:length), cut)) then
+        call refuse(folder, name, 'was not written by this program', error)
+      end if
+    end if
+  end subroutine check_file
+
+  subroutine refuse(folder, name, why, error)
+    type(folder_lock_t), intent(in) :: folder
+    character(len=*), intent(in) :: name, why
+    type(failure_t), allocatable, intent(out) :: error
+
+    call fail(error, file_trouble, folder%path_of(name) // ' ' // why // ', and has the name ' // &
+      'of a result; move it away, or choose another folder')
+  end subroutine refuse
+
+  !> Whether a run has written the file `name` that begins with `text`. An empty file is of a run
+  !> only if it may be `cut`.
+  pure logical function is_of_run(name, text, cut)
+    character(len=*), intent(in) :: name, text
+    logical, intent(in) :: cut
+
+    select case (name(index(name, '/') + 1:))
+    case (summary_name)
+      is_of_run = index(nl // text, nl // of_summary) > 0
+    case (fit_name)
+      is_of_run = begins(text, of_fit, cut)
+    case ('journal')
+      ! The first word is a small number, so that its last bytes are zero.
+      is_of_run = .false.
+      if (len(text) >= 8) is_of_run = text(5:8) == repeat(achar(0), 4) .and. &
+        begins(text(min(words_before, len(text)) + 1:), of_journal, cut)
+    case default
+      is_of_run = begins(text, of_table, cut)
+    end select
+    ! A power failure may leave zeros.
+    if (cut .and. verify(text, achar(0)) == 0) is_of_run = .true.
+  end function is_of_run
+
+  !> Whether `text` begins with `mark` or, if it may be `cut`, is the beginning of the mark.
+  pure logical function begins(text, mark, cut)
+    character(len=*), intent(in) :: text, mark
+    logical, intent(in) :: cut
+
+    begins = index(text, mark) == 1
+    if (cut .and. len(text) < len(mark)) begins = index(mark, text) == 1
+  end function begins
+
+  !> Removes what an interrupted run has left. Files of others stay, with their folder.
+  subroutine clear_unfinished(folder, error)
+    type(folder_lock_t), intent(in) :: folder
+    type(failure_t), allocatable, intent(out) :: error
+    integer :: i
+
+    if (.not. folder%contains_folder(unfinished)) return
+    do i = 1, size(result_files)
+      call folder%remove_file(unfinished // '/' // trim(result_files(i)), error)
+      if (allocated(error)) return
+    end do
+    call folder%remove_file(journal_name, error)
+    if (.not. allocated(error)) call folder%remove_folder(unfinished)
+  end subroutine clear_unfinished
+
+  !> Gives the complete files of the run that are marked in `new` (one for each of `result_files`,
+  !> the summary among them) their place. Files of an earlier run are removed. If that fails,
+  !> `error` says what the folder then holds.
   subroutine publish(folder, new, error)
     type(folder_lock_t), intent(in) :: folder
     logical, intent(in) :: new(:)
     type(failure_t), allocatable, intent(out) :: error
-    type(failure_t), allocatable :: again
+    type(failure_t), allocatable :: ignored
     integer :: i
 
-    do i = 1, size(result_files)
-      if (folder%contains_folder(trim(result_files(i)))) call fail(error, file_trouble, &
-        folder%path_of(trim(result_files(i))) // ' is a folder; move away what is in the way')
-    end do
-    if (.not. allocated(error)) then
-      call declare(folder, new, error)
-      if (allocated(error)) then
-        call withdraw(folder, again)
-      else
-        call put_in_place(folder, new, error)
-        if (allocated(error)) call tell(folder, 'the new results are complete, but ', error)
-        return
-      end if
+    call check_names(folder, error)
+    if (.not. allocated(error)) call folder%sync_above(error)
+    if (.not. allocated(error)) call folder%sync(error, unfinished)
+    if (.not. allocated(error)) call folder%remove_file(summary_name, error)
+    if (allocated(error)) then
+      error%message = 'no results were replaced: ' // error%message
+      return
     end if
-    if (allocated(error)) call tell(folder, 'no results were replaced: ', error)
+    call folder%sync(error)
+    do i = 1, size(new)
+      if (allocated(error)) exit
+      ! The other files must be in place before the summary.
+      if (i == size(new)) call folder%sync(error)
+      if (.not. allocated(error)) call replace(folder, trim(result_files(i)), new(i), error)
+    end do
+    if (allocated(error)) then
+      error%message = 'the new results are complete, but not all are in place: the others are ' // &
+        'in ' // folder%path_of(unfinished) // ': ' // error%message
+      return
+    end if
+    call folder%sync(error)
+    if (allocated(error)) then
+      error%message = 'the new results are in place, but may not be on the disk: ' // error%message
+      return
+    end if
+    ! What cannot be removed does no harm.
+    call clear_unfinished(folder, ignored)
   end subroutine publish
 
-  !> Completes an interrupted replacement in the folder `path`, if there is one. mended: the folder
-  !> now has complete results.
-  subroutine mend(path, mended, error)
-    character(len=*), intent(in) :: path
-    logical, intent(out) :: mended
-    type(failure_t), allocatable, intent(out) :: error
-    type(folder_lock_t) :: folder
-    logical :: new(size(result_files))
-
-    mended = .false.
-    if (.not. file_exists(path // '/' // intent_name)) return
-    call folder%take(path, error)
-    if (allocated(error)) return
-    ! Another run may have completed it meanwhile.
-    if (folder%contains_file(intent_name)) then
-      call read_intent(folder, new, error)
-      if (.not. allocated(error)) call put_in_place(folder, new, error)
-      mended = .not. allocated(error)
-      if (allocated(error)) call tell(folder, 'the results are complete, but ', error)
-    end if
-    call folder%release()
-  end subroutine mend
-
-  !> Adds to an error what the folder holds: `otherwise`, unless the file of intent exists.
-  subroutine tell(folder, otherwise, error)
+  !> Puts the new file `name` in place, or removes the old one if there is no new one.
+  subroutine replace(folder, name, is_new, error)
     type(folder_lock_t), intent(in) :: folder
-    character(len=*), intent(in) :: otherwise
-    type(failure_t), allocatable, intent(inout) :: error
+    character(len=*), intent(in) :: name
+    logical, intent(in) :: is_new
+    type(failure_t), allocatable, intent(out) :: error
 
-    if (folder%contains_file(intent_name)) then
-      error%message = 'files there may not belong together, see ' // intent_name // ' there: ' // &
-        error%message
+    if (is_new) then
+      call folder%rename_file(unfinished // '/' // name, name, error)
     else
-      error%message = otherwise // error%message
+      call folder%remove_file(name, error)
     end if
-  end subroutine tell
-
-  !> Writes the file of intent.
-  subroutine declare(folder, new, error)
-    type(folder_lock_t), intent(in) :: folder
-    logical, intent(in) :: new(:)
-    type(failure_t), allocatable, intent(out) :: error
-    type(output_t) :: file
-    integer :: i
-
-    call file%open(folder%path_of(intent_name // partial), error)
-    if (.not. allocated(error)) call file%put(explanation, error)
-    do i = 1, size(new)
-      if (allocated(error)) return
-      if (new(i)) call file%line(trim(result_files(i)), error)
-    end do
-    if (.not. allocated(error)) call file%close(error)
-    ! The names of the new set must be on the disk before the file of intent.
-    if (.not. allocated(error)) call folder%sync_above(error)
-    if (.not. allocated(error)) call folder%sync(error)
-    if (.not. allocated(error)) call folder%rename_file(intent_name // partial, intent_name, error)
-    if (.not. allocated(error)) call folder%sync(error)
-  end subroutine declare
-
-  !> The new files, as listed in the file of intent.
-  subroutine read_intent(folder, new, error)
-    type(folder_lock_t), intent(in) :: folder
-    logical, intent(out) :: new(:)
-    type(failure_t), allocatable, intent(out) :: error
-    character(len=*), parameter :: advice = '; if ' // intent_name // &
-      ' is removed the deck can be run again from the beginning'
-    character(len=:), allocatable :: text, name
-    logical :: there
-    integer :: i
-
-    call read_file(folder%path_of(intent_name), text)
-    if (.not. allocated(text)) text = ''
-    do i = 1, size(new)
-      name = trim(result_files(i))
-      new(i) = index(text, nl // name // nl) > 0
-      if (.not. new(i)) cycle
-      there = folder%contains_file(name)
-      if (.not. there) there = folder%contains_file(name // partial)
-      if (.not. there) &
-        call fail(error, file_trouble, folder%path_of(name) // ' is missing' // advice)
-    end do
-    if (.not. any(new)) call fail(error, file_trouble, folder%path_of(intent_name) // &
-      ' lists no results' // advice)
-  end subroutine read_intent
-
-  !> Gives new files their names, removes other results, and then removes the file of intent.
-  subroutine put_in_place(folder, new, error)
-    type(folder_lock_t), intent(in) :: folder
-    logical, intent(in) :: new(:)
-    type(failure_t), allocatable, intent(out) :: error
-    character(len=:), allocatable :: name
-    integer :: i
-
-    do i = 1, size(new)
-      name = trim(result_files(i))
-      if (.not. new(i)) then
-        call folder%remove_file(name, error)
-        if (.not. allocated(error)) call folder%remove_file(name // partial, error)
-      else if (folder%contains_file(name // partial)) then
-        call folder%rename_file(name // partial, name, error)
-      end if
-      if (allocated(error)) return
-    end do
-    call folder%remove_file(journal_name, error)
-    if (.not. allocated(error)) call folder%sync(error)
-    if (.not. allocated(error)) call withdraw(folder, error)
-  end subroutine put_in_place
-
-  !> Removes the file of intent, also its partial one, which must not return with the next set.
-  subroutine withdraw(folder, error)
-    type(folder_lock_t), intent(in) :: folder
-    type(failure_t), allocatable, intent(out) :: error
-
-    call folder%remove_file(intent_name // partial, error)
-    if (.not. allocated(error)) call folder%remove_file(intent_name, error)
-    if (.not. allocated(error)) call folder%sync(error)
-  end subroutine withdraw
+  end subroutine replace
 
 end module publication

@@ -10,13 +10,10 @@ module text_file
   use c_library, only: c_open, c_write, c_sync, c_close, check_status, as_output, nul
   implicit none
   private
-  public :: output_t, partial, plain
+  public :: output_t, plain
 
   !> Longest delay [s] of the visible contents of a file.
   real(wp), parameter :: show_interval = 0.1_wp
-
-  !> Ending of the name of an incomplete file.
-  character(len=*), parameter :: partial = '.partial'
 
   !> A text file that is being written. Write errors are reported by `flush` or `close` at the
   !> latest. The first error closes the file; its procedures then do nothing. It must not be copied
@@ -38,6 +35,7 @@ module text_file
     procedure :: is_open
     procedure :: put
     procedure :: line
+    procedure :: piece
     procedure :: flush => flush_output
     procedure :: show
     procedure :: close => close_output
@@ -100,6 +98,16 @@ contains
     call self%put(text // new_line('a'), error)
   end subroutine line
 
+  !> Writes `text` as one piece of a stream, also if it is empty, and ends the file.
+  subroutine piece(self, text, error)
+    class(output_t), intent(inout) :: self
+    character(len=*), intent(in) :: text
+    type(failure_t), allocatable, intent(inout) :: error
+
+    call self%hand_over(text, error)
+    self%descriptor = -1
+  end subroutine piece
+
   !> Writes the text collected so far, so that it survives this process.
   subroutine flush_output(self, error)
     class(output_t), intent(inout) :: self
@@ -108,6 +116,7 @@ contains
 
     if (.not. self%is_open()) return
     held = self%held
+    if (held == 0) return
     self%held = 0
     self%handed = seconds()
     call self%hand_over(self%buffer(:held), error)
@@ -149,7 +158,7 @@ contains
     integer(c_int) :: status
 
     status = 0
-    if (self%streamed .and. len(text) > 0) then
+    if (self%streamed) then
       associate (line => self%path // ' ' // brief(len(text)) // new_line('a'))
         status = c_write(self%descriptor, line, int(len(line), c_long))
       end associate

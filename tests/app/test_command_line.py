@@ -1,5 +1,6 @@
 """The command line: options, exit status, and that a wrong deck leaves nothing behind."""
 
+import os
 import shlex
 import shutil
 import subprocess
@@ -38,6 +39,44 @@ def test_information_goes_to_stdout_with_status_0(snapin, decks, option):
     assert done.stdout.strip()
     assert done.stderr == ""
     assert files_in(decks) == before
+
+
+@pytest.mark.parametrize("options", [
+    ("--help",), ("--keys",), ("--keys", "sweep"), ("--results",), ("--version",),
+    ("--check", "good.nml"), ("--out", "-", "good.nml"), ("--out", "-", "--into", "x", "good.nml")],
+    ids=" ".join)
+@pytest.mark.parametrize("stream", ["full", "closed", "unread"])
+def test_what_standard_output_does_not_take_is_told(snapin_path, decks, options, stream):
+    """--keys and --check into a full device ended with status 0, and results that went to a closed
+    stream were lost with status 0."""
+    reader, writer = os.pipe()
+    os.close(reader)
+    out = os.open("/dev/full", os.O_WRONLY) if stream == "full" else writer
+    done = subprocess.run(
+        [snapin_path, *options], cwd=decks, stdout=out, stderr=subprocess.PIPE, text=True,
+        timeout=HANG, check=False,
+        preexec_fn=(lambda: os.close(1)) if stream == "closed" else None)
+    os.close(writer)
+    if stream == "unread" and "-" in options and done.returncode < 0:
+        # Nobody reads the results: the program has ended as with its parent.
+        return
+    assert done.returncode == 1
+    assert "cannot write" in done.stderr
+    assert ("snapin: cannot write to standard output: " in done.stderr) == ("-" not in options)
+
+
+def test_results_go_to_a_folder_and_to_standard_output_at_once(snapin, decks):
+    """The stream has the folder's files, each in one piece, and then its end."""
+    done = snapin("--out", "-", "--into", "x", "--quiet", "good.nml", cwd=decks)
+    assert done.returncode == 0
+    texts = {name: (decks / "x" / name).read_text() for name in ("classical.csv", "summary.nml")}
+    assert done.stdout == "".join(
+        f"{name} {len(text)}\n{text}" for name, text in texts.items()) + "complete 0\n"
+    again = snapin("--out", "-", "--into", "x", "--quiet", "--resume", "good.nml", cwd=decks)
+    assert again.stdout == done.stdout
+    for options in (("--into", "-"), ("--into=-",), ("--out", "x", "--into", "y")):
+        done = snapin(*options, "good.nml", cwd=decks)
+        assert done.returncode == 2 and done.stdout == ""
 
 
 def test_keys_that_are_named_are_those_of_the_list(snapin):

@@ -149,7 +149,7 @@ def test_a_file_that_changes_meanwhile_stops_the_sweep(snapin_path, tmp_path, ch
     (tmp_path / "d.nml").write_text(scene({"file": "cases.csv"}, **RIGID))
     with subprocess.Popen([snapin_path, "d.nml"], cwd=tmp_path, stderr=subprocess.PIPE,
                           text=True) as run:
-        while not (tmp_path / "results/d/sweep.csv.partial").exists():
+        while not (tmp_path / "results/d/unfinished/sweep.csv").exists():
             time.sleep(0.001)
             assert run.poll() is None
         with table.open("r+b") as file:
@@ -161,7 +161,7 @@ def test_a_file_that_changes_meanwhile_stops_the_sweep(snapin_path, tmp_path, ch
         said = run.communicate(timeout=60)[1]
     assert run.returncode == 1
     assert re.search("^results/d: cases.csv has changed since .*; start again$", said, re.MULTILINE)
-    assert (tmp_path / "results/d/journal.partial").stat().st_size == 0
+    assert (tmp_path / "results/d/unfinished/journal").stat().st_size == 0
 
 
 @pytest.mark.long

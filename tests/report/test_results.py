@@ -30,7 +30,7 @@ CURVE = [
 ]
 PROFILES = [
     ("branch", ""), ("h0", "m"), ("r", "m"), ("separation", "m"), ("deformation", "m"),
-    ("pressure", "Pa"), ("energy", "J/m^2")]
+    ("pressure", "Pa"), ("energy", "J/m^2"), ("state", ""), ("stable", "")]
 # Every key that users' scripts may depend on.
 SUMMARY = """title version sigma tabor surface_energy jkr_pull_off dmt_pull_off max_tension
     max_tension_h0 jump_in_h0 jump_in_load jump_out_h0 jump_out_load unload_from unload_max_tension
@@ -73,6 +73,25 @@ def test_profiles_and_theories_have_the_columns_of_the_contract(full):
     assert classical.names[0] == "theory"
     assert {"h0", "displacement", "load"} <= set(classical.names)
     assert len(classical.comments) == 2 + len(classical.names)
+
+
+def test_profiles_tell_states_of_one_h0_apart(run):
+    """Three states of a path at one h0 were rows of one branch, h0 and order; r began anew."""
+    path = {"h0_end": -2.0}
+    folds = run(lennard_jones(2.0, equilibrium_path=path)).summary
+    between = 0.5 * (folds["jump_in_h0"] + folds["jump_out_h0"])
+    found = run(lennard_jones(2.0, equilibrium_path=path, profiles={"h0": [between, 0.0]}))
+    curve, table = found.curve, found.table("profiles.csv")
+    states = np.unique(table["state"])
+    assert len(states) == 4
+    assert [int(np.unique(table["stable"][table["state"] == state])[0]) for state in states
+            if curve["h0"][int(state) - 1] > 0] == [1, 0, 1]
+    for state in states.astype(int):
+        mine = table["state"] == state
+        assert (np.diff(table["r"][mine]) > 0).all()
+        # The number is that of the row of the curve, counted from 1.
+        for name, own in (("h0", "h0"), ("h_centre", "separation"), ("stable", "stable")):
+            assert curve[name][state - 1] == table[own][mine][0]
 
 
 def test_profiles_of_unlike_bodies_have_the_deformation_of_each(run):
@@ -200,7 +219,7 @@ def test_one_failure_does_not_stop_the_other_decks(snapin, tmp_path):
     assert done.returncode == 1
     for name in ("bad", "good"):
         assert (tmp_path / "results" / name / "summary.nml").is_file()
-    assert not list(tmp_path.rglob("*.partial"))
+    assert not list(tmp_path.rglob("unfinished"))
 
 
 @pytest.mark.parametrize("count", [8, 1000], ids=["lost in closing", "lost in writing"])
@@ -210,8 +229,8 @@ def test_a_table_that_cannot_be_written_leaves_no_results(snapin, tmp_path, coun
     (tmp_path / "d.nml").write_text(lennard_jones(1.0, classical=classical))
     done = snapin("d.nml", cwd=tmp_path, preexec_fn=limited("FSIZE", 2200))
     assert done.returncode == 1
-    assert "classical.csv.partial: File too large" in done.stderr
-    assert not [p for p in (tmp_path / "results/d").iterdir() if not p.name.endswith(".partial")]
+    assert "unfinished/classical.csv: File too large" in done.stderr
+    assert [p.name for p in (tmp_path / "results/d").iterdir()] == ["unfinished"]
 
 
 def test_contact_ends_a_tenth_of_the_length_of_the_law_above_the_gap_at_rest(run):

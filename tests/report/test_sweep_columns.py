@@ -196,11 +196,11 @@ LOADED = [f"fixed_load_{name}" for name in (
 
 
 def held(sigma=0.87, stiffness=(0.5, 0.1), load=(0.0, -1.0, 0.5), **groups):
-    """Springs, fixed loads and a table of one path."""
+    """Springs and fixed loads of one path."""
     springs = {} if stiffness is None else {"stiffness": [sigma * k for k in stiffness]}
     return lennard_jones(
         sigma, equilibrium_path={"h0_end": -3.0}, device=springs,
-        fixed_load={"load": [sigma * one for one in load]}, table={}, **groups)
+        fixed_load={"load": [sigma * one for one in load]}, **groups)
 
 
 def as_alone(swept, row, summary):
@@ -220,7 +220,6 @@ def test_springs_and_loads_have_a_column_each(run):
     lists = [f"{key}_{k}" for keys, count in ((DRIVEN, 2), (LOADED, 3))
              for k in range(1, count + 1) for key in keys]
     assert swept.names[-1 - len(lists):-1] == lists
-    assert (swept["table_load_error"] > 0).all()
 
 
 @pytest.mark.parametrize("key, values", [
@@ -259,12 +258,40 @@ def test_bodies_that_yield_have_their_relaxed_strength_of_adhesion(run):
     np.testing.assert_allclose(table["sigma_relaxed"], 2 * table["sigma"], rtol=1e-6)
 
 
-def test_groups_of_states_are_said_to_leave_no_number(run):
-    sweep = {"key": "profiles.h0", "values": [0.0, 1.0]}
-    found = run(lennard_jones(0.5, equilibrium_path={"h0_end": -1.0}, profiles={"h0": 1.0},
-                              stability={}, sweep=sweep)).summary
-    assert found["notes"] == "sweep: no number in sweep.csv comes from profiles, stability; " \
-        "run a case alone to see states"
+SWEPT = {"key": "force.hamaker", "values": [1.0, 2.0]}
+
+
+@pytest.mark.parametrize("group, keys", [
+    ("table", {}), ("profiles", {"h0": 0.0}), ("stability", {}),
+    ("sensitivity", {"parameters": "force.z0"})])
+@pytest.mark.parametrize("option", [(), ("--check",)])
+def test_a_group_without_a_number_in_a_sweep_is_refused(snapin, tmp_path, group, keys, option):
+    """Tables and states of the cases were left out, those of &table without a word."""
+    (tmp_path / "d.nml").write_text(lennard_jones(
+        0.5, equilibrium_path={"h0_end": -1.0}, **{group: keys}, sweep=SWEPT))
+    done = snapin(*option, "d.nml", cwd=tmp_path)
+    assert done.returncode == 2
+    assert re.search(f"&{group}: not together with &sweep", done.stderr)
+    assert not (tmp_path / "results").exists()
+
+
+@pytest.mark.parametrize("group, keys, tables", [
+    ("device", {"stiffness": 0.2}, ["device.csv", "device_jumps.csv"]),
+    ("fixed_load", {"load": 0.0}, ["fixed_load.csv"]), ("classical", {}, ["classical.csv"]),
+    ("approximations", {}, ["approximations.csv"]), ("regime", {}, [])])
+def test_tables_that_a_sweep_leaves_out_are_said(snapin, run, tmp_path, group, keys, tables):
+    """What a group writes alone is in a sweep too, or is named by the check and in the summary."""
+    scene = {"equilibrium_path": {"h0_end": -1.0}, group: keys}
+    text = lennard_jones(0.5, **scene, sweep=SWEPT)
+    alone, swept = run(lennard_jones(0.5, **scene)), run(text)
+    extra = {*alone.files} - {"curve.csv", "summary.nml"}
+    assert extra == {*tables} and {*swept.files} == {"sweep.csv", "summary.nml"}
+    (tmp_path / "d.nml").write_text(text)
+    said = snapin("--check", "d.nml", cwd=tmp_path)
+    assert said.returncode == 0 and "d.nml: ok" in said.stdout
+    note = f"a sweep writes no {', '.join(tables)}; run a case alone"
+    assert (note in said.stderr) == bool(tables)
+    assert (note in str(swept.summary.get("notes", ""))) == bool(tables)
 
 
 def test_warnings_of_cases_are_counted_and_the_first_is_shown(run):

@@ -93,7 +93,7 @@ def test_another_number_of_threads_is_refused_in_a_cycle(snapin, snapin_path, tm
     done = bench.resume(bench.journal)
     assert done.returncode == 1
     assert "set OMP_NUM_THREADS=1" in done.stderr
-    assert (tmp_path / "cut/deck/journal.partial").read_bytes() == bench.journal
+    assert (tmp_path / "cut/deck/unfinished/journal").read_bytes() == bench.journal
 
 
 def test_times_of_a_run_that_was_interrupted_are_those_of_all_its_parts(short):

@@ -41,8 +41,8 @@ def test_another_deck_is_refused_and_told_apart(sweep):
             assert words in done.stderr
             assert "without --resume" in done.stderr
             target = sweep.folder / "cut/deck"
-            assert [p.name for p in target.iterdir()] == ["journal.partial"]
-            assert (target / "journal.partial").read_bytes() == journal
+            assert [p.name for p in target.iterdir()] == ["unfinished"]
+            assert (target / "unfinished/journal").read_bytes() == journal
     finally:
         path.write_text(SWEEP)
 
@@ -120,8 +120,8 @@ def test_without_resume_what_was_interrupted_is_dropped_and_that_is_said(sweep):
 @pytest.mark.parametrize("options", [[], ["--resume"]])
 def test_a_second_run_is_refused_and_touches_nothing(sweep, options):
     target = sweep.emptied(b"".join(frames(sweep.journal)[:3]))
-    (target / "curve.csv.partial").write_text("x")
-    before = state_of(target)
+    (target / "unfinished/curve.csv").write_text("# title: x")
+    before = state_of(target / "unfinished")
     folder = os.open(target, os.O_RDONLY)
     try:
         fcntl.flock(folder, fcntl.LOCK_EX)
@@ -131,7 +131,7 @@ def test_a_second_run_is_refused_and_touches_nothing(sweep, options):
     assert done.returncode == 1
     assert "another run is writing" in done.stderr
     assert "--out" in done.stderr
-    assert state_of(target) == before
+    assert state_of(target / "unfinished") == before
     # The lock is gone with its holder.
     assert sweep.run("cut", *options).returncode == 0
 
@@ -142,26 +142,27 @@ def test_a_run_whose_folder_is_gone_publishes_nothing_and_touches_no_other(
     (tmp_path / "deck.nml").write_text(lennard_jones(0.87, loading=loading(9, -3, 0.002)))
     folder = tmp_path / "results/deck"
     folder.mkdir(parents=True)
-    (folder / "summary.nml").write_text("of an earlier run")
+    earlier = "&summary of an earlier run"
+    (folder / "summary.nml").write_text(earlier)
     with subprocess.Popen([snapin_path, "deck.nml"], cwd=tmp_path, env=threaded(),
                           stderr=subprocess.PIPE, text=True) as process:
-        while not (folder / "curve.csv.partial").exists():
+        while not (folder / "unfinished/curve.csv").exists():
             assert process.poll() is None, process.communicate()[1]
             time.sleep(0.001)
         process.send_signal(signal.SIGSTOP)
-        assert (folder / "journal.partial").exists()
+        assert (folder / "unfinished/journal").exists()
         if away == "moved":
             folder.rename(tmp_path / "elsewhere")
         elif away == "removed":
             shutil.rmtree(folder)
         else:
-            (folder / "curve.csv.partial").unlink()
+            (folder / "unfinished/curve.csv").unlink()
         # Another run begins there.
-        folder.mkdir(exist_ok=True)
-        others = {"curve.csv.partial": "x", "summary.nml.partial": "y", "journal.partial": "z",
-                  "classical.csv": "t"}
+        (folder / "unfinished").mkdir(parents=True, exist_ok=True)
+        others = {"unfinished/curve.csv": "x", "unfinished/summary.nml": "y",
+                  "unfinished/journal": "z", "classical.csv": "t"}
         if away == "a file removed":
-            others = {"summary.nml": "of an earlier run"}
+            others = {"summary.nml": earlier}
         for name, text in others.items():
             (folder / name).write_text(text)
         process.send_signal(signal.SIGCONT)
@@ -172,8 +173,8 @@ def test_a_run_whose_folder_is_gone_publishes_nothing_and_touches_no_other(
         assert {name: (folder / name).read_text() for name in others} == others
     else:
         # The summary had to be opened by name; nothing got its name.
-        del others["summary.nml.partial"]
+        del others["unfinished/summary.nml"]
         assert {name: (folder / name).read_text() for name in others} == others
-        assert all(p.name == "summary.nml" or p.name.endswith(".partial")
-                   for p in (tmp_path / "elsewhere").iterdir())
-        assert (tmp_path / "elsewhere/summary.nml").read_text() == "of an earlier run"
+        left = sorted(p.name for p in (tmp_path / "elsewhere").iterdir())
+        assert left == ["summary.nml", "unfinished"]
+        assert (tmp_path / "elsewhere/summary.nml").read_text() == earlier

@@ -12,12 +12,10 @@ from support.scenes import lennard_jones, loading
 # --- Where files cannot be written
 
 def check_stopped(bench, done, folder, words):
-    """A run that could not write: told, partial by name, and nothing that looks complete."""
+    """A run that could not write: told, and nothing that looks complete."""
     assert done.returncode == 1, done.stderr
     assert words in done.stderr
-    names = [path.name for path in folder.iterdir()]
-    assert names
-    assert [name for name in names if not name.endswith(".partial")] == []
+    assert [path.name for path in folder.iterdir()] == ["unfinished"]
 
 
 @pytest.mark.parametrize("name", ["short", "sweep"])
@@ -32,8 +30,8 @@ def test_a_limit_on_the_size_of_files_stops_a_run_that_then_goes_on(name, reques
         check_stopped(bench, done, folder, "File too large; raise the limit")
         if limit == largest // 2:
             # What could not be kept is not computed either.
-            (table,) = [*folder.glob("curve.csv.partial"), *folder.glob("sweep.csv.partial")]
-            whole = rows(bench.whole[table.name[: -len(".partial")]])
+            (table,) = [*folder.glob("unfinished/curve.csv"), *folder.glob("unfinished/sweep.csv")]
+            whole = rows(bench.whole[table.name])
             assert len(rows(table.read_bytes().splitlines())) < 0.8 * len(whole)
         assert bench.run("cut", "--resume").returncode == 0
         assert bench.files("cut") == bench.whole
@@ -101,11 +99,10 @@ def close(*descriptors):
 
 @pytest.mark.parametrize("closed", [(2,), (1, 2), (0, 1, 2)], ids=str)
 def test_messages_never_end_up_in_results_when_streams_are_closed(short, closed):
-    short.emptied()
     # There is something to say while files are open.
     begun = b"".join(frames(short.journal)[:9])
     for options in [("--resume",), ()]:
-        (short.folder / "cut/deck/journal.partial").write_bytes(begun)
+        short.emptied(begun)
         done = short.run("cut", *options, preexec_fn=close(*closed))
         assert done.returncode == 0
         assert short.files("cut") == short.whole

@@ -11,7 +11,7 @@ LAYERED = (
     "&layer thickness = 1e-6, 2e-6, young = 1e6, 2e6, poisson = 0.45, 0.5, body = 1 /\n"
     + FORCE + LOADING)
 
-FULL = """! every group at once
+FULL = """! every group of a scene at once
 &scene  title = 'Fig. 10(c), it''s "full"' /
 &bodies radius = 1.5e-2, young = 70e9, 3e6, poisson = 0.3, 0.5 /
 &force  law = 'lennard_jones', hamaker = 1.0e-19, z0 = 0.5e-9, part = 'full' /
@@ -26,7 +26,6 @@ FULL = """! every group at once
 &approximations count = 50 /
 &classical theories = 'hertz', 'jkr', 'carpick' /
 &stability /
-&sweep     key = 'force.hamaker', from = 1e-21, to = 1e-19, count = 20, scale = 'log' /
 &numerics  method = 'anderson', accuracy = 1e-6, nodes = 400, r_max = 1e-6 /
 """
 
@@ -104,6 +103,8 @@ ACCEPTED = {
     "count = 5 scale = 'log' /\n",
     "downward sweep": GOOD + "&sweep key = 'bodies.radius', from = 2, to = 1, count = 3 /\n",
     "every group": FULL,
+    "every group of a sweep": re.sub("&(table|stability|profiles).*\n", "", FULL) +
+    "&sweep key = 'force.hamaker', from = 1e-21, to = 1e-19, count = 20, scale = 'log' /\n",
     "a summary as a deck": "&summary title = 'a', sigma = NaN, unload_from = 1, 3, odd = 1e999 /\n"
     "&cost wall_seconds = 1.0 /\n" + GOOD,
 }

@@ -6,9 +6,9 @@ tries every call (or every N-th), prints a table of the number of tries and of t
 runs, and ends with status 1 if a promise of src/system/publication.f90 is broken.
 
 A run is to replace the results of an older deck of the same name, or has a new folder. In every
-case, files with final names are the old set (in a new folder: none) or the new set, or
-INCOMPLETE.txt exists and the run has reported it; the same deck with --resume then leaves exactly
-the files of an undisturbed run.
+case, files with final names are the old set (in a new folder: none) or the new set, or the folder
+has no summary, and each file is of one of these sets; the same deck with --resume then leaves
+exactly the files of an undisturbed run.
 """
 
 import argparse
@@ -25,7 +25,8 @@ import tempfile
 from support import scenes
 
 HERE = pathlib.Path(__file__).resolve().parent
-INTENT = "INCOMPLETE.txt"
+UNFINISHED = "unfinished"
+TORN = "no summary"
 KILL = 0
 
 RIGID = {"bodies": {"radius": 1.0, "rigid": True},
@@ -46,14 +47,22 @@ def require(held, *what):
 
 
 def contents(folder):
-    """The contents of results: name -> bytes, the summary without times; without partial files."""
+    """The contents of results: name -> bytes, the summary without times; not what is unfinished."""
     found = {}
     for path in folder.iterdir() if folder.is_dir() else ():
-        if path.name.endswith(".partial"):
+        if path.name == UNFINISHED:
             continue
         lines = path.read_bytes().splitlines(keepends=True)
         found[path.name] = b"".join(line for line in lines if b"_seconds" not in line)
     return found
+
+
+def library(folder):
+    """Makes the library that is loaded before the C library (faults.c)."""
+    path = folder / "faults.so"
+    subprocess.run([os.environ.get("CC", "cc"), "-O1", "-shared", "-fPIC", "-o", path,
+                    HERE / "faults.c", "-ldl"], check=True)
+    return path
 
 
 class Stand:
@@ -64,9 +73,7 @@ class Stand:
 
     def __init__(self, snapin, folder, old=OLD):
         self.snapin, self.folder = snapin, pathlib.Path(folder)
-        self.library = self.folder / "faults.so"
-        subprocess.run([os.environ.get("CC", "cc"), "-O1", "-shared", "-fPIC", "-o", self.library,
-                        HERE / "faults.c", "-ldl"], check=True)
+        self.library = library(self.folder)
         self.target = self.folder / "try/d"
         self.before = "old" if old else "none"
         for name, text in (("old", old), ("new", NEW)):
@@ -109,15 +116,14 @@ class Stand:
         return int(path.read_text().splitlines()[-1].split("\t")[1])
 
     def state(self):
-        """The state of the folder: 'old' or 'none', 'new', or 'told'."""
+        """The state of the folder: 'old' or 'none', 'new', or 'no summary'."""
         found = contents(self.target)
-        if INTENT in found:
-            del found[INTENT]
-            for name, data in found.items():
-                require(data in (self.old.get(name), self.new.get(name)), name, "is not whole")
-            return "told"
-        require(found in (self.old, self.new), "neither old nor new nor told:", sorted(found))
-        return self.before if found == self.old else "new"
+        if found in (self.old, self.new):
+            return self.before if found == self.old else "new"
+        require("summary.nml" not in found, "neither old nor new:", sorted(found))
+        for name, data in found.items():
+            require(data in (self.old.get(name), self.new.get(name)), name, "is not whole")
+        return TORN
 
     def mend(self, *options):
         """The next run leaves the files of an undisturbed run, and no other file."""
@@ -135,17 +141,23 @@ class Stand:
         if code == KILL:
             require(done.returncode in (0, -9), done.returncode, done.stderr)
         else:
-            require(done.returncode in (0, 1), done.returncode, done.stderr)
+            require(done.returncode in (0, 1, 2), done.returncode, done.stderr)
         state = self.state()
+        # A file that cannot be read may be another's; without `fstat` nothing shows what it is.
+        if done.returncode == 2:
+            require("cannot be read" in done.stderr or call == "fstat", done.stderr)
+            require(state == self.before, "refused, and changed")
         if done.returncode == 0:
             require(state == "new", "status 0 and no new results")
         if done.returncode == 1:
             require(done.stderr.strip(), "no message")
-            # If the system does not list the folder, the run may report the state without need.
-            told = f"see {INTENT}" in done.stderr
-            require(told if state == "told" else not told or call == "fstat", state, done.stderr)
+            told = "not all are in place" in done.stderr
+            # In a new folder nothing may be in place.
+            require(told or state != TORN, state, done.stderr)
+            require(not told or state in (TORN, "none"), state, done.stderr)
         self.mend()
-        return {0: "ended well", 1: "status 1", -9: "killed"}[done.returncode] + ", " + state
+        ends = {0: "ended well", 1: "status 1", 2: "status 2", -9: "killed"}
+        return f"{ends[done.returncode]}, {state}"
 
 
 # --- Power failure
@@ -189,7 +201,8 @@ def lay_out(stand, calls, keep, rng):
     disk = {path.name: Inode(path.read_bytes()) for path in (old.iterdir() if stand.old else ())}
     now, waiting, lasting = dict(disk), [], bool(stand.old)
     for name, _, path, *rest in calls:
-        file = path.rsplit("/", 1)[-1]
+        # Names below the folder of results, "" for the folder itself.
+        file = path.removeprefix("try/d").removeprefix("/")
         if name == "fsync" and file == "..":
             lasting = True
         elif name == "create" and file not in now:
@@ -200,33 +213,45 @@ def lay_out(stand, calls, keep, rng):
         elif name == "truncate":
             now[file].steps.append(("truncate", int(rest[0])))
         elif name == "rename":
-            now[rest[0]] = now.pop(path)
-            waiting.append(("rename", path, rest[0]))
-        elif name == "unlink" and path in now:
-            del now[path]
-            waiting.append(("unlink", path, None))
-        elif name == "fsync" and path.endswith("/d"):
-            disk, waiting = dict(now), []
+            now[rest[0]] = now.pop(file)
+            waiting.append(("rename", file, rest[0]))
+        elif name == "unlink" and file in now:
+            del now[file]
+            waiting.append(("unlink", file, None))
+        elif name == "fsync" and file in ("", UNFINISHED):
+            lasting_now = [step for step in waiting if synced_with(file, step)]
+            waiting = [step for step in waiting if step not in lasting_now]
+            apply(lasting_now, disk)
         elif name == "fsync" and file in now:
             now[file].synced = len(now[file].steps)
-    for kind, file, other in waiting:
-        if keep == "nothing" or (keep == "some" and rng.random() < 0.5):
-            continue
+    apply([step for step in waiting
+           if keep == "all names" or (keep == "some" and rng.random() < 0.5)], disk)
+    shutil.rmtree(stand.target, ignore_errors=True)
+    if not lasting and (keep == "nothing" or (keep == "some" and rng.random() < 0.5)):
+        return
+    (stand.target / UNFINISHED).mkdir(parents=True)
+    for file, inode in disk.items():
+        count = inode.synced
+        if keep == "some":
+            count = rng.randint(count, len(inode.steps))
+        (stand.target / file).write_bytes(inode.after(count))
+
+
+def synced_with(folder, step):
+    """Whether a change of names is on the disk when a folder is; a renamed file has a new place."""
+    kind, file, other = step
+    return (other if kind == "rename" else file).rpartition("/")[0] == folder
+
+
+def apply(steps, disk):
+    """Makes changes of names on the disk."""
+    for kind, file, other in steps:
         if kind == "link":
             disk[file] = other
         elif kind == "rename" and file in disk:
             disk[other] = disk.pop(file)
         elif kind == "unlink":
             disk.pop(file, None)
-    shutil.rmtree(stand.target, ignore_errors=True)
-    if not lasting and (keep == "nothing" or (keep == "some" and rng.random() < 0.5)):
-        return
-    stand.target.mkdir(parents=True)
-    for file, inode in disk.items():
-        count = inode.synced
-        if keep == "some":
-            count = rng.randint(count, len(inode.steps))
-        (stand.target / file).write_bytes(inode.after(count))
 
 
 # --- The campaign

@@ -1,6 +1,7 @@
 """Runs that are stopped or killed and then continued, and their journals as bytes."""
 
 import random
+import shutil
 import signal
 import struct
 import subprocess
@@ -8,6 +9,7 @@ import time
 
 import pytest
 from conftest import ROOT
+from support import faults
 from support.processes import threaded
 from support.scenes import lennard_jones, loading
 
@@ -83,8 +85,7 @@ class Bench:
         done = self.run("whole")
         assert done.returncode == status, done.stderr
         self.whole = self.files("whole")
-        # If the summary cannot be renamed, the run stops before its end.
-        (folder / "cut/deck").mkdir(parents=True, exist_ok=True)
+        self.library = faults.library(folder)
         self.journal = self.stop(b"")
 
     def run(self, out, *options, **kwargs):
@@ -104,10 +105,10 @@ class Bench:
         """The folder of results, in which there is nothing, or a journal."""
         target = self.folder / out / "deck"
         target.mkdir(parents=True, exist_ok=True)
-        for path in target.iterdir():
-            path.unlink()
+        shutil.rmtree(target)
+        (target / "unfinished").mkdir(parents=True)
         if journal is not None:
-            (target / "journal.partial").write_bytes(journal)
+            (target / "unfinished/journal").write_bytes(journal)
         return target
 
     def resume(self, journal):
@@ -116,14 +117,13 @@ class Bench:
 
     def stop(self, journal):
         """The journal of a run that continues from a journal and is stopped at its end."""
-        (self.folder / "cut/deck/summary.nml").unlink(missing_ok=True)
-        (self.folder / "cut/deck/summary.nml").mkdir()
-        (self.folder / "cut/deck/journal.partial").write_bytes(journal)
-        try:
-            assert self.run("cut", "--resume").returncode == 1
-        finally:
-            (self.folder / "cut/deck/summary.nml").rmdir()
-        return (self.folder / "cut/deck/journal.partial").read_bytes()
+        self.emptied(journal)
+        # If nothing can be renamed, the run stops before its end.
+        env = threaded(self.threads, LD_PRELOAD=str(self.library), FAULT_CALL="rename",
+                       FAULT_AT="1", FAULT_ERRNO="5", FAULT_UNDER="cut/deck")
+        done = self.snapin("--out", "cut", "--resume", "deck.nml", cwd=self.folder, env=env)
+        assert done.returncode == 1, done.stderr
+        return (self.folder / "cut/deck/unfinished/journal").read_bytes()
 
     def check(self, journal):
         done = self.resume(journal)

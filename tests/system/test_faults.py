@@ -28,6 +28,11 @@ def either(request):
     return request.getfixturevalue(request.param)
 
 
+def torn(stand, at):
+    """What is in the folder when a renaming fails: the old summary is gone before the first."""
+    return "none" if at == 1 and not stand.old else faults.TORN
+
+
 # --- A sample; `verify.sh faults` tries every call with every error
 
 
@@ -36,8 +41,7 @@ def test_a_rename_that_fails_leaves_one_set_of_results_or_says_so(either, code):
     for at in range(1, either.number("rename") + 1):
         end = either.attempt("rename", at, code)
         if code:
-            # The first one is that of the file of intent.
-            assert end == f"status 1, {'told' if at > 1 else either.before}"
+            assert end == f"status 1, {torn(either, at)}"
 
 
 @pytest.mark.parametrize("code", [faults.KILL, errno.ENOSPC], ids=["killed", "ENOSPC"])
@@ -49,12 +53,12 @@ def test_no_failing_call_leaves_results_that_are_not_one_set(either, code):
 def test_a_disk_that_fails_for_good_amid_the_renames_is_told_and_mended(either):
     number = either.number("rename")
     ends = [either.attempt("rename", at, errno.EIO, lasts=True) for at in range(1, number + 1)]
-    assert ends.count("status 1, told") == number - 1
+    assert ends == [f"status 1, {torn(either, at)}" for at in range(1, number + 1)]
 
 
 def test_a_power_failure_at_any_call_leaves_one_set_of_results_or_says_so(either):
     ends = faults.power_failures(either, every=5)
-    assert ends[either.before] and ends["told"] and ends["new"]
+    assert ends[either.before] and ends[faults.TORN] and ends["new"]
 
 
 @pytest.mark.long
@@ -62,18 +66,19 @@ def test_every_call_may_fail(either):
     broken = [line for *_, bad in faults.campaign(either) for line in bad]
     assert not broken
     ends = faults.power_failures(either)
-    assert ends[either.before] and ends["new"] and ends["told"]
+    assert ends[either.before] and ends["new"] and ends[faults.TORN]
 
 
 @pytest.mark.parametrize("code", [faults.KILL, errno.EIO], ids=["killed", "EIO"])
-def test_mending_that_is_interrupted_is_mended(either, code):
+def test_a_run_after_one_that_was_stopped_amid_the_renames_may_be_stopped_too(either, code):
+    """Nothing of the first run is taken for the second's, whatever that leaves."""
     def stop():
         either.reset()
-        either.run(call="rename", at=4, errno=faults.KILL, under="try/d")
-        assert either.state() == "told"
+        either.run(call="rename", at=2, errno=faults.KILL, under="try/d")
+        assert either.state() == faults.TORN
 
     stop()
-    log = either.folder / "mending.log"
+    log = either.folder / "second.log"
     either.run("try", "--resume", call="any", under="try/d", log=log)
     calls = [line.split("\t")[0] for line in log.read_text().splitlines()]
     for call in ("rename", "fsync"):
@@ -85,81 +90,50 @@ def test_mending_that_is_interrupted_is_mended(either, code):
 
 
 def test_files_wait_for_the_disk_no_more_often_than_the_order_of_steps_needs(either):
-    # Each file, the list of them, the folder four times, and the one above it.
-    assert either.number("fsync") == len(either.new) + 1 + 4 + 1
+    # Each file, the folders of new and of final names, and three times again the second one.
+    assert either.number("fsync") == len(either.new) + 2 + 3
 
 
 def test_every_file_is_on_the_disk_before_it_gets_its_name(either):
-    synced, dirty_names, renamed = set(), set(), []
+    """The old summary is gone for good before the first new file, which all precede the summary."""
+    synced, waiting, renamed = set(), set(), []
     for name, _, path, *rest in either.log()[:-1]:
-        file = path.rsplit("/", 1)[-1]
-        if path == faults.INTENT and name in ("rename", "unlink"):
-            # Now the set is complete.
-            assert not dirty_names
+        file = path.removeprefix("try/d").removeprefix("/")
         if name in ("write", "truncate"):
             synced.discard(file)
         elif name == "create":
-            dirty_names.add(file)
-        elif name == "fsync" and path.endswith("/d"):
-            dirty_names.clear()
+            waiting.add(file)
+        elif name == "fsync" and file in ("", faults.UNFINISHED):
+            waiting = {each for each in waiting if each.rpartition("/")[0] != file}
         elif name == "fsync":
             synced.add(file)
+        elif name == "unlink" and not renamed and file == "summary.nml":
+            waiting.add(file)
         elif name == "rename":
-            dirty_names.add(rest[0])
-            assert path in synced and path not in dirty_names
-            synced.add(rest[0])
+            assert file in synced and file not in waiting
+            assert "summary.nml" not in waiting
+            if rest[0] == "summary.nml":
+                assert not waiting & {*renamed}
+            waiting.add(rest[0])
             renamed.append(rest[0])
-    assert renamed[0] == faults.INTENT
-    assert sorted(renamed) == sorted([faults.INTENT, *either.new])
+    assert sorted(renamed) == sorted(either.new)
     assert renamed[-1] == "summary.nml"
 
 
 # --- What a reader is told
 
 
-def test_a_folder_that_was_left_amid_the_renames_tells_how_to_mend_it_by_hand(either):
+def test_a_folder_that_was_left_amid_the_renames_can_be_completed_by_hand(either):
+    """All new files are in the folder or in `unfinished`, as the message says."""
     either.reset()
-    either.run(call="rename", at=4, errno=faults.KILL, under="try/d")
-    text = (either.target / faults.INTENT).read_text()
-    assert "may not belong together" in text
-    # What the file says, done by hand.
-    listed = [line for line in text.splitlines() if re.fullmatch(r"\w+\.(csv|nml)", line)]
-    for name in listed:
-        newer = either.target / f"{name}.partial"
-        if newer.exists():
-            newer.rename(either.target / name)
-    for path in either.target.iterdir():
-        if path.name not in listed:
-            path.unlink()
+    done = either.run(call="rename", at=2, errno=errno.EIO, under="try/d")
+    assert "not all are in place: the others are in try/d/unfinished" in done.stderr
+    for path in (either.target / faults.UNFINISHED).iterdir():
+        if path.name != "journal":
+            path.rename(either.target / path.name)
+    for name in {*either.old} - {*either.new}:
+        (either.target / name).unlink(missing_ok=True)
     assert either.state() == "new"
-
-
-@pytest.mark.parametrize("option", ["--resume", "--quiet"])
-def test_what_was_begun_is_completed_before_anything_else(either, option):
-    for at in range(1, either.number("rename") + 1):
-        either.reset()
-        either.target.mkdir(parents=True, exist_ok=True)
-        (either.target / "sweep.csv.partial").write_text("another run's")
-        either.run(call="rename", at=at, errno=faults.KILL, under="try/d")
-        assert either.state() == ("told" if at > 1 else either.before)
-        # The results of that run are there though the next one fails.
-        done = either.run("try", option, call="write", at=1, errno=errno.ENOSPC, under="try/d")
-        resumed = at > 1 and option == "--resume"
-        assert (done.returncode == 0) == resumed
-        assert ("installed the results" in done.stderr) == resumed
-        assert either.state() == ("new" if at > 1 else either.before)
-        either.mend(option)
-
-
-def test_a_file_of_intent_that_cannot_be_true_is_refused(stand):
-    stand.reset()
-    for text, words in [("", "lists no results"), ("x\nsweep.csv\n", "sweep.csv is missing")]:
-        (stand.target / faults.INTENT).write_text(text)
-        before = {path.name: path.read_bytes() for path in stand.target.iterdir()}
-        done = stand.run("try")
-        assert done.returncode == 1
-        assert words in done.stderr
-        assert {path.name: path.read_bytes() for path in stand.target.iterdir()} == before
 
 
 # --- What is no file
@@ -180,22 +154,24 @@ def make_dangling_link(path, elsewhere):
 
 
 @pytest.mark.parametrize("make", [make_fifo, make_link, make_dangling_link])
-@pytest.mark.parametrize("name", ["journal", "curve.csv", "classical.csv", "summary.nml",
-                                  faults.INTENT])
+@pytest.mark.parametrize("name", ["unfinished/journal", "unfinished/curve.csv", "curve.csv",
+                                  "unfinished/summary.nml", "fit.nml", "summary.nml"])
 def test_what_is_no_file_is_refused_and_not_opened(stand, make, name):
-    for options in [(), ("--resume",)]:
+    for options in [(), ("--resume",), ("--check",)]:
         stand.reset()
         elsewhere = stand.folder / "elsewhere"
-        make(stand.target / f"{name}.partial", elsewhere)
+        (stand.target / name).parent.mkdir(exist_ok=True)
+        (stand.target / name).unlink(missing_ok=True)
+        make(stand.target / name, elsewhere)
+        before = sorted(path.name for path in stand.target.rglob("*"))
         done = stand.run("try", *options)
-        assert done.returncode == 1
-        words = "not a file but a link, a pipe or a device; move away"
-        assert f"{name}.partial: {words}" in done.stderr
-        assert stand.state() == "old"
+        assert done.returncode == 2
+        assert f"{name} is not a file but a link, a pipe or a device" in done.stderr
+        assert sorted(path.name for path in stand.target.rglob("*")) == before
         if make is make_link:
             assert elsewhere.read_text() == "precious"
         elsewhere.unlink(missing_ok=True)
-        (stand.target / f"{name}.partial").unlink(missing_ok=True)
+        (stand.target / name).unlink()
         stand.mend()
 
 
@@ -211,11 +187,11 @@ def test_the_journal_is_put_on_the_disk_every_few_seconds(snapin_path, stand, tm
         time.sleep(5.5)
         process.send_signal(signal.SIGKILL)
     calls = [line.split("\t") for line in (tmp_path / "log").read_text().splitlines()]
-    journal = [name for name, _, path, *_ in calls if path.endswith("journal.partial")]
+    journal = [name for name, _, path, *_ in calls if path.endswith("unfinished/journal")]
     assert journal.count("fsync") == 2
     # The stand takes a call of its own for every byte; without it there are twenty a second.
     assert journal.count("write") > 20
     # Its names need that once.
     synced = [os.path.normpath(path) for name, _, path, *_ in calls if name == "fsync"]
-    assert synced[1:3] == ["results/d", "results"]
-    assert {*synced[:1], *synced[3:]} == {"results/d/journal.partial"}
+    assert synced[1:4] == ["results/d/unfinished", "results/d", "results"]
+    assert {*synced[:1], *synced[4:]} == {"results/d/unfinished/journal"}

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 import snapin
 from support.calculus import gauss
+from support.scenes import deck
 
 # Fig. 1 of the paper.
 BODIES = {"radius": 1.5e-2, "stiffness": 1e10}
@@ -222,3 +223,32 @@ def test_strength_of_lennard_jones_makes_lambda_1_157_times_tabors_parameter():
 def test_figure_1_pull_offs_are_those_of_the_paper():
     assert snapin.pull_off("jkr", **ADHESIVE) == pytest.approx(-56e-6, abs=0.5e-6)
     assert snapin.pull_off("dmt", **ADHESIVE) == pytest.approx(-75e-6, abs=0.5e-6)
+
+
+@pytest.mark.parametrize("shape, slope", [
+    (None, lambda r: r), ({"kind": "sphere"}, lambda r: r / np.sqrt(1 - r**2)),
+    ({"kind": "power", "exponent": 4.0}, lambda r: 2 * r**3)])
+@pytest.mark.parametrize("depth", [1e-3, 0.04, 0.3, 0.6])
+def test_theories_of_contacts_as_wide_as_the_body_are_said(run, shape, slope, depth):
+    """Rows went on to contacts wider than the body, without a word. Above a tenth of the radius, or
+    of a slope, there is a note, above a third a warning."""
+    found = run(deck(bodies={"radius": 1.0, "stiffness": 1.0}, shape=shape,
+                     force={"law": "lennard_jones", "surface_energy": 1e-9, "z0": 1e-4},
+                     classical={"h0_start": 1e-3, "h0_end": -depth, "theories": "hertz"}))
+    widest = slope(found.table("classical.csv")["contact_radius"].max())
+    assert found.summary["classical_over_radius"] == pytest.approx(widest, rel=1e-6)
+    words = "the slope at the edge of the widest contact in classical.csv"
+    said = [words in str(found.summary.get(key, "")) for key in ("notes", "warnings")]
+    assert said == [0.1 < widest <= 1 / 3, widest > 1 / 3]
+
+
+def test_theories_beyond_the_points_of_a_profile_are_said(run, tmp_path):
+    r = np.linspace(0, 0.02, 50)
+    np.savetxt(tmp_path / "profile.txt", np.column_stack([r, r**2 / 2]))
+    for depth, beyond in ((1e-4, False), (1e-3, True)):
+        found = run(deck(bodies={"stiffness": 1.0},
+                         shape={"kind": "profile", "file": str(tmp_path / "profile.txt")},
+                         force={"law": "lennard_jones", "surface_energy": 1e-12, "z0": 1e-6},
+                         classical={"h0_start": 1e-5, "h0_end": -depth}))
+        said = str(found.summary.get("warnings", ""))
+        assert ("contacts in classical.csv reach" in said) == beyond

@@ -3,6 +3,7 @@
 import contextlib
 import re
 import runpy
+import shutil
 import struct
 import subprocess
 import sys
@@ -113,7 +114,8 @@ def test_nothing_is_drawn_where_a_column_has_no_value(monkeypatch, tmp_path):
     monkeypatch.syspath_prepend(SCRIPTS)
     draw_map = runpy.run_path(str(SCRIPTS / "map.py"))["draw_map"]
     rows = [f"{i},{j},1,{'nan' if 3 <= i <= 6 else i + j},\n" for i in range(10) for j in range(10)]
-    (tmp_path / "sweep.csv").write_text("a.x,a.y,converged,max_tension,failure\n" + "".join(rows))
+    (tmp_path / "sweep.csv").write_text(
+        "# title: \na.x,a.y,converged,max_tension,failure\n" + "".join(rows))
     (tmp_path / "summary.nml").write_text("&summary\n  converged = .true.\n/\n&cost\n/\n")
     (axes, _) = draw_map(tmp_path).axes
     corners = axes.collections[0].get_paths()
@@ -213,15 +215,13 @@ def test_units_keep_numbers_short(largest, factor, unit):
     assert scale([-largest, np.nan], "N") == (factor, unit)
 
 
-def test_files_that_may_not_belong_together_are_not_drawn(plot, results):
-    note = results / "cycle/INCOMPLETE.txt"
-    note.write_text("")
-    try:
-        done = plot("force_curve.py", results / "cycle")
-    finally:
-        note.unlink()
+def test_files_without_a_summary_are_not_drawn(plot, results, tmp_path):
+    """A run that is stopped while it replaces results leaves tables of which nothing is known."""
+    shutil.copytree(results / "cycle", tmp_path / "cycle")
+    (tmp_path / "cycle/summary.nml").unlink()
+    done = plot("force_curve.py", tmp_path / "cycle")
     assert done.returncode != 0
-    assert "may not belong together" in done.stderr
+    assert "no summary.nml in" in done.stderr
 
 
 def test_a_law_is_drawn_beside_its_curve(plot, tmp_path):

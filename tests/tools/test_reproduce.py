@@ -83,7 +83,7 @@ def test_what_was_interrupted_or_removed_is_run_again(snapin_path, rigid, tmp_pa
     ("", ["--resume"]), ('[ "$2" = --resume ] && exit 1', ["--resume", "--out"])])
 def test_an_interrupted_run_goes_on_or_starts_over_where_it_cannot(
         snapin_path, rigid, tmp_path, refuses, options):
-    log, left = tmp_path / "log", tmp_path / "runs" / "rigid" / "journal.partial"
+    log, left = tmp_path / "log", tmp_path / "runs" / "rigid" / "unfinished/journal"
     program = program_of(tmp_path, f'echo "$2" >> "{log}"\n{refuses}\nexec "{snapin_path}" "$@"')
     left.parent.mkdir(parents=True)
     left.touch()

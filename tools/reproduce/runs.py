@@ -142,7 +142,7 @@ class Runs:
         (self.root / path.stem / "summary.nml").unlink(missing_ok=True)
         self._results.pop(path.stem, None)
         digest, began = self.digest(path), time.perf_counter()
-        interrupted = (self.root / path.stem / "journal.partial").is_file()
+        interrupted = (self.root / path.stem / "unfinished/journal").is_file()
         done = self._call(path, *(["--resume"] if interrupted else []))
         if interrupted and not (self.root / path.stem / "summary.nml").is_file():
             # The remaining files belong to another deck or program.
