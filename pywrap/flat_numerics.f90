@@ -167,7 +167,8 @@ contains
     this%problem%coupling = coupling
     allocate (this%meshes%grid(1))
     this%meshes%grid(1) = mesh_of(kind, centre, lengths, orders, map, .true.)
-    this%options = solver_options_t(mixing=method == 'mixing', tolerance=tolerance, depth=depth, &
+    this%options = solver_options_t(mixing=index(method, 'mixing') > 0, tolerance=tolerance, &
+      depth=depth, mixing_depth=merge(depth, 0, method == 'anderson_mixing'), &
       patience=patience, most_iterations=most_iterations, mixing_limit=mixing_limit, &
       stop_on_change=stop_on_change /= 0, displacement_tolerance=displacement_tolerance)
     if (method == 'newton') this%options = newton_of(this%options)
