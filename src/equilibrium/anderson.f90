@@ -1,6 +1,6 @@
 !> An iteration with a factorised Jacobian that is kept for many states, and Anderson acceleration.
 !> The plain step is -B^{-1} G, where B is that Jacobian. Most of the convergence is due to B: the
-!> `acceleration` replaces the iterations, few per cent of all, that B's age would cost.
+!> `acceleration` saves a few per cent of the iterations, more where B is kept for long.
 !>
 !> If B is no longer a good approximation (the residual grows, or convergence is slow), B is renewed
 !> at the best state so far and the history is removed. Newton's method is the same iteration with B

@@ -118,7 +118,7 @@ contains
     converged = .false.
     z = state%gap
     ratio = options%mixing_limit
-    least = huge(1.0_wp)
+    least = huge(1.0_wp)/growth
     halved = least
     rejections = 0
     do iteration = 1, min(allowed, most_accelerated)
@@ -127,9 +127,9 @@ contains
       state%iterations = iteration
       converged = holds(equations%problem, options%tolerance, state)
       if (converged .or. (iteration == 1 .and. .not. state%residual < huge(1.0_wp))) return
-      if (state%residual <= growth*least) then
+      if (iteration == 1 .or. state%residual <= growth*least) then
         if (iteration > 1) ratio = raised(ratio, options%mixing_limit)
-        if (state%residual <= least) then
+        if (iteration == 1 .or. state%residual <= least) then
           least = state%residual
           z_best = z
           g_best = g

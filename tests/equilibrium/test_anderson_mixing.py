@@ -97,6 +97,19 @@ def test_jumps_are_those_of_the_factorised_iteration(run):
             exact, rel=1e-4)
 
 
+@pytest.mark.parametrize("grid", ["auto", "uniform"])
+def test_the_frozen_jacobian_needs_no_acceleration(run, grid):
+    """Depth 0 is an iteration of its own: the same numbers, a few more iterations."""
+    def cycle(depth):
+        return run(lennard_jones(
+            0.87, loading=loading(4.0, 0.0, 0.2), unloading={"h0_end": 4.0},
+            numerics={"method": "anderson", "grid": grid, "anderson_depth": depth, "nodes": 150}))
+
+    plain, deep = cycle(0), cycle(20)
+    np.testing.assert_allclose(plain.curve["load"], deep.curve["load"], rtol=1e-6, atol=1e-7)
+    assert plain.cost["iterations"] >= deep.cost["iterations"]
+
+
 def test_without_attraction_the_mesh_is_scaled_with_the_contact(run):
     """Lambda of 1e4 at h0 = 0, where displacement and load are known to 11 digits."""
     result = run(exponential(1e4, loading=loading(10.0, 0.0, 1.0),

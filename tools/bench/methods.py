@@ -8,14 +8,14 @@ Each state is solved from the state a tenth of a length before, at constant sepa
 the paper begins; so all methods have the same start and the same residual to reach, 1e-8. The
 states themselves come from the program's path, and Newton's method on the mesh in question. The
 matrix is that of one mesh, uniform or with panels about the contact edge. The spectrum of 1 - W p'
-is that of the dense matrix at the solution.
+is that of the dense matrix at the solution. Beside the states stand whole cycles, with their times.
 """
 
 import argparse
 import csv
 import pathlib
 import sys
-import time
+import warnings
 
 import numpy as np
 
@@ -26,7 +26,11 @@ sys.path[:0] = [str(TOP / "tools" / "bench"), str(TOP / "tools"), str(TOP / "bui
 import pictures  # noqa: E402 (found through the lines above)
 import snapin  # noqa: E402
 
-TABLE, PICTURE = (TOP / "docs" / "bench" / f"methods.{kind}" for kind in ("csv", "png"))
+# Scenes in units of the law's length are beyond small strains, which does not matter here.
+warnings.simplefilter("ignore", snapin.SnapinWarning)
+
+TABLE, CYCLES, PICTURE = (TOP / "docs" / "bench" / name for name in (
+    "methods.csv", "methods_cycles.csv", "methods.png"))
 GUIDE = TOP / "docs" / "methods.md"
 BEGIN, END = "<!-- methods -->", "<!-- end of methods -->"
 
@@ -44,7 +48,22 @@ METHODS = (
     *(("anderson", {"depth": depth}) for depth in (0, 1, 5, 20)),
     ("newton", {}))
 FIELDS = ("law", "strength", "mesh", "nodes", "resolution", "method", "depth", "ratio", "states",
-          "converged", "products", "factorisations", "rejected", "milliseconds", "least", "largest")
+          "converged", "products", "factorisations", "rejected", "least", "largest")
+
+# Cycles: name, settings, and the largest sigma at which it ends within a minute.
+CYCLE_METHODS = (
+    ("mixing", {"method": "mixing", "grid": "uniform", "nodes": 300}, 0.87),
+    ("anderson_mixing, depth 5",
+     {"method": "anderson_mixing", "grid": "uniform", "nodes": 300, "anderson_depth": 5}, 0.87),
+    ("anderson_mixing, 10", {"method": "anderson_mixing", "grid": "uniform", "nodes": 300}, 0.87),
+    ("anderson_mixing, 20",
+     {"method": "anderson_mixing", "grid": "uniform", "nodes": 300, "anderson_depth": 20}, 0.87),
+    ("anderson", {"method": "anderson", "grid": "uniform", "nodes": 300}, 0.87),
+    ("newton", {"method": "newton", "grid": "uniform", "nodes": 300}, 0.87),
+    ("newton, edge-locked", {"method": "newton"}, 1000.0),
+    ("default", {}, 1000.0))
+CYCLE_FIELDS = ("method", "strength", "states", "converged", "milliseconds", "products",
+                "factorisations", "rejected")
 
 
 class LennardJones:
@@ -166,47 +185,62 @@ def _states(law, strength, wanted, known, mesh_name):
 
 
 def _row(law, strength, mesh_name, states, method, options):
-    products, factorisations, rejected, took, converged = [], [], 0, [], 0
+    products, factorisations, rejected = [], [], 0
     for h0, mesh, start, _ in states:
-        def solve(most):
-            began = time.perf_counter()
-            state = snapin.equilibrium(law.force, mesh, h0, strength, method=method, start=start,
-                                       tolerance=TOLERANCE, most_iterations=most, **options)
-            return state, time.perf_counter() - began
-
-        _, before = solve(1)
-        state, whole = solve(MOST[method])
+        state = snapin.equilibrium(
+            law.force, mesh, h0, strength, method=method, start=start, tolerance=TOLERANCE,
+            most_iterations=MOST[method], **options)
         rejected += state.rejected_steps
         if state.converged:
-            converged += 1
             products.append(state.operator_products)
             factorisations.append(state.factorisations)
-            took.append(1e3 * max(whole - before, 1e-6))
     sizes = [mesh.x.size for _, mesh, *_ in states]
     spectra = np.array([spectrum for *_, spectrum in states])
     spacing = max(mesh.x[-1] / (mesh.x.size - 1) for _, mesh, *_ in states)
     resolution = spacing * strength / 0.375 if law is LennardJones and mesh_name == "uniform" else 0
     return dict(zip(FIELDS, (
         law.name, strength, mesh_name, max(sizes), resolution, method, options.get("depth", ""),
-        options.get("mixing_limit", ""), len(states), converged, *map(_median, (
-            products, factorisations)), rejected, _median(took), spectra[:, 0].min(),
-        spectra[:, 1].max())))
+        options.get("mixing_limit", ""), len(states), len(products), _median(products),
+        _median(factorisations), rejected, spectra[:, 0].min(), spectra[:, 1].max())))
+
+
+def measure_cycles(say):
+    """Return a row for each cycle, from far apart to h0 = -2 and back; the best time of three."""
+    rows = []
+    for sigma in SIGMAS:
+        far = 6.0 + 6.0 * sigma ** (2 / 3)
+        for name, numerics, largest in CYCLE_METHODS:
+            if sigma > largest:
+                continue
+            deck = {"bodies": {"radius": 1.0, "stiffness": 1.0}, "force": LennardJones.deck(sigma),
+                    "loading": {"h0_start": far, "h0_end": -2.0, "h0_step": (far + 2) / 100},
+                    "unloading": {"from": [-2.0], "h0_end": far, "h0_step": (far + 2) / 100},
+                    "numerics": numerics}
+            runs = [snapin.run(deck) for _ in range(3)]
+            run = min(runs, key=lambda run: run.cost["solve_seconds"])
+            cost = run.cost
+            rows.append(dict(zip(CYCLE_FIELDS, (
+                name, sigma, len(run.curve), int((run.curve["residual"] <= 1e-7).sum()),
+                1e3 * cost["solve_seconds"], cost["operator_products"], cost["factorisations"],
+                cost.get("rejected_steps", 0)))))
+            say(f"cycle at sigma {sigma:g}: {name}: {rows[-1]['milliseconds']:.3g} ms")
+    return rows
 
 
 def _median(values):
     return float(np.median(values)) if values else float("nan")
 
 
-def save(rows):
-    with TABLE.open("w", newline="", encoding="utf-8") as file:
-        writer = csv.DictWriter(file, FIELDS, lineterminator="\n")
+def save(rows, path, fields):
+    with path.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.DictWriter(file, fields, lineterminator="\n")
         writer.writeheader()
         writer.writerows({key: f"{value:.4g}" if isinstance(value, float) else value
                           for key, value in row.items()} for row in rows)
 
 
-def load():
-    with TABLE.open(encoding="utf-8") as file:
+def load(path):
+    with path.open(encoding="utf-8") as file:
         return [{key: _value(value) for key, value in row.items()} for row in csv.DictReader(file)]
 
 
@@ -240,6 +274,10 @@ def table(rows):
         lines += [f"| {title} | " + " | ".join(names) + " |", "|---" * (len(cases) + 1) + "|"]
         one = {case: next(row for row in rows if (row["law"], row["strength"], row["mesh"]) ==
                           (*case, mesh)) for case in cases}
+        if mesh == "uniform":
+            lines.append("| spacing over the neck | " + " | ".join(
+                f"{one[case]['resolution']:.2g}".replace("e+0", "e") if one[case]["resolution"]
+                else "" for case in cases) + " |")
         lines.append("| smallest eigenvalue | " + " | ".join(
             f"{one[case]['least']:.2g}" for case in cases) + " |")
         lines.append("| largest eigenvalue | " + " | ".join(
@@ -266,26 +304,53 @@ def _cell(row):
     return text
 
 
-def draw(rows):
-    page, panels = pictures.figure(2, 2, (9.0, 7.0), sharex="col")
-    for column, (mesh, title) in enumerate((("uniform", f"uniform, {NODES} nodes"),
-                                            ("edge", "panels about the contact edge"))):
-        for line, (y, name) in enumerate((("products", "products for a state"),
-                                          ("milliseconds", "milliseconds for a state"))):
-            panel = panels[line][column]
-            pictures.dress(panel, title if line == 0 else "", "σ" if line else "", name)
-            for (method, depth, ratio, label), look in zip(
-                    [SHOWN[k] for k in (0, 1, 2, 3, 4, 6, 8)], pictures.LOOKS):
-                mine = [row for row in _of(rows, mesh, method, depth, ratio)
-                        if row["law"] == "lennard_jones"]
-                kept = [row for row in mine if row["converged"]]
-                panel.plot([row["strength"] for row in kept], [row[y] for row in kept], **look,
-                           label=label, markersize=5)
-                lost = [row for row in kept if row["converged"] < row["states"]]
-                panel.plot([row["strength"] for row in lost], [row[y] for row in lost],
-                           linestyle="none", **look, markerfacecolor="white", markersize=7)
-    pictures.explain(panels[0][0], "some states lost", linestyle="none", **pictures.OPEN)
-    pictures.legend(page, 4)
+def cycle_table(cycles):
+    """Return the table of the cycles: milliseconds, and products in thousands."""
+    lines = ["| cycle of 202 states, ms (products) | " + " | ".join(
+        f"σ = {sigma:g}" for sigma in SIGMAS) + " |", "|---" * (len(SIGMAS) + 1) + "|"]
+    for name, *_ in CYCLE_METHODS:
+        cells = []
+        for sigma in SIGMAS:
+            mine = [row for row in cycles if (row["method"], row["strength"]) == (name, sigma)]
+            cells.append(_cycle_cell(mine[0]) if mine else "–")
+        lines.append(f"| {name} | " + " | ".join(cells) + " |")
+    return "\n".join(lines) + "\n"
+
+
+def _cycle_cell(row):
+    text = f"{row['milliseconds']:.{0 if row['milliseconds'] > 10 else 1}f} ({row['products']:.0f})"
+    if row["converged"] < row["states"]:
+        text += f", {row['converged']:.0f} of {row['states']:.0f}"
+    return text
+
+
+def draw(rows, cycles):
+    page, panels = pictures.figure(1, 3, (12.0, 4.4))
+    for panel, mesh, title in ((panels[0], "uniform", f"one state, {NODES} equal steps of r"),
+                               (panels[1], "edge", "one state, panels about the edge")):
+        pictures.dress(panel, title, "σ", "products for a state")
+        for (method, depth, ratio, label), look in zip(
+                [SHOWN[k] for k in (0, 1, 2, 3, 4, 6, 8)], pictures.LOOKS):
+            mine = [row for row in _of(rows, mesh, method, depth, ratio)
+                    if row["law"] == "lennard_jones"]
+            # Where no state converged, the number is NaN, and the line is interrupted.
+            panel.plot([row["strength"] for row in mine], [row["products"] for row in mine], **look,
+                       label=label, markersize=5)
+            lost = [row for row in mine if row["converged"] < row["states"]]
+            panel.plot([row["strength"] for row in lost], [row["products"] for row in lost],
+                       linestyle="none", **look, markerfacecolor="white", markersize=7)
+        panel.set_ylim(2, 6000)
+    pictures.dress(panels[2], "a cycle of 202 states", "σ", "time [ms]")
+    names = {"mixing": 0, "anderson_mixing, depth 5": 1, "anderson_mixing, 10": 2,
+             "anderson_mixing, 20": 3, "anderson": 5, "newton": 6, "default": 7}
+    for name, place in names.items():
+        mine = [row for row in cycles if row["method"] == name]
+        look = dict(pictures.LOOKS[place])
+        label = {"default": "default: edge-locked, along the path"}.get(name)
+        panels[2].plot([row["strength"] for row in mine], [row["milliseconds"] for row in mine],
+                       **look, label=label, markersize=5)
+    pictures.explain(panels[0], "some states lost", linestyle="none", **pictures.OPEN)
+    pictures.legend(page, 5)
     pictures.save(page, PICTURE)
 
 
@@ -293,12 +358,16 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--draw", action="store_true", help="from the present measurements")
     if not parser.parse_args().draw:
-        save(measure(lambda text: print(text, file=sys.stderr, flush=True)))
-    rows = load()
-    draw(rows)
+        def say(text):
+            print(text, file=sys.stderr, flush=True)
+
+        save(measure(say), TABLE, FIELDS)
+        save(measure_cycles(say), CYCLES, CYCLE_FIELDS)
+    rows, cycles = load(TABLE), load(CYCLES)
+    draw(rows, cycles)
     text = GUIDE.read_text(encoding="utf-8")
     before, rest = text.split(BEGIN)
-    GUIDE.write_text(f"{before}{BEGIN}\n\n{table(rows)}\n{END}{rest.split(END)[1]}",
+    GUIDE.write_text(f"{before}{BEGIN}\n\n{table(rows)}\n{cycle_table(cycles)}\n{END}{rest.split(END)[1]}",
                      encoding="utf-8")
 
 
