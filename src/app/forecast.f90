@@ -48,6 +48,7 @@ contains
     type(failure_t), allocatable :: error
 
     allocate (advice(0))
+    if (.not. prescribes_numerics(scene)) return
     if (allocated(scene%sweep)) then
       call swept_scene(scene, scene%sweep%names, scene%sweep%last(), last, error)
       if (.not. allocated(error)) call advise(last, scene%sweep%cases(), advice)
@@ -55,6 +56,16 @@ contains
       call advise(scene, 1, advice)
     end if
   end function advice_on
+
+  !> Whether the deck or its sweep may choose a fixed grid or mixing. The default needs no advice,
+  !> and no time for making the problem.
+  pure logical function prescribes_numerics(scene) result(prescribes)
+    type(scene_t), intent(in) :: scene
+
+    prescribes = scene%numerics%grid /= 'auto' .or. index(scene%numerics%method, 'mixing') > 0
+    if (allocated(scene%sweep)) &
+      prescribes = prescribes .or. index(scene%sweep%names, 'numerics.') > 0
+  end function prescribes_numerics
 
   !> Advises on one scene, of which there are `cases`.
   subroutine advise(scene, cases, advice)
