@@ -1,12 +1,14 @@
 """Claims about Anderson acceleration of the mixing: the equilibrium of the other methods, by
 products alone, and safe where contacts are stiff."""
 
+import _snapin
 import numpy as np
 import pytest
 import snapin
+from snapin.deck import problem_deck
 from support import reference
 from support.scenes import exponential, lennard_jones, loading
-from test_solvers import LAW, MESH, STATES, TOLERANCE, equations, neighbour
+from test_solvers import LAW, MATRIX, MESH, STATES, TOLERANCE, equations, neighbour
 
 
 def accelerated(law, coupling, h0, depth=10, ratio=0.2, **options):
@@ -57,6 +59,30 @@ def test_iterations_end_where_the_deck_says():
     state = accelerated("lennard_jones", 0.87, -2.0, most_iterations=12)
     assert not state.converged
     assert state.operator_products <= 13
+
+
+# --- Stability by products
+
+
+def test_stability_is_that_of_the_dense_eigenvalues():
+    """Of gaps that are no equilibria as well, so that the smallest eigenvalue has either sign; one
+    of less than a tenth is not judged."""
+    judged = {True: 0, False: 0}
+    for seed in range(40):
+        rng = np.random.default_rng(seed)
+        sigma, flat = 10 ** rng.uniform(-1, 1.5), rng.uniform(0, 3)
+        inside, neck = rng.uniform(0.9, 1.3), rng.uniform(0.1, 1.0)
+        out = np.maximum(MESH.x - flat, 0)
+        gap = inside + neck * out**1.5 + 0.5 * out**2
+        slope = 8 / 3 * (3 * gap**-4 - 9 * gap**-10)
+        least = np.linalg.eigvals(
+            np.eye(gap.size) - 2 * sigma * MATRIX.nodes * slope).real.min()
+        told, *_ = _snapin.flat_numerics.stable_state(
+            problem_deck(LAW["lennard_jones"]), sigma, *MESH._description, gap)
+        if abs(least) > 0.1:
+            assert bool(told) == (least > 0), seed
+            judged[bool(told)] += 1
+    assert min(judged.values()) > 5
 
 
 # --- Runs
