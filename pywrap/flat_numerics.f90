@@ -12,7 +12,7 @@ module flat_numerics
   private
   public :: linear_solution, kernel_values, gauss_rule, panel_integrals
   public :: mesh_nodes, mesh_matrix, mesh_interpolation, turning_intervals
-  public :: equilibrium_state
+  public :: equilibrium_state, stable_state
 
 contains
 
@@ -167,7 +167,8 @@ contains
     this%problem%coupling = coupling
     allocate (this%meshes%grid(1))
     this%meshes%grid(1) = mesh_of(kind, centre, lengths, orders, map, .true.)
-    this%options = solver_options_t(mixing=method == 'mixing', tolerance=tolerance, depth=depth, &
+    this%options = solver_options_t(mixing=index(method, 'mixing') > 0, tolerance=tolerance, &
+      depth=depth, mixing_depth=merge(depth, 0, method == 'anderson_mixing'), &
       patience=patience, most_iterations=most_iterations, mixing_limit=mixing_limit, &
       stop_on_change=stop_on_change /= 0, displacement_tolerance=displacement_tolerance)
     if (method == 'newton') this%options = newton_of(this%options)
@@ -180,6 +181,32 @@ contains
     counts = int([merge(1, 0, met), int(this%cost%operator_products), &
       int(this%cost%factorisations), int(this%cost%rejected_steps)], c_int)
   end subroutine equilibrium_state
+
+  !> Whether the gaps on a mesh are a state that is stable at fixed h0, by products alone: 0 or 1.
+  subroutine stable_state(deck, coupling, kind, centre, lengths, orders, map, gap, stable, stat, &
+    message, nodes, l, m)
+    use deck_problem, only: pose
+    use contact_state, only: state_t
+    use controls, only: control_t
+    use equilibrium, only: equations_t
+    use stability_by_products, only: is_stable
+    character(len=*), intent(in) :: deck, kind
+    integer(c_int), intent(in) :: nodes, l, m, orders(m)
+    real(c_double), intent(in) :: coupling, centre, lengths(l), map(5), gap(nodes)
+    integer(c_int), intent(out) :: stable, stat
+    character(len=16000), intent(out) :: message
+    type(equations_t) :: this
+    type(state_t) :: state
+
+    stable = 0
+    call pose(deck, this%problem, stat, message)
+    if (stat /= 0) return
+    this%problem%coupling = coupling
+    allocate (this%meshes%grid(1))
+    this%meshes%grid(1) = mesh_of(kind, centre, lengths, orders, map, .true.)
+    state%gap = gap
+    stable = merge(1, 0, is_stable(this, control_t(), state))
+  end subroutine stable_state
 
   !> The mesh with this description.
   function mesh_of(kind, centre, lengths, orders, map, elastic) result(mesh)

@@ -28,7 +28,7 @@ from .deck import accept_deck, problem_deck
 
 _flat = _snapin.flat_numerics
 
-METHODS = ("mixing", "anderson", "newton")
+METHODS = ("mixing", "anderson_mixing", "anderson", "newton")
 
 _LARGEST_ORDER = 64
 # The map of meshes without one; mapped meshes are not for users.
@@ -282,9 +282,9 @@ def equilibrium(
     `law` is as in `force_law`, here in its own units. `coupling` is sigma (40) for Lennard-Jones,
     Lambda (39) at h0 = 0 for the exponential law, and 0 for rigid bodies. The mesh is enlarged
     `scale` times. Without `start` the iteration begins with the undeformed gaps, none below the gap
-    of zero force. `depth` and `patience` are for Anderson, `mixing_limit` for mixing, and so is
-    `displacement_tolerance`: with it mixing stops as in the paper, on a small change of the gap on
-    the axis.
+    of zero force. `depth` is for "anderson_mixing" and "anderson", `patience` for "anderson",
+    `mixing_limit` for "mixing" and "anderson_mixing", and `displacement_tolerance` for "mixing":
+    with it mixing stops as in the paper, on a small change of the gap on the axis.
     """
     deck = problem_deck(law)
     method = one_of("method", method, METHODS)

@@ -17,6 +17,7 @@ module simulation
   use sweep_case, only: sweep_tally_t
   use ranks, only: crew_t
   use preflight, only: check_room, large_results
+  use forecast, only: advice_t, advice_on
   use machine, only: thread_count
   use linear_algebra, only: claim_buffers
   use equilibrium, only: cost_t
@@ -84,6 +85,7 @@ contains
     end if
     call check_room(scene, out_dir, error)
     if (allocated(error)) return
+    if (.not. quiet) call warn_before()
     problem = problem_of(scene)
     call open_folder()
     if (allocated(error)) return
@@ -132,6 +134,17 @@ contains
         call destination%say('no interrupted run to continue; starting from the beginning')
       end if
     end subroutine take_up_earlier
+
+    !> Says which numerical choices are hopeless, before time is spent on them.
+    subroutine warn_before()
+      type(advice_t), allocatable :: advice(:)
+      integer :: i
+
+      advice = advice_on(scene)
+      do i = 1, size(advice)
+        call destination%say('warning: ' // advice(i)%text)
+      end do
+    end subroutine warn_before
 
     !> Locks the folder for this run and begins its tables.
     subroutine open_folder()

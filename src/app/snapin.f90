@@ -20,6 +20,7 @@ program snapin
   use ranks, only: crew_t
   use case_columns, only: left_out
   use preflight, only: check_room, check_inputs, large_results
+  use forecast, only: advice_t, advice_on
   use build_info, only: version, compiler, blas, options_of_build => options
   implicit none
 
@@ -133,6 +134,7 @@ contains
           options%decks(i)%name // ': ' // large_results(scenes(i)))
         if (left_out(scenes(i)) /= '') call print_line(error_unit, 'snapin: ' // &
           options%decks(i)%name // ': ' // left_out(scenes(i)))
+        call print_advice(scenes(i), options%decks(i)%name)
       end if
     end do
     ! A deck that one process cannot read stops all processes.
@@ -154,6 +156,19 @@ contains
     end do
     call dismiss(crew)
   end function run_decks
+
+  !> Prints the warnings of hopeless numerical choices.
+  subroutine print_advice(scene, name)
+    type(scene_t), intent(in) :: scene
+    character(len=*), intent(in) :: name
+    type(advice_t), allocatable :: advice(:)
+    integer :: i
+
+    advice = advice_on(scene)
+    do i = 1, size(advice)
+      call print_line(error_unit, 'snapin: ' // name // ': warning: ' // advice(i)%text)
+    end do
+  end subroutine print_advice
 
   function folder_of(i) result(folder)
     integer, intent(in) :: i

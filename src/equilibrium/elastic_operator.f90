@@ -1,6 +1,7 @@
-!> The rise of the gap under the pressures on a mesh: the product of the bodies' elastic operator
-!> with the pressures, its matrix, and its derivative by the scale c of the mesh. With the matrix W
-!> of the half-space on the mesh and the additional compliance L - 1 of the bodies (`elastic_body`),
+!> The rise of the gap under the pressures on a mesh, equation (14): the product of the bodies'
+!> elastic operator with the pressures, its matrix, and its derivative by the scale c of the mesh.
+!> With the matrix W of the half-space on the mesh and the additional compliance L - 1 of the bodies
+!> (`elastic_body`),
 !>
 !>     A(c)_ij = 2 coupling c [W_ij + Sum_q wave_iq 2 v_q (L(k_q/c) - 1) spectrum_jq] ,
 !>

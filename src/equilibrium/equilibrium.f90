@@ -1,13 +1,14 @@
 !> The equations of equilibrium on a discretisation, in the units of `dimensionless_problem`:
 !>
-!>     G_i = H_i - H0 - f(c x_i) - (A(c) P(H))_i = 0
+!>     G_i = H_i - H0 - f(c x_i) - (A(c) P(H))_i = 0 ,
 !>
-!> for the gaps H at the nodes rho = c x of bodies of the shape f with the `elastic_operator` A. A
-!> control says which quantity is prescribed. If it is not H0 at a fixed scale, there is one more
-!> unknown (H0 or c) and one more equation (for the gap on the axis or at the contact edge). Behind
-!> a spring H0 follows from the position of its base and the load. In bodies with memory the
-!> deformation due to earlier pressures (`besides`) adds to the gap, and the pressure of a fluid
-!> between the bodies (`drainage`) adds to P(H).
+!> which are equations (14), (16), (17) and (18) of the paper in one, for the gaps H at the nodes
+!> rho = c x of bodies of the shape f with the `elastic_operator` A. A control says which quantity
+!> is prescribed. If it is not H0 at a fixed scale, there is one more unknown (H0 or c) and one more
+!> equation (for the gap on the axis or at the contact edge). Behind a spring H0 follows from the
+!> position of its base and the load. In bodies with memory the deformation due to earlier pressures
+!> (`besides`) adds to the gap, and the pressure of a fluid between the bodies (`drainage`) adds to
+!> P(H).
 module equilibrium
   use kinds, only: wp, pi, long
   use dimensionless_problem, only: problem_t, coupling_over
@@ -124,20 +125,24 @@ contains
         state%residual = huge(1.0_wp)
         return
       end if
+      ! The pressure, equation (16).
       state%pressure = pressure_on(problem%law, grid, state%gap)
       cost%pressure_evaluations = cost%pressure_evaluations + n*problem%law%terms
       if (allocated(equations%drainage)) state%pressure = state%pressure + &
         equations%fluid_pressure(control%mesh, state)
+      ! The load, equation (20).
       state%load = 2*pi*state%scale**2*dot_product(grid%weight, state%pressure)
       if (grid%is_bounded()) state%load = state%load + 2*pi*load_beyond(problem, &
         gap_at_end(problem%shape, grid, state), load_reach(grid, state))
       if (h0_is_prescribed(control) .and. control%compliance > 0) &
         state%h0 = control%value + control%compliance*state%load
+      ! The deformation, equation (14): the rise of the gap is -2 u.
       columns = acting_columns(state%pressure)
       call equations%operator%deform(problem, grid, state%scale, columns, state%pressure, rise)
       if (allocated(equations%besides)) rise = rise + equations%besides%at_scale(state%scale)
       cost%operator_products = cost%operator_products + 1
       cost%operator_columns = cost%operator_columns + columns
+      ! The given gap less the separation of equation (17).
       do i = 1, n
         g(i) = state%gap(i) - state%h0 - problem%shape%height(state%scale*grid%x(i)) - &
           rise(first_node - 1 + i)

@@ -1,5 +1,7 @@
-!> The paper's iteration: the new deformation is mixed with the old one. The ratio is lowered when
-!> the central displacement oscillates or its change grows, and otherwise raised to a limit.
+!> The paper's iteration: the new deformation, equation (14), is mixed with the old one. With the
+!> gap as the unknown the residual is the difference between the two, up to its sign. The ratio is
+!> lowered when the central displacement oscillates or its change grows, and otherwise raised to a
+!> limit.
 !>
 !> In a stiff contact the ratio must fall to about the inverse of the largest eigenvalue of the
 !> operator. A small *change* of the displacement then does not show convergence: the iteration may
@@ -13,7 +15,7 @@ module mixing
   use solver_options, only: solver_options_t
   implicit none
   private
-  public :: solve_mixing
+  public :: solve_mixing, lowered, raised
 
   !> Factors by which the ratio falls and rises. With a ratio below the smallest, a million
   !> iterations would not relax the softest mode.
@@ -60,10 +62,10 @@ contains
       change = -ratio*g(1)
       if (iteration > 1) then
         if (change*change_before < 0 .or. abs(change) > growth*abs(change_before)) then
-          ratio = max(fall*ratio, smallest_ratio)
+          ratio = lowered(ratio)
           equations%cost%rejected_steps = equations%cost%rejected_steps + 1
         else
-          ratio = min(rise*ratio, options%mixing_limit)
+          ratio = raised(ratio, options%mixing_limit)
         end if
       end if
       change = -ratio*g(1)
@@ -71,5 +73,19 @@ contains
       z = z - fraction*ratio*g
     end do
   end subroutine solve_mixing
+
+  !> The ratio after a step that leads away from equilibrium.
+  pure real(wp) function lowered(ratio)
+    real(wp), intent(in) :: ratio
+
+    lowered = max(fall*ratio, smallest_ratio)
+  end function lowered
+
+  !> The ratio after any other step.
+  pure real(wp) function raised(ratio, limit)
+    real(wp), intent(in) :: ratio, limit
+
+    raised = min(rise*ratio, limit)
+  end function raised
 
 end module mixing

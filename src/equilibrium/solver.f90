@@ -6,6 +6,7 @@ module solver
   use solver_options, only: solver_options_t
   use mixing, only: solve_mixing
   use anderson, only: solve_anderson
+  use anderson_mixing, only: solve_anderson_mixing
   use frozen_jacobian, only: frozen_jacobian_t
   implicit none
   private
@@ -30,8 +31,10 @@ contains
     type(state_t), intent(inout) :: state
     logical, intent(out) :: converged
 
-    if (self%options%mixing) then
+    if (self%options%is_plain_mixing()) then
       call solve_mixing(self%equations_t, self%options, control, state, converged)
+    else if (self%options%mixing) then
+      call solve_anderson_mixing(self%equations_t, self%options, control, state, converged)
     else
       call self%correct(control, state, converged)
     end if

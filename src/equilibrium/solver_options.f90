@@ -11,13 +11,15 @@ module solver_options
   integer, parameter :: newton_iterations = 12
 
   type :: solver_options_t
-    !> Whether the iteration is the paper's mixing, without derivatives. Otherwise it is Anderson
-    !> acceleration, of which Newton's method is a special case (`newton_of`).
+    !> Whether the iteration is the paper's mixing, without derivatives: plain if `mixing_depth` is
+    !> 0, otherwise with Anderson acceleration. If not, it is the iteration with a factorised
+    !> Jacobian, of which Newton's method is a special case (`newton_of`).
     logical :: mixing = .false.
     !> Largest acceptable residual, in the law's lengths.
     real(wp) :: tolerance = 1.0e-8_wp
-    !> Number of previous steps in the combination of Anderson acceleration.
-    integer :: depth = 5
+    !> Number of previous steps in the combination of Anderson acceleration: with a factorised
+    !> Jacobian, and of the mixing.
+    integer :: depth = 5, mixing_depth = 0
     !> Number of accelerated iterations after which the factorisation is renewed.
     integer :: patience = 8
     integer :: most_iterations = 60
@@ -30,9 +32,18 @@ module solver_options
     real(wp) :: mixing_limit = 0.2_wp
     logical :: stop_on_change = .false.
     real(wp) :: displacement_tolerance = 0
+  contains
+    procedure :: is_plain_mixing
   end type solver_options_t
 
 contains
+
+  !> Whether the iteration is the paper's own.
+  pure logical function is_plain_mixing(self)
+    class(solver_options_t), intent(in) :: self
+
+    is_plain_mixing = self%mixing .and. self%mixing_depth == 0
+  end function is_plain_mixing
 
   !> The options with a tolerance near rounding, for states whose place on the path must be exact.
   !> If rounding is larger, its floor counts (`residual_floor`).

@@ -170,8 +170,8 @@ contains
       began = seconds()
       select type (steps)
       class is (locked_stepper_t)
-        ! The path is not solved by mixing.
-        steps%options%mixing = .false.
+        ! The path is not solved by mixing, which cannot find unstable states.
+        if (steps%problem%law%adhesion > 0) steps%options%mixing = .false.
         ! Kernels are made by small products, and cases of a sweep make them at the same time.
         call use_threads_for(1)
         steps%meshes = new_mesh_family(steps%problem, chosen%high, chosen%low, chosen%digits, &

@@ -49,8 +49,8 @@ module experiment_request
   type :: numerics_t
     character(len=:), allocatable :: method, grid, convergence
     real(wp) :: accuracy = 0, displacement_tolerance = 0, mixing_limit = 0
-    integer :: max_iterations = 0, anderson_depth = 0
-    integer, allocatable :: nodes, panel_order
+    integer :: max_iterations = 0
+    integer, allocatable :: anderson_depth, nodes, panel_order
     real(wp), allocatable :: r_max, residual_tolerance
   end type numerics_t
 

@@ -6,6 +6,8 @@ module fixed_branch
   use controls, only: control_t
   use control_derivatives, only: control_derivative
   use frozen_jacobian, only: freeze
+  use h0_step, only: step_h0
+  use stability_by_products, only: is_stable
   use linear_algebra, only: solve, determinant_sign, log_determinant
   use prediction, only: extrapolated, moved_with_edge, towards_fold
   use stepper, only: stepper_t, branch_point_t, step_result_t, remember
@@ -59,10 +61,12 @@ contains
     type(step_result_t), intent(inout) :: event
     logical, intent(out) :: continues
 
-    state = expected
-    ! A single state is not enough for an extrapolation, and mixing starts as in the paper.
-    if (self%options%mixing .or. position%held == 1) state = position%state
-    call self%solve(control_t(value=h0), state, event%converged)
+    ! A single state is not enough for an extrapolation.
+    if (position%held == 1) then
+      call step_h0(self, position%state, h0, state, event%converged)
+    else
+      call step_h0(self, position%state, h0, state, event%converged, expected)
+    end if
     continues = event%converged .and. change(expected, state) <= 0.5_wp*change(position%state, &
       expected) + jump + merge(abs(h0 - position%state%h0), 0.0_wp, position%held == 1)
   end subroutine continue_to
@@ -73,7 +77,7 @@ contains
     real(wp), intent(in) :: h0
     type(branch_point_t), intent(in) :: position
 
-    if (self%options%mixing .or. &
+    if (self%options%is_plain_mixing() .or. &
       .not. over_neck(self%problem, self%meshes%grid(1)%spacing) <= resolved) then
       expected = extrapolated(position, h0)
       return
@@ -147,6 +151,8 @@ contains
       end if
       call continue_to(self, h0, position, expected, state, event, continues)
       ahead%before = ahead%determinant
+      if (continues .and. self%options%mixing .and. .not. self%options%is_plain_mixing()) &
+        continues = is_stable(self%equations_t, control_t(value=h0), state)
       if (.not. continues .or. self%options%mixing) return
       ahead%foreseen = ahead%regular
       call linearise(state)

@@ -9,10 +9,12 @@ module fixed_stepper
   use controls, only: control_t
   use equilibrium, only: holds
   use fixed_branch, only: continue_to, expected_at, change, follow, jump
+  use h0_step, only: step_h0
   use ending, only: beyond_rounding, no_equilibrium
   use stepper, only: stepper_t, branch_point_t, step_result_t, remember
   use solver_options, only: rescue_of
   use anderson, only: solve_anderson
+  use anderson_mixing, only: relax_by_mixing
   use relaxation, only: relax
   implicit none
   private
@@ -148,8 +150,7 @@ contains
     subroutine paper_step()
       type(state_t) :: state
 
-      state = position%state
-      call self%solve(control_t(value=h0), state, event%converged)
+      call step_h0(self, position%state, h0, state, event%converged)
       event%jumped = event%converged .and. change(position%state, state) > max(1.0_wp, &
         paper_jump*abs(h0 - position%state%h0))
       call locate_jump(event, position%state, h0)
@@ -236,15 +237,19 @@ contains
     end function goes_on
 
     !> The state to which the bodies relax from `before` at an h0 beyond the end of its branch.
-    !> Mixing is itself a relaxation.
+    !> Plain mixing is itself a relaxation.
     subroutine land(h0, before, state)
       real(wp), intent(in) :: h0
       type(state_t), intent(in) :: before
       type(state_t), intent(inout) :: state
 
       state = before
-      if (self%options%mixing) then
+      if (self%options%is_plain_mixing()) then
         call self%solve(control_t(value=h0), state, event%converged)
+        return
+      else if (self%options%mixing) then
+        call relax_by_mixing(self%equations_t, self%options, control_t(value=h0), state, &
+          event%converged)
         return
       end if
       call relax(self%equations_t, self%options, control_t(value=h0), state, event%converged)

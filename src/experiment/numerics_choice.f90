@@ -12,7 +12,7 @@ module numerics_choice
   implicit none
   private
   public :: choice_t, choose, size_grid, fixed_mesh, companion
-  public :: grid_names, unchosen, edge_locked, uniform, panels
+  public :: grid_names, unchosen, edge_locked, uniform, panels, comfortable
 
   !> The grids are none, for rigid bodies; panels locked to the contact edge; two that are fixed in
   !> space. Their names in results.
@@ -43,6 +43,8 @@ module numerics_choice
   integer, parameter :: fewest = 200, most = 1500
   !> Number of nodes up to which the error of a uniform grid is estimated on a finer one.
   integer, parameter :: largest_doubled = 300
+  !> Depth of the accelerated mixing.
+  integer, parameter :: mixing_depth = 10
   !> Error of an extremum's place over the accuracy: the error of the load is a few times larger.
   real(wp), parameter :: place_over_accuracy = 1.0e-5_wp
 
@@ -69,34 +71,11 @@ contains
     ! Only a cycle is computed by mixing, or on a grid that is fixed in space.
     if (.not. allocated(request%loading)) then
       numerics%grid = 'auto'
-      if (numerics%method == 'mixing') numerics%method = 'auto'
+      if (mixes(numerics%method)) numerics%method = 'auto'
     end if
     chosen%method = numerics%method
     if (numerics%method == 'auto') chosen%method = 'anderson'
-    associate (options => chosen%options)
-      options%mixing = numerics%method == 'mixing'
-      options%tolerance = min(1.0e-8_wp, 0.01_wp*numerics%accuracy)
-      ! The residual at which an iteration stops, below its tolerance, depends on rounding. This
-      ! changes the digits of a load beyond a thousandth of the tolerance; with the lower tolerance
-      ! these are beyond the requested digits, at the cost of a few products. For mixing the cost
-      ! would be larger, and on uniform grids the error of the mesh is far larger.
-      if (.not. options%mixing .and. numerics%grid /= 'uniform') &
-        options%tolerance = min(options%tolerance, max(1.0e-10_wp, 1.0e-4_wp*numerics%accuracy))
-      if (allocated(numerics%residual_tolerance)) options%tolerance = numerics%residual_tolerance
-      options%place_error = min(1.0e-7_wp, max(options%place_error, &
-        place_over_accuracy*numerics%accuracy))
-      options%slope_error = max(options%slope_error, 0.1_wp*options%place_error)
-      options%depth = numerics%anderson_depth
-      options%mixing_limit = numerics%mixing_limit
-      options%stop_on_change = options%mixing .and. numerics%convergence == 'displacement_change'
-      options%displacement_tolerance = numerics%displacement_tolerance/problem%length
-      if (options%mixing) then
-        options%most_iterations = numerics%max_iterations
-      else
-        options%most_iterations = min(numerics%max_iterations, options%most_iterations)
-      end if
-      if (numerics%method == 'newton') options = newton_of(options)
-    end associate
+    chosen%options = options_of(numerics, problem)
     chosen%digits = digits_for(problem, largest_radius(problem, chosen%low, &
       contact_level(problem)), numerics%accuracy, allocated(request%profile_h0))
     if (numerics%grid == 'uniform') then
@@ -105,7 +84,8 @@ contains
     else if (chosen%options%mixing .and. numerics%grid == 'panels') then
       chosen%grid = panels
       chosen%because = 'mixing needs a mesh that is fixed in space'
-    else if (chosen%options%mixing) then
+    else if (chosen%options%is_plain_mixing() .or. &
+      (chosen%options%mixing .and. problem%law%adhesion > 0)) then
       chosen%grid = uniform
       chosen%because = 'it is the grid of the mixing iteration in the paper'
     else
@@ -116,6 +96,47 @@ contains
     end if
     if (chosen%is_fixed()) call size_grid(chosen, numerics, problem)
   end function choose
+
+  !> The options of the iteration.
+  type(solver_options_t) function options_of(numerics, problem) result(options)
+    type(numerics_t), intent(in) :: numerics
+    type(problem_t), intent(in) :: problem
+
+    options%mixing = mixes(numerics%method)
+    options%tolerance = min(1.0e-8_wp, 0.01_wp*numerics%accuracy)
+    ! The residual at which an iteration stops, below its tolerance, depends on rounding. This
+    ! changes the digits of a load beyond a thousandth of the tolerance; with the lower tolerance
+    ! these are beyond the requested digits, at the cost of a few products. For mixing the cost
+    ! would be larger, and on uniform grids the error of the mesh is far larger.
+    if (.not. options%mixing .and. numerics%grid /= 'uniform') &
+      options%tolerance = min(options%tolerance, max(1.0e-10_wp, 1.0e-4_wp*numerics%accuracy))
+    if (allocated(numerics%residual_tolerance)) options%tolerance = numerics%residual_tolerance
+    options%place_error = min(1.0e-7_wp, max(options%place_error, &
+      place_over_accuracy*numerics%accuracy))
+    options%slope_error = max(options%slope_error, 0.1_wp*options%place_error)
+    if (numerics%method == 'anderson_mixing') options%mixing_depth = mixing_depth
+    if (allocated(numerics%anderson_depth)) then
+      options%depth = numerics%anderson_depth
+      if (options%mixing_depth > 0) options%mixing_depth = numerics%anderson_depth
+    end if
+    options%mixing_limit = numerics%mixing_limit
+    options%stop_on_change = options%is_plain_mixing() .and. &
+      numerics%convergence == 'displacement_change'
+    options%displacement_tolerance = numerics%displacement_tolerance/problem%length
+    if (options%mixing) then
+      options%most_iterations = numerics%max_iterations
+    else
+      options%most_iterations = min(numerics%max_iterations, options%most_iterations)
+    end if
+    if (numerics%method == 'newton') options = newton_of(options)
+  end function options_of
+
+  !> Whether a method is the paper's mixing, accelerated or not: products alone, at prescribed h0.
+  pure logical function mixes(method)
+    character(len=*), intent(in) :: method
+
+    mixes = method == 'mixing' .or. method == 'anderson_mixing'
+  end function mixes
 
   !> Chooses nodes and extent of a grid that is fixed in space.
   subroutine size_grid(chosen, numerics, problem)

@@ -121,6 +121,7 @@ contains
     record%branch = branch
     record%h0 = problem%law%separation_of(state%h0)
     record%h_centre = problem%law%separation_of(state%axis_gap)
+    ! Equation (19).
     record%displacement = (state%axis_gap - state%h0)*problem%length
     record%load = state%load*problem%load
     record%contact_radius = problem%lateral*contact_radius_of(problem, grid, state)

@@ -177,7 +177,7 @@ contains
 
   contains
 
-    !> Sets the begin (1) or end (2) of panel n, at x; `width` is the unit of t.
+    !> Sets the begin, 1, or the end, 2, of panel n, at x; `width` is the unit of t.
     subroutine add_end(side, x, width)
       integer, intent(in) :: side
       real(wp), intent(in) :: x, width

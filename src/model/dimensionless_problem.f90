@@ -1,5 +1,6 @@
 !> The dimensionless problem. With gaps in units of the law's length L, lateral positions in the
-!> unit of the shape, sqrt(R L), and pressures in the law's unit, (14)-(18) of the paper become
+!> unit of the shape, sqrt(R L), and pressures in the law's unit, equations (14) to (18) of the
+!> paper become, as in (38),
 !>
 !>     H(rho) = H0 + f(rho) + 2 coupling Int P(H) k rho' drho' ,
 !>

@@ -12,7 +12,7 @@ module numerics_group
     key_spec('numerics', meaning='How the equations are solved. Most decks need only accuracy.', &
       always=.true.), &
     key_spec('numerics', 'method', word_value, 'Iteration to equilibrium.', &
-      choices='auto mixing anderson newton', default='auto'), &
+      choices='auto mixing anderson_mixing anderson newton', default='auto'), &
     key_spec('numerics', 'accuracy', real_value, 'Relative accuracy of load and displacement.', &
       default='1e-6', low=1e-10_wp, high=1e-1_wp), &
     key_spec('numerics', 'grid', word_value, 'Discretisation.', choices='auto uniform panels', &
@@ -36,7 +36,8 @@ module numerics_group
     key_spec('numerics', 'mixing_limit', real_value, 'Largest mixing ratio.', default='0.2', &
       above=0.0_wp, high=1.0_wp), &
     key_spec('numerics', 'anderson_depth', integer_value, 'Number of earlier iterations that ' // &
-      'Anderson acceleration uses.', low=1, high=60, default='5'), &
+      'Anderson acceleration uses; with 0 there is none.', low=0, high=60, &
+      otherwise='5; 10 for anderson_mixing'), &
     key_spec('numerics', 'panel_order', integer_value, 'Nodes of one panel of a fixed grid.', &
       low=4, high=24, otherwise='from accuracy')]
 
@@ -54,7 +55,7 @@ contains
       call deck%get('numerics', 'displacement_tolerance', numerics%displacement_tolerance)
       call deck%get('numerics', 'max_iterations', numerics%max_iterations)
       call deck%get('numerics', 'mixing_limit', numerics%mixing_limit)
-      call deck%get('numerics', 'anderson_depth', numerics%anderson_depth)
+      call deck%get_optional('numerics', 'anderson_depth', numerics%anderson_depth)
       call deck%get_optional('numerics', 'r_max', numerics%r_max)
       call deck%get_optional('numerics', 'residual_tolerance', numerics%residual_tolerance)
       call deck%get_optional('numerics', 'nodes', numerics%nodes)

@@ -50,7 +50,7 @@ def solved(law, coupling, h0, method):
     """Return the state at h0, by `method` from the neighbour."""
     return snapin.equilibrium(
         LAW[law], MESH, h0, coupling, method=method, start=neighbour(law, coupling, h0),
-        tolerance=TOLERANCE, most_iterations=20000 if method == "mixing" else 60)
+        tolerance=TOLERANCE, most_iterations=20000 if "mixing" in method else 60)
 
 
 def equations(law, coupling, h0, state, mesh=MESH, matrix=MATRIX):
@@ -78,6 +78,7 @@ def stiffest(law, coupling, state):
 @every_method
 @every_state
 def test_converged_states_satisfy_the_equations(law, coupling, h0, method):
+    """Equations (14) and (16), (17) and (18); load (20) and central displacement (19)."""
     state = solved(law, coupling, h0, method)
     residual, axis_gap, load = equations(law, coupling, h0, state)
     assert state.converged
@@ -187,7 +188,8 @@ def test_the_uniform_mesh_tends_to_the_same_state_at_second_order():
 
 @every_method
 def test_exponential_law_depends_on_lambda_alone(method):
-    # A shift of h0 is a factor on the pressure: only coupling exp(-h0) counts, (39).
+    # A shift of h0 is a factor on the pressure: only coupling exp(-h0) counts, as (38) and (39)
+    # say.
     shifted = snapin.equilibrium(
         LAW["exponential"], MESH, 1.5, 10.0, method=method, tolerance=1e-11, most_iterations=5000)
     plain = snapin.equilibrium(

@@ -21,6 +21,7 @@ def reference(total, distance):
 
 @pytest.mark.parametrize("total", [1.0, 3e-9, 7e6])
 def test_kernel_has_thirteen_digits_however_close_t_is_to_r(total):
+    """Equation (15)."""
     with mpmath.workdps(40):
         distance = total * RATIOS
         found = snapin.kernel(np.full_like(distance, total), distance)

@@ -13,7 +13,7 @@ THERMAL = 1.380649e-23 * 298.15 / 1.602176634e-19
 LENGTH = 2e-9
 OSMOTIC = 78.4 * 8.8541878128e-12 * (THERMAL / LENGTH) ** 2
 
-# Reduced potentials, and regulation from constant potential (0) to constant charge (1).
+# Reduced potentials, and regulation from 0, constant potential, to 1, constant charge.
 SURFACES = [
     ((4, 4), (0, 0)),
     ((4, 4), (1, 1)),

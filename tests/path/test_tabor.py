@@ -1,4 +1,5 @@
-"""The sphere under the Lennard-Jones law at values of Tabor's parameter that others tabulate."""
+"""The sphere under the Lennard-Jones law at values of Tabor's parameter that others tabulate: its
+power 3/2 is twice sigma, equation (40)."""
 
 import math
 

@@ -103,10 +103,10 @@ def effects(rng, groups):
 def numerics(rng, radius, length):
     """Grids of two nodes and of hundreds, iterations that cannot end, tolerances at both ends."""
     keys = {}
-    keys["method"] = rng.choice(["auto"] * 4 + ["anderson", "newton", "mixing"])
+    keys["method"] = rng.choice(["auto"] * 4 + ["anderson", "newton", "mixing", "anderson_mixing"])
     if rng.random() < 0.35:
         keys["grid"] = rng.choice(["uniform", "panels"])
-    fixed = keys.get("grid") == "uniform" or keys["method"] == "mixing"
+    fixed = keys.get("grid") == "uniform" or "mixing" in keys["method"]
     if fixed or rng.random() < 0.1:
         keys["nodes"] = rng.choice([2, 3, 10, 50, 120])
     if rng.random() < 0.1:
@@ -115,7 +115,7 @@ def numerics(rng, radius, length):
         keys["accuracy"] = power(rng, -10, -1)
     if rng.random() < 0.1:
         keys["residual_tolerance"] = power(rng, -13, -2)
-    if rng.random() < 0.1 or keys["method"] == "mixing":
+    if rng.random() < 0.1 or "mixing" in keys["method"]:
         keys["max_iterations"] = rng.choice([1, 2, 10, 300])
     if rng.random() < 0.1:
         keys["mixing_limit"] = power(rng, -12, 0)
@@ -125,7 +125,7 @@ def numerics(rng, radius, length):
     if rng.random() < 0.1:
         keys["panel_order"] = rng.choice([4, 24])
     if rng.random() < 0.1:
-        keys["anderson_depth"] = rng.choice([1, 60])
+        keys["anderson_depth"] = rng.choice([0, 1, 20, 60])
     return keys
 
 

@@ -82,6 +82,9 @@ REGISTRY = {
         depth=(COUNT, 5), patience=(COUNT, 8), mixing_limit=(POSITIVE, 0.2),
         displacement_tolerance=(SCALAR, 1e-9)),
     "equilibrium by Anderson": entry(snapin.equilibrium, **ONE_STATE, depth=(COUNT, 5)),
+    "equilibrium by accelerated mixing": entry(
+        snapin.equilibrium, **ONE_STATE, method=(NAME, "anderson_mixing"),
+        most_iterations=(COUNT, 60), depth=(COUNT, 5), mixing_limit=(POSITIVE, 0.2)),
     "equilibrium_path": entry(
         snapin.equilibrium_path, h0_end=(NUMBER, 1.0), **SCENE, h0_start=(NUMBER, 20.0),
         accuracy=(NUMBER, 1e-2)),
@@ -132,5 +135,6 @@ REGISTRY = {
 LEFT_OUT = {
     "equilibrium by Anderson": {
         "method", "most_iterations", "patience", "mixing_limit", "displacement_tolerance"},
+    "equilibrium by accelerated mixing": {"patience", "displacement_tolerance"},
 }
 GATHERED = {"method", "grid", "accuracy", "nodes", "r_max"}

@@ -97,6 +97,7 @@ def test_slope_is_the_derivative_of_the_displacement(form):
 
 
 def test_displacement_is_the_integral_of_the_pressure_over_the_plane():
+    """Equation (22)."""
     # (13) at the centre of bodies that keep their shape, for the law as the program has it:
     # delta = 4 (1-nu^2)/E times the integral of p(h + t^2/(2R)) over t.
     h = 1.3 * Z0

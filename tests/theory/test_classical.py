@@ -43,6 +43,7 @@ def maugis_state(a, lam):
 @pytest.mark.parametrize("theory", MATERIAL)
 @pytest.mark.parametrize("control", ["load", "displacement"])
 def test_contact_radius_comes_back_from_load_and_from_displacement(theory, control):
+    """Equations (4), (5) and (11)."""
     load, displacement = snapin.contact_curve(theory, RADII, **MATERIAL[theory])
     values = load if control == "load" else displacement
     back = snapin.contact_radius(theory, control, values, **MATERIAL[theory])
@@ -76,6 +77,7 @@ def test_jkr_contact_radius_satisfies_equation_10():
 
 
 def test_jkr_pull_off_is_the_least_load_and_five_ninths_of_it_at_the_least_displacement():
+    """Equations (1) and (12)."""
     a = UNIT_A * np.linspace(0.2, 3, 20001)
     load, displacement = snapin.contact_curve("jkr", a, **ADHESIVE)
     pull_off = snapin.pull_off("jkr", **ADHESIVE)
@@ -109,6 +111,7 @@ def test_jkr_without_adhesion_is_hertz():
 
 
 def test_dmt_is_hertz_under_the_load_less_its_pull_off():
+    """Equation (2)."""
     hertz, _ = snapin.contact_curve("hertz", RADII, **BODIES)
     load, _ = snapin.contact_curve("dmt", RADII, **ADHESIVE)
     pull_off = snapin.pull_off("dmt", **ADHESIVE)
@@ -119,6 +122,7 @@ def test_dmt_is_hertz_under_the_load_less_its_pull_off():
 
 @pytest.mark.parametrize("theory", ["hertz", "jkr"])
 def test_pressure_integrates_to_the_load(theory):
+    """Equations (3), (7) and (9); the integral is (20)."""
     a = 2 * UNIT_A
     load, _ = snapin.contact_curve(theory, [a], **MATERIAL[theory])
     # r = a sin(t) takes the singularity at the edge away; Gauss is then exact for polynomials.

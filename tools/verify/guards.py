@@ -69,6 +69,14 @@ GUARDS = {
         (BEYOND_ROUNDING,)),
     "anderson_nan": Guard("Anderson's convergence is a comparison that NaN fails", "anderson",
         "converged holds", ("or", ".not. state%residual < huge(1.0_wp)"), (NOT_PASSED,)),
+    "rejected_mixing": Guard("accelerated mixing returns from residuals that have grown",
+        "anderson_mixing", "if iteration growth least", ALWAYS,
+        ("equilibrium/test_anderson_mixing.py::"
+         "test_rejected_steps_are_counted_and_the_iteration_restarts",)),
+    "stable_by_products": Guard("products tell unstable states", "stability_by_products",
+        "stable pivot", ("value", ".true."),
+        ("equilibrium/test_anderson_mixing.py::"
+         "test_stability_is_that_of_the_dense_eigenvalues",)),
     "hidden_folds": Guard("folds that a step passes over are looked for", "path_extrema",
         "if doubt held most_states", ("swap", "most_states", "0"),
         ("path/test_close_folds.py::test_folds_however_close_are_found",)),

@@ -1,0 +1,189 @@
+!> What is said before a run of numerical choices that cannot do what the deck asks for, or only
+!> slowly: mixing where contacts are stiff, uniform grids whose nodes are too far apart.
+!>
+!> Mixing multiplies an error of the eigenvalue lambda of 1 - W p' by 1 - ratio lambda. The ratio is
+!> at most about the inverse of the largest eigenvalue, so the error of the smallest one decreases
+!> slowly. The largest one belongs to the contact as a whole, the smallest one to a motion of its
+!> edge. Both are estimated for the contact of JKR or Hertz theory at the smallest h0.
+module forecast
+  use kinds, only: wp, pi
+  use text, only: brief, rounded
+  use failure, only: failure_t
+  use root_finding, only: bracket_t
+  use dimensionless_problem, only: problem_t, coupling_over, yielding_gap, neck_width, &
+    spacing_over_neck
+  use contact_scales, only: contact_level, largest_radius, cohesive_width
+  use scene_groups, only: scene_t
+  use scene_problem, only: problem_of
+  use scene, only: swept_scene
+  use numerics_choice, only: choice_t, choose, uniform, comfortable
+  use h0_schedule, only: states_planned
+  use progress, only: duration
+  implicit none
+  private
+  public :: advice_t, advice_on, spectrum_t, spectrum_of, iterations_of
+
+  type :: advice_t
+    character(len=:), allocatable :: text
+  end type advice_t
+
+  !> Estimates of the smallest and the largest eigenvalue of 1 - W p' of a contact.
+  type :: spectrum_t
+    real(wp) :: least = 1, largest = 1
+  end type spectrum_t
+
+  !> Time of a product for each entry of the matrix [s]; calculations that take longer than the
+  !> second value [s] are announced.
+  real(wp), parameter :: an_entry = 3.0e-10_wp, long_run = 20
+  !> Number of times that a state which does not converge is tried, each time with a shorter step.
+  integer, parameter :: attempts = 8
+
+contains
+
+  !> The advice on a scene; for a sweep on its last case.
+  function advice_on(scene) result(advice)
+    type(scene_t), intent(in) :: scene
+    type(advice_t), allocatable :: advice(:)
+    type(scene_t) :: last
+    type(failure_t), allocatable :: error
+
+    allocate (advice(0))
+    if (.not. prescribes_numerics(scene)) return
+    if (allocated(scene%sweep)) then
+      call swept_scene(scene, scene%sweep%names, scene%sweep%last(), last, error)
+      if (.not. allocated(error)) call advise(last, scene%sweep%cases(), advice)
+    else
+      call advise(scene, 1, advice)
+    end if
+  end function advice_on
+
+  !> Whether the deck or its sweep may choose a fixed grid or mixing. The default needs no advice,
+  !> and no time for making the problem.
+  pure logical function prescribes_numerics(scene) result(prescribes)
+    type(scene_t), intent(in) :: scene
+
+    prescribes = scene%numerics%grid /= 'auto' .or. index(scene%numerics%method, 'mixing') > 0
+    if (allocated(scene%sweep)) &
+      prescribes = prescribes .or. index(scene%sweep%names, 'numerics.') > 0
+  end function prescribes_numerics
+
+  !> Advises on one scene, of which there are `cases`.
+  subroutine advise(scene, cases, advice)
+    type(scene_t), intent(in) :: scene
+    integer, intent(in) :: cases
+    type(advice_t), allocatable, intent(inout) :: advice(:)
+    type(problem_t) :: problem
+    type(choice_t) :: chosen
+    real(wp) :: spacing
+
+    if (.not. allocated(scene%loading) .or. allocated(scene%drive)) return
+    problem = problem_of(scene)
+    if (problem%rigid) return
+    chosen = choose(scene, problem)
+    ! Without contact nothing is stiff, and there is no neck.
+    if (.not. chosen%is_fixed() .or. chosen%low > max(1.0_wp, yielding_gap(problem, 1.0_wp))) return
+    if (chosen%grid == uniform .and. problem%law%adhesion > 0) then
+      spacing = chosen%extent/(chosen%nodes - 1)
+      if (spacing_over_neck(problem, spacing) > comfortable) call add(advice, 'nodes are ' // &
+        rounded(spacing*problem%lateral) // ' m apart, ' // &
+        rounded(spacing_over_neck(problem, spacing)) // ' widths of the neck: the contact ' // &
+        'edge will be pinned between them, and the pull-off too large; about ' // &
+        brief(nodes_for(comfortable*neck_width(problem), chosen%extent)) // &
+        ' nodes resolve it, or grid = ''auto''')
+    end if
+    if (chosen%options%mixing) &
+      call advise_on_mixing(problem, chosen, states_planned(scene)*real(cases, wp), advice)
+  end subroutine advise
+
+  subroutine advise_on_mixing(problem, chosen, states, advice)
+    type(problem_t), intent(in) :: problem
+    type(choice_t), intent(in) :: chosen
+    real(wp), intent(in) :: states
+    type(advice_t), allocatable, intent(inout) :: advice(:)
+    type(spectrum_t) :: spectrum
+    real(wp) :: iterations, took
+    character(len=:), allocatable :: which
+
+    spectrum = spectrum_of(problem, chosen%low)
+    iterations = iterations_of(spectrum, chosen%options%mixing_limit, chosen%options%tolerance)
+    took = states*min(iterations, real(chosen%options%most_iterations, wp))* &
+      real(chosen%nodes, wp)**2*an_entry
+    which = 'in contact mixing needs about ' // rounded(iterations) // ' iterations for a ' // &
+      'state (the eigenvalues of 1 - W p'' are from ' // rounded(spectrum%least) // ' to ' // &
+      rounded(spectrum%largest) // ')'
+    if (iterations > chosen%options%most_iterations) then
+      took = attempts*took
+      if (chosen%options%stop_on_change) then
+        which = which // ', and will stop on a small change long before'
+      else if (chosen%options%is_plain_mixing()) then
+        which = which // ', more than max_iterations = ' // brief(chosen%options%most_iterations) &
+          // ': states will not converge, which takes up to ' // duration(took)
+      else
+        which = which // ', more than max_iterations = ' // brief(chosen%options%most_iterations) &
+          // ': after a jump, which begins with mixing, states will not converge, which takes ' // &
+          'up to ' // duration(took)
+      end if
+      call add(advice, which // '; method = ''auto'' needs a few')
+    else if (took > long_run .and. chosen%options%is_plain_mixing()) then
+      call add(advice, which // ', about ' // duration(took) // ' in all; method = ' // &
+        '''anderson_mixing'' or ''auto'' need far fewer')
+    end if
+  end subroutine advise_on_mixing
+
+  !> The eigenvalues at an H0 in contact. The pressure in the middle of the contact is that of JKR
+  !> or Hertz theory. Where the slope of the law is proportional to a pressure of Hertz, the row of
+  !> -W p' on the axis has the sum pi coupling a |p'|, which no eigenvalue exceeds. The edge moves
+  !> nearly freely, and the less the narrower its neck is.
+  type(spectrum_t) function spectrum_of(problem, h0) result(spectrum)
+    type(problem_t), intent(in) :: problem
+    real(wp), intent(in) :: h0
+    type(bracket_t) :: gap
+    real(wp) :: level, a, coupling, adhesion, pressure, touching, at(1)
+
+    level = 1
+    adhesion = max(problem%law%adhesion, 0.0_wp)
+    if (.not. adhesion > 0) level = contact_level(problem)
+    a = largest_radius(problem, h0, level)
+    coupling = max(problem%coupling, coupling_over(problem, a))
+    pressure = (max(level - h0, 0.0_wp) + sqrt(4*pi*coupling*adhesion*a))/(pi*coupling*a) - &
+      sqrt(adhesion/(pi*coupling*a))
+    touching = problem%law%edge_gap
+    if (.not. adhesion > 0) touching = problem%law%range + 500
+    gap = bracket_t(problem%law%smallest_gap, touching)
+    do while (gap%is_open())
+      at = problem%law%pressure([gap%middle()])
+      call gap%narrow(at(1) > pressure)
+    end do
+    at = problem%law%slope([gap%middle()])
+    spectrum%largest = 1 + pi*coupling*a*max(-at(1), 0.0_wp)
+    if (adhesion > 0) spectrum%least = 1/(1 + 1/cohesive_width(problem))
+  end function spectrum_of
+
+  !> Number of plain iterations from an error of a tenth of the law's length to the tolerance.
+  pure real(wp) function iterations_of(spectrum, limit, tolerance) result(iterations)
+    type(spectrum_t), intent(in) :: spectrum
+    real(wp), intent(in) :: limit, tolerance
+
+    iterations = log(max(0.1_wp/tolerance, 2.0_wp))/ &
+      (spectrum%least*min(limit, 2/spectrum%largest, 1.0_wp))
+  end function iterations_of
+
+  !> Number of nodes with a spacing.
+  pure integer function nodes_for(spacing, extent)
+    real(wp), intent(in) :: spacing, extent
+
+    nodes_for = ceiling(min(extent/spacing, 1.0e9_wp)) + 1
+  end function nodes_for
+
+  pure subroutine add(advice, text)
+    type(advice_t), allocatable, intent(inout) :: advice(:)
+    character(len=*), intent(in) :: text
+    type(advice_t), allocatable :: longer(:)
+
+    allocate (longer(size(advice) + 1))
+    longer(:size(advice)) = advice
+    longer(size(longer))%text = text
+    call move_alloc(longer, advice)
+  end subroutine add
+
+end module forecast
