@@ -4,7 +4,7 @@ module controls
   use contact_state, only: state_t
   implicit none
   private
-  public :: control_t, h0_is_prescribed, unknowns_of, node_count, unpack
+  public :: control_t, h0_is_prescribed, has_spring, unknowns_of, node_count, unpack
   public :: at_h0, at_axis_gap, at_edge_radius, at_h0_with_edge
 
   !> H0 is prescribed at a fixed scale; there is no further unknown.
@@ -22,7 +22,8 @@ module controls
     integer :: kind = at_h0
     !> The prescribed value: H0, the gap on the axis, or the contact radius.
     real(wp) :: value = 0
-    !> Behind a spring, `value` is H0 - compliance*load.
+    !> Behind a spring, `value` is H0 - compliance*load; a compliance below zero is that of a device
+    !> stiffer than rigid, which no fold of H0 disturbs.
     real(wp) :: compliance = 0
     !> The scale c of the mesh, if c is not an unknown.
     real(wp) :: scale = 1
@@ -38,6 +39,13 @@ contains
 
     h0_is_prescribed = control%kind == at_h0 .or. control%kind == at_h0_with_edge
   end function h0_is_prescribed
+
+  !> Whether H0 is prescribed behind a spring.
+  pure logical function has_spring(control)
+    type(control_t), intent(in) :: control
+
+    has_spring = h0_is_prescribed(control) .and. abs(control%compliance) > 0
+  end function has_spring
 
   !> The unknowns of a state under a control: its gaps and, if it is an unknown, H0 or c.
   pure function unknowns_of(control, state) result(z)

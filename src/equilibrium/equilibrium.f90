@@ -17,7 +17,7 @@ module equilibrium
   use contact_state, only: state_t, load_reach, gap_at_end, far_gap
   use edge_locked, only: mesh_family_t
   use controls, only: control_t, at_h0, at_axis_gap, at_edge_radius, at_h0_with_edge, &
-    h0_is_prescribed, node_count, unpack
+    has_spring, node_count, unpack
   use elastic_operator, only: elastic_operator_t
   use represented_pressure, only: pressure_on
   use besides, only: besides_t
@@ -131,8 +131,7 @@ contains
       state%load = 2*pi*state%scale**2*dot_product(grid%weight, state%pressure)
       if (grid%is_bounded()) state%load = state%load + 2*pi*load_beyond(problem, &
         gap_at_end(problem%shape, grid, state), load_reach(grid, state))
-      if (h0_is_prescribed(control) .and. control%compliance > 0) &
-        state%h0 = control%value + control%compliance*state%load
+      if (has_spring(control)) state%h0 = control%value + control%compliance*state%load
       columns = acting_columns(state%pressure)
       call equations%operator%deform(problem, grid, state%scale, columns, state%pressure, rise)
       if (allocated(equations%besides)) rise = rise + equations%besides%at_scale(state%scale)
@@ -142,10 +141,12 @@ contains
         g(i) = state%gap(i) - state%h0 - problem%shape%height(state%scale*grid%x(i)) - &
           rise(first_node - 1 + i)
       end do
-      ! The axis is not a node. In a stiff contact its equation magnifies the interpolation error of
-      ! the pressure; extrapolation of the gaps at the nodes is more accurate.
+      ! The axis need not be a node. In a stiff contact its equation magnifies the interpolation error
+      ! of the pressure; extrapolation of the gaps at the nodes is more accurate. On a mesh fixed in
+      ! space the state may be far from equilibrium, and all its values are those of its gaps.
       state%axis_gap = state%h0 + rise(axis_row)
-      if (grid%centre > 0) state%axis_gap = dot_product(grid%at_axis, state%gap)
+      if (grid%centre > 0 .or. (equations%meshes%is_fixed() .and. control%kind == at_h0)) &
+        state%axis_gap = dot_product(grid%at_axis, state%gap)
       select case (control%kind)
       case (at_axis_gap)
         g(n + 1) = state%axis_gap - control%value
