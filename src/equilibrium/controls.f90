@@ -4,7 +4,7 @@ module controls
   use contact_state, only: state_t
   implicit none
   private
-  public :: control_t, h0_is_prescribed, has_spring, unknowns_of, node_count, unpack
+  public :: control_t, h0_is_prescribed, unknowns_of, node_count, unpack
   public :: at_h0, at_axis_gap, at_edge_radius, at_h0_with_edge
 
   !> H0 is prescribed at a fixed scale; there is no further unknown.
@@ -22,9 +22,11 @@ module controls
     integer :: kind = at_h0
     !> The prescribed value: H0, the gap on the axis, or the contact radius.
     real(wp) :: value = 0
-    !> Behind a spring, `value` is H0 - compliance*load; a compliance below zero is that of a device
-    !> stiffer than rigid, which no fold of H0 disturbs.
+    !> Behind a spring, `value` is H0 - compliance*load.
     real(wp) :: compliance = 0
+    !> Along a curve of equilibria at a fixed scale, `value` is H0 - sum(along*gap), which no fold of
+    !> H0 disturbs; (nodes), not allocated if H0 itself is prescribed.
+    real(wp), allocatable :: along(:)
     !> The scale c of the mesh, if c is not an unknown.
     real(wp) :: scale = 1
     !> The mesh of the control.
@@ -39,13 +41,6 @@ contains
 
     h0_is_prescribed = control%kind == at_h0 .or. control%kind == at_h0_with_edge
   end function h0_is_prescribed
-
-  !> Whether H0 is prescribed behind a spring.
-  pure logical function has_spring(control)
-    type(control_t), intent(in) :: control
-
-    has_spring = h0_is_prescribed(control) .and. abs(control%compliance) > 0
-  end function has_spring
 
   !> The unknowns of a state under a control: its gaps and, if it is an unknown, H0 or c.
   pure function unknowns_of(control, state) result(z)

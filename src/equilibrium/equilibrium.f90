@@ -17,7 +17,7 @@ module equilibrium
   use contact_state, only: state_t, load_reach, gap_at_end, far_gap
   use edge_locked, only: mesh_family_t
   use controls, only: control_t, at_h0, at_axis_gap, at_edge_radius, at_h0_with_edge, &
-    has_spring, node_count, unpack
+    h0_is_prescribed, node_count, unpack
   use elastic_operator, only: elastic_operator_t
   use represented_pressure, only: pressure_on
   use besides, only: besides_t
@@ -116,6 +116,7 @@ contains
       grid => equations%meshes%grid(control%mesh), rise => equations%rise(:rows))
       call unpack(control, z, state%h0, state%scale)
       state%gap = z(:n)
+      if (allocated(control%along)) state%h0 = state%h0 + dot_product(control%along, state%gap)
       if (.not. defined(problem, state)) then
         g = 0
         state%pressure = 0*g(:n)
@@ -131,7 +132,8 @@ contains
       state%load = 2*pi*state%scale**2*dot_product(grid%weight, state%pressure)
       if (grid%is_bounded()) state%load = state%load + 2*pi*load_beyond(problem, &
         gap_at_end(problem%shape, grid, state), load_reach(grid, state))
-      if (has_spring(control)) state%h0 = control%value + control%compliance*state%load
+      if (h0_is_prescribed(control) .and. control%compliance > 0) &
+        state%h0 = control%value + control%compliance*state%load
       columns = acting_columns(state%pressure)
       call equations%operator%deform(problem, grid, state%scale, columns, state%pressure, rise)
       if (allocated(equations%besides)) rise = rise + equations%besides%at_scale(state%scale)

@@ -9,7 +9,7 @@ module jacobian
   use besides, only: besides_t
   use contact_state, only: state_t
   use represented_pressure, only: pressure_slope_t, slope_on
-  use controls, only: control_t, at_h0, at_h0_with_edge, has_spring
+  use controls, only: control_t, at_h0, at_h0_with_edge, h0_is_prescribed
   use equilibrium, only: cost_t, equations_t
   use control_derivatives, only: bordered_row, border
   implicit none
@@ -34,14 +34,17 @@ contains
     real(wp) :: least
 
     least = 0
-    if (present(neglected) .and. .not. (allocated(equations%besides) .or. has_spring(control))) &
-      least = neglected
+    if (present(neglected) .and. .not. (allocated(equations%besides) .or. &
+      control%compliance > 0 .or. allocated(control%along))) least = neglected
     associate (grid => equations%meshes%grid(control%mesh), problem => equations%problem)
       call fill(problem, grid, equations%operator, equations%meshes%locked_gap( &
         control%mesh), control, state, least, factors, equations%cost, shift)
       if (allocated(equations%besides)) call add_besides(equations%besides, control, state, &
         factors%lu)
-      if (has_spring(control)) call add_spring(equations, control, state, factors%lu)
+      if (h0_is_prescribed(control) .and. control%compliance > 0) &
+        call add_spring(equations, control, state, factors%lu)
+      if (allocated(control%along)) factors%lu = factors%lu - &
+        spread(control%along, 1, size(control%along))
     end associate
     if (allocated(equations%drainage)) call add_drainage(equations, control, state, factors%lu)
     call factorise(factors, present(neglected))
@@ -105,7 +108,7 @@ contains
       c => state%scale)
       call equations%operator%matrix(problem, grid, c, spread(1.0_wp, 1, n), &
         [(i, i=axis_row, rows)], [(i, i=1, n)], yields)
-      if (has_spring(control)) yields = yields + &
+      if (h0_is_prescribed(control) .and. control%compliance > 0) yields = yields + &
         spread(2*pi*control%compliance*c**2*grid%weight(:n), 1, rows)
       call equations%drainage%changes(control%mesh, c, state%gap, &
         equations%raised(control%mesh, state), grid%x(:n)*problem%shape%slope(c*grid%x(:n)), &

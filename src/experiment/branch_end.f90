@@ -9,7 +9,7 @@ module branch_end
   use contact_state, only: state_t
   use controls, only: control_t
   use fixed_branch, only: expected_at, is_expected, is_pinned, change
-  use branch_tangent, only: tangent_t, tangent_at, joins
+  use branch_tangent, only: tangent_t, tangent_at, joins, passing
   use solver_options, only: solver_options_t
   use stepper, only: stepper_t, branch_point_t, remember
   implicit none
@@ -42,13 +42,15 @@ module branch_end
   real(wp), parameter :: most_cubes = 5.0e10_wp
   !> The first step over the distance to h0, its change after a state that is not joined to the one
   !> before, and its smallest length.
-  real(wp), parameter :: first_step = 1.0_wp/3, shorter = 1.0_wp/3, least = 1.0e-6_wp
+  real(wp), parameter :: first_step = 0.2_wp, shorter = 1.0_wp/3, least = 1.0e-6_wp
+  !> A step to a predicted fold, over the distance to it.
+  real(wp), parameter :: just_beyond = 1.1_wp
   !> The slope dh0/dQ within a step, by Hermite's polynomial, over the slopes at its ends, below which
   !> a state decides about a pair of folds; and the part of a step that such a state keeps from its
   !> ends.
   real(wp), parameter :: flat = 0.3_wp, apart = 0.1_wp
   !> Error of the h0 of a fold (law's lengths), and largest number of states for it.
-  real(wp), parameter :: exact = 1.0e-10_wp
+  real(wp), parameter :: exact = 1.0e-9_wp
   integer, parameter :: most_rounds = 12
 
 contains
@@ -68,7 +70,7 @@ contains
 
     memory = position
     here%state = position%state
-    call tangent_at(self, here%state, 0.0_wp, here%tangent)
+    call tangent_at(self, control_t(value=here%state%h0), here%state, here%tangent)
     if (.not. here%tangent%regular) return
     sense = sign(1.0_wp, h0 - here%state%h0)
     if (.not. here%tangent%stable) then
@@ -76,7 +78,7 @@ contains
       found = found_t(at_fold, here%state, here%state%h0, here%state%load, options%tolerance)
       return
     end if
-    step = first_step*abs(h0 - here%state%h0)
+    step = first_step*abs(h0 - here%state%h0)/here%tangent%h0
     allowed = max(few_states, int(min(most_cubes/real(self%meshes%grid(1)%nodes, wp)**3, 1.0e3_wp)))
     do states = 1, allowed
       if (.not. step > least*min(1.0_wp, abs(h0 - position%state%h0))) return
@@ -99,8 +101,8 @@ contains
         return
       end if
       call remember(memory, there%state, 1, .false.)
+      step = next_step(here, there, step)
       here = there
-      step = 2*step
     end do
 
   contains
@@ -111,29 +113,24 @@ contains
       type(point_t), intent(out) :: there
       logical, intent(out) :: good
       type(state_t) :: expected
-      real(wp) :: rest
 
-      call coordinate(here, here%tangent%passing())
-      rest = abs(h0 - here%state%h0)/here%tangent%h0
-      associate (compliance => here%tangent%compliance)
-        if (abs(compliance) > 0) then
-          step = min(step, 1.1_wp*rest + least)
-        else if (step > 0.9_wp*rest) then
-          step = rest
-        end if
-        there%q = here%q + sense*step
-        if (.not. abs(compliance) > 0 .and. step >= rest) there%q = h0
-        if (abs(compliance) > 0) then
-          expected = here%state
-          expected%h0 = expected%h0 + sense*step*here%tangent%h0
-          expected%gap = expected%gap + sense*step*here%tangent%gap
-          if (minval(expected%gap) < 0.5_wp*minval(here%state%gap)) expected = here%state
-        else
-          expected = expected_at(self, there%q, memory)
-        end if
-        there%state = expected
-        call reach(self, options, compliance, there, good)
-      end associate
+      step = step*here%tangent%h0
+      call here%tangent%turn(passing(here%tangent, is_pinned(self)))
+      ! The new coordinate has another length.
+      step = min(step, 1.1_wp*abs(h0 - here%state%h0))/here%tangent%h0
+      here%q = here%state%h0 - dot_product(here%tangent%along, here%state%gap)
+      there%q = here%q + sense*step
+      if (maxval(abs(here%tangent%along)) > 0) then
+        expected = here%state
+        expected%h0 = expected%h0 + sense*step*here%tangent%h0
+        expected%gap = expected%gap + sense*step*here%tangent%gap
+        if (minval(expected%gap) < 0.5_wp*minval(here%state%gap)) expected = here%state
+      else
+        if (step > 0.9_wp*abs(h0 - here%state%h0)) there%q = h0
+        expected = expected_at(self, there%q, memory)
+      end if
+      there%state = expected
+      call reach(self, options, here%tangent%along, there, good)
       if (good) good = joins(here%state, here%tangent, there%state, there%tangent) .and. &
         (there%tangent%stable .eqv. there%tangent%h0 > 0)
       if (good .and. is_pinned(self)) good = is_expected(here%state, expected, there%state)
@@ -141,29 +138,20 @@ contains
 
   end subroutine follow
 
-  !> Changes the coordinate of a point.
-  subroutine coordinate(point, compliance)
-    type(point_t), intent(inout) :: point
-    real(wp), intent(in) :: compliance
-
-    point%tangent = point%tangent%under(compliance)
-    point%q = point%state%h0 - compliance*point%state%load
-  end subroutine coordinate
-
-  !> Solves the state at point%q from a guess, with its tangent.
-  subroutine reach(self, options, compliance, point, good)
+  !> Solves the state at point%q from a guess, with its tangent, in the coordinate of another point.
+  subroutine reach(self, options, along, point, good)
     class(stepper_t), intent(inout) :: self
     type(solver_options_t), intent(in) :: options
-    real(wp), intent(in) :: compliance
+    real(wp), intent(in) :: along(:)
     type(point_t), intent(inout) :: point
     logical, intent(out) :: good
     type(control_t) :: control
 
     control%value = point%q
-    control%compliance = compliance
+    control%along = along
     call self%correct(control, point%state, good, options)
     if (.not. good) return
-    call tangent_at(self, point%state, compliance, point%tangent)
+    call tangent_at(self, control, point%state, point%tangent)
     good = point%tangent%regular
   end subroutine reach
 
@@ -184,6 +172,18 @@ contains
       part = 0
     end if
   end function lowest_within
+
+  !> The step after one from `here` to `there`: twice as long, but only just beyond the fold to which
+  !> the slopes dh0/dQ point.
+  pure real(wp) function next_step(here, there, step) result(next)
+    type(point_t), intent(in) :: here, there
+    real(wp), intent(in) :: step
+    real(wp) :: fall
+
+    next = 2*step
+    fall = (here%tangent%h0 - there%tangent%h0)/step
+    if (fall*next > there%tangent%h0) next = just_beyond*there%tangent%h0/fall
+  end function next_step
 
   !> Coefficients of the slope dh0/dQ between two points, as a polynomial of the part of the way.
   pure function slope_between(here, there) result(slope)
@@ -222,7 +222,7 @@ contains
       slope = slope_between(low, high)
       part = 2*slope(1)/(-slope(2) + sqrt(max(0.0_wp, slope(2)**2 - 4*slope(1)*slope(3))))
       trial = guess_between(low, high, part)
-      call reach(self, options, low%tangent%compliance, trial, good)
+      call reach(self, options, low%tangent%along, trial, good)
       if (.not. good) return
       bend = abs(slope(2) + 2*part*slope(3))/abs(high%q - low%q)
       way = trial%tangent%h0/bend

@@ -19,7 +19,7 @@ module fixed_motion
   public :: advance, has_fallen, known_tangent, is_joined
 
   !> Distance beyond a fold at which the relaxation begins, in the law's lengths.
-  real(wp), parameter :: beyond_fold = 1.0e-4_wp
+  real(wp), parameter :: beyond_fold = 1.0e-3_wp
   !> The largest change of the deformation in which no jump can hide: about a pair of folds the
   !> deformation changes by a fifth of the law's length in a hundredth of it.
   real(wp), parameter :: unnoticed = 0.02_wp
@@ -181,7 +181,7 @@ contains
     type(tangent_t), intent(out) :: tangent
 
     if (has_factors_at(self%frozen, control_t(value=state%h0), state)) &
-      call tangent_at(self, state, 0.0_wp, tangent)
+      call tangent_at(self, control_t(value=state%h0), state, tangent)
   end subroutine known_tangent
 
   !> Whether a state is on the same stable branch as the one before it. tangent: of the state before,
@@ -194,8 +194,8 @@ contains
 
     joined = change(before, state) <= unnoticed
     if (joined) return
-    if (.not. tangent%regular) call tangent_at(self, before, 0.0_wp, tangent)
-    call tangent_at(self, state, 0.0_wp, ahead)
+    if (.not. tangent%regular) call tangent_at(self, control_t(value=before%h0), before, tangent)
+    call tangent_at(self, control_t(value=state%h0), state, ahead)
     if (.not. (tangent%regular .and. ahead%regular)) return
     joined = tangent%stable .and. ahead%stable
     if (joined) joined = joins(before, tangent, state, ahead)

@@ -132,7 +132,6 @@ contains
     call record%pass(known)
     if (known) return
     call record%pass(frozen%control%value)
-    call record%pass(frozen%control%compliance)
     call record%pass(frozen%control%scale)
     call record%pass(frozen%state%h0)
     call record%pass(frozen%state%scale)
