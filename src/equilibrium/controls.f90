@@ -24,9 +24,6 @@ module controls
     real(wp) :: value = 0
     !> Behind a spring, `value` is H0 - compliance*load.
     real(wp) :: compliance = 0
-    !> Along a curve of equilibria at a fixed scale, `value` is H0 - sum(along*gap), which no fold of
-    !> H0 disturbs; (nodes), not allocated if H0 itself is prescribed.
-    real(wp), allocatable :: along(:)
     !> The scale c of the mesh, if c is not an unknown.
     real(wp) :: scale = 1
     !> The mesh of the control.

@@ -50,6 +50,9 @@ module equilibrium
     type(elastic_operator_t) :: operator
     type(besides_t), allocatable :: besides
     type(drainage_t), allocatable :: drainage
+    !> If allocated, (nodes): a control at_h0 prescribes H0 - sum(along*gap), the coordinate of a curve
+    !> of equilibria that has folds of H0.
+    real(wp), allocatable :: along(:)
     !> Work array of `residual` for the rise of the gap, kept to avoid frequent allocations.
     real(wp), allocatable, private :: rise(:)
   contains
@@ -116,7 +119,7 @@ contains
       grid => equations%meshes%grid(control%mesh), rise => equations%rise(:rows))
       call unpack(control, z, state%h0, state%scale)
       state%gap = z(:n)
-      if (allocated(control%along)) state%h0 = state%h0 + dot_product(control%along, state%gap)
+      if (allocated(equations%along)) state%h0 = state%h0 + dot_product(equations%along, state%gap)
       if (.not. defined(problem, state)) then
         g = 0
         state%pressure = 0*g(:n)

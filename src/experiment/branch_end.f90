@@ -148,11 +148,13 @@ contains
     type(control_t) :: control
 
     control%value = point%q
-    control%along = along
+    self%along = along
     call self%correct(control, point%state, good, options)
-    if (.not. good) return
-    call tangent_at(self, control, point%state, point%tangent)
-    good = point%tangent%regular
+    if (good) then
+      call tangent_at(self, control, point%state, point%tangent)
+      good = point%tangent%regular
+    end if
+    deallocate (self%along)
   end subroutine reach
 
   !> The part of the step at which the slope dh0/dQ of Hermite's polynomial through h0 is lowest, if
@@ -286,6 +288,7 @@ contains
       end do
       control%value = h0
       found%state = guess%state
+      call self%frozen%forget()
       call self%correct(control, found%state, good, options)
       if (good) good = change(guess%state, found%state) <= beside
     end if

@@ -43,8 +43,8 @@ module branch_tangent
 
 contains
 
-  !> The tangent at a state of the curve under a control. The factors stay in solver%frozen, for the
-  !> next state.
+  !> The tangent at a state of the curve, in the coordinate of solver%along. The factors stay in
+  !> solver%frozen, for the next state.
   subroutine tangent_at(solver, control, state, tangent)
     class(solver_t), intent(inout) :: solver
     type(control_t), intent(in) :: control
@@ -53,7 +53,7 @@ contains
     type(pressure_slope_t) :: slope
     real(wp) :: weight(size(state%gap)), unit(size(state%gap))
 
-    if (.not. has_factors_at(solver%frozen, control, state)) &
+    if (allocated(solver%along) .or. .not. has_factors_at(solver%frozen, control, state)) &
       call freeze(solver%equations_t, control, state, solver%frozen)
     solver%frozen%excess = 0
     tangent%regular = solver%frozen%factors%valid
@@ -62,7 +62,7 @@ contains
     call solve(solver%frozen%factors, tangent%gap)
     associate (grid => solver%meshes%grid(1))
       tangent%along = 0*grid%weight
-      if (allocated(control%along)) tangent%along = control%along
+      if (allocated(solver%along)) tangent%along = solver%along
       weight = 2*pi*state%scale**2*grid%weight
       slope = slope_on(solver%problem%law, grid, state%gap)
       unit = 1
@@ -82,8 +82,7 @@ contains
     type(control_t), intent(in) :: control
     type(state_t), intent(in) :: state
 
-    has = frozen%serves(control, size(state%gap)) .and. .not. (allocated(control%along) .or. &
-      allocated(frozen%control%along))
+    has = frozen%serves(control, size(state%gap))
     if (has) has = all(abs(frozen%state%gap - state%gap) <= 0)
   end function has_factors_at
 

@@ -96,6 +96,8 @@ contains
       end if
     end associate
     call follow(self, options, h0, position, found)
+    ! These factors are of another coordinate than h0.
+    call self%frozen%forget()
     select case (found%outcome)
     case (arrived)
       event%converged = .true.

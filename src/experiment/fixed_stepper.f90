@@ -75,8 +75,6 @@ contains
     else
       call move(self, h0, position, event)
     end if
-    ! Records of steps do not have the coordinate of a curve.
-    if (allocated(self%frozen%control%along)) call self%frozen%forget()
   end subroutine step_to
 
   !> A step of the paper: h0 changes at constant separation, and the iteration continues until the
