@@ -43,12 +43,15 @@ module branch_end
   !> The first step over the distance to h0, its change after a state that is not joined to the one
   !> before, and its smallest length.
   real(wp), parameter :: first_step = 0.2_wp, shorter = 1.0_wp/3, least = 1.0e-6_wp
+  !> The slope dh0/dQ below which folds may be near, and the largest change of the deformation in a
+  !> step there (law's lengths): a pair of folds is seen as a dip of the slope.
+  real(wp), parameter :: steep = 0.5_wp, small = 0.15_wp
   !> A step to a predicted fold, over the distance to it.
   real(wp), parameter :: just_beyond = 1.1_wp
   !> The slope dh0/dQ within a step, by Hermite's polynomial, over the slopes at its ends, below which
   !> a state decides about a pair of folds; and the part of a step that such a state keeps from its
   !> ends.
-  real(wp), parameter :: flat = 0.3_wp, apart = 0.1_wp
+  real(wp), parameter :: flat = 0.5_wp, apart = 0.02_wp
   !> Error of the h0 of a fold (law's lengths), and largest number of states for it.
   real(wp), parameter :: exact = 1.0e-9_wp
   integer, parameter :: most_rounds = 12
@@ -133,6 +136,8 @@ contains
       call reach(self, options, here%tangent%along, there, good)
       if (good) good = joins(here%state, here%tangent, there%state, there%tangent) .and. &
         (there%tangent%stable .eqv. there%tangent%h0 > 0)
+      if (good .and. min(here%tangent%h0, there%tangent%h0) < steep) good = &
+        change(here%state, there%state) <= small
       if (good .and. is_pinned(self)) good = is_expected(here%state, expected, there%state)
     end subroutine go
 

@@ -68,6 +68,12 @@ contains
     type(branch_point_t), intent(inout) :: position
     type(step_result_t), intent(out) :: event
 
+    ! Behind a turn of the experiment, what came before rows that did not converge tells nothing.
+    if (position%held > 0 .and. .not. is_equilibrium(position)) then
+      associate (last => position%state%h0, known => position%h0(position%held))
+        if ((last - known)*(h0 - last) <= 0) position%held = 0
+      end associate
+    end if
     if (self%options%stop_on_change) then
       call paper_step(self, h0, position, event)
     else if (self%options%mixing) then
