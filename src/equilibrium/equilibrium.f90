@@ -50,8 +50,8 @@ module equilibrium
     type(elastic_operator_t) :: operator
     type(besides_t), allocatable :: besides
     type(drainage_t), allocatable :: drainage
-    !> If allocated, (nodes): a control at_h0 prescribes H0 - sum(along*gap), the coordinate of a curve
-    !> of equilibria that has folds of H0.
+    !> If allocated, (nodes): a control at_h0 prescribes H0 - sum(along*gap), the coordinate of a
+    !> curve of equilibria that has folds of H0.
     real(wp), allocatable :: along(:)
     !> Work array of `residual` for the rise of the gap, kept to avoid frequent allocations.
     real(wp), allocatable, private :: rise(:)
@@ -146,8 +146,9 @@ contains
         g(i) = state%gap(i) - state%h0 - problem%shape%height(state%scale*grid%x(i)) - &
           rise(first_node - 1 + i)
       end do
-      ! The axis need not be a node. In a stiff contact its equation magnifies the interpolation error
-      ! of the pressure; extrapolation of the gaps at the nodes is more accurate. On a mesh fixed in
+      ! The axis need not be a node. In a stiff contact its equation magnifies the error of
+      ! interpolated pressures; extrapolation of the gaps at the nodes is more accurate. On a
+      ! mesh fixed in
       ! space the state may be far from equilibrium, and all its values are those of its gaps.
       state%axis_gap = state%h0 + rise(axis_row)
       if (grid%centre > 0 .or. (equations%meshes%is_fixed() .and. control%kind == at_h0)) &

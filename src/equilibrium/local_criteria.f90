@@ -73,7 +73,8 @@ contains
     do k = 1, most_sections
       do j = 1, 2
         associate (place => bracket%golden_points())
-          two(j) = ratio(problem, state, place(j), gap_near(problem, grid, state, raised, place(j), 0))
+          two(j) = ratio(problem, state, place(j), &
+            gap_near(problem, grid, state, raised, place(j), 0))
         end associate
       end do
       call bracket%keep_larger(two)
@@ -85,7 +86,8 @@ contains
       best = x(largest)
     end if
     value = max(value, two(1))
-    error = abs(ratio(problem, state, best, gap_near(problem, grid, state, raised, best, 1)) - value)
+    error = abs(value - &
+      ratio(problem, state, best, gap_near(problem, grid, state, raised, best, 1)))
   end subroutine local_criterion
 
   !> |2 u p'/p| at a position with a gap; 0 where surfaces do not attract each other.
@@ -104,8 +106,9 @@ contains
       abs((state%h0 + problem%shape%height(state%scale*x) - gap)*slope(1))/(-pressure(1))
   end function ratio
 
-  !> The gap at a position, by the polynomial of the panel's deformations or, on panels of few nodes,
-  !> of those at the nearest nodes. fewer: number of nodes, the nearest ones, that are left out.
+  !> The gap at a position, by the polynomial of the panel's deformations or, on panels of few
+  !> nodes, of those at the nearest nodes. fewer: number of nodes, the nearest ones, that are
+  !> left out.
   pure real(wp) function gap_near(problem, grid, state, raised, x, fewer) result(gap)
     type(problem_t), intent(in) :: problem
     type(discretisation_t), intent(in) :: grid

@@ -48,9 +48,9 @@ module branch_end
   real(wp), parameter :: steep = 0.5_wp, small = 0.15_wp
   !> A step to a predicted fold, over the distance to it.
   real(wp), parameter :: just_beyond = 1.1_wp
-  !> The slope dh0/dQ within a step, by Hermite's polynomial, over the slopes at its ends, below which
-  !> a state decides about a pair of folds; and the part of a step that such a state keeps from its
-  !> ends.
+  !> The slope dh0/dQ within a step, by Hermite's polynomial, over the slopes at its ends, below
+  !> which a state decides about a pair of folds; and the part of a step that such a state keeps
+  !> from its ends.
   real(wp), parameter :: flat = 0.5_wp, apart = 0.02_wp
   !> Error of the h0 of a fold (law's lengths), and largest number of states for it.
   real(wp), parameter :: exact = 1.0e-9_wp
@@ -180,8 +180,8 @@ contains
     end if
   end function lowest_within
 
-  !> The step after one from `here` to `there`: twice as long, but only just beyond the fold to which
-  !> the slopes dh0/dQ point.
+  !> The step after one from `here` to `there`: twice as long, but only just beyond the fold to
+  !> which the slopes dh0/dQ point.
   pure real(wp) function next_step(here, there, step) result(next)
     type(point_t), intent(in) :: here, there
     real(wp), intent(in) :: step

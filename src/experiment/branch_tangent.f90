@@ -1,5 +1,5 @@
-!> The tangent of the curve of equilibria at a state on a mesh fixed in space, and whether this curve
-!> joins two states.
+!> The tangent of the curve of equilibria at a state on a mesh fixed in space, and whether this
+!> curve joins two states.
 !>
 !> The coordinate of the curve is Q = h0 - sum(along*gap). A branch that is stable at prescribed h0
 !> ends at a fold of h0, where gaps change infinitely fast with h0. With `along` against this change
@@ -86,8 +86,9 @@ contains
     if (has) has = all(abs(frozen%state%gap - state%gap) <= 0)
   end function has_factors_at
 
-  !> Weights with which Q increases with h0 here, and beyond a fold that is ahead: those of the load,
-  !> which increases with h0 near a fold; where it decreases no fold is near, and Q is h0. Where the
+  !> Weights with which Q increases with h0 here, and beyond a fold that is ahead: those of the
+  !> load where it is attractive, which increases with h0 near a fold; where it decreases no fold
+  !> is near, and Q is h0. Where the
   !> edge is pinned between nodes a fold concerns a few nodes and hardly the load; the weights are
   !> then those of the gaps that change.
   pure function passing(tangent, pinned) result(along)
@@ -118,15 +119,16 @@ contains
     self%gap = self%gap/length
   end subroutine turn
 
-  !> Whether the curve joins two states: their tangents, in the same coordinate, agree with the change
-  !> of load and displacement from one to the other.
+  !> Whether the curve joins two states: their tangents, in the same coordinate, agree with the
+  !> change of load and displacement from one to the other.
   pure logical function joins(from, at_from, to, at_to)
     type(state_t), intent(in) :: from, to
     type(tangent_t), intent(in) :: at_from, at_to
     real(wp) :: distance, change(2), off(2)
 
     distance = (to%h0 - from%h0) - dot_product(at_from%along, to%gap - from%gap)
-    change = [(to%axis_gap - to%h0) - (from%axis_gap - from%h0), (to%load - from%load)/at_from%scale]
+    change = [(to%axis_gap - to%h0) - (from%axis_gap - from%h0), &
+      (to%load - from%load)/at_from%scale]
     off = max(abs(distance*[at_from%axis, at_from%load/at_from%scale] - change), &
       abs(distance*[at_to%axis, at_to%load/at_from%scale] - change))
     joins = all(abs(change) <= too_small) .or. &

@@ -147,7 +147,8 @@ contains
     slips = event%converged .and. is_pinned(self)
     if (slips) slips = stays(self, found%state, landed)
     event%slipped = event%slipped .or. slips
-    if (found%fold_load < event%before%load) event%before = extreme_t(found%fold_load, found%fold_h0)
+    if (found%fold_load < event%before%load) &
+      event%before = extreme_t(found%fold_load, found%fold_h0)
     if (.not. (slips .or. event%jumped)) then
       event%jumped = .true.
       event%jump_h0 = found%fold_h0
@@ -186,8 +187,8 @@ contains
       call tangent_at(self, control_t(value=state%h0), state, tangent)
   end subroutine known_tangent
 
-  !> Whether a state is on the same stable branch as the one before it. tangent: of the state before,
-  !> or not regular.
+  !> Whether a state is on the same stable branch as the one before it. tangent: of the state
+  !> before, or not regular.
   logical function is_joined(self, tangent, before, state) result(joined)
     class(stepper_t), intent(inout) :: self
     type(tangent_t), intent(inout) :: tangent
@@ -222,7 +223,8 @@ contains
     class(stepper_t), intent(in) :: self
     type(state_t), intent(in) :: state
 
-    has_fallen = self%problem%law%falls_below > 0 .and. any(state%gap < self%problem%law%falls_below)
+    has_fallen = self%problem%law%falls_below > 0 .and. &
+      any(state%gap < self%problem%law%falls_below)
   end function has_fallen
 
   !> Whether bodies stayed in contact during a relaxation from one state to another; on a mesh that

@@ -105,9 +105,9 @@ contains
     call remember(position, state, 1, event%jumped)
   end subroutine paper_step
 
-  !> A step by mixing, which begins at constant separation and is itself a relaxation. If it converges
-  !> the bodies are also moved from the last row that converged: mixing does not tell a jump from a
-  !> branch that continues.
+  !> A step by mixing, which begins at constant separation and is itself a relaxation. If it
+  !> converges the bodies are also moved from the last row that converged: mixing does not tell a
+  !> jump from a branch that continues.
   subroutine mixing_step(self, h0, position, event)
     class(fixed_stepper_t), intent(inout) :: self
     real(wp), intent(in) :: h0

@@ -45,8 +45,8 @@ module stepper
     logical :: jumped = .false.
     real(wp) :: jump_h0 = 0, jump_load = 0, jump_uncertainty = 0
     !> Whether a contact edge slipped from one node to the next, and whether it may have slipped at
-    !> places that were not looked for; of the states just before jumps and slips, the one of largest
-    !> tension.
+    !> places that were not looked for; of the states just before jumps and slips, the one of
+    !> largest tension.
     logical :: slipped = .false., jagged = .false.
     type(extreme_t) :: before
     !> Whether it is not known if the bodies jumped between unsure_from and the end of the step.

@@ -44,7 +44,8 @@ def dense_folds(sigma, start=4.0, end=0.7):
         for _ in range(8):
             rest, jacobian = terms(moved[:-1])
             bordered = np.block([[jacobian, -np.ones((NODES, 1))], [direction[None, :]]])
-            off = np.append(rest - moved[-1], direction @ (moved - z) - step * direction @ direction)
+            along = direction @ (moved - z - step * direction)
+            off = np.append(rest - moved[-1], along)
             moved = moved - np.linalg.solve(bordered, off)
         ahead = tangent(jacobian, direction)
         if ahead[-1] * direction[-1] < 0:
