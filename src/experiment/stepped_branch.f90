@@ -148,7 +148,7 @@ contains
     subroutine doubt(from, to)
       real(wp), intent(in) :: from, to
 
-      if (branch%unsure) return
+      if (branch%unsure .or. abs(to - from) <= 0) return
       branch%unsure = .true.
       branch%unsure_between = [from, to]
     end subroutine doubt
