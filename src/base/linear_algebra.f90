@@ -7,7 +7,7 @@ module linear_algebra
   private
   public :: multiply, multiply_left, multiply_transposed, &
     add_by_transposed, factorisation_t, factorise, solve, determinant_sign, &
-    log_determinant, claim_buffers, eigenvalues, solve_tridiagonal, singular_values
+    claim_buffers, eigenvalues, solve_tridiagonal, singular_values
 
   !> LU factors of a square matrix, from `factorise`. Columns of the unit matrix need no factors: lu
   !> is then the block of the other columns, the kept ones, and of their rows. If the factors are
@@ -190,17 +190,6 @@ contains
       if (factors%lu(i, i) < 0) determinant_sign = -determinant_sign
     end do
   end function determinant_sign
-
-  !> Logarithm of the absolute value of the determinant; for exact factors.
-  pure real(wp) function log_determinant(factors)
-    type(factorisation_t), intent(in) :: factors
-    integer :: i
-
-    log_determinant = 0
-    do i = 1, size(factors%pivot)
-      log_determinant = log_determinant + log(abs(factors%lu(i, i)))
-    end do
-  end function log_determinant
 
   !> Real parts of all eigenvalues of a square matrix, and a bound of their errors. With the vectors
   !> V and values B found, a + E = V B V^-1 with E = (V B - a V) V^-1, and by Bauer and Fike (1960)

@@ -51,6 +51,9 @@ module equilibrium
     type(elastic_operator_t) :: operator
     type(besides_t), allocatable :: besides
     type(drainage_t), allocatable :: drainage
+    !> If allocated, (nodes): a control at_h0 prescribes H0 - sum(along*gap), the coordinate of a
+    !> curve of equilibria that has folds of H0.
+    real(wp), allocatable :: along(:)
     !> Work array of `residual` for the rise of the gap, kept to avoid frequent allocations.
     real(wp), allocatable, private :: rise(:)
   contains
@@ -117,6 +120,7 @@ contains
       grid => equations%meshes%grid(control%mesh), rise => equations%rise(:rows))
       call unpack(control, z, state%h0, state%scale)
       state%gap = z(:n)
+      if (allocated(equations%along)) state%h0 = state%h0 + dot_product(equations%along, state%gap)
       if (.not. defined(problem, state)) then
         g = 0
         state%pressure = 0*g(:n)
@@ -147,10 +151,13 @@ contains
         g(i) = state%gap(i) - state%h0 - problem%shape%height(state%scale*grid%x(i)) - &
           rise(first_node - 1 + i)
       end do
-      ! The axis is not a node. In a stiff contact its equation magnifies the interpolation error of
-      ! the pressure; extrapolation of the gaps at the nodes is more accurate.
+      ! The axis need not be a node. In a stiff contact its equation magnifies the error of
+      ! interpolated pressures; extrapolation of the gaps at the nodes is more accurate. On a
+      ! mesh fixed in
+      ! space the state may be far from equilibrium, and all its values are those of its gaps.
       state%axis_gap = state%h0 + rise(axis_row)
-      if (grid%centre > 0) state%axis_gap = dot_product(grid%at_axis, state%gap)
+      if (grid%centre > 0 .or. (equations%meshes%is_fixed() .and. control%kind == at_h0)) &
+        state%axis_gap = dot_product(grid%at_axis, state%gap)
       select case (control%kind)
       case (at_axis_gap)
         g(n + 1) = state%axis_gap - control%value

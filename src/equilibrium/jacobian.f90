@@ -35,7 +35,7 @@ contains
 
     least = 0
     if (present(neglected) .and. .not. (allocated(equations%besides) .or. &
-      control%compliance > 0)) least = neglected
+      control%compliance > 0 .or. allocated(equations%along))) least = neglected
     associate (grid => equations%meshes%grid(control%mesh), problem => equations%problem)
       call fill(problem, grid, equations%operator, equations%meshes%locked_gap( &
         control%mesh), control, state, least, factors, equations%cost, shift)
@@ -43,6 +43,8 @@ contains
         factors%lu)
       if (h0_is_prescribed(control) .and. control%compliance > 0) &
         call add_spring(equations, control, state, factors%lu)
+      if (allocated(equations%along)) factors%lu = factors%lu - &
+        spread(equations%along, 1, size(equations%along))
     end associate
     if (allocated(equations%drainage)) call add_drainage(equations, control, state, factors%lu)
     call factorise(factors, present(neglected))

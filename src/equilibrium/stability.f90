@@ -1,5 +1,4 @@
-!> Stability of an equilibrium at fixed h0: the smallest eigenvalue of the operator, which is
-!> decisive, and the paper's local criteria, which are estimates.
+!> Stability of an equilibrium at fixed h0: the smallest eigenvalue of the operator.
 module stability
   use kinds, only: wp, nan
   use dimensionless_problem, only: problem_t
@@ -13,7 +12,7 @@ module stability
   use linear_algebra, only: factorisation_t, solve, determinant_sign, eigenvalues
   implicit none
   private
-  public :: smallest_eigenvalue, local_criterion, axis_criterion, unknown
+  public :: smallest_eigenvalue, unknown
 
   !> The bound of the error of an eigenvalue lambda: a part relative to 1 - lambda, and a part
   !> relative to the largest of 1 and the numbers |1 - lambda| of the operator, for unavoidable
@@ -33,8 +32,6 @@ module stability
   integer, parameter :: most_iterations = 50
   !> Effect of a node over the largest effect that is below rounding.
   real(wp), parameter :: negligible = 0.01_wp*epsilon(1.0_wp)
-  !> Smaller pressures count as zero and are not used as divisors.
-  real(wp), parameter :: least_pressure = 1.0e-100_wp
 
 contains
 
@@ -155,48 +152,5 @@ contains
   pure real(wp) function unknown()
     unknown = nan
   end function unknown
-
-  !> The maximum of the left side of (28), |2 u p'/p|; above 1 the state is unstable by this
-  !> criterion. The criterion is derived for surfaces that attract each other, with p < 0 and p' >
-  !> 0, and only these places count: inside the contact edge p passes zero, and the ratio is
-  !> unbounded. Adhesive contacts always violate the criterion just outside the edge. NaN if there
-  !> is no attraction.
-  pure real(wp) function local_criterion(problem, grid, state) result(value)
-    type(problem_t), intent(in) :: problem
-    type(discretisation_t), intent(in) :: grid
-    type(state_t), intent(in) :: state
-    logical :: attracted(size(state%gap))
-
-    value = unknown()
-    if (problem%rigid .and. problem%law%adhesion > 0) value = 0
-    associate (two_u => state%h0 + &
-      problem%shape%height(state%scale*grid%x(:size(state%gap))) - state%gap, &
-      slope => problem%law%slope(state%gap))
-      attracted = attracts(state%pressure, slope)
-      ! Slopes are below 1e121 and lengths below 1e80.
-      if (any(attracted)) value = maxval(abs(two_u*slope)/max(-state%pressure, least_pressure), &
-        attracted)
-    end associate
-  end function local_criterion
-
-  !> The left side of (29), 2 p'(h(0)) u(0)/p(h(0)); below -1 the state is unstable by this
-  !> criterion. NaN if the bodies do not attract each other on the axis, as in contact.
-  pure real(wp) function axis_criterion(problem, state) result(value)
-    type(problem_t), intent(in) :: problem
-    type(state_t), intent(in) :: state
-    real(wp) :: slope(1), pressure(1)
-
-    value = unknown()
-    slope = problem%law%slope([state%axis_gap])
-    pressure = problem%law%pressure([state%axis_gap])
-    if (all(attracts(pressure, slope))) value = (state%h0 - state%axis_gap)*slope(1)/pressure(1)
-  end function axis_criterion
-
-  !> Whether surfaces attract each other, with an attraction that decreases with the gap.
-  elemental logical function attracts(pressure, slope)
-    real(wp), intent(in) :: pressure, slope
-
-    attracts = pressure < -least_pressure .and. slope > 0
-  end function attracts
 
 end module stability

@@ -114,7 +114,7 @@ contains
     type(branch_point_t) :: position
     real(wp) :: began, judged
 
-    call prepare(steps, problem, outcome%chosen, request%numerics%accuracy)
+    call prepare(steps, problem, outcome%chosen)
     steps%cost = outcome%cost
     call lay_out(outcome%chosen)
     began = seconds()
@@ -255,16 +255,13 @@ contains
   end subroutine run_with
 
   !> Sets the parts that both kinds of steppers have.
-  subroutine prepare(steps, problem, chosen, accuracy)
+  subroutine prepare(steps, problem, chosen)
     class(stepper_t), intent(inout) :: steps
     type(problem_t), intent(in) :: problem
     type(choice_t), intent(in) :: chosen
-    real(wp), intent(in) :: accuracy
 
     steps%problem = problem
     steps%options = chosen%options
-    ! Each halving solves a state, and a fixed grid has a larger error of a jump.
-    steps%jump_tolerance = max(accuracy, 1.0e-4_wp)
   end subroutine prepare
 
 end module experiment

@@ -13,7 +13,7 @@ module prediction
   use stepper, only: branch_point_t, memory
   implicit none
   private
-  public :: extrapolated, moved_with_edge, towards_fold, missed_t, expect
+  public :: extrapolated, moved_with_edge, missed_t, expect
 
   !> The errors of a span at the past states of an experiment: number and h0 of each state, which
   !> identify it (numbers alone repeat from branch to branch), its coordinate, and the corrections
@@ -79,21 +79,6 @@ contains
     if (minval(expected%gap) < 0.5_wp*minval(position%state%gap)) &
       expected = extrapolated(position, h0)
   end function moved_with_edge
-
-  !> The predicted state at h0 on a branch that changes at the rate dH/dH0 and has a fold at a
-  !> distance: the change is proportional to the square root of the distance from the fold.
-  pure type(state_t) function towards_fold(state, rate, h0, distance) result(expected)
-    type(state_t), intent(in) :: state
-    real(wp), intent(in) :: rate(:), h0, distance
-    real(wp) :: way
-
-    way = min(abs(h0 - state%h0)/distance, 1.0_wp)
-    expected = state
-    expected%h0 = h0
-    expected%gap = state%gap + 2*sign(distance, h0 - state%h0)*(1 - sqrt(1 - way))*rate
-    if (minval(expected%gap) < 0.5_wp*minval(state%gap) .and. minval(state%gap) > 0) &
-      expected%gap = state%gap
-  end function towards_fold
 
   !> Removes the errors of another span.
   pure subroutine clear(self)

@@ -111,6 +111,8 @@ module result_rows
       place='folds', quantity=of_h0, error=judged), &
     row_t('folds_load', 'N', 'load at every fold of the path', list=.true., &
       place='folds', quantity=of_load, error=judged), &
+    row_t('criterion_28_error', '', 'with &stability: largest estimated error of the column ' // &
+      'criterion_28'), &
     row_t('folds_stable', '', 'whether the path is stable after each fold, 1 or 0', list=.true.), &
     row_t('load_folds_h0', 'm', 'h0 of all extrema of the load along the path', list=.true., &
       place='load_folds', quantity=of_h0, error=judged), &

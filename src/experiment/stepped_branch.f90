@@ -42,6 +42,9 @@ module stepped_branch
     integer :: states = 0, unconverged = 0
     !> First h0 at which the iteration did not converge.
     real(wp) :: first_unconverged = 0
+    !> The first part of the branch in which it is not known whether the bodies jumped.
+    logical :: unsure = .false.
+    real(wp) :: unsure_between(2) = 0
     type(ending_t) :: ending
   end type branch_t
 
@@ -117,6 +120,7 @@ contains
       last_h0 = plan%h0(i)
     end do
     if (allocated(last%state%gap)) branch%finish = place_of_state(last%mesh, last%state)
+    if (branch%states > 0 .and. .not. event%converged) call doubt(farthest_known(), last_h0)
     call search%finish(steps, last_h0)
     if (.not. allocated(branch%lowest) .and. allocated(search%lowest)) then
       branch%lowest = search%lowest
@@ -140,11 +144,27 @@ contains
       branch%ending = event%ending
       if (event%ending%early()) return
       branch%states = branch%states + 1
+      if (event%unsure) call doubt(event%unsure_from, h0)
       if (.not. event%converged) then
         if (branch%unconverged == 0) branch%first_unconverged = h0
         branch%unconverged = branch%unconverged + 1
       end if
     end subroutine note
+
+    !> Notes a part of the branch in which the bodies may have jumped.
+    subroutine doubt(from, to)
+      real(wp), intent(in) :: from, to
+
+      if (branch%unsure .or. abs(to - from) <= 0) return
+      branch%unsure = .true.
+      branch%unsure_between = [from, to]
+    end subroutine doubt
+
+    !> The h0 of the last state that converged, or the first h0.
+    real(wp) function farthest_known()
+      farthest_known = plan%h0(1)
+      if (allocated(last%state%gap)) farthest_known = last%state%h0
+    end function farthest_known
 
     !> Replaces the branch's largest tension by that of a step on a known path if it is larger.
     subroutine lower()

@@ -41,9 +41,17 @@ module stepper
   !> The result of a step; `state_records` packs it.
   type :: step_result_t
     logical :: converged = .false.
-    !> Whether the bodies jumped; h0 and load just before the jump, and the uncertainty of h0.
+    !> Whether the bodies jumped; h0 and load just before the first jump, and the uncertainty of h0.
     logical :: jumped = .false.
     real(wp) :: jump_h0 = 0, jump_load = 0, jump_uncertainty = 0
+    !> Whether a contact edge slipped from one node to the next, and whether it may have slipped at
+    !> places that were not looked for; of the states just before jumps and slips, the one of
+    !> largest tension.
+    logical :: slipped = .false., jagged = .false.
+    type(extreme_t) :: before
+    !> Whether it is not known if the bodies jumped between unsure_from and the end of the step.
+    logical :: unsure = .false.
+    real(wp) :: unsure_from = 0
     !> The fold from which the first jump starts, as a point of the path; 0 if it is not known.
     integer :: fold = 0
     !> The largest tension in the step, if the path is known.
@@ -53,8 +61,6 @@ module stepper
   end type step_result_t
 
   type, abstract, extends(solver_t) :: stepper_t
-    !> Tolerance of h0 of a jump, in the law's lengths.
-    real(wp) :: jump_tolerance = 1.0e-6_wp
   contains
     procedure(begin_at), deferred :: approach_to
     procedure(go_to), deferred :: step_to
@@ -103,7 +109,6 @@ contains
     self%steps => steps
     self%problem = steps%problem
     self%options = steps%options
-    self%jump_tolerance = steps%jump_tolerance
   end subroutine keep_steps_of
 
   !> The mesh of a position's state.

@@ -64,12 +64,12 @@ contains
     self%lowest = place
   end subroutine lower
 
-  !> Considers the last state before a jump, which may have the largest tension.
+  !> Considers the last state before a jump or slip, which may have the largest tension.
   subroutine note_jump(self, event)
     class(tension_search_t), intent(inout) :: self
     type(step_result_t), intent(in) :: event
 
-    if (event%jumped) call self%lower(place_without_state(event%jump_h0, event%jump_load))
+    call self%lower(place_without_state(event%before%h0, event%before%load))
   end subroutine note_jump
 
   !> Considers the step from `previous` at last_h0 to `position` at h0.
@@ -85,13 +85,13 @@ contains
       if (.not. event%converged) then
         ! The state has no reliable tension, and no search can start from it.
         call self%end_stretch(steps, last_h0)
-      else if (event%jumped .or. .not. stretch%open) then
+      else if (leaps(event) .or. .not. stretch%open) then
         began = last_h0
-        if (event%jumped) then
-          began = event%jump_h0
+        if (leaps(event)) then
+          began = event%before%h0
           ! During loading the tension increases up to the jump itself.
-          if (h0 < event%jump_h0 .and. stretch%open) &
-            stretch%open = event%jump_load >= stretch%lowest%state%load
+          if (h0 < began .and. stretch%open) &
+            stretch%open = event%before%load >= stretch%lowest%state%load
         end if
         call self%end_stretch(steps, began)
         stretch = stretch_t(position, previous, began, h0, .true.)
@@ -100,7 +100,7 @@ contains
       else if (abs(stretch%after - stretch%lowest%state%h0) <= 0.0_wp) then
         stretch%after = h0
       end if
-      if (.not. event%jumped .and. event%jump_uncertainty > 0) stretch%jagged = .true.
+      stretch%jagged = stretch%jagged .or. event%jagged
     end associate
   end subroutine note_state
 
@@ -186,9 +186,9 @@ contains
       end if
       trial = best
       call steps%step_to(next, trial, event)
-      if (event%jumped .or. .not. event%converged) then
+      if (leaps(event) .or. .not. event%converged) then
         ! The stretch ends at the jump, before which its tension may be largest.
-        if (event%jumped) next = event%jump_h0
+        if (leaps(event)) next = event%before%h0
         if (next < best%state%h0) low = next
         if (next > best%state%h0) high = next
         if ((next - best%state%h0)*(stretch%after - stretch%before) > 0) call self%note_jump(event)
@@ -231,6 +231,13 @@ contains
     end do
     call self%lower(place_of_state(best%mesh, best%state))
   end subroutine search_jump_by_jump
+
+  !> Whether the bodies jumped in a step, or the contact edge slipped.
+  pure logical function leaps(event)
+    type(step_result_t), intent(in) :: event
+
+    leaps = event%jumped .or. event%slipped
+  end function leaps
 
   !> Removes values until the five nearest to the lowest load remain.
   pure subroutine keep_nearest(h0, load)

@@ -103,7 +103,7 @@ contains
     request%device%z_start = farthest
     request%fixed_loads = [largest]
     chosen = choose(request, problem)
-    call prepare(self%steps, problem, chosen, self%numerics%accuracy)
+    call prepare(self%steps, problem, chosen)
     self%steps%options%mixing = .false.
     self%steps%meshes = new_mesh_family(problem, chosen%high, chosen%low, chosen%digits, &
       store=self%store)

@@ -14,7 +14,8 @@ module stability_records
   use journal, only: journal_t, of_eigenvalue
   use byte_record, only: byte_record_t
   use state_records, only: pass_cost
-  use stability, only: smallest_eigenvalue, local_criterion, axis_criterion, unknown
+  use stability, only: smallest_eigenvalue, unknown
+  use local_criteria, only: local_criterion, axis_criterion
   implicit none
   private
   public :: stability_recorder_t
@@ -26,6 +27,8 @@ module stability_records
     type(cost_t) :: cost
     !> Number of states with an uncertain eigenvalue, and with one that contradicts the record.
     integer :: uncertain = 0, contradicted = 0
+    !> The largest error of the criterion (28); negative: there is none.
+    real(wp) :: criterion_error = -1
     !> Relative accuracy that the scene asks for.
     real(wp) :: accuracy = 0
     !> The journal that keeps the eigenvalues.
@@ -40,6 +43,8 @@ module stability_records
   !> Largest magnitude, over the accuracy, of an eigenvalue that contradicts no count: at a fold it
   !> is zero except for the error of the mesh, at most 7e-6 for an accuracy of 1e-4.
   real(wp), parameter :: zero = 100
+  !> Factor of errors.
+  real(wp), parameter :: margin = 3
 
 contains
 
@@ -59,6 +64,7 @@ contains
     logical, intent(in) :: profile
     type(record_t) :: completed
     logical :: certain
+    real(wp) :: error
 
     completed = record
     completed%eigenvalue = unknown()
@@ -67,7 +73,8 @@ contains
     ! A state that is not an equilibrium is neither stable nor unstable.
     if (record%converged) then
       call self%find_eigenvalue(problem, grid, state, completed%eigenvalue, certain)
-      completed%local_criterion = local_criterion(problem, grid, state)
+      call local_criterion(problem, grid, state, completed%local_criterion, error)
+      if (completed%local_criterion > 0) self%criterion_error = max(self%criterion_error, error)
       completed%axis_criterion = axis_criterion(problem, state)
       if (.not. certain) then
         self%uncertain = self%uncertain + 1
@@ -81,11 +88,13 @@ contains
     call self%next%take(completed, problem, grid, state, profile)
   end subroutine take
 
-  !> Adds warnings about states with doubtful eigenvalues.
+  !> Adds the error of the criterion (28), and warnings about states with doubtful eigenvalues.
   subroutine warn(self, summary)
     class(stability_recorder_t), intent(in) :: self
     type(summary_t), intent(inout) :: summary
 
+    if (self%criterion_error >= 0) &
+      call summary%set('criterion_28_error', margin*self%criterion_error)
     if (self%uncertain > 0) call summary%warn('the smallest eigenvalue of '// &
       counted(self%uncertain, 'state')//' could not be verified and is NaN')
     if (self%contradicted > 0) call summary%warn('the eigenvalue of '// &

@@ -140,6 +140,11 @@ contains
           rounded(problem%law%separation_of(branch%first_unconverged))// &
           ' m; the largest residual is '//rounded(branch%quality%residual)// &
           ' lengths of the force law')
+      if (branch%unsure .and. .not. branch%ending%early()) &
+        call summary%warn(name//': whether the bodies jump between h0 = '// &
+        rounded(problem%law%separation_of(branch%unsure_between(1)))//' m and '// &
+        rounded(problem%law%separation_of(branch%unsure_between(2)))// &
+        ' m is not known: states there did not converge')
       if (branch%ending%early()) &
         call summary%fail_with(name//' ended early: '//trim(branch%ending%message()))
     end subroutine tell_trouble

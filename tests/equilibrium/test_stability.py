@@ -204,8 +204,20 @@ def test_criterion_28_is_that_of_the_surface_that_attracts(run, sigma):
         assert mine.sum() == len(r) - 1
         outside = gap[1:] > EDGE
         ratio = 3 * (1 - 3 * gap[1:] ** -6) / (gap[1:] * (1 - gap[1:] ** -6))
-        expected = (abs(2 * shapes["deformation"][mine]) * ratio)[outside].max()
-        assert result.curve["criterion_28"][row] == pytest.approx(expected, rel=1e-9)
+        nodes = (abs(2 * shapes["deformation"][mine]) * ratio)[outside].max()
+        # The largest value lies between the nodes.
+        assert nodes * (1 - 1e-9) <= result.curve["criterion_28"][row] < 1.1 * nodes
+
+
+def test_criterion_28_does_not_depend_on_the_nodes(run):
+    """It was the largest value at the nodes: 2.2198 to 2.2544 with the accuracy."""
+    for accuracy in (1e-2, 1e-3, 1e-5, 1e-8):
+        result = run(lennard_jones(
+            1.1, equilibrium_path={"h0_end": -3.0}, stability={}, profiles={"h0": [-1.5]},
+            numerics={"accuracy": accuracy}))
+        row = np.flatnonzero(abs(result.curve["h0"] + 1.5) < 1e-9)[0]
+        error = result.summary["criterion_28_error"]
+        assert abs(result.curve["criterion_28"][row] - 2.254551) < min(error + 1e-6, 2e-3)
 
 
 def test_criteria_in_contact_do_not_depend_on_the_mesh(run):
@@ -231,10 +243,9 @@ def test_before_contact_criterion_28_is_29_at_its_largest(run):
     curve = run(path(0.87, stability={})).curve
     far = curve["h_centre"] > 3
     assert far.sum() >= 5
-    # It is at its largest on the axis, which is no node.
+    # It is at its largest on the axis.
     ratio = curve["criterion_28"][far] / -curve["criterion_29"][far]
-    np.testing.assert_allclose(ratio, 1, atol=0.01)
-    assert (ratio <= 1).all()
+    np.testing.assert_allclose(ratio, 1, atol=1e-6)
 
 
 def test_eigenvalues_of_blunt_bodies_are_verified(run):

@@ -1,0 +1,303 @@
+!> The end of a branch of stable equilibria on a mesh fixed in space.
+!>
+!> A branch ends at a fold of h0. `follow` takes states along the curve of equilibria, in the
+!> coordinate Q of `branch_tangent`, each joined to the one before; the branch ends where dh0/dQ
+!> passes zero. So an end is found or excluded whatever the step of the experiment is, and a state
+!> that does not converge is no end.
+module branch_end
+  use kinds, only: wp
+  use contact_state, only: state_t
+  use controls, only: control_t
+  use fixed_branch, only: expected_at, is_expected, is_pinned, change
+  use branch_tangent, only: tangent_t, tangent_at, joins, passing
+  use solver_options, only: solver_options_t
+  use stepper, only: stepper_t, branch_point_t, remember
+  implicit none
+  private
+  public :: follow, found_t, arrived, at_fold, lost
+
+  !> How `follow` ends: at h0; at a fold before it; or neither is known.
+  integer, parameter :: lost = 0, arrived = 1, at_fold = 2
+
+  !> The end of `follow`. state: the state at h0, or the last stable state before the fold; h0 and
+  !> load of the fold, and the uncertainty of its h0.
+  type :: found_t
+    integer :: outcome = lost
+    type(state_t) :: state
+    real(wp) :: fold_h0 = 0, fold_load = 0, uncertainty = 0
+  end type found_t
+
+  !> A state of the curve, its tangent, and its Q.
+  type :: point_t
+    type(state_t) :: state
+    type(tangent_t) :: tangent
+    real(wp) :: q = 0
+  end type point_t
+
+  !> Largest distance of the state at h0 from its guess between two states, in the law's lengths.
+  real(wp), parameter :: beside = 0.05_wp
+  !> Number of states that are always allowed, and the limit of further ones, in cubes of the number
+  !> of nodes (about ten seconds): where the edge passes node after node, there may be hundreds.
+  integer, parameter :: few_states = 40
+  real(wp), parameter :: most_cubes = 5.0e10_wp
+  !> The first step over the distance to h0, its change after a state that is not joined to the one
+  !> before, and its smallest length.
+  real(wp), parameter :: first_step = 0.2_wp, shorter = 1.0_wp/3, least = 1.0e-6_wp
+  !> The slope dh0/dQ below which folds may be near, and the largest change of the deformation in a
+  !> step there (law's lengths): a pair of folds is seen as a dip of the slope.
+  real(wp), parameter :: steep = 0.5_wp, small = 0.15_wp
+  !> A step to a predicted fold, over the distance to it.
+  real(wp), parameter :: just_beyond = 1.1_wp
+  !> The slope dh0/dQ within a step, by Hermite's polynomial, over the slopes at its ends, below
+  !> which a state decides about a pair of folds; and the part of a step that such a state keeps
+  !> from its ends.
+  real(wp), parameter :: flat = 0.5_wp, apart = 0.02_wp
+  !> Error of the h0 of a fold (law's lengths), and largest number of states for it.
+  real(wp), parameter :: exact = 1.0e-9_wp
+  integer, parameter :: most_rounds = 12
+
+contains
+
+  !> Follows the branch of the position, whose state is an equilibrium, towards h0.
+  subroutine follow(self, options, h0, position, found)
+    class(stepper_t), intent(inout) :: self
+    type(solver_options_t), intent(in) :: options
+    real(wp), intent(in) :: h0
+    type(branch_point_t), intent(in) :: position
+    type(found_t), intent(out) :: found
+    type(branch_point_t) :: memory
+    type(point_t) :: here, there
+    real(wp) :: sense, step, dip
+    logical :: good
+    integer :: states, allowed
+
+    memory = position
+    here%state = position%state
+    call tangent_at(self, control_t(value=here%state%h0), here%state, here%tangent)
+    if (.not. here%tangent%regular) return
+    sense = sign(1.0_wp, h0 - here%state%h0)
+    if (.not. here%tangent%stable) then
+      ! The state is at the end of its branch, to the tolerance.
+      found = found_t(at_fold, here%state, here%state%h0, here%state%load, options%tolerance)
+      return
+    end if
+    step = first_step*abs(h0 - here%state%h0)/here%tangent%h0
+    allowed = max(few_states, int(min(most_cubes/real(self%meshes%grid(1)%nodes, wp)**3, 1.0e3_wp)))
+    do states = 1, allowed
+      if (.not. step > least*min(1.0_wp, abs(h0 - position%state%h0))) return
+      call go(here, there, good)
+      if (.not. good) then
+        step = shorter*step
+        cycle
+      end if
+      if (there%tangent%h0 <= 0) then
+        call find_fold(self, options, h0, sense, here, there, found)
+        return
+      end if
+      dip = lowest_within(here, there)
+      if (dip > 0) then
+        step = dip*step
+        cycle
+      end if
+      if ((there%state%h0 - h0)*sense >= 0) then
+        call arrive(self, options, h0, sense, here, there, found)
+        return
+      end if
+      call remember(memory, there%state, 1, .false.)
+      step = next_step(here, there, step)
+      here = there
+    end do
+
+  contains
+
+    !> Takes a step from one point to the next. good: they are joined.
+    subroutine go(here, there, good)
+      type(point_t), intent(inout) :: here
+      type(point_t), intent(out) :: there
+      logical, intent(out) :: good
+      type(state_t) :: expected
+
+      step = step*here%tangent%h0
+      call here%tangent%turn(passing(here%tangent, is_pinned(self)))
+      ! The new coordinate has another length.
+      step = min(step, 1.1_wp*abs(h0 - here%state%h0))/here%tangent%h0
+      here%q = here%state%h0 - dot_product(here%tangent%along, here%state%gap)
+      there%q = here%q + sense*step
+      if (maxval(abs(here%tangent%along)) > 0) then
+        expected = here%state
+        expected%h0 = expected%h0 + sense*step*here%tangent%h0
+        expected%gap = expected%gap + sense*step*here%tangent%gap
+        if (minval(expected%gap) < 0.5_wp*minval(here%state%gap)) expected = here%state
+      else
+        if (step > 0.9_wp*abs(h0 - here%state%h0)) there%q = h0
+        expected = expected_at(self, there%q, memory)
+      end if
+      there%state = expected
+      call reach(self, options, here%tangent%along, there, good)
+      if (good) good = joins(here%state, here%tangent, there%state, there%tangent) .and. &
+        (there%tangent%stable .eqv. there%tangent%h0 > 0)
+      if (good .and. min(here%tangent%h0, there%tangent%h0) < steep) good = &
+        change(here%state, there%state) <= small
+      if (good .and. is_pinned(self)) good = is_expected(here%state, expected, there%state)
+    end subroutine go
+
+  end subroutine follow
+
+  !> Solves the state at point%q from a guess, with its tangent, in the coordinate of another point.
+  subroutine reach(self, options, along, point, good)
+    class(stepper_t), intent(inout) :: self
+    type(solver_options_t), intent(in) :: options
+    real(wp), intent(in) :: along(:)
+    type(point_t), intent(inout) :: point
+    logical, intent(out) :: good
+    type(control_t) :: control
+
+    control%value = point%q
+    self%along = along
+    call self%correct(control, point%state, good, options)
+    if (good) then
+      call tangent_at(self, control, point%state, point%tangent)
+      good = point%tangent%regular
+    end if
+    deallocate (self%along)
+  end subroutine reach
+
+  !> The part of the step at which the slope dh0/dQ of Hermite's polynomial through h0 is lowest, if
+  !> it is so low there that a state has to decide; otherwise 0.
+  pure real(wp) function lowest_within(here, there) result(part)
+    type(point_t), intent(in) :: here, there
+    real(wp) :: slope(3)
+
+    part = 0
+    slope = slope_between(here, there)
+    if (.not. slope(3) > 0) return
+    part = -slope(2)/(2*slope(3))
+    if (part < apart .or. part > 1 - apart) then
+      part = 0
+    else if (slope(1) + part*(slope(2) + part*slope(3)) > &
+      flat*min(here%tangent%h0, there%tangent%h0)) then
+      part = 0
+    end if
+  end function lowest_within
+
+  !> The step after one from `here` to `there`: twice as long, but only just beyond the fold to
+  !> which the slopes dh0/dQ point.
+  pure real(wp) function next_step(here, there, step) result(next)
+    type(point_t), intent(in) :: here, there
+    real(wp), intent(in) :: step
+    real(wp) :: fall
+
+    next = 2*step
+    fall = (here%tangent%h0 - there%tangent%h0)/step
+    if (fall*next > there%tangent%h0) next = just_beyond*there%tangent%h0/fall
+  end function next_step
+
+  !> Coefficients of the slope dh0/dQ between two points, as a polynomial of the part of the way.
+  pure function slope_between(here, there) result(slope)
+    type(point_t), intent(in) :: here, there
+    real(wp) :: slope(3)
+
+    associate (a => here%tangent%h0, b => there%tangent%h0, &
+      mean => (there%state%h0 - here%state%h0)/(there%q - here%q))
+      slope = [a, 6*mean - 4*a - 2*b, 3*(a + b - 2*mean)]
+    end associate
+  end function slope_between
+
+  !> Hermite's cubic through two points, at a part of the way: values and slopes by Q at the ends.
+  elemental real(wp) function between(part, width, a, slope_a, b, slope_b)
+    real(wp), intent(in) :: part, width, a, slope_a, b, slope_b
+
+    between = a + part**2*(3 - 2*part)*(b - a) + &
+      width*part*(1 - part)*((1 - part)*slope_a - part*slope_b)
+  end function between
+
+  !> The fold between two points, of which the second is beyond it.
+  subroutine find_fold(self, options, h0, sense, first, second, found)
+    class(stepper_t), intent(inout) :: self
+    type(solver_options_t), intent(in) :: options
+    real(wp), intent(in) :: h0, sense
+    type(point_t), intent(in) :: first, second
+    type(found_t), intent(inout) :: found
+    type(point_t) :: low, high, trial
+    real(wp) :: slope(3), part, bend, way
+    logical :: good
+    integer :: round
+
+    low = first
+    high = second
+    do round = 1, most_rounds
+      slope = slope_between(low, high)
+      part = 2*slope(1)/(-slope(2) + sqrt(max(0.0_wp, slope(2)**2 - 4*slope(1)*slope(3))))
+      trial = guess_between(low, high, part)
+      call reach(self, options, low%tangent%along, trial, good)
+      if (.not. good) return
+      bend = abs(slope(2) + 2*part*slope(3))/abs(high%q - low%q)
+      way = trial%tangent%h0/bend
+      if (trial%tangent%h0 > 0) low = trial
+      if (.not. trial%tangent%h0 > 0) high = trial
+      if (0.5_wp*abs(trial%tangent%h0*way) < exact) exit
+    end do
+    ! The branch may pass h0 before its fold.
+    if ((trial%state%h0 - h0)*sense >= 0) then
+      call arrive(self, options, h0, sense, first, trial, found)
+      return
+    end if
+    found%outcome = at_fold
+    found%state = low%state
+    found%fold_h0 = trial%state%h0 + 0.5_wp*sense*trial%tangent%h0*way
+    found%fold_load = trial%state%load + sense*trial%tangent%load*way
+    found%uncertainty = max(exact, 0.5_wp*abs(trial%tangent%h0*way)) + trial%state%residual
+  end subroutine find_fold
+
+  !> The state at a part of the way between two points, as a guess.
+  type(point_t) function guess_between(low, high, part) result(guess)
+    type(point_t), intent(in) :: low, high
+    real(wp), intent(in) :: part
+
+    guess = low
+    associate (width => high%q - low%q)
+      guess%q = low%q + part*width
+      guess%state%h0 = between(part, width, low%state%h0, low%tangent%h0, high%state%h0, &
+        high%tangent%h0)
+      guess%state%gap = between(part, width, low%state%gap, low%tangent%gap, high%state%gap, &
+        high%tangent%gap)
+    end associate
+    if (minval(guess%state%gap) < 0.5_wp*minval(low%state%gap)) guess%state%gap = low%state%gap
+  end function guess_between
+
+  !> The state at h0 between two points of a branch.
+  subroutine arrive(self, options, h0, sense, first, second, found)
+    class(stepper_t), intent(inout) :: self
+    type(solver_options_t), intent(in) :: options
+    real(wp), intent(in) :: h0, sense
+    type(point_t), intent(in) :: first, second
+    type(found_t), intent(inout) :: found
+    type(point_t) :: guess
+    type(control_t) :: control
+    real(wp) :: low, high
+    logical :: good
+    integer :: halving
+
+    found%state = second%state
+    good = abs(second%state%h0 - h0) <= 0
+    if (.not. good) then
+      low = 0
+      high = 1
+      do halving = 1, digits(low)
+        guess = guess_between(first, second, 0.5_wp*(low + high))
+        if ((guess%state%h0 - h0)*sense < 0) then
+          low = 0.5_wp*(low + high)
+        else
+          high = 0.5_wp*(low + high)
+        end if
+      end do
+      control%value = h0
+      found%state = guess%state
+      call self%frozen%forget()
+      call self%correct(control, found%state, good, options)
+      if (good) good = change(guess%state, found%state) <= beside
+    end if
+    if (good) found%outcome = arrived
+  end subroutine arrive
+
+end module branch_end

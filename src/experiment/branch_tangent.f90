@@ -1,0 +1,138 @@
+!> The tangent of the curve of equilibria at a state on a mesh fixed in space, and whether this
+!> curve joins two states.
+!>
+!> The coordinate of the curve is Q = h0 - sum(along*gap). A branch that is stable at prescribed h0
+!> ends at a fold of h0, where gaps change infinitely fast with h0. With `along` against this change
+!> Q has no fold there: the curve can be followed past the fold, which is a zero of dh0/dQ.
+module branch_tangent
+  use kinds, only: wp, pi
+  use contact_state, only: state_t
+  use controls, only: control_t
+  use control_derivatives, only: control_derivative
+  use frozen_jacobian, only: frozen_jacobian_t, freeze
+  use linear_algebra, only: solve, determinant_sign
+  use represented_pressure, only: pressure_slope_t, slope_on
+  use solver, only: solver_t
+  implicit none
+  private
+  public :: tangent_t, tangent_at, has_factors_at, joins, passing
+
+  !> Derivatives by Q of h0, of the displacement on the axis, of the load and of the gaps.
+  type :: tangent_t
+    !> Whether the Jacobian is regular, and whether the state is stable at prescribed h0.
+    logical :: regular = .false., stable = .false.
+    !> The weights in Q; zeros if Q is h0.
+    real(wp), allocatable :: along(:)
+    real(wp) :: h0 = 1, axis = 0, load = 0
+    real(wp), allocatable :: gap(:)
+    !> The load of the absolute pressures, to which changes of the load are compared, and the
+    !> derivatives of the load by the gaps.
+    real(wp) :: scale = 1
+    real(wp), allocatable :: load_by_gap(:)
+  contains
+    procedure :: turn
+  end type tangent_t
+
+  !> Two states are joined by the curve if at both of them the tangent's change, over the whole
+  !> distance in Q, differs from their difference by at most these parts of the difference and of
+  !> the distance. About the cusp at which a pair of folds begins, where h0 is a cubic of the
+  !> coordinate, at least one tangent is off by two thirds of the difference, whatever the step.
+  real(wp), parameter :: of_difference = 0.25_wp, of_distance = 0.05_wp
+  !> Differences, in the law's lengths and of the relative load, that are too small for a jump.
+  real(wp), parameter :: too_small = 1.0e-3_wp
+
+contains
+
+  !> The tangent at a state of the curve, in the coordinate of solver%along. The factors stay in
+  !> solver%frozen, for the next state.
+  subroutine tangent_at(solver, control, state, tangent)
+    class(solver_t), intent(inout) :: solver
+    type(control_t), intent(in) :: control
+    type(state_t), intent(in) :: state
+    type(tangent_t), intent(out) :: tangent
+    type(pressure_slope_t) :: slope
+    real(wp) :: weight(size(state%gap)), unit(size(state%gap))
+
+    if (allocated(solver%along) .or. .not. has_factors_at(solver%frozen, control, state)) &
+      call freeze(solver%equations_t, control, state, solver%frozen)
+    solver%frozen%excess = 0
+    tangent%regular = solver%frozen%factors%valid
+    if (.not. tangent%regular) return
+    tangent%gap = -control_derivative(solver%equations_t, control, state)
+    call solve(solver%frozen%factors, tangent%gap)
+    associate (grid => solver%meshes%grid(1))
+      tangent%along = 0*grid%weight
+      if (allocated(solver%along)) tangent%along = solver%along
+      weight = 2*pi*state%scale**2*grid%weight
+      slope = slope_on(solver%problem%law, grid, state%gap)
+      unit = 1
+      tangent%load_by_gap = weight*slope%times(unit)
+      tangent%load = dot_product(weight, slope%times(tangent%gap))
+      tangent%scale = dot_product(weight, abs(state%pressure))
+      ! The ratio of the determinants at prescribed h0 and at prescribed Q.
+      tangent%h0 = 1 + dot_product(tangent%along, tangent%gap)
+      tangent%stable = (determinant_sign(solver%frozen%factors) > 0) .eqv. tangent%h0 > 0
+      tangent%axis = dot_product(grid%at_axis, tangent%gap) - tangent%h0
+    end associate
+  end subroutine tangent_at
+
+  !> Whether there are factors of the Jacobian at a state where h0 is prescribed.
+  pure logical function has_factors_at(frozen, control, state) result(has)
+    type(frozen_jacobian_t), intent(in) :: frozen
+    type(control_t), intent(in) :: control
+    type(state_t), intent(in) :: state
+
+    has = frozen%serves(control, size(state%gap))
+    if (has) has = all(abs(frozen%state%gap - state%gap) <= 0)
+  end function has_factors_at
+
+  !> Weights with which Q increases with h0 here, and beyond a fold that is ahead: those of the
+  !> load where it is attractive, which increases with h0 near a fold; where it decreases no fold
+  !> is near, and Q is h0. Where the
+  !> edge is pinned between nodes a fold concerns a few nodes and hardly the load; the weights are
+  !> then those of the gaps that change.
+  pure function passing(tangent, pinned) result(along)
+    type(tangent_t), intent(in) :: tangent
+    logical, intent(in) :: pinned
+    real(wp) :: along(size(tangent%gap))
+
+    if (pinned) then
+      along = -tangent%gap*maxval(abs(tangent%gap))/dot_product(tangent%gap, tangent%gap)
+      along = sign(1.0_wp, tangent%h0)*along
+    else
+      along = 0
+      if (tangent%load*tangent%h0 > 0) along = -max(tangent%load_by_gap, 0.0_wp)/tangent%scale
+    end if
+  end function passing
+
+  !> Changes the coordinate.
+  pure subroutine turn(self, along)
+    class(tangent_t), intent(inout) :: self
+    real(wp), intent(in) :: along(:)
+    real(wp) :: length
+
+    length = self%h0 - dot_product(along, self%gap)
+    self%along = along
+    self%h0 = self%h0/length
+    self%axis = self%axis/length
+    self%load = self%load/length
+    self%gap = self%gap/length
+  end subroutine turn
+
+  !> Whether the curve joins two states: their tangents, in the same coordinate, agree with the
+  !> change of load and displacement from one to the other.
+  pure logical function joins(from, at_from, to, at_to)
+    type(state_t), intent(in) :: from, to
+    type(tangent_t), intent(in) :: at_from, at_to
+    real(wp) :: distance, change(2), off(2)
+
+    distance = (to%h0 - from%h0) - dot_product(at_from%along, to%gap - from%gap)
+    change = [(to%axis_gap - to%h0) - (from%axis_gap - from%h0), &
+      (to%load - from%load)/at_from%scale]
+    off = max(abs(distance*[at_from%axis, at_from%load/at_from%scale] - change), &
+      abs(distance*[at_to%axis, at_to%load/at_from%scale] - change))
+    joins = all(abs(change) <= too_small) .or. &
+      all(off <= of_difference*abs(change) + of_distance*abs(distance))
+  end function joins
+
+end module branch_tangent

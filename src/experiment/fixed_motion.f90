@@ -1,0 +1,246 @@
+!> The motion of bodies in equilibrium from one h0 to another on a mesh fixed in space: along a
+!> branch, from its end by a relaxation to another branch, and so on. The steps, of the experiment
+!> and of the iteration, do not decide where a branch ends (`branch_end`).
+module fixed_motion
+  use kinds, only: wp
+  use dimensionless_problem, only: over_neck => spacing_over_neck
+  use contact_state, only: state_t, radius_of_gap
+  use contact_scales, only: largest_radius, lost_in_rounding
+  use controls, only: control_t
+  use fixed_branch, only: expected_at, is_expected, is_pinned, change
+  use branch_tangent, only: tangent_t, tangent_at, has_factors_at, joins
+  use branch_end, only: follow, found_t, arrived, at_fold
+  use ending, only: beyond_rounding, no_equilibrium
+  use relaxation, only: relax
+  use solver_options, only: solver_options_t
+  use stepper, only: stepper_t, branch_point_t, step_result_t, extreme_t, remember, move_to
+  implicit none
+  private
+  public :: advance, has_fallen, known_tangent, is_joined
+
+  !> Distance beyond a fold at which the relaxation begins, in the law's lengths.
+  real(wp), parameter :: beyond_fold = 1.0e-3_wp
+  !> The largest change of the deformation in which no jump can hide: about a pair of folds the
+  !> deformation changes by a fifth of the law's length in a hundredth of it.
+  real(wp), parameter :: unnoticed = 0.02_wp
+  !> A contact edge that is pinned between nodes jumps many times from one to the next; in steps
+  !> longer than this (in the law's lengths) these jumps are not located individually.
+  real(wp), parameter :: short_step = 0.11_wp
+  !> The largest ratio of the spacing to the width of the neck for this: with larger spacing each
+  !> jump changes the load noticeably, and the jumps are few.
+  real(wp), parameter :: fine_enough = 0.4_wp
+
+contains
+
+  !> Moves the position, whose state is an equilibrium, to h0. event%converged: to another one.
+  subroutine advance(self, options, h0, position, event)
+    class(stepper_t), intent(inout) :: self
+    type(solver_options_t), intent(in) :: options
+    real(wp), intent(in) :: h0
+    type(branch_point_t), intent(inout) :: position
+    type(step_result_t), intent(inout) :: event
+    logical :: resting
+
+    resting = .true.
+    do while (resting)
+      call advance_to_jump(self, options, h0, position, event, resting)
+    end do
+  end subroutine advance
+
+  !> Moves to h0 or, resting = .true., to the state before h0 in which the bodies rest after a jump.
+  subroutine advance_to_jump(self, options, h0, position, event, resting)
+    class(stepper_t), intent(inout) :: self
+    type(solver_options_t), intent(in) :: options
+    real(wp), intent(in) :: h0
+    type(branch_point_t), intent(inout) :: position
+    type(step_result_t), intent(inout) :: event
+    logical, intent(out) :: resting
+    type(tangent_t) :: tangent
+    type(state_t) :: expected, state
+    type(found_t) :: found
+    logical :: solved, stayed
+
+    resting = .false.
+    call known_tangent(self, position%state, tangent)
+    expected = expected_at(self, h0, position)
+    state = expected
+    ! A single state is not enough for an extrapolation.
+    if (position%held == 1) state = position%state
+    call self%correct(control_t(value=h0), state, solved, options)
+    event%converged = solved
+    if (solved) then
+      if (continues()) then
+        call remember(position, state, 1, .false.)
+        return
+      end if
+    end if
+    associate (mesh => self%meshes%grid(1), law => self%problem%law)
+      ! No contact is larger than the mesh.
+      if (law%adhesion > 0 .and. lost_in_rounding(self%problem, &
+        min(largest_radius(self%problem, h0, 0.0_wp), mesh%end))) then
+        event%ending%cause = beyond_rounding
+        return
+      end if
+      ! Many slips of the edge in one step are not located individually.
+      if (is_pinned(self) .and. abs(h0 - position%state%h0) > short_step .and. &
+        position%state%axis_gap < law%edge_gap .and. &
+        over_neck(self%problem, mesh%spacing) < fine_enough) then
+        call relax_at(self, options, h0, position%state, state, event%converged)
+        stayed = .false.
+        if (event%converged) stayed = stays(self, position%state, state)
+        if (stayed) then
+          event%jagged = .true.
+          call remember(position, state, 1, .false.)
+          return
+        end if
+      end if
+    end associate
+    call follow(self, options, h0, position, found)
+    ! These factors are of another coordinate than h0.
+    call self%frozen%forget()
+    select case (found%outcome)
+    case (arrived)
+      event%converged = .true.
+      call remember(position, found%state, 1, .false.)
+    case (at_fold)
+      call leave(self, options, h0, found, position, event, resting)
+    case default
+      event%unsure = .true.
+      event%unsure_from = position%state%h0
+      call relax_at(self, options, h0, position%state, state, event%converged)
+      call land(self, state, event%converged, position, event)
+      ! If the iteration does not reach the state, the row is none of its equilibria.
+      event%converged = event%converged .and. solved
+    end select
+
+  contains
+
+    logical function continues()
+      continues = is_joined(self, tangent, position%state, state)
+      if (continues .and. is_pinned(self)) then
+        continues = is_expected(position%state, expected, state)
+        if (position%held == 1) continues = change(expected, state) <= abs(h0 - position%state%h0)
+      end if
+    end function continues
+
+  end subroutine advance_to_jump
+
+  !> Jumps from a fold before h0, and rests beyond it or at h0.
+  subroutine leave(self, options, h0, found, position, event, resting)
+    class(stepper_t), intent(inout) :: self
+    type(solver_options_t), intent(in) :: options
+    real(wp), intent(in) :: h0
+    type(found_t), intent(in) :: found
+    type(branch_point_t), intent(inout) :: position
+    type(step_result_t), intent(inout) :: event
+    logical, intent(out) :: resting
+    type(state_t) :: landed
+    real(wp) :: beyond
+    logical :: slips
+
+    beyond = found%fold_h0 + sign(min(beyond_fold, abs(h0 - found%fold_h0)), h0 - found%fold_h0)
+    call relax_at(self, options, beyond, found%state, landed, event%converged)
+    if (.not. (event%converged .or. has_fallen(self, landed))) then
+      beyond = h0
+      call relax_at(self, options, beyond, found%state, landed, event%converged)
+    end if
+    slips = event%converged .and. is_pinned(self)
+    if (slips) slips = stays(self, found%state, landed)
+    event%slipped = event%slipped .or. slips
+    if (found%fold_load < event%before%load) &
+      event%before = extreme_t(found%fold_load, found%fold_h0)
+    if (.not. (slips .or. event%jumped)) then
+      event%jumped = .true.
+      event%jump_h0 = found%fold_h0
+      event%jump_load = found%fold_load
+      event%jump_uncertainty = found%uncertainty
+    end if
+    call land(self, landed, event%converged, position, event)
+    resting = event%converged .and. abs(beyond - h0) > 0
+  end subroutine leave
+
+  !> Makes the result of a relaxation the state of the position.
+  subroutine land(self, landed, converged, position, event)
+    class(stepper_t), intent(in) :: self
+    type(state_t), intent(in) :: landed
+    logical, intent(in) :: converged
+    type(branch_point_t), intent(inout) :: position
+    type(step_result_t), intent(inout) :: event
+
+    if (converged) then
+      call remember(position, landed, 1, .true.)
+      return
+    end if
+    ! Bodies collapse where nothing repels them.
+    if (has_fallen(self, landed)) event%ending%cause = no_equilibrium
+    position%held = 0
+    call move_to(position, landed)
+  end subroutine land
+
+  !> The tangent at a state, if there are factors of its Jacobian; otherwise it is not regular.
+  subroutine known_tangent(self, state, tangent)
+    class(stepper_t), intent(inout) :: self
+    type(state_t), intent(in) :: state
+    type(tangent_t), intent(out) :: tangent
+
+    if (has_factors_at(self%frozen, control_t(value=state%h0), state)) &
+      call tangent_at(self, control_t(value=state%h0), state, tangent)
+  end subroutine known_tangent
+
+  !> Whether a state is on the same stable branch as the one before it. tangent: of the state
+  !> before, or not regular.
+  logical function is_joined(self, tangent, before, state) result(joined)
+    class(stepper_t), intent(inout) :: self
+    type(tangent_t), intent(inout) :: tangent
+    type(state_t), intent(in) :: before, state
+    type(tangent_t) :: ahead
+
+    joined = change(before, state) <= unnoticed
+    if (joined) return
+    if (.not. tangent%regular) call tangent_at(self, control_t(value=before%h0), before, tangent)
+    call tangent_at(self, control_t(value=state%h0), state, ahead)
+    if (.not. (tangent%regular .and. ahead%regular)) return
+    joined = tangent%stable .and. ahead%stable
+    if (joined) joined = joins(before, tangent, state, ahead)
+  end function is_joined
+
+  !> Relaxes bodies at h0 from a state.
+  subroutine relax_at(self, options, h0, from, state, converged)
+    class(stepper_t), intent(inout) :: self
+    type(solver_options_t), intent(in) :: options
+    real(wp), intent(in) :: h0
+    type(state_t), intent(in) :: from
+    type(state_t), intent(out) :: state
+    logical, intent(out) :: converged
+
+    state = from
+    call relax(self%equations_t, options, control_t(value=h0), state, converged)
+    call self%frozen%forget()
+  end subroutine relax_at
+
+  !> Whether bodies have fallen onto each other.
+  pure logical function has_fallen(self, state)
+    class(stepper_t), intent(in) :: self
+    type(state_t), intent(in) :: state
+
+    has_fallen = self%problem%law%falls_below > 0 .and. &
+      any(state%gap < self%problem%law%falls_below)
+  end function has_fallen
+
+  !> Whether bodies stayed in contact during a relaxation from one state to another; on a mesh that
+  !> pins the edge, the edge then slipped from node to node.
+  logical function stays(self, before, after)
+    class(stepper_t), intent(in) :: self
+    type(state_t), intent(in) :: before, after
+    real(wp) :: from, to
+
+    stays = .false.
+    associate (problem => self%problem, mesh => self%meshes%grid(1))
+      if (.not. problem%law%edge_gap > 0) return
+      from = radius_of_gap(problem%shape, problem%law%edge_gap, mesh, before)
+      to = radius_of_gap(problem%shape, problem%law%edge_gap, mesh, after)
+    end associate
+    stays = min(from, to) > 0.5_wp*max(from, to)
+  end function stays
+
+end module fixed_motion
