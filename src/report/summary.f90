@@ -41,6 +41,7 @@ module summary
     procedure :: has
     procedure :: number
     procedure :: element
+    procedure :: error_of
     procedure :: is_true
     procedure :: text
     procedure :: take_cost
@@ -178,6 +179,18 @@ contains
       end if
     end associate
   end function element
+
+  !> The estimated error of element k of row i; NaN if there is none.
+  pure real(wp) function error_of(self, i, k)
+    class(summary_t), intent(in) :: self
+    integer, intent(in) :: i, k
+
+    error_of = nan
+    associate (value => self%value(i))
+      if (.not. allocated(value%error)) return
+      if (k <= size(value%error)) error_of = value%error(k)
+    end associate
+  end function error_of
 
   !> Whether a key has a value that is true.
   pure logical function is_true(self, key)

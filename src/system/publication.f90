@@ -26,7 +26,8 @@ module publication
   character(len=*), parameter :: result_files(*) = [character(len=21) :: 'curve.csv', &
     'profiles.csv', 'approximations.csv', 'classical.csv', 'device.csv', &
     'device_jumps.csv', 'fixed_load.csv', 'table.csv', 'sensitivity.csv', &
-    'curve_sensitivity.csv', 'fit.csv', 'fit.nml', 'sweep.csv', summary_name]
+    'curve_sensitivity.csv', 'fit.csv', 'fit.nml', 'sweep.csv', 'costs.csv', &
+    summary_name]
   character(len=*), parameter :: journal_name = 'journal' // partial
   character(len=*), parameter :: intent_name = 'INCOMPLETE.txt'
   character(len=1), parameter :: nl = new_line('a')
