@@ -8,17 +8,17 @@
 Every case is a point: filled for its true error, open for the estimated one, a cross if it failed;
 at the upper edge if a number is missing. The error is the largest of several numbers, each
 relative to the largest of these numbers in the same unit. True errors are differences from
-`--reference`, a summary.nml or the folder with it; without it from the case with the least
-estimated error, and only those above that estimate are drawn. Cases with other values of other
+`--reference`, a folder of results or a file with lines `number,value`; without it from the case
+with the least estimated error, and only those above that estimate are drawn. Cases with other values of other
 keys than the last one are other lines.
 """
 
 import itertools
 import pathlib
-import re
 
 import numpy as np
-from drawing import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILION, entitle, run, title_of
+from drawing import (
+    BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILION, entitle, run, title_of, units_of)
 from matplotlib.figure import Figure
 from snapin.results import ResultsError, read_summary, read_table
 
@@ -42,7 +42,7 @@ class Sweep:
                                "costs = .true. in &sweep")
         self.costs = read_table(folder, "costs.csv")
         self.keys = [name for name in self.sweep if "." in name]
-        self.units = _units(folder)
+        self.units = units_of(folder)
         self.good = self.sweep["converged"] == 1
 
     def error_of(self, number):
@@ -51,9 +51,10 @@ class Sweep:
                     if number + ending in self.costs)
 
     def numbers(self):
-        """Return the numbers that have an estimated error."""
+        """Return the numbers with an estimated error that at least one case has."""
         return [name for name in self.sweep
-                if any(name + ending in self.costs for ending in _ENDINGS)]
+                if any(name + ending in self.costs for ending in _ENDINGS)
+                and np.isfinite(self.sweep[name]).any()]
 
     def lines(self):
         """Return the label of each line, and which cases are on it."""
@@ -130,10 +131,9 @@ def _reference(sweeps, numbers, reference):
     """Return the true values by name, the error below which nothing is known, and their origin."""
     if reference is not None:
         path = pathlib.Path(reference)
-        folder = path if path.is_dir() else path.parent
-        summary = read_summary(folder) if path.is_dir() else read_summary(folder, path.name)
-        return ({name: summary[name] for name in numbers if np.ndim(summary.get(name, [])) == 0},
-                0.0, f"from {summary.get('title') or path.name}")
+        found = read_summary(path) if path.is_dir() else _numbers_of(path)
+        return ({name: found[name] for name in numbers if np.ndim(found.get(name, [])) == 0},
+                0.0, f"against {path.resolve().name if path.is_dir() else path.stem}")
     best = None
     for one in sweeps:
         for i in np.flatnonzero(one.good & np.isfinite(one.costs["error_estimate"])):
@@ -142,7 +142,17 @@ def _reference(sweeps, numbers, reference):
                 best = estimate, {name: one.sweep[name][i] for name in numbers}
     if best is None:
         raise ResultsError(f"{sweeps[0].folder}: no case has an error estimate; give --reference")
-    return best[1], best[0], "from the finest case"
+    return best[1], best[0], "against the finest case"
+
+
+def _numbers_of(path):
+    """Return the numbers in a file with lines `number,value`."""
+    lines = path.read_text(encoding="utf-8").splitlines()
+    try:
+        return {name: float(value) for name, value in (
+            line.split(",") for line in lines if line and not line.startswith("#"))}
+    except ValueError as problem:
+        raise ResultsError(f"{path}: not lines of number,value: {problem}") from problem
 
 
 def _largest(errors):
@@ -150,17 +160,11 @@ def _largest(errors):
     return np.max(np.stack(list(errors)), axis=0)
 
 
-def _units(folder):
-    """Return the units of the columns of sweep.csv by name."""
-    text = (pathlib.Path(folder) / "sweep.csv").read_text(encoding="utf-8")
-    return dict(re.findall(r"^# (\S+) \[(.*?)\]", text, re.MULTILINE))
-
-
 def _options(parser):
     parser.add_argument("--beside", nargs="+", default=(), metavar="FOLDER",
                         help="more sweeps for the same picture")
     parser.add_argument("--reference", metavar="FILE_OR_FOLDER",
-                        help="summary with the true numbers; default: the finest case")
+                        help="the true numbers; default: those of the finest case")
     parser.add_argument("--numbers", nargs="+", metavar="NAME",
                         help=f"columns; default: those that there are of {', '.join(_NUMBERS)}")
 

@@ -1,7 +1,9 @@
 """Procedures that all figures share."""
 
 import argparse
+import itertools
 import pathlib
+import re
 import sys
 import textwrap
 
@@ -78,6 +80,13 @@ def smooth(points):
             + t**2 * (t - 1) * step * tangent[i + 1]
         )
     return np.vstack([*curve, points[-1:]])
+
+
+def units_of(folder):
+    """Return the units of the columns of sweep.csv by name."""
+    with open(pathlib.Path(folder) / "sweep.csv", encoding="utf-8") as lines:
+        heads = [line[2:] for line in itertools.takewhile(lambda line: line[0] == "#", lines)]
+    return dict(re.findall(r"^(\S+) \[(.*?)\]", "".join(heads), re.MULTILINE))
 
 
 def scale(values, unit):

@@ -11,13 +11,9 @@ other keys. `--where KEY=VALUE` keeps the cases nearest to a value of a key. Fai
 crosses; cases without the value are dots.
 """
 
-import itertools
-import pathlib
-import re
-
 import numpy as np
 from drawing import (
-    BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILION, entitle, run, title_of)
+    BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILION, entitle, run, title_of, units_of)
 from matplotlib import colormaps
 from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
@@ -51,7 +47,7 @@ def draw_map(folder, value="max_tension", per=None, over=None, where=()):
         raise ResultsError("--over takes one or two columns")
     columns = _chosen(columns, keys, where)
     shown = columns[value] / (columns[per] if per else 1)
-    units = _units(folder)
+    units = units_of(folder)
     label = _label(value, units) if not per else f"{_words(value)} over {_words(per)}"
     failed = columns["converged"] != 1
     good = np.isfinite(shown) & ~failed
@@ -190,13 +186,6 @@ def _wide(values):
     """Return whether values are positive and span decades."""
     values = values[np.isfinite(values)]
     return len(values) > 0 and values.min() > 0 and values.max() > _DECADES * values.min()
-
-
-def _units(folder):
-    """Return the units of the columns by name."""
-    with open(pathlib.Path(folder) / "sweep.csv", encoding="utf-8") as lines:
-        heads = [line[2:] for line in itertools.takewhile(lambda line: line[0] == "#", lines)]
-    return dict(re.findall(r"^(\S+) \[(.*?)\]", "".join(heads), re.MULTILINE))
 
 
 def _label(name, units):

@@ -69,7 +69,7 @@ contains
         shown = .not. ieee_is_nan(row(1)%error) .or. .not. row(1)%case%converged
         call put_head(name, varied%sweep%names, shown)
       end if
-      call put_row(row(i), shown)
+      call put_row(row(i), shown, any(row(:i - 1)%case%warning == row(i)%case%warning))
     end do
     converged = all([(row(i)%case%converged, i=1, rows)])
     call conclude(varied%sweep%names, row)

@@ -43,10 +43,11 @@ contains
     call put_cells([cells, pack([character(len=width) :: names], shown)])
   end subroutine put_head
 
-  !> Prints a row, with the reason of a failure or the first warning below it.
-  subroutine put_row(row, shown)
+  !> Prints a row, with the reason of a failure below it, or with its first warning, unless this
+  !> was `told` before.
+  subroutine put_row(row, shown, told)
     type(price_row_t), intent(in) :: row
-    logical, intent(in) :: shown(:)
+    logical, intent(in) :: shown(:), told
     character(len=width) :: cells(6 + count(shown))
     integer :: i, k
 
@@ -65,7 +66,7 @@ contains
     end do
     call put_cells(cells)
     if (row%case%failure /= '') call put('    failed: '//trim(row%case%failure))
-    if (row%case%warning /= '') call put('    warning: '//trim(row%case%warning))
+    if (row%case%warning /= '' .and. .not. told) call put('    warning: '//trim(row%case%warning))
   end subroutine put_row
 
   !> Says which row is enough for what, what a digit costs, and whether the rows agree.
@@ -98,8 +99,8 @@ contains
       digits = log10(row(first)%estimate/row(last)%estimate)
       if (digits > 0.5_wp .and. row(last)%seconds > row(first)%seconds) &
         call put('each further digit costs '// &
-        time_of((row(last)%seconds - row(first)%seconds)/digits)//' ('// &
-        rounded(100*((row(last)%seconds/row(first)%seconds)**(1/digits) - 1))//' %)')
+        time_of((row(last)%seconds - row(first)%seconds)/digits)//', a factor of '// &
+        rounded((row(last)%seconds/row(first)%seconds)**(1/digits)))
     end if
     do i = 1, last - 1
       if (.not. good(i)) cycle

@@ -127,6 +127,7 @@ contains
     else if (.not. case%converged) then
       case%failure = 'not converged'
       if (size(summary%warnings) > 0) case%failure = summary%warnings(1)%text
+      if (allocated(summary%failure)) case%failure = summary%failure
     else if (size(summary%warnings) > 0) then
       case%warning = summary%warnings(1)%text
     end if

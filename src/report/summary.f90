@@ -32,6 +32,8 @@ module summary
     !> several summaries at once would need a larger stack, which a limit of memory can forbid.
     type(value_t), allocatable, private :: value(:)
     type(line_t), allocatable :: warnings(:), notes(:)
+    !> The first reason why the run did not converge; not allocated if there is none.
+    character(len=:), allocatable :: failure
   contains
     procedure :: warn
     procedure :: note
@@ -249,6 +251,7 @@ contains
     character(len=*), intent(in) :: text
 
     call self%set('converged', .false.)
+    if (.not. allocated(self%failure)) self%failure = text
     call self%warn(text)
   end subroutine fail_with
 

@@ -22,6 +22,7 @@ import time
 sys.path.append(str(pathlib.Path(__file__).resolve().parents[1]))
 
 import accuracy  # noqa: E402
+import hard_cases  # noqa: E402
 import hot_spots  # noqa: E402
 import laws  # noqa: E402
 import pages  # noqa: E402 (found through the line above)
@@ -37,6 +38,7 @@ _GUIDE = ROOT / "docs" / "accuracy.md"
 # Functions that measure, that draw, and that make the guide's tables.
 _PARTS = {
     "accuracy": (accuracy.measure, accuracy.draw, accuracy.tables),
+    "hard_cases": (hard_cases.measure, hard_cases.draw, hard_cases.tables),
     "laws": (laws.measure, laws.draw, laws.tables),
     "experiments": (laws.measure_experiments, None, laws.tables_experiments),
     "error_law": (accuracy.measure_law, accuracy.draw_law, accuracy.tables_law),
