@@ -22,8 +22,10 @@ os.environ.setdefault("OMP_NUM_THREADS", "1")
 
 # Page, and the command that renews its figures.
 PAGES = {
-    "README.md": "./run inputs/first.nml, compared by hand; then tools/pages.py --mark README.md",
+    "README.md": "./run inputs/first.nml, and the commands below its second picture, compared by "
+    "hand; then tools/pages.py --mark README.md",
     "docs/accuracy.md": "./bench",
+    "docs/records/costs.md": "./bench",
     "docs/asymptotics.md": "tools/asymptotics.py",
     "docs/fitting.md": "inputs/examples/fit.nml, pywrap/plots/fit.py and tools/bench/coverage.py, "
     "by hand; then tools/pages.py --mark docs/fitting.md",

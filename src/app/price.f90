@@ -49,14 +49,14 @@ contains
     integer :: i
 
     converged = .false.
-    call refuse(scene, error)
+    problem = problem_of(scene)
+    call refuse(scene, problem, error)
     if (allocated(error)) return
     varied = scene
-    problem = problem_of(scene)
     varied%sweep = ladder(scene, problem)
     call check_room(varied, to_stream, error)
     if (allocated(error)) return
-    if (.not. problem%rigid) call claim_buffers()
+    call claim_buffers()
     do i = 1, rows
       row(i)%case%number = i
       row(i)%case%values = varied%sweep%values(i)
@@ -76,8 +76,9 @@ contains
   end subroutine price_scene
 
   !> Fails for a deck that is more than one run, or no calculation of states.
-  subroutine refuse(scene, error)
+  subroutine refuse(scene, problem, error)
     type(scene_t), intent(in) :: scene
+    type(problem_t), intent(in) :: problem
     type(failure_t), allocatable, intent(out) :: error
 
     if (allocated(scene%sweep)) then
@@ -89,6 +90,9 @@ contains
     else if (.not. scene%finds_states()) then
       call fail(error, bad_input, '--price: nothing in this deck depends on the accuracy; it ' // &
         'needs &loading, &equilibrium_path or &drive')
+    else if (problem%rigid .and. .not. allocated(scene%drive)) then
+      call fail(error, bad_input, '--price: the bodies are rigid, and their loads do not ' // &
+        'depend on the accuracy')
     end if
   end subroutine refuse
 

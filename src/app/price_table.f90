@@ -36,8 +36,7 @@ contains
     logical, intent(in) :: shown(:)
     character(len=width) :: cells(6)
 
-    call put(name//': time of the calculation without start and files, and estimated errors, '// &
-      'relative')
+    call put(name//': processor time without start and files, and estimated relative errors')
     cells = [character(len=width) :: varied(index(varied, '.') + 1:), 'time', 'nodes', 'states', &
       'products', 'error']
     call put_cells([cells, pack([character(len=width) :: names], shown)])

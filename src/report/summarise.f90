@@ -73,7 +73,8 @@ contains
           allocated(numerics%r_max) .or. allocated(numerics%panel_order))) call summary%note( &
           'numerics: nodes, r_max and panel_order have no effect on meshes that follow from ' // &
           'accuracy; grid = ''uniform'' and method = ''mixing'' have fixed ones')
-        if (numerics%accuracy > coarsest .and. .not. allocated(scene%drive)) call summary%note( &
+        if (numerics%accuracy > coarsest .and. .not. (problem%rigid .or. &
+          allocated(scene%drive))) call summary%note( &
           'numerics: accuracy = ' // brief(numerics%accuracy) // ' costs no less than 1e-3, ' // &
           'whose meshes are the coarsest that have every fold; only drives in time cost less')
       end associate

@@ -108,6 +108,7 @@ def test_an_accuracy_that_fails_says_so_in_its_row(priced):
 @pytest.mark.parametrize("groups, phrase", [
     ({"equilibrium_path": {"h0_end": 0.0}, "sweep": {"key": "force.z0", "values": [1.0, 1.1]}},
      "has &sweep; costs = .true. in &sweep measures each case"),
+    ({"bodies": {"radius": 1.0, "rigid": True}, **CYCLE}, "the bodies are rigid"),
     ({"classical": {"h0_start": 3.0, "h0_end": 0.0}}, "nothing in this deck depends on the accuracy"),
 ])
 def test_decks_without_such_a_table_are_refused_as_wrong(priced, groups, phrase):
@@ -135,7 +136,7 @@ def test_several_decks_and_standard_input_each_have_a_table(snapin, tmp_path):
     done = snapin("--price", "--quiet", "a.nml", "-", "a.txt", cwd=tmp_path, input=text)
     assert (done.returncode, done.stderr) == (0, "")
     # Two decks of one stem are no mistake where nothing is written.
-    assert re.findall(r"^(\S+): time", done.stdout, re.M) == ["a.nml", "deck", "a.txt"]
+    assert re.findall(r"^(\S+): processor time", done.stdout, re.M) == ["a.nml", "deck", "a.txt"]
 
 
 def test_a_pressed_repulsion_has_no_columns_of_jumps(priced):
