@@ -22,7 +22,7 @@ import time
 
 sys.path.append(str(pathlib.Path(__file__).resolve().parents[1]))
 
-import accuracy  # noqa: E402
+import digits  # noqa: E402
 import hard_cases  # noqa: E402
 import hot_spots  # noqa: E402
 import laws  # noqa: E402
@@ -39,11 +39,11 @@ _GUIDES = (ROOT / "docs" / "accuracy.md", ROOT / "docs" / "records" / "costs.md"
 
 # Functions that measure, that draw, and that make the guide's tables.
 _PARTS = {
-    "accuracy": (accuracy.measure, accuracy.draw, accuracy.tables),
+    "accuracy": (digits.measure, digits.draw, digits.tables),
     "hard_cases": (hard_cases.measure, hard_cases.draw, hard_cases.tables),
     "laws": (laws.measure, laws.draw, laws.tables),
     "experiments": (laws.measure_experiments, None, laws.tables_experiments),
-    "error_law": (accuracy.measure_law, accuracy.draw_law, accuracy.tables_law),
+    "error_law": (digits.measure_law, digits.draw_law, digits.tables_law),
     "ratios": (ratios.measure, None, ratios.tables),
     "sigma": (scaling.measure_sigma, scaling.draw_sigma, None),
     "nodes": (scaling.measure_nodes, scaling.draw_nodes, None),
@@ -101,7 +101,7 @@ def _present(folder, in_guide):
         if rows and make_tables:
             found |= make_tables(rows, tables.read(_before(path)))
     if (folder / "accuracy.csv").is_file():
-        found |= accuracy.honesty(folder)
+        found |= digits.honesty(folder)
     if in_guide:
         _insert("version", [
             f"Measured with {sources} ({machine}): {', '.join(names)}."

@@ -151,6 +151,12 @@ class Program:
             run.calculation = calculation[key]
         return best
 
+    def costs(self, deck):
+        """Return the columns of costs.csv of a deck whose sweep has costs."""
+        self.run(deck)
+        found = read_results(self.scratch / "deck").costs
+        return {name: found[name] for name in found.dtype.names}
+
     def start_up(self, rounds=10):
         """Return the price of a program that starts and prints its version."""
         least = math.inf
