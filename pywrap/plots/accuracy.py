@@ -9,8 +9,8 @@ Every case is a point: filled for its true error, open for the estimated one, a 
 at the upper edge if a number is missing. The error is the largest of several numbers, each
 relative to the largest of these numbers in the same unit. True errors are differences from
 `--reference`, a folder of results or a file with lines `number,value`; without it from the case
-with the least estimated error, and only those above that estimate are drawn. Cases with other values of other
-keys than the last one are other lines.
+with the least estimated error, and only those above that estimate are drawn. Cases with other
+values of other keys than the last one are other lines.
 """
 
 import itertools

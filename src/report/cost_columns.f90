@@ -37,8 +37,8 @@ contains
     end do
   end function cost_columns_of
 
-  !> The numbers of a case's row after its keys: its seconds, then from the summary the other columns
-  !> of `table`, and errors; NaN for a number that does not exist.
+  !> The numbers of a case's row after its keys: its seconds, then from the summary the other
+  !> columns of `table`, and errors; NaN for a number that does not exist.
   pure function costs_of(summary, scene, seconds) result(values)
     type(summary_t), intent(in) :: summary
     type(scene_t), intent(in) :: scene

@@ -109,7 +109,8 @@ def test_an_accuracy_that_fails_says_so_in_its_row(priced):
     ({"equilibrium_path": {"h0_end": 0.0}, "sweep": {"key": "force.z0", "values": [1.0, 1.1]}},
      "has &sweep; costs = .true. in &sweep measures each case"),
     ({"bodies": {"radius": 1.0, "rigid": True}, **CYCLE}, "the bodies are rigid"),
-    ({"classical": {"h0_start": 3.0, "h0_end": 0.0}}, "nothing in this deck depends on the accuracy"),
+    ({"classical": {"h0_start": 3.0, "h0_end": 0.0}},
+     "nothing in this deck depends on the accuracy"),
 ])
 def test_decks_without_such_a_table_are_refused_as_wrong(priced, groups, phrase):
     done = priced(lennard_jones(0.87, **groups))

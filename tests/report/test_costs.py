@@ -63,7 +63,8 @@ def test_sweep_csv_has_the_same_bytes_with_and_without_costs(run):
 
 @pytest.mark.parametrize("key, values, costs, there", [
     ("force.z0", [1.0, 1.1], None, False), ("force.z0", [1.0, 1.1], True, True),
-    ("numerics.anderson_depth", [3, 5], None, True), ("Numerics.Accuracy", [1e-3, 1e-6], False, False),
+    ("numerics.anderson_depth", [3, 5], None, True),
+    ("Numerics.Accuracy", [1e-3, 1e-6], False, False),
 ])
 def test_costs_are_measured_where_numerics_vary_or_they_are_asked_for(
         run, key, values, costs, there):

@@ -1,4 +1,4 @@
-"""Hard cases: cycles of Lennard-Jones bodies from very weak to very strong adhesion, by each method.
+"""Hard cases: cycles of Lennard-Jones bodies from weak to very strong adhesion, by each method.
 
 A scene is lost if the run did not end in time, did not converge, or has no jump where there is one,
 or one where there is none. Errors are those of pull-off and load at the turning point, against the
