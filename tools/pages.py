@@ -41,12 +41,12 @@ PAGES = {
 # Files that read decks, write files or print messages change no number. A new file counts until it
 # is listed here.
 _NO_NUMBERS = (
-    "byte_record", "c_library", "case_rows", "checksums", "clock", "command_line", "decimal",
-    "deck", "deck_characters", "deck_keys", "deck_number", "deck_numbers", "deck_scan",
+    "byte_record", "c_library", "case_rows", "checksums", "clock", "command_line", "cost_columns",
+    "decimal", "deck", "deck_characters", "deck_keys", "deck_number", "deck_numbers", "deck_scan",
     "deck_source", "deck_store", "deck_values", "dispatch", "failure", "files", "folder_lock",
-    "journal", "journal_frame", "launch", "namelist_writer", "preflight", "progress",
-    "publication", "ranks", "result_folder", "result_rows", "result_tables", "run_identity",
-    "snapin", "state_records",
+    "journal", "journal_frame", "launch", "namelist_writer", "preflight", "price", "price_table",
+    "progress", "publication", "ranks", "result_folder", "result_rows", "result_tables",
+    "run_identity", "snapin", "state_records",
     "text", "text_file",
 )
 _MARK = re.compile(r"<!-- measured at (\w+) -->")
