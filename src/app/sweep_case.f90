@@ -86,6 +86,8 @@ contains
     end if
   end subroutine run_case
 
+  !> Computes the case, on meshes of `store` if it is given. Its time is that of its experiments,
+  !> without the deck and the tables of layers, which do not depend on the accuracy.
   subroutine compute_case(scene, progress, store, case)
     type(scene_t), intent(in) :: scene
     type(progress_t), intent(in), target :: progress
