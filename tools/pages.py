@@ -22,8 +22,10 @@ os.environ.setdefault("OMP_NUM_THREADS", "1")
 
 # Page, and the command that renews its figures.
 PAGES = {
-    "README.md": "./run inputs/first.nml, compared by hand; then tools/pages.py --mark README.md",
+    "README.md": "./run inputs/first.nml, and the commands below its second picture, compared by "
+    "hand; then tools/pages.py --mark README.md",
     "docs/accuracy.md": "./bench",
+    "docs/records/costs.md": "./bench",
     "docs/asymptotics.md": "tools/asymptotics.py",
     "docs/fitting.md": "inputs/examples/fit.nml, pywrap/plots/fit.py and tools/bench/coverage.py, "
     "by hand; then tools/pages.py --mark docs/fitting.md",
@@ -39,12 +41,12 @@ PAGES = {
 # Files that read decks, write files or print messages change no number. A new file counts until it
 # is listed here.
 _NO_NUMBERS = (
-    "byte_record", "c_library", "case_rows", "checksums", "clock", "command_line", "decimal",
-    "deck", "deck_characters", "deck_keys", "deck_number", "deck_numbers", "deck_scan",
+    "byte_record", "c_library", "case_rows", "checksums", "clock", "command_line", "cost_columns",
+    "decimal", "deck", "deck_characters", "deck_keys", "deck_number", "deck_numbers", "deck_scan",
     "deck_source", "deck_store", "deck_values", "dispatch", "failure", "files", "folder_lock",
-    "journal", "journal_frame", "launch", "namelist_writer", "preflight", "progress",
-    "publication", "ranks", "result_folder", "result_rows", "result_tables", "run_identity",
-    "snapin", "state_records",
+    "journal", "journal_frame", "launch", "namelist_writer", "preflight", "price", "price_table",
+    "progress", "publication", "ranks", "result_folder", "result_rows", "result_tables",
+    "run_identity", "snapin", "state_records",
     "text", "text_file",
 )
 _MARK = re.compile(r"<!-- measured at (\w+) -->")

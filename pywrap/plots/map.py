@@ -12,11 +12,9 @@ crosses; cases without the value are dots. Where a largest tension is that of th
 of a branch, it is no pull-off: such cases are open circles, outside colours and curves.
 """
 
-import re
-
 import numpy as np
 from drawing import (
-    BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILION, entitle, run, title_of)
+    BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILION, entitle, run, title_of, units_of)
 from matplotlib import colormaps
 from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
@@ -55,7 +53,7 @@ def draw_map(folder, value="max_tension", per=None, over=None, where=()):
         raise ResultsError("--over takes one or two columns")
     columns = _chosen(columns, keys, where)
     shown = columns[value] / (columns[per] if per else 1)
-    units = _units(files.text("sweep.csv"))
+    units = units_of(files.text("sweep.csv"))
     label = _label(value, units) if not per else f"{_words(value)} over {_words(per)}"
     failed = columns["converged"] != 1
     at_end = np.isfinite(shown) & ~failed & _at_end(columns, [value, per, *over])
@@ -213,11 +211,6 @@ def _wide(values):
     """Return whether values are positive and span decades."""
     values = values[np.isfinite(values)]
     return len(values) > 0 and values.min() > 0 and values.max() > _DECADES * values.min()
-
-
-def _units(text):
-    """Return the units of the columns of a table by name."""
-    return dict(re.findall(r"^# (\S+) \[(.*?)\]", text, re.MULTILINE))
 
 
 def _label(name, units):

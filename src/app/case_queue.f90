@@ -20,7 +20,7 @@ module case_queue
   type, extends(foreman_t) :: case_queue_t
     type(scene_t), pointer :: scene => null()
     type(results_t), pointer :: results => null()
-    character(len=column_width), allocatable :: columns(:)
+    character(len=column_width), allocatable :: columns(:), cost_columns(:)
     !> The file of the cases, if the sweep has one.
     type(case_rows_t) :: rows
     type(case_t), allocatable :: waiting(:)
@@ -167,9 +167,11 @@ contains
         if (first%number /= self%written + 1) exit
         call self%results%take_case(self%columns, self%scene%sweep%words, first%values, &
           first%numbers, first%failure)
+        if (self%scene%sweep%costs) call self%results%take_costs(self%cost_columns, &
+          self%scene%sweep%words, first%values, first%costs)
         call self%tally%add(first)
         first%number = 0
-        deallocate (first%numbers, first%values)
+        deallocate (first%numbers, first%values, first%costs)
       end associate
       self%written = self%written + 1
     end do

@@ -18,7 +18,7 @@ module command_line
     character(len=:), allocatable :: out, into
     !> The name of the deck on standard input in messages and results.
     character(len=:), allocatable :: name
-    logical :: check = .false., resume = .false., quiet = .false.
+    logical :: check = .false., price = .false., resume = .false., quiet = .false.
     logical :: keys = .false., results = .false., version = .false., help = .false.
     type(file_t), allocatable :: decks(:)
   contains
@@ -26,10 +26,10 @@ module command_line
   end type options_t
 
   character(len=*), parameter :: usage = &
-    'snapin [--out DIR | --into DIR] [--name NAME] [--check] [--resume] [--quiet] [--keys] ' // &
-    '[--results] [--version] [--help] DECK [DECK ...]'
+    'snapin [--out DIR | --into DIR] [--name NAME] [--check] [--price] [--resume] [--quiet] ' // &
+    '[--keys] [--results] [--version] [--help] DECK [DECK ...]'
   character(len=*), parameter :: known = &
-    '--out --into --name --check --resume --quiet --keys --results --version --help'
+    '--out --into --name --check --price --resume --quiet --keys --results --version --help'
 
 contains
 
@@ -65,6 +65,8 @@ contains
         only_decks = .true.
       case ('--check')
         options%check = .true.
+      case ('--price')
+        options%price = .true.
       case ('--resume')
         options%resume = .true.
       case ('--quiet', '-q')
@@ -97,6 +99,10 @@ contains
     else if (allocated(options%out) .and. allocated(options%into) .and. &
       .not. given(options%out, '-')) then
       call fail(error, bad_input, 'give --out or --into, not both')
+    else if (options%price .and. (options%check .or. options%resume .or. &
+      allocated(options%out) .or. allocated(options%into))) then
+      call fail(error, bad_input, '--price prints a table and writes no results; give it ' // &
+        'without --check, --resume, --out and --into')
     else if (allocated(options%name) .and. &
       all([(options%decks(i)%name /= '-', i=1, size(options%decks))])) then
       call fail(error, bad_input, '--name is for a deck on standard input, -')
@@ -111,7 +117,7 @@ contains
     if (size(options%decks) > 1 .and. (allocated(options%into) .or. options%out == '-')) then
       call fail(error, bad_input, 'the results of several decks cannot go to one place; give ' // &
         'one deck, or --out DIR')
-    else if (.not. options%check) then
+    else if (.not. options%check .and. .not. options%price) then
       call check_stems(options, error)
     end if
 
@@ -225,6 +231,7 @@ contains
       '  --into DIR  write the results of one deck into DIR itself; with --out - to both', &
       '  --name NAME name of the deck on standard input', &
       '  --check     validate the decks, compute nothing', &
+      '  --price     the decks at five accuracies: a table of time and errors; no results', &
       '  --resume    continue an interrupted run; leave finished results as they are', &
       '  --quiet     no progress on the terminal (-q)', &
       '  --keys      print all groups and keys of decks, with unit, default and meaning, or only', &

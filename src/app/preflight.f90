@@ -117,6 +117,8 @@ contains
         deallocate (error)
       end if
       copies = min(thread_count(), scene%sweep%cases())
+      ! Cases whose cost is measured run one by one.
+      if (scene%sweep%costs) copies = 1
       bytes = copies*bytes
     end if
     available = available_memory(blas_buffers(nodes, copies))

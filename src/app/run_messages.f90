@@ -19,12 +19,12 @@ module run_messages
     procedure :: say
   end type destination_t
 
-  !> Python and the script: in a checkout, with the program in a build folder, and in an
-  !> installation.
+  !> Python and the folder of the scripts: in a checkout, with the program in a build folder, and in
+  !> an installation.
   character(len=*), parameter :: pythons(2) = [character(len=16) :: '.venv/bin/python', &
     'bin/python3']
-  character(len=*), parameter :: scripts(2) = [character(len=25) :: 'pywrap/plots/map.py', &
-    'share/snapin/plots/map.py']
+  character(len=*), parameter :: scripts(2) = [character(len=19) :: 'pywrap/plots/', &
+    'share/snapin/plots/']
 
 contains
 
@@ -67,8 +67,10 @@ contains
     if (allocated(scene%sweep)) then
       command = ''
       if (.not. destination%to_stream) then
-        command = drawing_of(destination%folder)
+        command = drawing_of(destination%folder, trim(merge('accuracy.py', 'map.py     ', &
+          scene%sweep%costs)))
         if (command /= '') command = '; to draw it: '//command
+        if (scene%sweep%costs) command = ' and costs.csv'//command
         command = ': '//destination%folder//'/sweep.csv'//command
       end if
       call destination%say(counted(scene%sweep%cases(), 'case')//', '// &
@@ -94,9 +96,9 @@ contains
     if (.not. self%quiet) call write_stderr(self%folder//': '//text//new_line('a'))
   end subroutine say
 
-  !> The command that draws the sweep in a folder of results; empty if there is no script.
-  function drawing_of(folder) result(command)
-    character(len=*), intent(in) :: folder
+  !> The command that draws the sweep in a folder of results; empty if there is no such script.
+  function drawing_of(folder, script) result(command)
+    character(len=*), intent(in) :: folder, script
     character(len=:), allocatable :: command, program, top, python
     integer :: i
 
@@ -105,13 +107,13 @@ contains
     top = program(:index(program, '/', back=.true.) - 1)
     top = top(:index(top, '/', back=.true.))
     do i = 1, size(scripts)
-      if (.not. file_exists(top // trim(scripts(i)))) cycle
+      if (.not. file_exists(top // trim(scripts(i)) // script)) cycle
       python = top // trim(pythons(i))
       if (.not. file_exists(python)) python = 'python3'
       if (top == whole_path('')) top = ''
       if (top == '' .and. python /= 'python3') python = trim(pythons(i))
-      command = shell_word(python) // ' ' // shell_word(top // trim(scripts(i))) // ' ' // &
-        shell_word(folder)
+      command = shell_word(python) // ' ' // &
+        shell_word(top // trim(scripts(i)) // script) // ' ' // shell_word(folder)
       return
     end do
   end function drawing_of

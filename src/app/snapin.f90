@@ -15,6 +15,7 @@ program snapin
   use command_line, only: options_t, read_command_line, stem_of, help_text, write_usage
   use launch, only: own_rank
   use simulation, only: run_scene
+  use price, only: price_scene
   use sweeps, only: work_on_sweeps
   use dispatch, only: dismiss
   use ranks, only: crew_t
@@ -48,7 +49,7 @@ program snapin
     call leave(2)
   end if
   ! Of several processes the first answers.
-  if (options%informs()) then
+  if (options%informs() .or. options%price) then
     if (own_rank() > 0) call leave(0)
   end if
   if (options%help) then
@@ -117,7 +118,7 @@ contains
       else
         call read_scene(options%decks(i)%name, scenes(i), trouble)
       end if
-      if (.not. allocated(trouble)) &
+      if (.not. allocated(trouble) .and. .not. options%price) &
         call check_inputs(scenes(i), options%decks(i)%name, folder_of(i), trouble)
       if (allocated(trouble)) then
         status = 2
@@ -148,6 +149,17 @@ contains
       return
     end if
     do i = 1, size(scenes)
+      if (options%price) then
+        call price_scene(scenes(i), options%decks(i)%name, options%quiet, converged, trouble)
+        if (allocated(trouble)) call print_line(error_unit, options%decks(i)%name // ': ' // &
+          trouble%message)
+        if (allocated(trouble)) then
+          status = max(status, merge(2, 1, trouble%kind == bad_input))
+        else if (.not. converged) then
+          status = max(status, 1)
+        end if
+        cycle
+      end if
       folder = folder_of(i)
       call run_scene(scenes(i), folder, options%out == to_stream, options%quiet, options%resume, &
         crew, i, converged, trouble)

@@ -1,6 +1,7 @@
 !> One case of a sweep: its computation, its record, and the tally of all cases.
 module sweep_case
-  use kinds, only: wp
+  use kinds, only: wp, nan
+  use clock, only: thread_seconds
   use text, only: first_line
   use failure, only: failure_t
   use dimensionless_problem, only: problem_t
@@ -15,6 +16,7 @@ module sweep_case
   use summarise, only: summary_of
   use summary, only: summary_t
   use case_columns, only: numbers_of
+  use cost_columns, only: costs_of
   use mesh_store, only: mesh_store_t
   use byte_record, only: byte_record_t
   use state_records, only: pass_cost
@@ -24,6 +26,10 @@ module sweep_case
 
   !> Largest number of characters of a warning, or of the reason of a failure.
   integer, parameter :: failure_width = 160
+  !> A case whose cost is measured runs again until all its runs together take this time [s], at
+  !> most so many times; the first run of a case is slower, since its memory is new.
+  real(wp), parameter :: enough_seconds = 0.1_wp
+  integer, parameter :: most_runs = 7
 
   !> One case, kept until its row is written.
   type :: case_t
@@ -34,6 +40,8 @@ module sweep_case
     logical :: converged = .false.
     !> Its numbers, as `numbers_of`.
     real(wp), allocatable :: numbers(:)
+    !> Its row of costs.csv, as `costs_of`; empty if costs are not measured.
+    real(wp), allocatable :: costs(:)
     !> Why it failed; the first warning of a case that did not. The length is not deferred: compiler
     !> note 4.
     character(len=failure_width) :: failure = '', warning = ''
@@ -61,11 +69,29 @@ module sweep_case
 contains
 
   !> Computes the case with the given number and values of the scene's sweep, on meshes that the
-  !> cases share.
+  !> cases share. If costs are measured, the case has its own meshes, and one thread at a time
+  !> computes.
   subroutine run_case(scene, progress, store, case)
     type(scene_t), intent(in) :: scene
     type(progress_t), intent(in), target :: progress
     type(mesh_store_t), intent(inout) :: store
+    type(case_t), intent(inout) :: case
+
+    if (scene%sweep%costs) then
+      !$omp critical (one_measured)
+      call compute_case(scene, progress, case=case)
+      !$omp end critical (one_measured)
+    else
+      call compute_case(scene, progress, store, case)
+    end if
+  end subroutine run_case
+
+  !> Computes the case, on meshes of `store` if it is given. Its time is that of its experiments,
+  !> without the deck and the tables of layers, which do not depend on the accuracy.
+  subroutine compute_case(scene, progress, store, case)
+    type(scene_t), intent(in) :: scene
+    type(progress_t), intent(in), target :: progress
+    type(mesh_store_t), intent(inout), optional :: store
     type(case_t), intent(inout) :: case
     type(case_observer_t) :: observer
     type(scene_t) :: variant
@@ -73,11 +99,13 @@ contains
     type(experiment_result_t) :: outcome
     type(summary_t) :: summary
     type(failure_t), allocatable :: error
+    real(wp) :: took
 
     observer%case = case%number
     observer%progress => progress
     case%failure = ''
     case%warning = ''
+    took = nan
     ! Only one thread at a time makes strings: compiler note 4.
     !$omp critical (one_at_a_time)
     call swept_scene(scene, scene%sweep%names, case%values, variant, error)
@@ -85,23 +113,55 @@ contains
     call summary%set('converged', .false.)
     if (.not. allocated(error)) then
       problem = problem_of(variant)
-      call run_experiment(variant, problem, observer, outcome, store=store)
+      call run_timed()
     end if
     !$omp critical (one_at_a_time)
     if (.not. allocated(error)) summary = summary_of(variant, problem, outcome)
     case%numbers = numbers_of(summary, scene)
+    case%costs = [real(wp) ::]
+    if (scene%sweep%costs) then
+      call summary%take_cost(outcome%cost)
+      case%costs = costs_of(summary, scene, took)
+    end if
     case%converged = summary%is_true('converged')
     if (allocated(error)) then
       case%failure = first_line(error%message)
     else if (.not. case%converged) then
       case%failure = 'not converged'
       if (size(summary%warnings) > 0) case%failure = summary%warnings(1)%text
+      if (allocated(summary%failure)) case%failure = summary%failure
     else if (size(summary%warnings) > 0) then
       case%warning = summary%warnings(1)%text
     end if
     !$omp end critical (one_at_a_time)
     case%cost = outcome%cost
-  end subroutine run_case
+
+  contains
+
+    !> Runs the experiment; if costs are measured, several times, of which the fastest counts.
+    subroutine run_timed()
+      type(experiment_result_t) :: again
+      real(wp) :: began, total
+      integer :: i
+
+      began = thread_seconds()
+      call run_experiment(variant, problem, observer, outcome, store=store)
+      took = thread_seconds() - began
+      if (.not. scene%sweep%costs) return
+      total = took
+      do i = 2, most_runs
+        if (total > enough_seconds) exit
+        began = thread_seconds()
+        call run_experiment(variant, problem, observer, again)
+        began = thread_seconds() - began
+        total = total + began
+        if (began >= took) cycle
+        took = began
+        outcome%cost = again%cost
+      end do
+    end subroutine run_timed
+
+  end subroutine compute_case
 
   !> Writes into a variable, since threads share the strings of expressions: compiler note 4.
   subroutine hear(self, what)
@@ -125,6 +185,7 @@ contains
     call pass_text(case%warning)
     call pass_cost(record, case%cost)
     call record%pass(case%values)
+    call record%pass(case%costs)
 
   contains
 

@@ -9,6 +9,7 @@ module sweeps
   use case_queue, only: case_queue_t
   use progress, only: progress_t
   use case_columns, only: columns_of
+  use cost_columns, only: cost_columns_of
   use mesh_store, only: mesh_store_t
   use byte_record, only: byte_record_t
   use results, only: results_t
@@ -49,6 +50,7 @@ contains
     queue%scene => scene
     queue%results => results
     queue%columns = columns_of(scene)
+    if (scene%sweep%costs) queue%cost_columns = cost_columns_of(scene)
     call queue%begin()
     if (allocated(scene%sweep%file)) call queue%rows%open(scene%sweep%file%path, scene%deck, error)
     if (allocated(error)) then

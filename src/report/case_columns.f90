@@ -14,6 +14,7 @@ module case_columns
   implicit none
   private
   public :: columns_of, numbers_of, column_count, left_out, column_width
+  public :: number_t, chosen_numbers, key_columns
 
   !> Number of characters of a column's description.
   integer, parameter :: column_width = 132
@@ -30,6 +31,8 @@ module case_columns
   !> A number of the summary: row of `result_rows`, and element if this is a list.
   type :: number_t
     integer :: row = 0, element = 1
+  contains
+    procedure :: name => name_of
   end type number_t
 
 contains
@@ -39,32 +42,47 @@ contains
   function columns_of(scene) result(columns)
     type(scene_t), intent(in) :: scene
     character(len=column_width), allocatable :: columns(:)
-    type(failure_t), allocatable :: error
     type(number_t), allocatable :: numbers(:)
-    character(len=:), allocatable :: suffix
-    integer :: i, k, place, term
+    integer :: i
 
     numbers = chosen_numbers(scene)
     associate (keys => size(scene%sweep%words))
       allocate (columns(keys + size(numbers) + 1))
+      columns(:keys) = key_columns(scene)
       ! Filled item by item: compiler note 2.
-      do k = 1, keys
-        call find_number(scene%deck, word_of(scene%sweep%names, k), place, term, error, &
-          words=.true.)
-        columns(k) = word_of(scene%sweep%names, k) // ' [' // &
-          trim(scene%deck%specs(place)%unit) // '] a key of the deck'
-      end do
       do i = 1, size(numbers)
-        suffix = ''
-        if (rows(numbers(i)%row)%list) suffix = '_' // brief(numbers(i)%element)
         associate (row => rows(numbers(i)%row))
-          columns(keys + i) = trim(row%key) // suffix // ' [' // trim(row%unit) // '] ' // &
-            row%meaning
+          columns(keys + i) = numbers(i)%name() // ' [' // trim(row%unit) // '] ' // row%meaning
         end associate
       end do
     end associate
     columns(size(columns)) = failure_column
   end function columns_of
+
+  !> The columns of the keys.
+  function key_columns(scene) result(columns)
+    type(scene_t), intent(in) :: scene
+    character(len=column_width), allocatable :: columns(:)
+    type(failure_t), allocatable :: error
+    integer :: k, place, term
+
+    allocate (columns(size(scene%sweep%words)))
+    do k = 1, size(columns)
+      call find_number(scene%deck, word_of(scene%sweep%names, k), place, term, error, &
+        words=.true.)
+      columns(k) = word_of(scene%sweep%names, k) // ' [' // &
+        trim(scene%deck%specs(place)%unit) // '] a key of the deck'
+    end do
+  end function key_columns
+
+  !> The name of a number's column.
+  pure function name_of(self) result(name)
+    class(number_t), intent(in) :: self
+    character(len=:), allocatable :: name
+
+    name = trim(rows(self%row)%key)
+    if (rows(self%row)%list) name = name // '_' // brief(self%element)
+  end function name_of
 
   !> Number of columns of this scene's sweep.
   pure integer function column_count(scene)

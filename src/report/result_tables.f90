@@ -132,6 +132,13 @@ module result_tables
       'classical theory, fitted to the same samples.', &
     '= sweep.csv | with &sweep | One row for each case: the values of the keys, then the ' // &
       'entries of &summary marked "in sweep.csv", and failure: why some of them are missing.', &
+    '= costs.csv | with costs in &sweep, or over &numerics | One row for each case: the ' // &
+      'values of the keys, time and work, and the estimated errors of numbers in sweep.csv.', &
+    'seconds [s] processor time without files; of a short case the least of several runs', &
+    'kernel_seconds [s] as in &cost, like the next seven', &
+    'solve_seconds [s]', 'estimate_seconds [s]', 'nodes []', 'states []', 'iterations []', &
+    'operator_products []', 'factorisations []', &
+    'error_estimate [] as in &summary', &
     '= summary.nml | | A namelist: &summary, &cost, and the deck with all defaults.']
 
 contains

@@ -31,7 +31,7 @@ module results
     type(progress_t) :: progress
     type(result_folder_t) :: folder
     character(len=:), allocatable, private :: title, version
-    type(table_t), private :: curve, shapes, cases, beside
+    type(table_t), private :: curve, shapes, cases, costs, beside
     !> Number of rows of the curve.
     integer, private :: states = 0
   contains
@@ -39,6 +39,7 @@ module results
     procedure :: take
     procedure :: hear
     procedure :: take_case
+    procedure :: take_costs
     procedure :: begin_table
     procedure :: row
     procedure :: write_text
@@ -121,11 +122,34 @@ contains
     class(results_t), intent(inout) :: self
     character(len=*), intent(in) :: columns(:), words(:), failure
     real(wp), intent(in) :: values(:), numbers(:)
-    character(len=:), allocatable :: line
-    integer :: k
 
     if (allocated(self%trouble)) return
     if (.not. self%cases%is_open()) call self%begin(self%cases, 'sweep.csv', columns, self%trouble)
+    if (.not. allocated(self%trouble)) call self%cases%line(key_cells(words, values) // &
+      cells(numbers) // ',' // trim(without_commas(failure)), self%trouble)
+    if (.not. allocated(self%trouble)) call self%cases%flush(self%trouble)
+  end subroutine take_case
+
+  !> Adds the cost of a case of a sweep to `costs.csv`; the arguments are like those of `take_case`.
+  subroutine take_costs(self, columns, words, values, numbers)
+    class(results_t), intent(inout) :: self
+    character(len=*), intent(in) :: columns(:), words(:)
+    real(wp), intent(in) :: values(:), numbers(:)
+
+    if (allocated(self%trouble)) return
+    if (.not. self%costs%is_open()) call self%begin(self%costs, 'costs.csv', columns, self%trouble)
+    if (.not. allocated(self%trouble)) call self%costs%line(key_cells(words, values) // &
+      cells(numbers), self%trouble)
+    if (.not. allocated(self%trouble)) call self%costs%flush(self%trouble)
+  end subroutine take_costs
+
+  !> The values of a sweep's keys as cells, each with a comma after it.
+  pure function key_cells(words, values) result(line)
+    character(len=*), intent(in) :: words(:)
+    real(wp), intent(in) :: values(:)
+    character(len=:), allocatable :: line
+    integer :: k
+
     line = ''
     do k = 1, size(values)
       if (words(k) == '') then
@@ -134,10 +158,7 @@ contains
         line = line // word_of(words(k), nint(values(k))) // ','
       end if
     end do
-    if (.not. allocated(self%trouble)) call self%cases%line(line // cells(numbers) // ',' // &
-      trim(without_commas(failure)), self%trouble)
-    if (.not. allocated(self%trouble)) call self%cases%flush(self%trouble)
-  end subroutine take_case
+  end function key_cells
 
   !> A text as a cell of a table: without commas and control characters.
   pure function without_commas(text) result(cell)
@@ -225,6 +246,7 @@ contains
     call finish_table(self%curve, self%trouble)
     call finish_table(self%shapes, self%trouble)
     call finish_table(self%cases, self%trouble)
+    call finish_table(self%costs, self%trouble)
     call finish_table(self%beside, self%trouble)
     if (allocated(self%trouble)) error = self%trouble
     call self%folder%close(error)

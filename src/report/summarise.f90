@@ -4,6 +4,7 @@ module summarise
   use dimensionless_problem, only: problem_t
   use numerics_choice, only: grid_names, unchosen, edge_locked
   use scene_groups, only: scene_t
+  use numerics_group, only: coarsest
   use text, only: brief, counted, rounded
   use experiment_result, only: experiment_result_t
   use records, only: quality_t
@@ -74,6 +75,10 @@ contains
           allocated(numerics%r_max) .or. allocated(numerics%panel_order))) call summary%note( &
           'numerics: nodes, r_max and panel_order have no effect on meshes that follow from ' // &
           'accuracy; grid = ''uniform'' and method = ''mixing'' have fixed ones')
+        if (numerics%accuracy > coarsest .and. .not. (problem%rigid .or. &
+          allocated(scene%drive))) call summary%note( &
+          'numerics: accuracy = ' // brief(numerics%accuracy) // ' costs no less than 1e-3, ' // &
+          'whose meshes are the coarsest that have every fold; only drives in time cost less')
       end associate
     end subroutine describe_numerics
 

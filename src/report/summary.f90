@@ -32,6 +32,8 @@ module summary
     !> several summaries at once would need a larger stack, which a limit of memory can forbid.
     type(value_t), allocatable, private :: value(:)
     type(line_t), allocatable :: warnings(:), notes(:)
+    !> The first reason why the run did not converge; not allocated if there is none.
+    character(len=:), allocatable :: failure
   contains
     procedure :: warn
     procedure :: note
@@ -41,6 +43,7 @@ module summary
     procedure :: has
     procedure :: number
     procedure :: element
+    procedure :: error_of
     procedure :: is_true
     procedure :: text
     procedure :: take_cost
@@ -179,6 +182,18 @@ contains
     end associate
   end function element
 
+  !> The estimated error of element k of row i; NaN if there is none.
+  pure real(wp) function error_of(self, i, k)
+    class(summary_t), intent(in) :: self
+    integer, intent(in) :: i, k
+
+    error_of = nan
+    associate (value => self%value(i))
+      if (.not. allocated(value%error)) return
+      if (k <= size(value%error)) error_of = value%error(k)
+    end associate
+  end function error_of
+
   !> Whether a key has a value that is true.
   pure logical function is_true(self, key)
     class(summary_t), intent(in) :: self
@@ -236,6 +251,7 @@ contains
     character(len=*), intent(in) :: text
 
     call self%set('converged', .false.)
+    if (.not. allocated(self%failure)) self%failure = text
     call self%warn(text)
   end subroutine fail_with
 

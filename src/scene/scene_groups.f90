@@ -64,6 +64,8 @@ module scene_groups
     character(len=80), allocatable :: words(:)
     type(axis_t), allocatable :: axis(:)
     type(case_file_t), allocatable :: file
+    !> Whether the cost of each case is measured.
+    logical :: costs = .false.
   contains
     procedure :: cases
     procedure :: values

@@ -3,11 +3,11 @@
 module sweep_group
   use kinds, only: wp
   use failure, only: failure_t
-  use text, only: brief, counted, quoted, word_count, word_of
+  use text, only: brief, counted, lower, quoted, word_count, word_of
   use deck, only: deck_t
   use deck_numbers, only: words_of, number_of_word
   use case_rows, only: case_rows_t
-  use deck_keys, only: key_spec, real_list, text_value, names_value
+  use deck_keys, only: key_spec, real_list, logical_value, text_value, names_value
   use scene_groups, only: scene_t, sweep_t, axis_t, case_file_t
   implicit none
   private
@@ -42,11 +42,14 @@ module sweep_group
       most=most_words, otherwise='none'), &
     key_spec('sweep', 'file', text_value, 'A table of cases: a line of names as ' // &
       '''group.key'', then one case a row; a relative path begins at the deck''s folder.', &
-      most=1000)]
+      most=1000), &
+    key_spec('sweep', 'costs', logical_value, 'Whether time, work and estimated errors of ' // &
+      'each case are measured, into costs.csv; the cases then run one by one.', &
+      otherwise='.true. if a key of &numerics is swept')]
 
 contains
 
-  !> Reads &sweep: a file, or keys with values or ranges.
+  !> Reads &sweep.
   subroutine take_sweep(scene)
     type(scene_t), intent(inout) :: scene
     integer :: i
@@ -59,6 +62,18 @@ contains
         '', 'not together with &sweep, whose results are numbers of each case and no tables; ' // &
         'leave out this group, or run a case alone')
     end do
+    call take_cases(scene)
+    if (allocated(scene%deck%error)) return
+    scene%sweep%costs = index(' ' // lower(scene%sweep%names), ' numerics.') > 0
+    if (scene%deck%is_set('sweep', 'costs')) &
+      call scene%deck%get('sweep', 'costs', scene%sweep%costs)
+  end subroutine take_sweep
+
+  !> Reads the cases: a file, or keys with values or ranges.
+  subroutine take_cases(scene)
+    type(scene_t), intent(inout) :: scene
+    integer :: i
+
     associate (deck => scene%deck, sweep => scene%sweep)
       if (deck%is_set('sweep', 'file')) then
         call refuse(deck, ['key   ', 'values', 'words ', of_range//' '], &
@@ -81,7 +96,7 @@ contains
       if (product([(real(size(sweep%axis(i)%values), wp), i=1, size(sweep%axis))]) > most_cases) &
         call deck%mistake('sweep', 'count', 'there are more than ' // brief(most_cases) // ' cases')
     end associate
-  end subroutine take_sweep
+  end subroutine take_cases
 
   !> Finds for each key the words that it may hold.
   subroutine find_words(deck, sweep)

@@ -1,9 +1,16 @@
-!> Elapsed time.
+!> Elapsed time, and processor time.
 module clock
+  use, intrinsic :: iso_c_binding, only: c_double
   use kinds, only: wp, long
   implicit none
   private
-  public :: seconds
+  public :: seconds, thread_seconds
+
+  interface
+    real(c_double) function c_thread_seconds() bind(c, name='snapin_thread_seconds')
+      import :: c_double
+    end function c_thread_seconds
+  end interface
 
 contains
 
@@ -14,5 +21,11 @@ contains
     call system_clock(count, rate)
     seconds = real(count, wp)/real(rate, wp)
   end function seconds
+
+  !> Seconds that a processor has worked for this thread. On an idle machine they pass like elapsed
+  !> ones; other work does not count.
+  real(wp) function thread_seconds()
+    thread_seconds = real(c_thread_seconds(), wp)
+  end function thread_seconds
 
 end module clock

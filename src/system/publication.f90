@@ -23,7 +23,8 @@ module publication
   character(len=*), parameter :: result_files(*) = [character(len=21) :: 'curve.csv', &
     'profiles.csv', 'approximations.csv', 'classical.csv', 'device.csv', &
     'device_jumps.csv', 'fixed_load.csv', 'table.csv', 'sensitivity.csv', &
-    'curve_sensitivity.csv', 'fit.csv', fit_name, 'sweep.csv', summary_name]
+    'curve_sensitivity.csv', 'fit.csv', fit_name, 'sweep.csv', 'costs.csv', &
+    summary_name]
   !> The folder with the files of a run that has not ended, and the name of its journal.
   character(len=*), parameter :: unfinished = 'unfinished', journal_name = unfinished // '/journal'
 

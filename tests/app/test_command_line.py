@@ -95,8 +95,8 @@ def test_keys_that_are_named_are_those_of_the_list(snapin):
 
 def test_help_names_every_option(snapin):
     text = snapin("--help").stdout
-    for option in ["--out", "--check", "--resume", "--quiet", "--keys", "--results", "--version",
-                   "--help"]:
+    for option in ["--out", "--check", "--price", "--resume", "--quiet", "--keys", "--results",
+                   "--version", "--help"]:
         assert f"\n  {option} " in text
 
 
@@ -139,6 +139,10 @@ def test_of_several_processes_the_first_answers(snapin, monkeypatch, option):
         (["--name", "other", "good.nml"], "--name is for a deck on standard input"),
         (["--name", "..", "-"], '--name needs a name for a folder, not ".."'),
         (["--name", "a/", "-"], '--name needs a name for a folder, not "a/"'),
+        (["--price"], "no deck"),
+        (["--prise", "good.nml"], 'did you mean "--price"?'),
+        *((["--price", *with_, "good.nml"], "--price prints a table and writes no results")
+          for with_ in (["--check"], ["--resume"], ["--out", "a"], ["--into=a"])),
         (["good.nml", "good.nml"], "would both write to the folder good"),
         (["good.nml", "other.nml", "sub/good.nml"], "good.nml and sub/good.nml"),
         (["--name", "good", "good.nml", "-"], "good.nml and - would both write"),

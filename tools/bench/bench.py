@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Measure what accuracy costs: tables and pictures in docs/bench/, tables in docs/accuracy.md.
+"""Measure what accuracy costs: pictures in docs/bench/, tables in docs/accuracy.md and in
+docs/records/costs.md.
 
     ./bench                          everything, five minutes
     ./bench --quick                  everything, coarser, in two minutes, into results/bench/
@@ -21,7 +22,8 @@ import time
 
 sys.path.append(str(pathlib.Path(__file__).resolve().parents[1]))
 
-import accuracy  # noqa: E402
+import digits  # noqa: E402
+import hard_cases  # noqa: E402
 import hot_spots  # noqa: E402
 import laws  # noqa: E402
 import pages  # noqa: E402 (found through the line above)
@@ -32,14 +34,16 @@ import tables  # noqa: E402
 import work_precision  # noqa: E402
 from pages import ROOT  # noqa: E402
 
-_GUIDE = ROOT / "docs" / "accuracy.md"
+# Each has marks for some of the tables.
+_GUIDES = (ROOT / "docs" / "accuracy.md", ROOT / "docs" / "records" / "costs.md")
 
 # Functions that measure, that draw, and that make the guide's tables.
 _PARTS = {
-    "accuracy": (accuracy.measure, accuracy.draw, accuracy.tables),
+    "accuracy": (digits.measure, digits.draw, digits.tables),
+    "hard_cases": (hard_cases.measure, hard_cases.draw, hard_cases.tables),
     "laws": (laws.measure, laws.draw, laws.tables),
     "experiments": (laws.measure_experiments, None, laws.tables_experiments),
-    "error_law": (accuracy.measure_law, accuracy.draw_law, accuracy.tables_law),
+    "error_law": (digits.measure_law, digits.draw_law, digits.tables_law),
     "ratios": (ratios.measure, None, ratios.tables),
     "sigma": (scaling.measure_sigma, scaling.draw_sigma, None),
     "nodes": (scaling.measure_nodes, scaling.draw_nodes, None),
@@ -66,7 +70,8 @@ def main():
     in_guide = not options.quick and options.out is None
     _present(folder, in_guide)
     if in_guide and not options.only and not options.draw:
-        pages.mark(_GUIDE)
+        for guide in _GUIDES:
+            pages.mark(guide)
 
 
 def _measure(name, path, runner, sources, quick):
@@ -84,7 +89,7 @@ def _measure(name, path, runner, sources, quick):
 
 
 def _present(folder, in_guide):
-    """Draw the available measurements; with `in_guide`, renew the guide's tables."""
+    """Draw the available measurements; with `in_guide`, renew the tables of the guides."""
     found, measured = {}, {}
     for name, (_, draw, make_tables) in _PARTS.items():
         path = folder / f"{name}.csv"
@@ -96,17 +101,24 @@ def _present(folder, in_guide):
         if rows and make_tables:
             found |= make_tables(rows, tables.read(_before(path)))
     if (folder / "accuracy.csv").is_file():
-        found |= accuracy.honesty(folder)
+        found |= digits.honesty(folder)
     if in_guide:
-        pages.insert(_GUIDE, "version", [
+        _insert("version", [
             f"Measured with {sources} ({machine}): {', '.join(names)}."
-            for (sources, machine), names in measured.items()], measured=False)
+            for (sources, machine), names in measured.items()])
     for name, (header, lines) in found.items():
         table = pages.table(header, lines, tables.short)
         if in_guide:
-            pages.insert(_GUIDE, name, table, measured=False)
+            _insert(name, table)
         else:
             print("\n".join(["", name, "", *table]))
+
+
+def _insert(name, lines):
+    """Put lines between the marks of the guides that have them."""
+    for guide in _GUIDES:
+        if f"<!-- {name} -->" in guide.read_text(encoding="utf-8"):
+            pages.insert(guide, name, lines, measured=False)
 
 
 def _sources(path):

@@ -31,7 +31,8 @@ def measure(program, quick, say):
     _lay_out_data(program)
     rows = []
     for problem in asked:
-        reference = program.run(problem.path(f"accuracy = {_REFERENCE}"), _PATIENCE)
+        reference = (program.reference(problem) if problem.sigma == problem.sigma else
+                     program.run(problem.path(f"accuracy = {_REFERENCE}"), _PATIENCE))
         for accuracy, run in _runs(program, quick, {
                 accuracy: problem.path(f"accuracy = {accuracy}") for accuracy in ACCURACIES}):
             errors = run.errors(reference, problem.length)
@@ -74,11 +75,14 @@ def draw(rows, folder):
 
 
 def tables(rows, before):
-    return {"laws": _price_list(rows, before, "error", "true error")}
+    """Return the whole table, and one with a line for each law and shape."""
+    return {"laws": _price_list(rows, before, "error", "true error"),
+            "price_of_laws": _short_list(rows, "error", "true error at 1e-6")}
 
 
 def tables_experiments(rows, before):
-    return {"experiments": _price_list(rows, before, "ratio", "true error / estimate, largest")}
+    return {"experiments": _price_list(rows, before, "ratio", "true error / estimate, largest"),
+            "price_of_experiments": _short_list(rows, "estimate", "estimated error at 1e-6")}
 
 
 def _price_list(rows, before, judged, title):
@@ -90,6 +94,16 @@ def _price_list(rows, before, judged, title):
           *(f"{row[key]:.0f}" if row[key] else math.nan
             for key in ("nodes", "states", "factorisations")), row["estimate"], row[judged]]
          for row in rows])
+
+
+def _short_list(rows, judged, title):
+    """Return a table with the time at each accuracy, and one number at 1e-6."""
+    lines = []
+    for name in dict.fromkeys(row["problem"] for row in rows):
+        of_name = {row["accuracy"]: row for row in chosen(rows, problem=name)}
+        lines.append([name, *(of_name[accuracy]["price"] for accuracy in ACCURACIES),
+                      of_name[1e-6][judged]])
+    return (["G at accuracy", *(f"{accuracy:.0e}" for accuracy in ACCURACIES), title], lines)
 
 
 def _runs(program, quick, decks):

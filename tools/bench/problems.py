@@ -22,6 +22,13 @@ class Problem:
     turn: float
     step: float
     adhesive: bool = True
+    # Strength of adhesion of a Lennard-Jones problem, whose numbers are known independently.
+    sigma: float = math.nan
+
+    @property
+    def load(self):
+        """Return gamma R [N]."""
+        return _HAMAKER / (16 * math.pi * _Z0**2) * RADIUS
 
     def cycle(self, numerics="", step=None):
         """Return a deck that loads by steps of h0 and, if the force adheres, unloads."""
@@ -55,7 +62,7 @@ def lennard_jones(sigma):
         f"sigma_{sigma:g}", f"σ = {sigma:g}",
         f"&bodies radius = {RADIUS}, stiffness = {stiffness!r} /\n"
         f"&force law = 'lennard_jones', hamaker = {_HAMAKER}, z0 = {_Z0} /",
-        _Z0, start, turn, (start - turn) / 50)
+        _Z0, start, turn, (start - turn) / 50, sigma=sigma)
 
 
 def in_two_parts(problem):

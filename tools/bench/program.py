@@ -9,6 +9,7 @@ import shutil
 import subprocess
 import sys
 
+import truth
 from gauge import Gauge
 from snapin import read_results
 
@@ -85,6 +86,17 @@ class Run:
         return errors
 
 
+def independent(problem):
+    """Return the numbers of a Lennard-Jones problem by the independent solution, as a `Run`."""
+    found = truth.numbers(problem.sigma, problem.start, problem.turn, length=problem.length,
+                          load=problem.load)
+    names = {"pull_off": "max_tension", "jump_in": "jump_in_h0", "jump_in_load": "jump_in_load",
+             "jump_out": "jump_out_h0", "jump_out_load": "jump_out_load", "load": "end_load",
+             "displacement": "end_displacement"}
+    return Run(estimate=0.0, values={name: found[key] for name, key in names.items()
+                                     if key in found})
+
+
 class Program:
     """The program of one build, run in its own folder."""
 
@@ -139,6 +151,12 @@ class Program:
             run.calculation = calculation[key]
         return best
 
+    def costs(self, deck):
+        """Return the columns of costs.csv of a deck whose sweep has costs."""
+        self.run(deck)
+        found = read_results(self.scratch / "deck").costs
+        return {name: found[name] for name in found.dtype.names}
+
     def start_up(self, rounds=10):
         """Return the price of a program that starts and prints its version."""
         least = math.inf
@@ -164,8 +182,11 @@ class Program:
         return float(done.stdout) / self.gauge.unit()
 
     def reference(self, problem):
-        """Return a converged run: the path with the highest accuracy of the program."""
+        """Return the true numbers: those of the independent solution for a Lennard-Jones problem,
+        otherwise a converged run, the path with the highest accuracy of the program."""
         key = problem.name
+        if problem.sigma == problem.sigma:
+            return independent(problem)
         if key not in self._references:
             self._references[key] = self.run(problem.path(
                 "accuracy = 1e-10, residual_tolerance = 1e-12"))

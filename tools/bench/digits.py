@@ -8,6 +8,8 @@ import problems
 from tables import chosen, earlier, read, whole
 
 ACCURACIES = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10)
+# Those in the short table.
+_SHOWN = (1e-3, 1e-6, 1e-9)
 # Below this value the error of the reference matters.
 _KNOWN = 1e-10
 # In units of sqrt(R z0).
@@ -27,18 +29,34 @@ def measure(program, quick, say):
         decks = {(kind, accuracy): getattr(problem, kind)(f"accuracy = {accuracy}")
                  for accuracy in (ACCURACIES[::4] if quick else ACCURACIES)
                  for kind in ("path", "cycle")}
+        calculation = {
+            (kind, accuracy): seconds
+            for kind in ("path", "cycle")
+            for accuracy, seconds in _calculations(program, getattr(problem, kind)(), quick)}
         for (kind, accuracy), run in program.best_of(2 if quick else 5, decks).items():
-            rows.append(_row(problem, kind, accuracy, run, reference))
-        say(f"{problem.label}: done; "
-            f"the reference is estimated to be off by {reference.estimate:.0e}")
+            rows.append(_row(problem, kind, accuracy, run, reference)
+                        | {"calculation": 1e3 * calculation[kind, accuracy]})
+        say(f"{problem.label}: done; the reference is "
+            + (f"estimated to be off by {reference.estimate:.0e}" if reference.estimate
+               else "the independent solution"))
     return rows
 
 
+def _calculations(program, deck, quick):
+    """Return each accuracy and the processor time of its calculation, by a sweep over them."""
+    values = ACCURACIES[::4] if quick else ACCURACIES
+    swept = f"&sweep key = 'numerics.accuracy', values = {', '.join(map(str, values))} /\n"
+    return zip(values, program.costs(deck + swept)["seconds"])
+
+
 def _row(problem, kind, value, run, reference):
-    errors = run.errors(reference, problem.length)
+    # A run with the accuracy of a reference that is a run too says nothing about its own error.
+    errors = {} if reference.estimate and value == ACCURACIES[-1] else run.errors(
+        reference, problem.length)
     return {
         "problem": problem.name, "deck": kind, "accuracy": value,
         **run.cells("nodes", "states", "price", "least_price"),
+        "milliseconds": 1e3 * run.seconds,
         "price_of_estimate": run.price - run.price_of_run,
         **run.cells("products", "factorisations"),
         **{f"error_{key}": errors.get(key, math.nan) for key in ("pull_off", "jump_in", "load")},
@@ -51,39 +69,49 @@ def draw(rows, folder):
     """Draw error and estimate against the requested accuracy, and the cost of each."""
     page, (errors, times) = pictures.figure(1, 2, (9.0, 4.6))
     pictures.dress(errors, "what is asked and what is got", "accuracy asked for", "relative error")
-    pictures.dress(times, "what it costs", "accuracy asked for", "time [G]")
+    pictures.dress(times, "what it costs", "accuracy asked for", "time [ms]")
     for problem, look in zip(problems.ALL, pictures.LOOKS):
         mine = chosen(rows, problem=problem.name, deck="path")
         pictures.line(errors, mine, "accuracy", "error", 1e-15, **look, linewidth=1.2,
                       label=problem.label)
         pictures.line(errors, mine, "accuracy", "estimate", **look, **pictures.OPEN, linestyle=":",
                       linewidth=1.0, markersize=4)
-        pictures.line(times, mine, "accuracy", "price", **look, linewidth=1.2)
-        pictures.line(times, mine, "accuracy", "least_price", color=look["color"], linestyle=":",
-                      linewidth=1.0)
+        pictures.line(times, mine, "accuracy", "milliseconds", **look, linewidth=1.2)
+        pictures.line(times, mine, "accuracy", "calculation", color=look["color"], linestyle=":",
+                      linewidth=1.2)
     errors.plot(ACCURACIES, ACCURACIES, color=pictures.GREY, linewidth=2, zorder=0,
                 label="error = accuracy")
-    pictures.explain(times, "linear algebra and rows alone", ":")
-    times.legend(frameon=False, fontsize=8)
+    pictures.explain(times, "calculation, without start and files", ":")
+    unit = float(np.median([row["milliseconds"] / row["price"] for row in rows]))
+    beside = times.secondary_yaxis("right", functions=(lambda time: time / unit,
+                                                       lambda time: time * unit))
+    beside.set_ylabel("time [G]")
     pictures.explain(errors, "error_estimate", "o:", markersize=4, **pictures.OPEN)
     for panel in (errors, times):
         panel.invert_xaxis()
     pictures.plain_ticks(times.yaxis, 1, 2, 5, 10, 20, 50, 100)
+    pictures.plain_ticks(beside.yaxis, 1, 2, 5, 10, 20, 50)
     pictures.legend(page, 4)
     pictures.save(page, folder / "accuracy.png")
 
 
 def tables(rows, before):
-    """Return the table of costs: the path at each accuracy, and its cost in the previous
-    version."""
+    """Return the table of costs, the path at each accuracy with its cost in the previous version;
+    and a short one."""
     price_before = earlier(before, "price", "problem", "deck", "accuracy")
+    short = [[problem.label, f"{row['accuracy']:.0e}", row["calculation"], row["milliseconds"],
+              row["price"], *whole(row, "nodes", "states"), row["error"], row["estimate"]]
+             for problem in problems.ALL for accuracy in _SHOWN
+             for row in chosen(rows, problem=problem.name, deck="path", accuracy=accuracy)]
     lines = [[problem.label, f"{row['accuracy']:.0e}", row["price"], row["least_price"],
               price_before(row), *whole(row, "nodes", "states", "products", "factorisations"),
               row["error"], row["estimate"]]
              for problem in problems.ALL
              for row in chosen(rows, problem=problem.name, deck="path")]
     return {"accuracy": (["", "accuracy", "G", "limit", "before", "nodes", "states", "products",
-                          "factorisations", "true error", "error_estimate"], lines)}
+                          "factorisations", "true error", "error_estimate"], lines),
+            "price": (["", "accuracy", "ms, calculation", "ms, whole run", "G", "nodes", "states",
+                       "true error", "error_estimate"], short)}
 
 
 def measure_law(program, quick, say):
