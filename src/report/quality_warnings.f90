@@ -77,9 +77,9 @@ contains
       end if
     end associate
     call summary%set('table_error', error)
-    if (error > coarse) call summary%warn('the points of the table are far apart, or do not ' // &
-      'lead into its tail: work of adhesion and pull-off have relative errors of about ' // &
-      brief(error))
+    if (error > coarse) call summary%warn('the points of the table are far apart or noisy, or ' // &
+      'do not lead into its tail: work of adhesion and pull-off have relative errors of about ' // &
+      rounded(error))
   end subroutine take_table_error
 
   !> Checks the states of the experiments, and the accuracy of the numbers.
