@@ -25,16 +25,13 @@ module edge_locked
     procedure :: insert
     procedure :: has_short_panels
     procedure :: renew
-    procedure :: replace
     procedure :: shape_for
-    procedure :: complete
   end type mesh_family_t
 
 contains
 
   !> Meshes for H0 from h0_high down to h0_low, accurate to the given number of digits
-  !> (`mesh_rule`). shape_only: the kernels are left out, because only their size is needed or
-  !> because `complete` adds them later. store: earlier meshes, to which these are added. coarser:
+  !> (`mesh_rule`). shape_only: the kernels are left out, because only their size is needed. store: earlier meshes, to which these are added. coarser:
   !> meshes of fewer digits for the same problem and range; keep: their panels are kept where these
   !> were laid out for seen gaps. fronts: whether meshes may
   !> be locked to the front of a step; further: whether meshes may be inserted later; both .true. if
@@ -106,15 +103,6 @@ contains
     end if
   end subroutine make_mesh
 
-  !> Adds the kernel to a mesh that was made without it, for elastic bodies.
-  subroutine complete(self, mesh, store)
-    class(mesh_family_t), intent(inout) :: self
-    integer, intent(in) :: mesh
-    type(mesh_store_t), intent(inout), optional :: store
-
-    call make_mesh(self%shape(mesh), .true., self%grid(mesh), store)
-  end subroutine complete
-
   !> Replaces a mesh by a new one with the given shape, for elastic bodies.
   subroutine renew(self, mesh, shape)
     class(mesh_family_t), intent(inout) :: self
@@ -125,17 +113,6 @@ contains
     self%grid(mesh) = new_mapped_mesh(shape, elastic=.true.)
     self%waits(mesh) = .false.
   end subroutine renew
-
-  !> Replaces a mesh by one that was made before.
-  subroutine replace(self, mesh, shape, grid)
-    class(mesh_family_t), intent(inout) :: self
-    integer, intent(in) :: mesh
-    type(mapped_shape_t), intent(in) :: shape
-    type(discretisation_t), intent(in) :: grid
-
-    self%shape(mesh) = shape
-    self%grid(mesh) = grid
-  end subroutine replace
 
   !> Chooses the shape of a mesh from a coarser one with more nodes on its panels: if a new layout
   !> would have fewer nodes than this, as under laws for which numbers of nodes were tried, and so
