@@ -3,7 +3,7 @@
 !> of a number is its difference from that of another run; if it is larger than the accuracy of the
 !> deck, the finer run becomes the result. Effects that are not requested are not set up.
 module experiment
-  use kinds, only: wp, long
+  use kinds, only: wp
   use dimensionless_problem, only: problem_t
   use experiment_request, only: request_t
   use numerics_choice, only: choose, more_digits, with_fewer_nodes, with_less_extent
@@ -104,10 +104,8 @@ contains
     if (outcome%timed%begun) outcome%error_estimate = outcome%timed%estimate
   end subroutine run_driven
 
-  !> Runs the experiments on meshes locked to the contact edge, again with more digits until the
-  !> numbers of two successive runs agree within the accuracy; the coarser of these is the result,
-  !> and the difference is its error. Rows are made for the result alone. one, other: steppers of
-  !> the same type.
+  !> Runs the experiments on meshes locked to the contact edge, as accurately as the deck asks for.
+  !> Rows are made for the result alone. one, other: steppers of the same type.
   subroutine run_locked(one, other, request, problem, observer, outcome, keeper, store)
     class(locked_stepper_t), intent(inout), target :: one, other
     class(request_t), intent(in) :: request
@@ -116,12 +114,46 @@ contains
     type(experiment_result_t), intent(inout) :: outcome
     class(keeping_stepper_t), intent(inout), optional :: keeper
     type(mesh_store_t), intent(inout), optional :: store
-    class(locked_stepper_t), pointer :: steps, finer, former
+    class(locked_stepper_t), pointer :: steps
     type(experiment_result_t) :: ahead, nothing
+    type(run_numbers_t) :: others(1)
+    real(wp) :: began
+
+    call agree(one, other, request, problem, observer, outcome, ahead, steps, store)
+    began = seconds()
+    outcome%places = nothing%places
+    call run_once(steps, request, .not. outcome%chosen%is_fixed(), .true., observer, outcome, &
+      keeper, ahead%places)
+    others(1)%number = ahead%places%numbers()
+    call outcome%places%judge_by(others, is_rough(steps))
+    outcome%error_estimate = largest_error(outcome%places%number)
+    steps%cost%solve_seconds = steps%cost%solve_seconds + seconds() - began
+    outcome%nodes = outcome%nodes + sum(steps%meshes%grid%nodes)
+    select type (steps)
+    class is (path_stepper_t)
+      if (allocated(request%varied)) &
+        call rate_places(request%varied, steps, observer, outcome)
+    end select
+    outcome%cost = steps%cost
+  end subroutine run_locked
+
+  !> Runs a scene with more and more digits until the numbers of two successive runs agree within
+  !> the accuracy: the coarser of these, outcome, is the result, and ahead is the other. steps: the
+  !> stepper of the result, one of the two that are given.
+  subroutine agree(one, other, request, problem, observer, outcome, ahead, steps, store)
+    class(locked_stepper_t), intent(inout), target :: one, other
+    class(request_t), intent(in) :: request
+    type(problem_t), intent(in) :: problem
+    class(observer_t), intent(inout) :: observer
+    type(experiment_result_t), intent(inout) :: outcome
+    type(experiment_result_t), intent(out) :: ahead
+    class(locked_stepper_t), pointer, intent(out) :: steps
+    type(mesh_store_t), intent(inout), optional :: store
+    class(locked_stepper_t), pointer :: finer, former
+    type(experiment_result_t) :: nothing
     type(run_numbers_t) :: others(1)
     type(observer_t) :: silent
     real(wp) :: began, first, more, error, before
-    integer(long) :: states
     logical :: with_cycle
     integer :: round
 
@@ -129,12 +161,12 @@ contains
     steps => one
     finer => other
     before = huge(before)
+    more = 0
+    first = outcome%chosen%digits
     began = seconds()
     call begin_run(steps, request, problem, outcome%chosen, observer, store)
     call run_once(steps, request, with_cycle, .false., silent, outcome)
     steps%cost%solve_seconds = seconds() - began
-    first = outcome%chosen%digits
-    more = 0
     do round = 1, most_rounds
       began = seconds()
       call observer%hear('estimating errors')
@@ -151,9 +183,8 @@ contains
       call outcome%places%judge_by(others, is_rough(steps))
       error = largest_error(outcome%places%number)
       finer%cost%estimate_seconds = finer%cost%estimate_seconds + seconds() - began
-      states = steps%cost%states
+      finer%cost%states = steps%cost%states
       steps%cost = finer%cost
-      steps%cost%states = states
       if (error <= request%numerics%accuracy .or. error < 1 .and. error > helped*before .or. &
         round == most_rounds .or. ahead%chosen%digits > most_digits) exit
       before = error
@@ -162,20 +193,7 @@ contains
       finer => former
       outcome = ahead
     end do
-    began = seconds()
-    outcome%places = nothing%places
-    call run_once(steps, request, with_cycle, .true., observer, outcome, keeper, ahead%places)
-    call outcome%places%judge_by(others, is_rough(steps))
-    outcome%error_estimate = largest_error(outcome%places%number)
-    steps%cost%solve_seconds = steps%cost%solve_seconds + seconds() - began
-    outcome%nodes = outcome%nodes + sum(steps%meshes%grid%nodes)
-    select type (steps)
-    class is (path_stepper_t)
-      if (allocated(request%varied)) &
-        call rate_places(request%varied, steps, observer, outcome)
-    end select
-    outcome%cost = steps%cost
-  end subroutine run_locked
+  end subroutine agree
 
   !> Whether errors decrease slowly with the number of nodes: where short panels contain a law or a
   !> body that is not smooth; or without a contact edge, where the mesh is not locked to the sharp
@@ -188,8 +206,8 @@ contains
       k=1, size(steps%meshes%grid))])
   end function is_rough
 
-  !> Runs the cycle on a grid that is fixed in space, then on a coarser one and on a smaller one, one
-  !> at a time, so that their differences cannot cancel. outcome: has the numbers of the path.
+  !> Runs the cycle on a grid that is fixed in space, then on a coarser one and on a smaller one,
+  !> one at a time, so that their differences cannot cancel. outcome: has the numbers of the path.
   subroutine run_fixed(steps, request, problem, observer, outcome, keeper)
     type(fixed_stepper_t), intent(inout) :: steps
     class(request_t), intent(in) :: request
@@ -202,7 +220,6 @@ contains
     type(run_numbers_t) :: others(2)
     type(observer_t) :: silent
     real(wp) :: began
-    integer(long) :: states
     integer :: k
 
     of_path%places = outcome%places
@@ -222,9 +239,8 @@ contains
       call begin_run(coarse, request, problem, ahead%chosen, observer)
       call run_once(coarse, request, .true., .true., silent, ahead, like=outcome%places)
       others(k)%number = ahead%places%numbers()
-      states = steps%cost%states
+      coarse%cost%states = steps%cost%states
       steps%cost = coarse%cost
-      steps%cost%states = states
     end do
     call outcome%places%judge_by(others, .true.)
     outcome%error_estimate = largest_error(outcome%places%number)

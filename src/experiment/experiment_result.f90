@@ -170,8 +170,8 @@ contains
     end do
   end subroutine enter_turns
 
-  !> Enters rows of the table as places: some of each leg, or at the h0 that are entered in the table
-  !> of another run (like).
+  !> Enters rows of the table as places: some of each leg, or at the h0 that are entered in the
+  !> table of another run (like).
   subroutine enter_table(steps, readings, places, like)
     class(path_stepper_t), intent(inout) :: steps
     type(path_readings_t), intent(inout) :: readings

@@ -144,7 +144,8 @@ contains
     real(wp) :: x
     integer :: j
 
-    associate (problem => steps%problem, grid => steps%meshes%grid(place%mesh), state => place%state)
+    associate (problem => steps%problem, grid => steps%meshes%grid(place%mesh), &
+      state => place%state)
       place%gap = state%gap
       place%pressure = pressure_at_nodes(problem%law, grid, state%gap, state%pressure)
       if (own) return

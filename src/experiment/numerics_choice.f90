@@ -42,9 +42,9 @@ module numerics_choice
   !> the number of nodes, which limits the automatic choice.
   real(wp), parameter :: comfortable = 0.2_wp
   integer, parameter :: fewest = 200, most = 1500
-  !> Additional digits of a finer run on edge-locked meshes. Part of the nodes, and of the extent, of
-  !> other runs on a fixed grid, since a finer one would cost many times as much; the smaller extent
-  !> should still contain the contact.
+  !> Additional digits of a finer run on edge-locked meshes. Part of the nodes, and of the extent,
+  !> of other runs on a fixed grid, since a finer one would cost many times as much; the smaller
+  !> extent should still contain the contact.
   real(wp), parameter :: more_digits = 1.5_wp, part_of_nodes = 2/3.0_wp, part_of_extent = 5/6.0_wp
   !> Error of an extremum's place over the accuracy: the error of the load is a few times larger.
   real(wp), parameter :: place_over_accuracy = 1.0e-5_wp

@@ -1,5 +1,6 @@
-!> One run of a scene's experiments with one stepper and one choice of numerics: from the problem and
-!> its meshes to named numbers (the places of `experiment_result_t`), and to rows if they are wanted.
+!> One run of a scene's experiments with one stepper and one choice of numerics: from the problem
+!> and its meshes to named numbers (the places of `experiment_result_t`), and to rows if they are
+!> wanted.
 module one_run
   use kinds, only: wp, long
   use clock, only: seconds

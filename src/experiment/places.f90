@@ -5,8 +5,8 @@ module places
   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
   use kinds, only: wp, nan
   use dimensionless_problem, only: problem_t
-  use reported_place, only: place_t, point_of_path, values_of, units_of, rates_of, least, rounding, &
-    quantities, of_h0, of_load, of_radius, of_profile
+  use reported_place, only: place_t, point_of_path, values_of, units_of, rates_of, least, &
+    rounding, quantities, of_h0, of_load, of_radius, of_profile
   use reported_numbers, only: number_t, run_numbers_t, judge, of_table, of_turns, name_length
   use result_rows, only: rows
   implicit none

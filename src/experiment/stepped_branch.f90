@@ -6,15 +6,16 @@ module stepped_branch
   use stepper, only: stepper_t, branch_point_t, step_result_t
   use ending, only: ending_t
   use tension_search, only: tension_search_t
-  use reported_place, only: place_t, place_of_state, place_without_state, point_of_path, of_h0, of_load
+  use reported_place, only: place_t, place_of_state, place_without_state, point_of_path, of_h0, &
+    of_load
   use places, only: places_t
   use records, only: observer_t, record_t, quality_t, record_of, stable_yes, stable_unasked
   implicit none
   private
   public :: h0_schedule_t, branch_t, run_branch, enter_ends
 
-  !> The values of h0 of a branch, in the law's lengths; those with a profile; and those whose errors
-  !> represent the errors of all.
+  !> The values of h0 of a branch, in the law's lengths; those with a profile; and those whose
+  !> errors represent the errors of all.
   type :: h0_schedule_t
     character(len=:), allocatable :: name
     real(wp), allocatable :: h0(:)

@@ -145,7 +145,8 @@ contains
 
     associate (value => self%at)
       all(:read_of_states) = value
-      ! At fixed D equilibria are stationary points of the energy of bodies and spring, or dead load.
+      ! At fixed D equilibria are stationary points of the energy of bodies and spring, or of that
+      ! of bodies and dead load.
       if (self%drive(1) > 0) then
         all(of_energy) = value(of_energy) - 0.5_wp*self%drive(2)*value(of_load)**2
       else

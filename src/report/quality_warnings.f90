@@ -5,7 +5,7 @@ module quality_warnings
   use kinds, only: wp, pi
   use force_law, only: of_pressure, of_energy
   use dimensionless_problem, only: problem_t, surface_energy, largest_tension
-  use text, only: brief, rounded
+  use text, only: rounded
   use layered_body, only: layered_body_t
   use layered_surface, only: layered_surface_t
   use records, only: quality_t
@@ -231,7 +231,8 @@ contains
     end subroutine judge_resolution
 
     !> Warns if the numbers do not have the accuracy that the deck asks for. Warns also of residuals
-    !> that rounding keeps above the tolerance, if they matter for displacements of the law's length.
+    !> that rounding keeps above the tolerance, if they matter for displacements of the law's
+    !> length.
     subroutine judge_accuracy()
       associate (tolerance => outcome%chosen%options%tolerance)
         if (summary%is_true('converged') .and. .not. outcome%chosen%options%stop_on_change .and. &

@@ -184,7 +184,8 @@ contains
         call summary%fail_with('some numbers that are read from the path were not solved')
       if (allocated(readings%device)) call summarise_device(problem, readings, places, summary)
       if (places%has('table')) then
-        call summary%set('table_load_error', largest_of(places%number, of_table, of_load)*problem%load)
+        call summary%set('table_load_error', &
+          largest_of(places%number, of_table, of_load)*problem%load)
         call summary%set('table_interpolation_error', &
           readings%table_interpolation_error*problem%load)
       end if
