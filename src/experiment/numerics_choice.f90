@@ -69,8 +69,13 @@ contains
       return
     end if
     numerics = request%numerics
-    if (present(more)) numerics%accuracy = numerics%accuracy*10**(-more)
     chosen%accuracy = numerics%accuracy
+    if (present(more)) then
+      ! With more digits pressures are to be resolved better too, but under a law with kinks the
+      ! number of nodes and of steps for this grows fast.
+      chosen%accuracy = chosen%accuracy*10**(-0.5_wp*more)
+      numerics%accuracy = numerics%accuracy*10**(-more)
+    end if
     ! Only a cycle is computed by mixing, or on a grid that is fixed in space.
     if (.not. allocated(request%loading)) then
       numerics%grid = 'auto'
