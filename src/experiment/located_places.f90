@@ -31,8 +31,7 @@ module located_places
 contains
 
   !> Sets the values at all places. like: the table of another run of the same scene, whose
-  !> profiles, in the same order, say at which radii gaps are read; without it, they are read at
-  !> the nodes.
+  !> profiles say at which radii gaps are read; without it, they are read at the nodes.
   subroutine locate_places(steps, places, like)
     class(solver_t), intent(inout) :: steps
     type(places_t), intent(inout) :: places
@@ -46,33 +45,42 @@ contains
         call find_on_path(steps, places%place(i))
       end do
     end select
-    k = 0
     do i = 1, size(places%place)
       associate (place => places%place(i))
         call add_leftovers(steps, place)
         if (.not. (place%with_profile .and. place%mesh > 0)) cycle
-        if (present(like)) then
-          call next_profile(like, k)
-          if (k == 0) exit
+        k = 0
+        if (present(like)) k = same_profile(places, i, like)
+        if (k > 0) then
           place%r = like%place(k)%r
         else
           place%r = place%state%scale*steps%meshes%grid(place%mesh)%x(:size(place%state%gap))
         end if
-        call read_profile(steps, place, .not. present(like))
+        call read_profile(steps, place, k == 0)
       end associate
     end do
   end subroutine locate_places
 
-  !> The next place of a table with a profile after place k; 0: there is none.
-  pure subroutine next_profile(places, k)
-    type(places_t), intent(in) :: places
-    integer, intent(inout) :: k
+  !> The place of another table that has the profile, by name and element, of place i of a table; 0:
+  !> there is none.
+  pure integer function same_profile(places, i, like) result(k)
+    type(places_t), intent(in) :: places, like
+    integer, intent(in) :: i
+    integer :: own, other
 
-    do k = k + 1, size(places%place)
-      if (allocated(places%place(k)%r)) return
-    end do
     k = 0
-  end subroutine next_profile
+    do own = 1, size(places%entry)
+      if (places%entry(own)%place /= i) cycle
+      do other = 1, size(like%entry)
+        associate (a => places%entry(own), b => like%entry(other))
+          if (a%name /= b%name .or. a%element /= b%element .or. b%place == 0) cycle
+          if (.not. allocated(like%place(b%place)%r)) cycle
+          k = b%place
+        end associate
+        return
+      end do
+    end do
+  end function same_profile
 
   !> Finds the equilibrium of a place on the path.
   subroutine find_on_path(steps, place)
