@@ -7,7 +7,7 @@ module preflight
   use text, only: brief
   use scene_groups, only: scene_t
   use dimensionless_problem, only: problem_t
-  use numerics_choice, only: choice_t, choose, companion
+  use numerics_choice, only: choice_t, choose, with_fewer_nodes
   use edge_locked, only: mesh_family_t, new_mesh_family
   use scene_problem, only: problem_of
   use scene, only: swept_scene
@@ -167,14 +167,14 @@ contains
       meshes = new_mesh_family(problem, chosen%high, chosen%low, digits, shape_only=.true.)
       of_meshes = chosen%digits/digits*meshes%grid%nodes
       nodes = ceiling(maxval(of_meshes))
-      ! Kernels, one factorisation and another for a fold, and about half as much again for the
-      ! finer meshes of the error estimate, which exist at the same time.
-      entries = 2.6_wp*sum(of_meshes**2) + 3.6_wp*real(nodes, wp)**2
+      ! Kernels, one factorisation and another for a fold, and about one and a half times as much
+      ! again for the finer run, which exists at the same time.
+      entries = 2.6_wp*(sum(of_meshes**2) + 2*real(nodes, wp)**2)
       if (scene%has_eigenvalues()) entries = entries + eigenvalue_matrices*real(nodes, wp)**2
     end if
     if (chosen%is_fixed()) then
       nodes = max(nodes, chosen%nodes)
-      other = companion(chosen)
+      other = with_fewer_nodes(chosen)
       ! The kernel, the factors in use, and those for following a jump.
       matrices = merge(1, 3, chosen%options%mixing)
       if (scene%has_eigenvalues()) matrices = matrices + eigenvalue_matrices

@@ -1,40 +1,44 @@
 !> Runs the requested experiments of the elastic problem: the equilibrium path, the cycle stepped in
-!> h0. Effects that are not requested are not set up.
+!> h0. A run is a function from the problem and the numerics to named numbers (`one_run`). The error
+!> of a number is its difference from that of another run; if it is larger than the accuracy of the
+!> deck, the finer run becomes the result. Effects that are not requested are not set up.
 module experiment
   use kinds, only: wp
   use dimensionless_problem, only: problem_t
   use experiment_request, only: request_t
-  use numerics_choice, only: choice_t, choose, fixed_mesh
-  use edge_locked, only: new_mesh_family
+  use numerics_choice, only: choose, more_digits, with_fewer_nodes, with_less_extent
+  use mesh_digits, only: most_digits
   use mesh_store, only: mesh_store_t
-  use ending, only: turn_not_reached
-  use stepper, only: stepper_t, keeping_stepper_t, branch_point_t
+  use solver, only: solver_t
+  use stepper, only: keeping_stepper_t
   use locked_stepper, only: locked_stepper_t, unique_stepper_t
   use path_stepper, only: path_stepper_t
   use fixed_stepper, only: fixed_stepper_t
   use rigid_bodies, only: run_rigid
-  use stepped_branch, only: h0_schedule_t, run_branch
-  use path_demand, only: path_start
-  use h0_schedule, only: path_plan, loading_plan, unloading_plan
-  use experiment_result, only: experiment_result_t, enter_readings, enter_energy, enter_table
-  use exact_path, only: trace_exactly
-  use finer_solver, only: finer_t
-  use place_errors, only: judge_places, conclude
+  use experiment_result, only: experiment_result_t
+  use one_run, only: begin_run, run_once
+  use reported_numbers, only: run_numbers_t, largest_error
   use place_rates, only: rate_places
-  use path, only: follow_path
-  use path_readings, only: read_path
   use timed_run, only: run_timed
   use journal, only: journal_t
   use records, only: observer_t
   use clock, only: seconds
-  use machine, only: use_threads_for
   implicit none
   private
-  public :: run_experiment, prepare
+  public :: run_experiment
 
   !> The coupling for rigid bodies: it is so small that the bodies do not deform noticeably, even
   !> under the pressure of a fluid, which may be much larger than that of the law.
   real(wp), parameter :: unyielding = 1.0e-18_wp
+
+  !> Largest number of runs with more digits. If a run with more digits does not reduce the largest
+  !> error to this fraction, the error has another cause, such as rounding, and further ones are
+  !> useless, unless there are numbers that one of the runs does not have.
+  integer, parameter :: most_rounds = 4
+  real(wp), parameter :: helped = 0.5_wp
+  !> Least number of digits of a run that is compared under a law with a step: with fewer, the nodes
+  !> of two runs may miss the same part of the front of the step, which moves folds.
+  real(wp), parameter :: digits_at_steps = 9.5_wp
 
 contains
 
@@ -47,10 +51,10 @@ contains
     type(experiment_result_t), intent(out) :: outcome
     class(keeping_stepper_t), intent(inout), optional :: keeper
     type(mesh_store_t), intent(inout), optional :: store
-    ! Not one allocatable stepper: compiler note 3.
-    type(path_stepper_t), target :: along_path
-    type(unique_stepper_t), target :: one_by_one
-    type(fixed_stepper_t), target :: at_nodes
+    ! Not allocatable steppers: compiler note 3.
+    type(path_stepper_t), target :: along_path(2)
+    type(unique_stepper_t), target :: one_by_one(2)
+    type(fixed_stepper_t) :: at_nodes
     logical :: fixed
 
     if (.not. request%finds_states()) return
@@ -61,19 +65,20 @@ contains
     outcome%chosen = choose(request, problem)
     if (problem%rigid) then
       call run_rigid(request, problem, observer, outcome)
-      call conclude(outcome%places, outcome%error_estimate)
       return
     end if
     fixed = outcome%chosen%is_fixed()
     if (allocated(request%path) .or. .not. fixed) then
       if (problem%law%adhesion > 0) then
-        call run_with(along_path, request, problem, .not. fixed, observer, outcome, keeper, store)
+        call run_locked(along_path(1), along_path(2), request, problem, observer, outcome, keeper, &
+          store)
       else
-        call run_with(one_by_one, request, problem, .not. fixed, observer, outcome, keeper, store)
+        call run_locked(one_by_one(1), one_by_one(2), request, problem, observer, outcome, keeper, &
+          store)
       end if
     end if
     if (allocated(request%loading) .and. fixed) &
-      call run_with(at_nodes, request, problem, .true., observer, outcome, keeper)
+      call run_fixed(at_nodes, request, problem, observer, outcome, keeper)
   end subroutine run_experiment
 
   !> Runs the drive in time. Rigid bodies are replaced by bodies that are too stiff for a noticeable
@@ -99,169 +104,148 @@ contains
     if (outcome%timed%begun) outcome%error_estimate = outcome%timed%estimate
   end subroutine run_driven
 
-  !> Runs the path, and the cycle if `with_cycle` and the scene has one, with a stepper. A stepper
-  !> on a mesh fixed in space runs the cycle only.
-  subroutine run_with(steps, request, problem, with_cycle, observer, outcome, keeper, store)
-    class(stepper_t), intent(inout), target :: steps
+  !> Runs the experiments on meshes locked to the contact edge, as accurately as the deck asks for.
+  !> Rows are made for the result alone. one, other: steppers of the same type.
+  subroutine run_locked(one, other, request, problem, observer, outcome, keeper, store)
+    class(locked_stepper_t), intent(inout), target :: one, other
     class(request_t), intent(in) :: request
     type(problem_t), intent(in) :: problem
-    logical, intent(in) :: with_cycle
     class(observer_t), intent(inout) :: observer
     type(experiment_result_t), intent(inout) :: outcome
-    class(keeping_stepper_t), intent(inout), target, optional :: keeper
-    type(mesh_store_t), intent(inout), target, optional :: store
-    type(finer_t) :: fine
-    type(branch_point_t) :: position
-    real(wp) :: began, judged
+    class(keeping_stepper_t), intent(inout), optional :: keeper
+    type(mesh_store_t), intent(inout), optional :: store
+    class(locked_stepper_t), pointer :: steps
+    type(experiment_result_t) :: ahead, nothing
+    type(run_numbers_t) :: others(1)
+    real(wp) :: began
 
-    call prepare(steps, problem, outcome%chosen)
-    steps%cost = outcome%cost
-    call lay_out(outcome%chosen)
+    call agree(one, other, request, problem, observer, outcome, ahead, steps, store)
     began = seconds()
-    judged = steps%cost%estimate_seconds
-    select type (steps)
-    class is (path_stepper_t)
-      call trace_exactly(request, steps, outcome%chosen, observer, fine, outcome%places, store)
-      outcome%left_out = steps%known%left_out
-      if (allocated(request%path)) call run_path(steps)
-      if (request%reads_path()) then
-        call read_path(request, steps, observer, outcome%readings)
-        call enter_readings(outcome%readings, outcome%places)
-      end if
-    class is (unique_stepper_t)
-      call fine%lay_out(steps, outcome%chosen, store)
-      ! There is one state for every h0, so h0 is stepped.
-      if (allocated(request%path)) then
-        allocate (outcome%stepped_path)
-        call run_branch(steps, path_plan(request, steps%problem%law, steps%far_away()), .true., &
-          position, observer, outcome%stepped_path, outcome%places)
-      end if
-    end select
+    outcome%places = nothing%places
+    call run_once(steps, request, .not. outcome%chosen%is_fixed(), .true., observer, outcome, &
+      keeper, ahead%places)
+    others(1)%number = ahead%places%numbers()
+    call outcome%places%judge_by(others, is_rough(steps))
+    outcome%error_estimate = largest_error(outcome%places%number)
+    steps%cost%solve_seconds = steps%cost%solve_seconds + seconds() - began
     outcome%nodes = outcome%nodes + sum(steps%meshes%grid%nodes)
-    if (allocated(request%loading) .and. with_cycle) call run_cycle(steps)
-    ! The time for judging folds and extrema is counted separately.
-    steps%cost%solve_seconds = steps%cost%solve_seconds + seconds() - began - &
-      (steps%cost%estimate_seconds - judged)
-    began = seconds()
-    call observer%hear('estimating errors')
-    select type (steps)
-    class is (path_stepper_t)
-      call enter_energy(steps%known, outcome)
-      if (request%table) call enter_table(steps, outcome%readings, outcome%places)
-    class is (fixed_stepper_t)
-      call fine%lay_out_fixed(steps, outcome%chosen)
-    end select
-    call judge_places(fine, steps, outcome%places, .false.)
-    call conclude(outcome%places, outcome%error_estimate)
-    steps%cost%estimate_seconds = steps%cost%estimate_seconds + seconds() - began
     select type (steps)
     class is (path_stepper_t)
       if (allocated(request%varied)) &
         call rate_places(request%varied, steps, observer, outcome)
     end select
     outcome%cost = steps%cost
+  end subroutine run_locked
 
-  contains
-
-    subroutine lay_out(chosen)
-      type(choice_t), intent(in) :: chosen
-      real(wp) :: began
-
-      began = seconds()
-      select type (steps)
-      class is (locked_stepper_t)
-        ! The path is not solved by mixing, which cannot find unstable states.
-        if (steps%problem%law%adhesion > 0) steps%options%mixing = .false.
-        ! Kernels are made by small products, and cases of a sweep make them at the same time.
-        call use_threads_for(1)
-        steps%meshes = new_mesh_family(steps%problem, chosen%high, chosen%low, chosen%digits, &
-          store=store)
-      class default
-        allocate (steps%meshes%grid(1))
-        steps%meshes%grid(1) = fixed_mesh(chosen, steps%problem)
-      end select
-      steps%cost%kernel_seconds = steps%cost%kernel_seconds + seconds() - began
-      steps%cost%kernel_entries = steps%cost%kernel_entries + &
-        sum(steps%meshes%grid%kernel_entries())
-      call use_threads_for(maxval(steps%meshes%grid%nodes))
-    end subroutine lay_out
-
-    subroutine run_path(steps)
-      class(path_stepper_t), intent(inout) :: steps
-      real(wp), allocatable :: profiles(:), start
-
-      associate (law => steps%problem%law)
-        allocate (profiles(0))
-        if (allocated(request%profile_h0)) profiles = law%gap_of(request%profile_h0)
-        allocate (outcome%path)
-        if (allocated(request%path%h0_start) .or. request%reads_path()) then
-          start = law%gap_of(path_start(request, steps%problem))
-          ! The path may have been traced farther than the part that is shown.
-          if (.not. allocated(request%path%h0_start)) start = max(start, steps%far_away())
-        end if
-        ! A start that is not allocated counts as absent.
-        call follow_path(steps, law%gap_of(request%path%h0_end), profiles, observer, outcome%path, &
-          outcome%places, start)
-      end associate
-    end subroutine run_path
-
-    !> Runs the loading, then an unloading from each turning point; a keeper stores the steps.
-    subroutine run_cycle(solving)
-      class(stepper_t), intent(inout), target :: solving
-      class(stepper_t), pointer :: steps
-      type(h0_schedule_t) :: plan
-      type(branch_point_t) :: position
-      type(branch_point_t), allocatable :: turning(:)
-      real(wp), allocatable :: from(:)
-      integer :: k
-
-      steps => solving
-      if (present(keeper)) then
-        call keeper%keep_steps_of(solving)
-        steps => keeper
-      end if
-      allocate (from(0))
-      if (allocated(request%unloading)) from = steps%problem%law%gap_of(request%unloading%from)
-      allocate (turning(size(from)))
-      allocate (outcome%loading)
-      plan = loading_plan(request, steps%problem%law, from)
-      call run_branch(steps, plan, .true., position, observer, outcome%loading, outcome%places, &
-        from, turning)
-      ! If the path has the jumps, they are exact.
-      if (allocated(outcome%loading%jump) .and. .not. outcome%places%has('jump_in')) &
-        call outcome%places%enter('jump_in', 1, outcome%loading%jump)
-      if (allocated(request%unloading)) allocate (outcome%unloading(size(from)))
-      do k = 1, size(from)
-        associate (branch => outcome%unloading(k), places => outcome%places)
-          if (allocated(turning(k)%state%gap)) then
-            position = turning(k)
-            plan = unloading_plan(request, steps%problem%law, k)
-            call run_branch(steps, plan, .false., position, observer, branch, places)
-          else
-            branch%ending%cause = turn_not_reached
-          end if
-          ! An argument that is not allocated counts as absent.
-          call places%enter('unload_max_tension', k, branch%lowest)
-          call places%enter('unload_jump_out', k, branch%jump)
-          if (allocated(branch%jump) .and. .not. places%has('jump_out')) &
-            call places%enter('jump_out', 1, branch%jump)
-        end associate
-      end do
-      if (.not. present(keeper)) return
-      solving%cost%states = solving%cost%states + keeper%cost%states
-      solving%cost%solve_seconds = solving%cost%solve_seconds + keeper%earlier_seconds
-    end subroutine run_cycle
-
-  end subroutine run_with
-
-  !> Sets the parts that both kinds of steppers have.
-  subroutine prepare(steps, problem, chosen)
-    class(stepper_t), intent(inout) :: steps
+  !> Runs a scene with more and more digits until the numbers of two successive runs agree within
+  !> the accuracy: the coarser of these, outcome, is the result, and ahead is the other. steps: the
+  !> stepper of the result, one of the two that are given.
+  subroutine agree(one, other, request, problem, observer, outcome, ahead, steps, store)
+    class(locked_stepper_t), intent(inout), target :: one, other
+    class(request_t), intent(in) :: request
     type(problem_t), intent(in) :: problem
-    type(choice_t), intent(in) :: chosen
+    class(observer_t), intent(inout) :: observer
+    type(experiment_result_t), intent(inout) :: outcome
+    type(experiment_result_t), intent(out) :: ahead
+    class(locked_stepper_t), pointer, intent(out) :: steps
+    type(mesh_store_t), intent(inout), optional :: store
+    class(locked_stepper_t), pointer :: finer, former
+    type(experiment_result_t) :: nothing
+    type(run_numbers_t) :: others(1)
+    type(observer_t) :: silent
+    real(wp) :: began, first, more, error, before
+    logical :: with_cycle
+    integer :: round
 
-    steps%problem = problem
-    steps%options = chosen%options
-  end subroutine prepare
+    with_cycle = .not. outcome%chosen%is_fixed()
+    steps => one
+    finer => other
+    before = huge(before)
+    more = 0
+    first = outcome%chosen%digits
+    began = seconds()
+    call begin_run(steps, request, problem, outcome%chosen, observer, store)
+    call run_once(steps, request, with_cycle, .false., silent, outcome)
+    steps%cost%solve_seconds = seconds() - began
+    do round = 1, most_rounds
+      began = seconds()
+      call observer%hear('estimating errors')
+      finer%cost = steps%cost
+      more = more + more_digits
+      if (problem%law%step_width > 0) more = max(more, digits_at_steps - first)
+      ahead = nothing
+      ahead%chosen = choose(request, problem, more)
+      ! Panels that proved good enough are kept, so that errors decrease with the number of nodes.
+      call begin_run(finer, request, problem, ahead%chosen, observer, store, steps%meshes, &
+        keep=before < 1)
+      call run_once(finer, request, with_cycle, .false., silent, ahead, like=outcome%places)
+      others(1)%number = ahead%places%numbers()
+      call outcome%places%judge_by(others, is_rough(steps))
+      error = largest_error(outcome%places%number)
+      finer%cost%estimate_seconds = finer%cost%estimate_seconds + seconds() - began
+      finer%cost%states = steps%cost%states
+      steps%cost = finer%cost
+      if (error <= request%numerics%accuracy .or. error < 1 .and. error > helped*before .or. &
+        round == most_rounds .or. ahead%chosen%digits > most_digits) exit
+      before = error
+      former => steps
+      steps => finer
+      finer => former
+      outcome = ahead
+    end do
+  end subroutine agree
+
+  !> Whether errors decrease slowly with the number of nodes: where short panels contain a law or a
+  !> body that is not smooth; or without a contact edge, where the mesh is not locked to the sharp
+  !> features of a collapse.
+  pure logical function is_rough(steps)
+    class(solver_t), intent(in) :: steps
+    integer :: k
+
+    is_rough = .not. steps%problem%law%edge_gap > 0 .or. any([(steps%meshes%has_short_panels(k), &
+      k=1, size(steps%meshes%grid))])
+  end function is_rough
+
+  !> Runs the cycle on a grid that is fixed in space, then on a coarser one and on a smaller one,
+  !> one at a time, so that their differences cannot cancel. outcome: has the numbers of the path.
+  subroutine run_fixed(steps, request, problem, observer, outcome, keeper)
+    type(fixed_stepper_t), intent(inout) :: steps
+    class(request_t), intent(in) :: request
+    type(problem_t), intent(in) :: problem
+    class(observer_t), intent(inout) :: observer
+    type(experiment_result_t), intent(inout) :: outcome
+    class(keeping_stepper_t), intent(inout), optional :: keeper
+    type(fixed_stepper_t) :: coarse
+    type(experiment_result_t) :: of_path, ahead
+    type(run_numbers_t) :: others(2)
+    type(observer_t) :: silent
+    real(wp) :: began
+    integer :: k
+
+    of_path%places = outcome%places
+    began = seconds()
+    steps%cost = outcome%cost
+    call begin_run(steps, request, problem, outcome%chosen, observer)
+    call run_once(steps, request, .true., .true., observer, outcome, keeper)
+    steps%cost%solve_seconds = steps%cost%solve_seconds + seconds() - began
+    outcome%nodes = outcome%nodes + sum(steps%meshes%grid%nodes)
+    began = seconds()
+    call observer%hear('estimating errors')
+    do k = 1, 2
+      ahead = of_path
+      ahead%chosen = with_fewer_nodes(outcome%chosen)
+      if (k == 2) ahead%chosen = with_less_extent(outcome%chosen)
+      coarse%cost = steps%cost
+      call begin_run(coarse, request, problem, ahead%chosen, observer)
+      call run_once(coarse, request, .true., .true., silent, ahead, like=outcome%places)
+      others(k)%number = ahead%places%numbers()
+      coarse%cost%states = steps%cost%states
+      steps%cost = coarse%cost
+    end do
+    call outcome%places%judge_by(others, .true.)
+    outcome%error_estimate = largest_error(outcome%places%number)
+    steps%cost%estimate_seconds = steps%cost%estimate_seconds + seconds() - began
+    outcome%cost = steps%cost
+  end subroutine run_fixed
 
 end module experiment

@@ -11,6 +11,7 @@ module experiment_result
   use stepped_branch, only: branch_t
   use path, only: path_t
   use places, only: places_t
+  use reported_numbers, only: of_table
   use path_readings, only: path_readings_t
   use timed_record, only: timed_result_t
   use path_tangent, only: h0_alone => of_h0, load_alone => of_load
@@ -22,7 +23,7 @@ module experiment_result
   use reported_place, only: place_t, point_of_path, place_on_curve, of_h0
   implicit none
   private
-  public :: experiment_result_t, enter_readings, enter_energy, enter_table
+  public :: experiment_result_t, enter_readings, enter_energy, enter_table, enter_turns
 
   type :: experiment_result_t
     type(choice_t) :: chosen
@@ -156,12 +157,28 @@ contains
     end do
   end subroutine enter_energy
 
-  !> Enters rows of the table as places.
-  subroutine enter_table(steps, readings, places)
+  !> Enters all turns of h0 and of the load on the path up to the end of its last stable piece.
+  subroutine enter_turns(known, places)
+    type(known_path_t), intent(in) :: known
+    type(places_t), intent(inout) :: places
+    integer :: i
+
+    do i = 1, min(known%path%last, known%path%held)
+      associate (point => known%path%point(i))
+        if (point%fold .or. point%load_extremum) call places%add('turns', point_of_path(i))
+      end associate
+    end do
+  end subroutine enter_turns
+
+  !> Enters rows of the table as places: some of each leg, or at the h0 that are entered in the
+  !> table of another run (like).
+  subroutine enter_table(steps, readings, places, like)
     class(path_stepper_t), intent(inout) :: steps
     type(path_readings_t), intent(inout) :: readings
     type(places_t), intent(inout) :: places
+    type(places_t), intent(in), optional :: like
     type(path_state_t), allocatable :: nodes(:)
+    type(path_state_t) :: state
     real(wp), allocatable :: suspect(:)
     integer :: i, k, row, last
 
@@ -175,7 +192,7 @@ contains
         row = 1 + (k - 1)*(size(nodes) - 2)/(judged_rows - 1)
         if (row == last) cycle
         last = row
-        call places%add('table', place_on_curve(nodes(row), h0_alone))
+        call places%enter(of_table, (i - 1)*judged_rows + k, place_on_curve(nodes(row), h0_alone))
       end do
       suspect = bends(nodes)
       do k = 1, min(judged_rows, size(suspect))
@@ -183,6 +200,21 @@ contains
         suspect(row) = -1
         call hold(readings%prescribed%leg(i), nodes(row), nodes(row + 1))
       end do
+    end do
+    if (.not. present(like)) return
+    call places%forget(of_table)
+    do i = 1, size(like%entry)
+      associate (entry => like%entry(i), leg => readings%prescribed%leg)
+        if (entry%name /= of_table) cycle
+        k = 1 + (entry%element - 1)/judged_rows
+        if (k > size(leg)) cycle
+        associate (driven => readings%prescribed)
+          call state_driven(steps%solver_t, steps%known%path, driven%drive, &
+            driven%piece(leg(k)%piece), like%place(entry%place)%at(of_h0), state)
+        end associate
+        if (state%converged) &
+          call places%enter(of_table, entry%element, place_on_curve(state, h0_alone))
+      end associate
     end do
 
   contains

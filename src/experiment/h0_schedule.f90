@@ -6,7 +6,7 @@ module h0_schedule
   use stepped_branch, only: h0_schedule_t
   implicit none
   private
-  public :: path_plan, loading_plan, unloading_plan, states_planned
+  public :: path_plan, loading_plan, unloading_plan, states_planned, thinned
 
   !> Number of states of a path that is stepped in h0.
   integer, parameter :: path_states = 100
@@ -77,6 +77,25 @@ contains
       request%unloading%h0_step, request, law)
   end function unloading_plan
 
+  !> The plan without the rows that no number is read at: those left are the ends, the samples, the
+  !> profiles, and the rows nearest to the values `kept`.
+  type(h0_schedule_t) function thinned(plan, kept)
+    type(h0_schedule_t), intent(in) :: plan
+    real(wp), intent(in) :: kept(:)
+    logical :: stays(size(plan%h0))
+    integer :: k
+
+    stays = plan%profile .or. plan%sample
+    stays(size(stays)) = .true.
+    do k = 1, size(kept)
+      stays(minloc(abs(plan%h0 - kept(k)), 1)) = .true.
+    end do
+    thinned = plan
+    thinned%h0 = pack(plan%h0, stays)
+    thinned%profile = pack(plan%profile, stays)
+    thinned%sample = pack(plan%sample, stays)
+  end function thinned
+
   !> Values of h0 [m] from start to finish by step, in either direction, with both ends, the h0 of
   !> requested profiles and the values `also` (law's lengths) in order.
   function schedule_of(name, start, finish, step, request, law, also) result(plan)
@@ -113,6 +132,7 @@ contains
     plan%name = name
     plan%h0 = law%gap_of(h0)
     plan%profile = [(any(abs(profiles - h0(i)) <= same), i=1, size(h0))]
+    plan%sample = [(any(i == [1, (1 + size(h0))/2]), i=1, size(h0))]
 
   contains
 

@@ -11,7 +11,7 @@ module numerics_choice
   use solver_options, only: solver_options_t, newton_of
   implicit none
   private
-  public :: choice_t, choose, size_grid, fixed_mesh, companion
+  public :: choice_t, choose, size_grid, fixed_mesh, more_digits, with_fewer_nodes, with_less_extent
   public :: grid_names, unchosen, edge_locked, uniform, panels, comfortable
 
   !> The grids are none, for rigid bodies; panels locked to the contact edge; two that are fixed in
@@ -27,8 +27,9 @@ module numerics_choice
     !> The name of the iteration in results, and the reason for the grid.
     character(len=:), allocatable :: method, because
     type(solver_options_t) :: options
-    !> Digits of edge-locked meshes.
-    real(wp) :: digits = 7
+    !> Digits of edge-locked meshes; and the accuracy that is asked for, or a smaller one for a run
+    !> that is compared.
+    real(wp) :: digits = 7, accuracy = 1.0e-6_wp
     !> For fixed grids: number of nodes and extent (lateral units), nodes of a panel, and the
     !> panel's size over the smallest feature.
     integer :: nodes = 0, panel_order = 12
@@ -41,8 +42,10 @@ module numerics_choice
   !> the number of nodes, which limits the automatic choice.
   real(wp), parameter :: comfortable = 0.2_wp
   integer, parameter :: fewest = 200, most = 1500
-  !> Number of nodes up to which the error of a uniform grid is estimated on a finer one.
-  integer, parameter :: largest_doubled = 300
+  !> Additional digits of a finer run on edge-locked meshes. Part of the nodes, and of the extent,
+  !> of other runs on a fixed grid, since a finer one would cost many times as much; the smaller
+  !> extent should still contain the contact.
+  real(wp), parameter :: more_digits = 1.5_wp, part_of_nodes = 2/3.0_wp, part_of_extent = 5/6.0_wp
   !> Depth of the accelerated mixing.
   integer, parameter :: mixing_depth = 10
   !> Error of an extremum's place over the accuracy: the error of the load is a few times larger.
@@ -50,10 +53,12 @@ module numerics_choice
 
 contains
 
-  !> The choice for an experiment.
-  type(choice_t) function choose(request, problem) result(chosen)
+  !> The choice for an experiment. more: further digits, if the accuracy of the deck is not enough
+  !> or a finer run is needed.
+  type(choice_t) function choose(request, problem, more) result(chosen)
     class(request_t), intent(in) :: request
     type(problem_t), intent(in) :: problem
+    real(wp), intent(in), optional :: more
     type(numerics_t) :: numerics
 
     call range_of(request, problem, chosen%low, chosen%high)
@@ -68,6 +73,13 @@ contains
       return
     end if
     numerics = request%numerics
+    chosen%accuracy = numerics%accuracy
+    if (present(more)) then
+      ! With more digits pressures are to be resolved better too, but under a law with kinks the
+      ! number of nodes and of steps for this grows fast.
+      chosen%accuracy = chosen%accuracy*10**(-0.5_wp*more)
+      numerics%accuracy = numerics%accuracy*10**(-more)
+    end if
     ! Only a cycle is computed by mixing, or on a grid that is fixed in space.
     if (.not. allocated(request%loading)) then
       numerics%grid = 'auto'
@@ -77,7 +89,8 @@ contains
     if (numerics%method == 'auto') chosen%method = 'anderson'
     chosen%options = options_of(numerics, problem)
     chosen%digits = digits_for(problem, largest_radius(problem, chosen%low, &
-      contact_level(problem)), numerics%accuracy, allocated(request%profile_h0))
+      contact_level(problem)), request%numerics%accuracy, allocated(request%profile_h0))
+    if (present(more)) chosen%digits = chosen%digits + more
     if (numerics%grid == 'uniform') then
       chosen%grid = uniform
       chosen%because = 'the deck asks for it'
@@ -184,26 +197,30 @@ contains
     ! At most as many nodes as a uniform grid would have.
     count = ceiling(min(widest/finest, real(max(1, chosen%nodes/chosen%panel_order), wp)))
     finest = widest/count
-    outer = widest + graded_ends(max(chosen%extent, 2*widest) - widest, finest, chosen%extent)
+    allocate (outer(0))
+    if (widest < chosen%extent) outer = widest + graded_ends(chosen%extent - widest, finest, &
+      chosen%extent)
+    if (size(outer) == 0) outer = [widest]
     mesh = new_panel_grid(0.0_wp, [[(finest*j, j=0, count - 1)], outer], chosen%panel_order, &
       elastic=.true.)
   end function fixed_mesh
 
-  !> Another fixed grid for the error estimate: panels with two more nodes; or twice the nodes per
-  !> length and an extent larger by a fifth; or, if this would cost more than the run, half the
-  !> nodes per length and a smaller extent.
-  pure type(choice_t) function companion(chosen)
+  !> A fixed grid of the same extent with fewer nodes, for the error of the spacing.
+  pure type(choice_t) function with_fewer_nodes(chosen) result(other)
     type(choice_t), intent(in) :: chosen
 
-    companion = chosen
-    companion%panel_order = chosen%panel_order + 2
-    if (chosen%nodes <= largest_doubled) then
-      companion%extent = 1.2_wp*chosen%extent
-      companion%nodes = 12*chosen%nodes/5
-    else
-      companion%extent = chosen%extent/1.2_wp
-      companion%nodes = 5*chosen%nodes/12
-    end if
-  end function companion
+    other = chosen
+    other%nodes = max(2, nint(part_of_nodes*chosen%nodes))
+    other%panel_over_feature = chosen%panel_over_feature/part_of_nodes
+  end function with_fewer_nodes
+
+  !> A fixed grid of the same spacing with a smaller extent, for the error of the extent.
+  pure type(choice_t) function with_less_extent(chosen) result(other)
+    type(choice_t), intent(in) :: chosen
+
+    other = chosen
+    other%nodes = max(2, nint(part_of_extent*chosen%nodes))
+    other%extent = part_of_extent*chosen%extent
+  end function with_less_extent
 
 end module numerics_choice

@@ -18,7 +18,7 @@ module path
   use records, only: observer_t, record_t, quality_t, record_of, stable_yes, stable_no
   implicit none
   private
-  public :: path_t, follow_path, find_finish
+  public :: path_t, follow_path
 
   !> The path in the units of `dimensionless_problem`, in the order from large separations inward.
   type :: path_t
@@ -44,10 +44,12 @@ contains
   !> The part of the known path from h0_start, or from its beginning if h0_start is absent, to the
   !> contact at h0_end. The observer receives the states, and profiles where the path crosses the
   !> values `profiles`. Folds, extrema of the load and states with profiles become places of the
-  !> table, in the order of the path.
-  subroutine follow_path(steps, h0_end, profiles, observer, path, places, h0_start)
+  !> table, in the order of the path. curve: whether there are rows between the points for a smooth
+  !> curve.
+  subroutine follow_path(steps, h0_end, profiles, curve, observer, path, places, h0_start)
     class(path_stepper_t), intent(inout) :: steps
     real(wp), intent(in) :: h0_end, profiles(:)
+    logical, intent(in) :: curve
     class(observer_t), intent(inout) :: observer
     type(path_t), intent(out) :: path
     type(places_t), intent(inout) :: places
@@ -79,7 +81,8 @@ contains
       if (.not. steps%known%path%point(i)%leads_on) cycle
       until = h0_end
       if (i < last) until = steps%known%path%point(i + 1)%state%h0
-      call rows_between(steps, i, row%state%h0, until, widest, profiles, between)
+      call rows_between(steps, i, row%state%h0, until, merge(widest, 0.0_wp, curve), profiles, &
+        between)
       do k = 1, size(between)
         call take(between(k))
       end do
@@ -218,22 +221,6 @@ contains
       if (ends_between) last = interval_at(known, k, h0_end)
     end associate
   end subroutine find_end
-
-  !> The end of the path at h0_end as a place; found: it is on the path.
-  subroutine find_finish(steps, h0_end, finish, found)
-    class(path_stepper_t), intent(inout) :: steps
-    real(wp), intent(in) :: h0_end
-    type(place_t), intent(out) :: finish
-    logical, intent(out) :: found
-    type(row_t) :: row
-    integer :: last
-
-    call find_end(steps, h0_end, last, found)
-    if (.not. found) return
-    row = row_at_h0(steps, last, h0_end)
-    found = row%converged
-    if (found) finish = place_of_row(steps, row)
-  end subroutine find_finish
 
   type(place_t) function place_of_row(steps, row) result(reported)
     type(path_stepper_t), intent(in) :: steps

@@ -57,7 +57,7 @@ contains
 
   !> The rows between point i and the next, within a range of h0, in order: requested profiles, and
   !> rows for the curve. Rows for the curve that do not converge are omitted. widest: contact
-  !> radius, lateral units.
+  !> radius, lateral units; 0: there are no rows for the curve.
   subroutine rows_between(steps, i, from, until, widest, profiles, rows)
     class(path_stepper_t), intent(inout) :: steps
     integer, intent(in) :: i
@@ -68,12 +68,16 @@ contains
     real(wp) :: begin, end
     integer :: k, stop
 
-    span = new_path_span(steps%known%path, i)
     stops = pack(profiles, (profiles - from)*(profiles - until) < 0)
+    allocate (rows(0))
+    if (size(stops) == 0 .and. .not. widest > 0) return
+    deallocate (rows)
+    span = new_path_span(steps%known%path, i)
     stop_at = [(span%at_h0(stops(k)), k=1, size(stops))]
     begin = span%at_h0(from)
     end = span%at_h0(until)
-    places = places_between(steps%solver_t, span, begin, end, widest)
+    allocate (places(0))
+    if (widest > 0) places = places_between(steps%solver_t, span, begin, end, widest)
     do k = 1, size(stops)
       stop = count((places - stop_at(k))*(end - begin) < 0)
       places = [places(:stop), stop_at(k), places(stop + 1:)]

@@ -16,11 +16,7 @@ module path_stepper
   use prediction, only: missed_t, expect
   use path_end, only: demand_t
   use numerics_choice, only: choice_t
-  use tracing, only: trace, trace_again
-  use mending, only: left_on_path
-  use edge_locked, only: mesh_family_t
-  use discretisation, only: discretisation_t
-  use mapped_mesh, only: mapped_shape_t
+  use tracing, only: trace
   use known_path, only: known_path_t, landing_t, know_pieces, interval_at
   use stepper, only: branch_point_t, step_result_t, extreme_t, remember
   implicit none
@@ -37,7 +33,6 @@ module path_stepper
     procedure :: approach_to
     procedure :: step_to
     procedure :: know_path
-    procedure :: know_path_on
     procedure, private :: step_over
     procedure, private :: solve_on_piece
   end type path_stepper_t
@@ -81,36 +76,6 @@ contains
     call self%frozen%forget()
     self%span%point = 0
   end subroutine know_path
-
-  !> Replaces some meshes by those of another family, and traces the path on them again; taken: the
-  !> meshes on which this succeeded.
-  subroutine know_path_on(self, others, wanted, taken)
-    class(path_stepper_t), intent(inout) :: self
-    type(mesh_family_t), intent(in) :: others
-    logical, intent(in) :: wanted(:)
-    logical, allocatable, intent(out) :: taken(:)
-    type(mapped_shape_t) :: shape
-    type(discretisation_t) :: grid
-    logical :: lost
-    integer :: mesh
-
-    taken = wanted
-    do mesh = 1, size(wanted)
-      if (.not. wanted(mesh)) cycle
-      shape = self%meshes%shape(mesh)
-      grid = self%meshes%grid(mesh)
-      call self%meshes%replace(mesh, others%shape(mesh), others%grid(mesh))
-      call self%operator%forget()
-      call trace_again(self%solver_t, grid, mesh, self%known%path, lost)
-      if (lost) call self%meshes%replace(mesh, shape, grid)
-      taken(mesh) = .not. lost
-    end do
-    call self%operator%forget()
-    call self%frozen%forget()
-    call know_pieces(self%solver_t, self%known)
-    self%known%left_out = left_on_path(self%equations_t, self%known%path)
-    self%span%point = 0
-  end subroutine know_path_on
 
   subroutine approach_to(self, h0, position, event)
     class(path_stepper_t), intent(inout) :: self

@@ -6,13 +6,12 @@ module places
   use kinds, only: wp, nan
   use dimensionless_problem, only: problem_t
   use reported_place, only: place_t, point_of_path, values_of, units_of, rates_of, least, &
-    quantities, of_h0, of_load, of_radius, of_profile
+    rounding, quantities, of_h0, of_load, of_radius, of_profile
+  use reported_numbers, only: number_t, run_numbers_t, judge, of_table, of_turns, name_length
   use result_rows, only: rows
   implicit none
   private
   public :: places_t, readings_t
-
-  integer, parameter :: name_length = 24
 
   !> A term of an element: `factor` times the quantity at the place; without a place the term is
   !> `factor` itself: 0, or NaN for a number that does not exist.
@@ -25,6 +24,8 @@ module places
   type :: places_t
     type(place_t), allocatable :: place(:)
     type(entry_t), allocatable :: entry(:)
+    !> The numbers with their errors, once these are known.
+    type(number_t), allocatable :: number(:)
   contains
     procedure :: keep
     procedure :: enter
@@ -34,8 +35,8 @@ module places
     procedure :: has
     procedure :: elements
     procedure :: place_of
-    procedure :: largest_error
-    procedure :: largest_of
+    procedure :: numbers
+    procedure :: judge_by
     procedure :: read_numbers
   end type places_t
 
@@ -45,8 +46,9 @@ module places
     real(wp), allocatable :: value(:), error(:), rate(:, :)
   end type readings_t
 
-  !> Numbers that are not judged place by place.
-  character(len=*), parameter :: of_table = 'table', of_energies = 'energy_lost'
+  !> Differences of energies, whose relative errors do not tell how accurate a run is.
+  character(len=*), parameter :: of_energies(*) = [character(len=name_length) :: 'energy_lost', &
+    'device_energy']
   !> Numbers of which the error of the profile is read, and those of which the contact radius is
   !> reported, in the summary or, for fixed loads, in a table.
   character(len=*), parameter :: of_profiles(*) = pack(rows%place, rows%quantity == of_profile)
@@ -54,7 +56,7 @@ module places
     pack(rows%place, rows%quantity == of_radius)]
   !> Numbers without derivatives.
   character(len=*), parameter :: not_differentiated(*) = [character(len=8) :: 'profiles', &
-    'samples', of_table]
+    'samples', of_table, of_turns]
 
 contains
 
@@ -114,12 +116,7 @@ contains
       integer, intent(in) :: i
 
       if (i == 0) return
-      self%place(i)%read = .true.
-      if (any(of_profiles == name) .and. .not. self%place(i)%with_profile) then
-        self%place(i)%with_profile = .true.
-        ! A point of the path may have been judged without its profile.
-        if (self%place(i)%point > 0) self%place(i)%judged = .false.
-      end if
+      if (any(of_profiles == name)) self%place(i)%with_profile = .true.
       self%place(i)%differentiated = self%place(i)%differentiated .or. &
         all(not_differentiated /= name)
     end subroutine mark
@@ -188,66 +185,88 @@ contains
       self%place(self%entry(findloc(self%entry%name == name, .true., 1))%place)
   end function place_of
 
-  !> The largest relative error of all reported numbers; 0 if no place was judged. Errors of a
-  !> table's loads are relative to the largest load. A fold of the path that a finer mesh does not
-  !> have counts even if it is not reported, since the stability of all later states depends on it.
-  pure real(wp) function largest_error(self) result(largest)
+  !> All elements of all numbers, with the errors that iteration and rounding leave.
+  pure function numbers(self) result(all)
     class(places_t), intent(in) :: self
-    real(wp) :: load
-    integer :: i
+    type(number_t), allocatable :: all(:)
+    type(number_t) :: new
+    integer :: i, k, n
 
-    largest = 0
-    load = tiny(1.0_wp)
-    if (.not. allocated(self%entry)) return
-    do i = 1, size(self%entry)
+    n = 0
+    if (allocated(self%entry)) n = size(self%entry)
+    allocate (all(n))
+    n = 0
+    do i = 1, size(all)
       associate (entry => self%entry(i))
-        if (entry%place == 0 .or. entry%name == of_energies) cycle
-        associate (place => self%place(entry%place))
-          if (entry%name == of_table) load = max(load, abs(place%at(of_load)))
-          if (entry%name /= of_table) largest = &
-            max(largest, place%relative_error(any(with_radius == entry%name)))
-        end associate
+        do k = n, 1, -1
+          if (all(k)%name == entry%name .and. all(k)%element == entry%element) exit
+        end do
+        if (k == 0) then
+          n = n + 1
+          k = n
+          all(k) = new
+          all(k)%name = entry%name
+          all(k)%element = entry%element
+        end if
+        call add_term(self, entry, all(k))
       end associate
     end do
-    do i = 1, size(self%place)
-      associate (place => self%place(i))
-        if (place%is_fold() .and. .not. place%known) &
-          largest = max(largest, place%relative_error(.false.))
-      end associate
-    end do
-    largest = max(largest, self%largest_of(of_table, of_load)/load)
-  end function largest_error
+    all = all(:n)
+  end function numbers
 
-  !> The largest error of a quantity over all places of a number, units of `dimensionless_problem`.
-  pure real(wp) function largest_of(self, name, quantity) result(largest)
+  !> Adds a term to an element of a number.
+  pure subroutine add_term(self, entry, number)
     class(places_t), intent(in) :: self
-    character(len=*), intent(in) :: name
-    integer, intent(in) :: quantity
-    integer :: i
+    type(entry_t), intent(in) :: entry
+    type(number_t), intent(inout) :: number
 
-    largest = 0
-    do i = 1, size(self%entry)
-      if (self%entry(i)%name /= name) cycle
-      associate (errors => self%place(self%entry(i)%place)%errors())
-        largest = max(largest, errors(quantity))
-      end associate
-    end do
-  end function largest_of
+    if (entry%place == 0) then
+      number%value = number%value + entry%factor
+      return
+    end if
+    associate (place => self%place(entry%place))
+      number%value = number%value + entry%factor*place%measures()
+      number%error = number%error + abs(entry%factor)*place%leftovers()
+      if (place%searched) number%error(of_h0) = nan
+      if (all(of_energies /= entry%name)) &
+        number%compared = place%compared(any(with_radius == entry%name))
+      if (all(of_profiles /= entry%name)) then
+        number%compared(of_profile) = .false.
+        return
+      end if
+      number%error(of_profile) = rounding
+      if (.not. allocated(place%gap)) return
+      number%gap = place%gap
+      number%pressure = place%pressure
+    end associate
+  end subroutine add_term
 
-  !> The elements of a number, with errors and derivatives; empty if the number does not exist.
+  !> Finds the errors of all numbers from those of other runs; rough: see `judge`.
+  pure subroutine judge_by(self, others, rough)
+    class(places_t), intent(inout) :: self
+    type(run_numbers_t), intent(in) :: others(:)
+    logical, intent(in) :: rough
+
+    self%number = self%numbers()
+    call judge(self%number, others, rough)
+  end subroutine judge_by
+
+  !> The elements of a number, with errors and derivatives; empty if the number does not exist. An
+  !> error is NaN if no other run was made, and the magnitude of the number if it is not known.
   type(readings_t) function read_numbers(self, problem, name, quantity) result(found)
     class(places_t), intent(in) :: self
     type(problem_t), intent(in) :: problem
     character(len=*), intent(in) :: name
     integer, intent(in) :: quantity
-    real(wp), allocatable :: difference(:)
-    real(wp), dimension(quantities) :: units, values, misses, leftovers
+    real(wp), dimension(quantities) :: units, values
     real(wp) :: none
-    logical, allocatable :: known(:)
     integer :: i, n, parameters
 
     n = self%elements(name)
-    allocate (found%value(n), found%error(n), difference(n), source=0.0_wp)
+    none = nan
+    units = units_of(problem)
+    allocate (found%value(n), source=0.0_wp)
+    allocate (found%error(n), source=none)
     parameters = 0
     if (allocated(self%place)) then
       do i = 1, size(self%place)
@@ -255,36 +274,34 @@ contains
       end do
     end if
     allocate (found%rate(parameters, n), source=0.0_wp)
-    allocate (known(n), source=.true.)
-    units = units_of(problem)
-    none = nan
     do i = 1, merge(size(self%entry), 0, n > 0)
       associate (entry => self%entry(i), k => self%entry(i)%element)
         if (entry%name /= name) cycle
         if (entry%place == 0) then
-          found%value(k) = entry%factor
-          found%error(k) = entry%factor
-          found%rate(:, k) = entry%factor
+          found%value(k) = found%value(k) + entry%factor
+          found%rate(:, k) = found%rate(:, k) + entry%factor
           cycle
         end if
         associate (place => self%place(entry%place))
           values = values_of(problem, place)
-          misses = place%margin*(place%measures(place%at) - place%measures(place%fine))
-          leftovers = place%leftovers()
           found%value(k) = found%value(k) + entry%factor*values(quantity)
-          known(k) = known(k) .and. place%known
-          difference(k) = difference(k) + entry%factor*misses(quantity)
-          found%error(k) = found%error(k) + leftovers(quantity)
-          if (.not. place%judged .or. (place%searched .and. quantity == of_h0) .or. &
-            ieee_is_nan(values(quantity))) found%error(k) = none
           if (allocated(place%rate)) found%rate(:, k) = found%rate(:, k) + &
             entry%factor*rates_of(problem, place, quantity)
           if (.not. allocated(place%rate)) found%rate(:, k) = none
         end associate
       end associate
     end do
-    found%error = (abs(difference) + found%error)*units(quantity)
-    where (.not. known) found%error = max(abs(found%value), least(quantity)*units(quantity))
+    if (.not. allocated(self%number)) return
+    do i = 1, merge(size(self%number), 0, n > 0)
+      associate (number => self%number(i), k => self%number(i)%element)
+        if (number%name /= name) cycle
+        found%error(k) = number%error(quantity)*units(quantity)
+        if (.not. number%known) found%error(k) = max(found%error(k), abs(found%value(k)), &
+          least(quantity)*units(quantity))
+        if (ieee_is_nan(found%value(k))) found%error(k) = none
+        if (quantity == of_profile) found%value(k) = found%error(k)
+      end associate
+    end do
   end function read_numbers
 
 end module places

@@ -11,9 +11,9 @@ module rigid_bodies
   use discretisation, only: discretisation_t
   use contact_state, only: state_t, undeformed_state
   use ending, only: touching, turn_not_reached
-  use reported_place, only: place_t, of_h0, of_load, of_radius
+  use reported_place, only: place_t, of_h0, of_load, of_radius, rounding
   use places, only: places_t
-  use finer_solver, only: rounding
+  use reported_numbers, only: run_numbers_t, largest_error
   use records, only: observer_t, record_t, stable_yes, stable_unasked
   use experiment_request, only: request_t
   use experiment_result, only: experiment_result_t
@@ -41,6 +41,7 @@ contains
     type(problem_t), intent(in) :: problem
     class(observer_t), intent(inout) :: observer
     type(experiment_result_t), intent(inout) :: outcome
+    type(run_numbers_t) :: others(0)
     real(wp) :: began
     integer :: k
 
@@ -70,6 +71,9 @@ contains
         end associate
       end do
     end if
+    ! The load is an integral with a known error.
+    call outcome%places%judge_by(others, .false.)
+    outcome%error_estimate = largest_error(outcome%places%number)
     outcome%cost%solve_seconds = seconds() - began
 
   contains
@@ -223,12 +227,9 @@ contains
       reported%at(of_h0) = h0
       reported%at(of_load) = load%value
       reported%at(of_radius) = contact_radius(h0)
-      reported%fine = reported%at
       reported%left(of_load) = load%error + rounding*abs(load%value) + &
         given_error(h0)*abs(load_slope_undeformed(problem, h0))
       reported%left(of_radius) = radius_error(h0, given_error(h0))
-      reported%profile = rounding
-      reported%judged = .true.
     end function place_at
 
     !> Contact radius, lateral units; 0 without contact.

@@ -6,19 +6,20 @@ module stepped_branch
   use stepper, only: stepper_t, branch_point_t, step_result_t
   use ending, only: ending_t
   use tension_search, only: tension_search_t
-  use reported_place, only: place_t, place_of_state, place_without_state, point_of_path, &
-    of_h0, of_load
+  use reported_place, only: place_t, place_of_state, place_without_state, point_of_path, of_h0, &
+    of_load
   use places, only: places_t
   use records, only: observer_t, record_t, quality_t, record_of, stable_yes, stable_unasked
   implicit none
   private
   public :: h0_schedule_t, branch_t, run_branch, compare_ends, enter_ends
 
-  !> The values of h0 of a branch, and those with a profile; in the law's lengths.
+  !> The values of h0 of a branch, in the law's lengths; those with a profile; and those whose
+  !> errors represent the errors of all.
   type :: h0_schedule_t
     character(len=:), allocatable :: name
     real(wp), allocatable :: h0(:)
-    logical, allocatable :: profile(:)
+    logical, allocatable :: profile(:), sample(:)
     !> Whether there is one state for every h0, so that each state is known to be stable.
     logical :: unique = .false.
   end type h0_schedule_t
@@ -54,7 +55,7 @@ contains
   !> to the first value; otherwise the branch begins at `position`. `kept` returns the positions at
   !> the steps nearest to the values `keep`: a plan merges values that differ by less than a rounded
   !> step. The states with a requested profile become places of the table; if the path is not known,
-  !> also the first and the middle state, whose errors represent those of all states.
+  !> also the samples.
   subroutine run_branch(steps, plan, fresh, position, observer, branch, places, keep, kept)
     class(stepper_t), intent(inout), target :: steps
     type(h0_schedule_t), intent(in) :: plan
@@ -109,7 +110,7 @@ contains
         ends(2) = position%state%h0
         if (.not. ends(1) < huge(ends)) ends(1) = ends(2)
         if (plan%profile(i)) call places%add('profiles', place_of_state(last%mesh, last%state))
-        if (position%piece == 0 .and. any(i == [1, (1 + size(plan%h0))/2])) &
+        if (position%piece == 0 .and. plan%sample(i)) &
           call places%add('samples', place_of_state(last%mesh, last%state))
       end if
       do k = 1, size(place)
@@ -138,6 +139,7 @@ contains
       if (event%jumped .and. .not. allocated(branch%jump)) then
         branch%jump = place_without_state(event%jump_h0, event%jump_load)
         branch%jump%point = event%fold
+        branch%jump%left(of_h0) = event%jump_uncertainty
         branch%jump_uncertainty = event%jump_uncertainty
       end if
       if (allocated(event%lowest)) call lower()

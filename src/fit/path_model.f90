@@ -15,7 +15,7 @@ module path_model
   use driven_pieces, only: driven_piece_t, through_spring
   use device, only: driven_t, drive_bodies
   use experiment_request, only: request_t, numerics_t
-  use experiment, only: prepare
+  use one_run, only: prepare
   use numerics_choice, only: choice_t, choose
   use path_demand, only: demand_of
   use path_stepper, only: path_stepper_t

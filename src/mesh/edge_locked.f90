@@ -25,31 +25,26 @@ module edge_locked
     procedure :: insert
     procedure :: has_short_panels
     procedure :: renew
-    procedure :: replace
-    procedure :: refine
     procedure :: shape_for
-    procedure :: complete
   end type mesh_family_t
 
 contains
 
   !> Meshes for H0 from h0_high down to h0_low, accurate to the given number of digits
-  !> (`mesh_rule`). shape_only: the kernels are left out, because only their size is needed or
-  !> because `complete` adds them later. store: earlier meshes, to which these are added. coarser:
-  !> meshes of fewer digits for the same problem and range. Where these have halved or short panels,
-  !> or as many nodes as those of more digits, their panels are kept and get more nodes, since a new
-  !> layout could have fewer nodes and would then not be more accurate. fronts: whether meshes may
-  !> be locked to the front of a step; further: whether meshes may be inserted later; both .true. if
-  !> absent.
-  function new_mesh_family(problem, h0_high, h0_low, digits, shape_only, store, coarser, fronts, &
-    further) result(meshes)
+  !> (`mesh_rule`). shape_only: the kernels are left out, because only their size is needed. store:
+  !> earlier meshes, to which these are added. coarser: meshes of fewer digits for the same problem
+  !> and range; keep: their panels are kept where these were laid out for seen gaps. fronts: whether
+  !> meshes may be locked to the front of a step; further: whether meshes may be inserted later;
+  !> both .true. if absent.
+  function new_mesh_family(problem, h0_high, h0_low, digits, shape_only, store, coarser, keep, &
+    fronts, further) result(meshes)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: h0_high, h0_low, digits
-    logical, intent(in), optional :: shape_only, fronts, further
+    logical, intent(in), optional :: shape_only, keep, fronts, further
     type(mesh_store_t), intent(inout), optional :: store
     type(mesh_family_t), intent(in), optional :: coarser
     type(mesh_family_t) :: meshes
-    logical :: elastic, follow_fronts, may_insert
+    logical :: elastic, kept, follow_fronts, may_insert
     integer :: k
 
     follow_fronts = .true.
@@ -58,7 +53,9 @@ contains
     if (present(further)) may_insert = further
     elastic = .true.
     if (present(shape_only)) elastic = .not. shape_only
-    if (present(coarser)) then
+    kept = .false.
+    if (present(keep)) kept = keep
+    if (present(coarser) .and. kept) then
       meshes%mesh_plan_t = coarser%mesh_plan_t
     else
       meshes%mesh_plan_t = new_mesh_plan(problem, h0_high, h0_low, follow_fronts, may_insert)
@@ -66,7 +63,7 @@ contains
     allocate (meshes%grid(size(meshes%locked)), meshes%shape(size(meshes%locked)))
     meshes%digits = digits
     do k = merge(approach, contact, meshes%traceable), size(meshes%grid)
-      if (present(coarser)) call follow(meshes, coarser, k, problem)
+      if (present(coarser)) call follow(meshes, coarser, k, problem, kept)
       if (.not. allocated(meshes%shape(k)%order)) meshes%shape(k) = meshes%shape_for(problem, k)
       call make_mesh(meshes%shape(k), elastic .and. .not. meshes%waits(k), meshes%grid(k), store)
     end do
@@ -106,15 +103,6 @@ contains
     end if
   end subroutine make_mesh
 
-  !> Adds the kernel to a mesh that was made without it, for elastic bodies.
-  subroutine complete(self, mesh, store)
-    class(mesh_family_t), intent(inout) :: self
-    integer, intent(in) :: mesh
-    type(mesh_store_t), intent(inout), optional :: store
-
-    call make_mesh(self%shape(mesh), .true., self%grid(mesh), store)
-  end subroutine complete
-
   !> Replaces a mesh by a new one with the given shape, for elastic bodies.
   subroutine renew(self, mesh, shape)
     class(mesh_family_t), intent(inout) :: self
@@ -126,43 +114,27 @@ contains
     self%waits(mesh) = .false.
   end subroutine renew
 
-  !> Replaces a mesh by one that was made before.
-  subroutine replace(self, mesh, shape, grid)
-    class(mesh_family_t), intent(inout) :: self
-    integer, intent(in) :: mesh
-    type(mapped_shape_t), intent(in) :: shape
-    type(discretisation_t), intent(in) :: grid
-
-    self%shape(mesh) = shape
-    self%grid(mesh) = grid
-  end subroutine replace
-
-  !> Makes a mesh, without its kernel, that is finer than that of a coarser family.
-  subroutine refine(self, problem, mesh, coarser)
-    class(mesh_family_t), intent(inout) :: self
-    type(problem_t), intent(in) :: problem
-    integer, intent(in) :: mesh
-    type(mesh_family_t), intent(in) :: coarser
-
-    call follow(self, coarser, mesh, problem)
-    call make_mesh(self%shape(mesh), .false., self%grid(mesh))
-  end subroutine refine
-
-  !> Chooses the shape of a mesh from a coarser one with more nodes on its panels: if the coarser
-  !> one was inserted for the gaps of computed states, or has short or halved panels; or if a new
-  !> layout would have fewer nodes than this, as under laws for which numbers of nodes were tried,
-  !> and so would have the same error.
-  subroutine follow(self, coarser, mesh, problem)
+  !> Chooses the shape of a mesh from a coarser one with more nodes on its panels: if a new layout
+  !> would have fewer nodes than this, as under laws for which numbers of nodes were tried, and so
+  !> would have the same error. Meshes for seen gaps are laid out anew, since their panels may be
+  !> the cause of an error, unless they are to be kept.
+  subroutine follow(self, coarser, mesh, problem, keep)
     class(mesh_family_t), intent(inout) :: self
     type(mesh_family_t), intent(in) :: coarser
     integer, intent(in) :: mesh
     type(problem_t), intent(in) :: problem
+    logical, intent(in) :: keep
     type(mapped_shape_t) :: richer
+    logical :: for_seen
 
+    if (size(coarser%shape) /= size(self%shape)) return
     if (.not. allocated(coarser%grid(mesh)%kernel)) return
+    for_seen = coarser%inserted(mesh) .or. coarser%has_short_panels(mesh)
+    if (for_seen .and. .not. keep) return
     richer = coarser%shape(mesh)%enriched(self%digits/coarser%digits, self%digits - coarser%digits)
-    if (.not. (coarser%inserted(mesh) .or. coarser%has_short_panels(mesh))) then
+    if (.not. for_seen) then
       self%shape(mesh) = self%shape_for(problem, mesh)
+      if (self%has_short_panels(mesh)) return
       if (.not. sum(self%shape(mesh)%order) < sum(richer%order)) return
     end if
     self%shape(mesh) = richer

@@ -1,7 +1,7 @@
 !> Places at which numbers are reported, and the quantities there. A place is an equilibrium and its
 !> definition: D = drive(1) h0 + drive(2) load turns there along the path, or has a given value. The
-!> module that finds the place sets the values, `place_errors` the errors, and `place_rates` the
-!> derivatives.
+!> module that finds the place sets its definition, `located_places` the values, and `place_rates`
+!> the derivatives.
 module reported_place
   use kinds, only: wp, nan
   use dimensionless_problem, only: problem_t
@@ -13,8 +13,7 @@ module reported_place
   public :: drive_weights, values_of, units_of, rates_of
   public :: of_h0, of_load, of_displacement, of_energy, of_radius, of_edge, of_position, &
     of_tension, of_profile
-  public :: read_of_states, quantities, nowhere
-  public :: least
+  public :: read_of_states, quantities, nowhere, least, rounding
 
   !> Quantities that are read at a state: h0, load, displacement, energy of the bodies, contact
   !> radius, radius to which the mesh is locked (0: about the axis); and quantities that follow from
@@ -41,37 +40,30 @@ module reported_place
     !> started that ended here at the same D.
     real(wp) :: drive(2) = [1.0_wp, 0.0_wp], turn_of(2) = 0
     integer :: after = 0
-    !> searched: h0 was found by a search between steps, and its error is not known.
+    !> searched: h0 was found by a search between steps.
     logical :: searched = .false.
-    !> Values at the place (the contact radius of a state is read when the place is judged); values
-    !> at the same place of a finer mesh; error of the values due to the iteration and rounding.
-    real(wp), dimension(read_of_states) :: at = 0, fine = 0, left = 0
-    !> Error of gaps, and of pressures over the largest of them.
-    real(wp) :: profile = 0
-    !> Whether the place is read for a number, whether for an error of its profile, and whether for
-    !> derivatives.
-    logical :: read = .false., with_profile = .false., differentiated = .false.
-    !> Whether the place was compared with a finer mesh, and whether the finer mesh has the place;
-    !> margin: factor of the differences.
-    logical :: judged = .false., known = .true.
-    real(wp) :: margin = 1
+    !> Values at the place, and what the iteration and rounding leave of them as an error; both are
+    !> set by `located_places`, except h0 and load.
+    real(wp), dimension(read_of_states) :: at = 0, left = 0
     !> Magnitude below which the relative error of a load does not matter.
     real(wp) :: negligible = 0
+    !> Whether derivatives are read at the place, and whether a profile.
+    logical :: differentiated = .false., with_profile = .false.
+    !> The profile: radii, gaps and pressures; NaN where the mesh has none.
+    real(wp), allocatable, dimension(:) :: r, gap, pressure
     !> Derivatives of the quantities by each parameter of &sensitivity, SI units.
     real(wp), allocatable :: rate(:, :)
   contains
     procedure :: take
     procedure :: has_state
     procedure :: turns
-    procedure :: is_fold
     procedure :: measures
     procedure :: leftovers
-    procedure :: errors
-    procedure :: relative_error
+    procedure :: compared
   end type place_t
 
-  !> The relative error that stands for an unknown value.
-  real(wp), parameter :: most = 1.0e6_wp
+  !> Rounding error of a whole calculation; no smaller error is reported.
+  real(wp), parameter :: rounding = 1.0e-13_wp
   !> Errors are relative to the larger of a quantity's magnitude and this value.
   real(wp), parameter :: least(quantities) = [1.0_wp, 0.0_wp, 1.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, &
     1.0_wp, 0.0_wp, 0.0_wp]
@@ -146,29 +138,24 @@ contains
     turns = any(abs(self%turn_of) > 0)
   end function turns
 
-  !> Whether h0 turns at the place.
-  pure logical function is_fold(self)
+  !> All quantities of a place.
+  pure function measures(self) result(all)
     class(place_t), intent(in) :: self
-
-    is_fold = abs(self%turn_of(1)) > 0 .and. .not. abs(self%turn_of(2)) > 0
-  end function is_fold
-
-  !> All quantities, from the values read at the place.
-  pure function measures(self, value) result(all)
-    class(place_t), intent(in) :: self
-    real(wp), intent(in) :: value(:)
     real(wp) :: all(quantities)
 
-    all(:read_of_states) = value
-    ! At fixed D equilibria are stationary points of the energy of bodies and spring, or dead load.
-    if (self%drive(1) > 0) then
-      all(of_energy) = value(of_energy) - 0.5_wp*self%drive(2)*value(of_load)**2
-    else
-      all(of_energy) = value(of_energy) + value(of_load)*value(of_h0)
-    end if
-    all(of_position) = dot_product(self%drive, value(:2))
-    all(of_tension) = -value(of_load)
-    all(of_profile) = self%profile
+    associate (value => self%at)
+      all(:read_of_states) = value
+      ! At fixed D equilibria are stationary points of the energy of bodies and spring, or of that
+      ! of bodies and dead load.
+      if (self%drive(1) > 0) then
+        all(of_energy) = value(of_energy) - 0.5_wp*self%drive(2)*value(of_load)**2
+      else
+        all(of_energy) = value(of_energy) + value(of_load)*value(of_h0)
+      end if
+      all(of_position) = dot_product(self%drive, value(:2))
+      all(of_tension) = -value(of_load)
+      all(of_profile) = 0
+    end associate
   end function measures
 
   !> The error of all quantities due to the iteration and rounding.
@@ -182,40 +169,23 @@ contains
     all(of_profile) = 0
   end function leftovers
 
-  !> The errors of all quantities; equal to their magnitudes if the finer mesh has no such place.
-  pure function errors(self) result(all)
-    class(place_t), intent(in) :: self
-    real(wp) :: all(quantities)
-
-    associate (own => self%measures(self%at))
-      all = max(abs(own), least)
-      if (self%known) &
-        all = self%margin*abs(own - self%measures(self%fine)) + self%leftovers()
-    end associate
-  end function errors
-
-  !> The largest relative error of the quantities reported at a place; 0 if the place was not
-  !> judged. with_radius: whether the contact radius is one of them.
-  pure real(wp) function relative_error(self, with_radius) result(largest)
+  !> The quantities whose relative errors tell how accurate the place is. with_radius: whether the
+  !> contact radius is reported.
+  pure function compared(self, with_radius)
     class(place_t), intent(in) :: self
     logical, intent(in) :: with_radius
-    real(wp) :: part(quantities)
+    logical :: compared(quantities)
 
-    largest = 0
-    if (.not. self%judged) return
-    part = self%errors()
-    where (part > 0) part = &
-      min(part/max(abs(self%measures(self%at)), least, tiny(1.0_wp)), most)
-    largest = self%profile
-    if (.not. abs(self%at(of_load)) < self%negligible) largest = max(largest, part(of_load))
-    if (with_radius .and. self%at(of_radius) > 0) largest = max(largest, part(of_radius))
+    compared = .false.
+    compared(of_profile) = self%with_profile
+    compared(of_load) = .not. abs(self%at(of_load)) < self%negligible
+    compared(of_radius) = with_radius .and. self%at(of_radius) > 0
     if (self%after > 0) return
-    if (.not. self%searched) &
-      largest = max(largest, part(merge(of_position, of_h0, product(self%drive) < 0)))
+    if (.not. self%searched) compared(merge(of_position, of_h0, product(self%drive) < 0)) = .true.
     ! At an extremum h0 or the load is stationary and the displacement is not: the position on the
     ! flat top does not change the curve, and no displacement is reported there.
-    if (.not. self%turns()) largest = max(largest, part(of_displacement))
-  end function relative_error
+    if (.not. self%turns()) compared(of_displacement) = self%has_state()
+  end function compared
 
   !> All quantities of a place [SI]; under a dead load a drive has no position.
   pure function values_of(problem, place) result(values)
@@ -223,7 +193,7 @@ contains
     type(place_t), intent(in) :: place
     real(wp) :: values(quantities)
 
-    values = place%measures(place%at)
+    values = place%measures()
     values([of_h0, of_position]) = problem%law%separation_of(values([of_h0, of_position]))
     associate (others => [of_load, of_displacement, of_energy, of_radius, of_edge, of_tension, &
       of_profile], units => units_of(problem))

@@ -4,15 +4,11 @@ module tracing
   use kinds, only: wp
   use listener, only: listener_t
   use contact_state, only: state_t, undeformed_state
-  use discretisation, only: discretisation_t
-  use regridding, only: regrid
-  use controls, only: control_t
   use equilibrium, only: equations_t
   use solver, only: solver_t
   use mesh_plan, only: approach
   use contact_scales, only: largest_radius, lost_in_rounding
   use locked_meshes, only: h0_control
-  use path_coordinate, only: path_control
   use continuation, only: continuation_t
   use mesh_passage, only: has_come_to_next, pass_to_next
   use ending, only: ending_t, beyond_rounding, no_equilibrium, path_lost
@@ -23,7 +19,7 @@ module tracing
   use mending, only: mender_t, new_mender, left_on_path, left_in_state
   implicit none
   private
-  public :: tracing_t, trace, trace_again, longest
+  public :: tracing_t, trace
 
   !> A traced path, its ending, and whether it ends in a collapse of the bodies; left_out: the
   !> largest part of the load that the nodes miss, except in a collapse.
@@ -240,69 +236,5 @@ contains
     call append(path, walker%arc_t, 1)
     call append(path, walker%arc_t)
   end subroutine change_mesh
-
-  !> Traces a path again over one mesh, at the same coordinates, from its states on this mesh.
-  !> before: the earlier version of the mesh. lost: a solve failed, or the new extrema disagree with
-  !> the path on the meshes before and after; in both cases the path is unchanged.
-  subroutine trace_again(solver, before, mesh, path, lost)
-    class(solver_t), intent(inout) :: solver
-    type(discretisation_t), intent(in) :: before
-    integer, intent(in) :: mesh
-    type(traced_path_t), intent(inout) :: path
-    logical, intent(out) :: lost
-    type(traced_path_t) :: anew
-    type(continuation_t) :: walker
-    type(state_t) :: state
-    type(control_t) :: control
-    real(wp) :: tolerance
-    logical :: led_on, done
-    integer :: i, first, last
-
-    tolerance = solver%options%tolerance
-    solver%options%tolerance = min(tolerance, curve_tolerance)
-    call walker%follow_closely()
-    anew = path
-    first = findloc(path%point(:path%held)%mesh, mesh, 1)
-    anew%held = first - 1
-    last = findloc(path%point(:path%held)%mesh, mesh, 1, back=.true.)
-    led_on = .false.
-    lost = .false.
-    do i = first, last
-      associate (point => path%point(i), grid => solver%meshes%grid(mesh))
-        if (point%fold .or. point%load_extremum) cycle
-        state = regrid(solver%problem%shape, point%state, before, grid, point%state%scale)
-        call solver%frozen%forget()
-        ! An experiment may begin at the h0 of the first point.
-        control = path_control(solver%problem, solver%meshes, mesh, point%coordinate)
-        if (i == 1) control = h0_control(solver%problem%shape, solver%meshes, mesh, point%state%h0)
-        call solver%correct(control, state, done)
-        lost = .not. done
-        if (done) call walker%take(solver, state, mesh, lost)
-        if (lost) exit
-        call append(anew, walker%arc_t)
-        if (led_on) then
-          call add_extrema(anew, walker%arc_t, solver, lost)
-          if (lost) exit
-        else if (anew%held > 1) then
-          anew%point(anew%held - 1)%leads_on = .false.
-        end if
-        led_on = point%leads_on
-      end associate
-    end do
-    solver%options%tolerance = tolerance
-    lost = lost .or. anew%point(anew%held)%modes /= path%point(last)%modes
-    ! The first state is the last but one on the mesh before; the last but one is the first on the
-    ! mesh after.
-    if (.not. lost .and. first > path%undeformed + 1) &
-      lost = .not. path%point(first - 2)%tangent%goes_with(anew%point(first)%tangent)
-    if (.not. lost .and. last < path%held) &
-      lost = .not. path%point(last + 1)%tangent%goes_with(anew%point(anew%held - 1)%tangent)
-    if (lost) return
-    do i = last + 1, path%held
-      call anew%insert(anew%held + 1, path%point(i))
-    end do
-    anew%last = anew%held
-    path = anew
-  end subroutine trace_again
 
 end module tracing

@@ -5,7 +5,7 @@ module quality_warnings
   use kinds, only: wp, pi
   use force_law, only: of_pressure, of_energy
   use dimensionless_problem, only: problem_t, surface_energy, largest_tension
-  use text, only: brief, rounded
+  use text, only: rounded
   use layered_body, only: layered_body_t
   use layered_surface, only: layered_surface_t
   use records, only: quality_t
@@ -28,9 +28,6 @@ module quality_warnings
   !> in a neck make a polynomial of it.
   real(wp), parameter :: resolved_spacing = 0.2_wp, resolved_locked = 0.4_wp
 
-  !> Relative error above which the numbers on a grid of the deck's choice get a warning. Such grids
-  !> are chosen to show these errors.
-  real(wp), parameter :: meaningless = 0.1_wp
   !> Ratio of estimated error and accuracy above which there is a warning: an estimate has a margin
   !> of a factor of two or more.
   real(wp), parameter :: clearly = 3
@@ -80,9 +77,9 @@ contains
       end if
     end associate
     call summary%set('table_error', error)
-    if (error > coarse) call summary%warn('the points of the table are far apart, or do not ' // &
-      'lead into its tail: work of adhesion and pull-off have relative errors of about ' // &
-      brief(error))
+    if (error > coarse) call summary%warn('the points of the table are far apart or noisy, or ' // &
+      'do not lead into its tail: work of adhesion and pull-off have relative errors of about ' // &
+      rounded(error))
   end subroutine take_table_error
 
   !> Checks the states of the experiments, and the accuracy of the numbers.
@@ -233,12 +230,10 @@ contains
       end associate
     end subroutine judge_resolution
 
-    !> Warns if the numbers do not have the accuracy that the deck asks for, or on a grid of the
-    !> deck's choice if they are meaningless. Warns also of residuals that rounding keeps above the
-    !> tolerance, if they matter for displacements of the law's length.
+    !> Warns if the numbers do not have the accuracy that the deck asks for. Warns also of residuals
+    !> that rounding keeps above the tolerance, if they matter for displacements of the law's
+    !> length.
     subroutine judge_accuracy()
-      real(wp) :: enough
-
       associate (tolerance => outcome%chosen%options%tolerance)
         if (summary%is_true('converged') .and. .not. outcome%chosen%options%stop_on_change .and. &
           quality%residual > max(tolerance, scene%numerics%accuracy, usual_residual)) &
@@ -249,12 +244,10 @@ contains
         call summary%warn('the mesh does not resolve the force law: '//rounded(outcome%left_out)// &
         ' of the load is left out between nodes; smoother forces are resolved')
       if (.not. allocated(outcome%error_estimate)) return
-      enough = clearly*scene%numerics%accuracy
-      if (outcome%chosen%is_fixed()) enough = max(enough, meaningless)
       if (outcome%error_estimate >= 1) then
-        call summary%warn('the error could not be estimated: a finer mesh has no such states, ' // &
+        call summary%warn('the error could not be estimated: another mesh has no such states, ' // &
           'or these did not converge; the numbers may mean nothing')
-      else if (outcome%error_estimate > enough) then
+      else if (outcome%error_estimate > clearly*scene%numerics%accuracy) then
         call summary%warn('the error is estimated as '//rounded(outcome%error_estimate)// &
           ', above the accuracy of '//rounded(scene%numerics%accuracy)//' asked for')
       end if

@@ -10,8 +10,8 @@ module regime_rows
     jkr_displacement, jkr_pull_off, dmt_radius_at_load, dmt_pull_off
   use maugis, only: maugis_t, new_maugis
   use transition_fits, only: fit_t, carpick_fit, pietrement_fit
-  use reported_place, only: place_t, units_of, of_h0, of_load, of_radius, of_edge
-  use places, only: places_t
+  use reported_place, only: place_t, of_h0, of_load, of_radius, of_edge
+  use places, only: places_t, readings_t
   use summary, only: summary_t
   implicit none
   private
@@ -108,12 +108,20 @@ contains
       load = finish%at(of_load)*problem%load
       solved = [lowest%at(of_load)*problem%load, finish%at(edge)*problem%lateral, &
         (problem%law%rest_gap - finish%at(of_h0))*problem%length]
-      associate (errors => finish%errors()*units_of(problem), &
-        of_lowest => lowest%errors()*units_of(problem))
-        load_error = errors(of_load)
-        uncertain = [of_lowest(of_load), errors(edge), errors(of_h0)]
-      end associate
+      load_error = error_of('path_end', of_load)
+      uncertain = [error_of('path_tension', of_load), error_of('path_end', edge), &
+        error_of('path_end', of_h0)]
     end subroutine measure
+
+    real(wp) function error_of(name, quantity) result(error)
+      character(len=*), intent(in) :: name
+      integer, intent(in) :: quantity
+      type(readings_t) :: found
+
+      found = places%read_numbers(problem, name, quantity)
+      error = nan
+      if (size(found%error) > 0) error = found%error(1)
+    end function error_of
 
     !> The numbers of all theories at a load [N]; NaN if a theory has none.
     function of_theories(load) result(says)

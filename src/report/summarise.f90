@@ -14,6 +14,7 @@ module summarise
   use reported_place, only: place_t, of_h0, of_load
   use tension_at_end, only: judge_tension
   use places, only: places_t, readings_t
+  use reported_numbers, only: largest_of, of_table
   use problem_numbers, only: describe_problem
   use result_rows, only: rows
   use summary, only: summary_t
@@ -109,8 +110,7 @@ contains
       if (allocated(outcome%stepped_path)) call tell_trouble('path', outcome%stepped_path)
       if (allocated(outcome%loading)) then
         call tell_trouble('loading', outcome%loading)
-        if (outcome%loading%jump_uncertainty > 0 .and. .not. exact('jump_in')) call summary%set( &
-          'jump_in_uncertainty', outcome%loading%jump_uncertainty*problem%length)
+        if (outcome%loading%jump_uncertainty > 0) call tell_uncertainty('jump_in')
       end if
       if (.not. allocated(outcome%unloading)) return
       call summary%set('unload_from', scene%unloading%from)
@@ -119,21 +119,23 @@ contains
       end do
       do k = 1, size(outcome%unloading)
         if (.not. allocated(outcome%unloading(k)%jump)) cycle
-        if (outcome%unloading(k)%jump_uncertainty > 0 .and. .not. exact('jump_out')) &
-          call summary%set('jump_out_uncertainty', &
-          outcome%unloading(k)%jump_uncertainty*problem%length)
+        if (outcome%unloading(k)%jump_uncertainty > 0) call tell_uncertainty('jump_out')
         exit
       end do
     end subroutine tell_branches
 
-    !> Whether a jump starts from a fold that is known.
-    pure logical function exact(name)
+    !> Adds the uncertainty of a jump that does not start from a known fold: that of its h0 between
+    !> two states, and that of the grid, are the error of h0.
+    subroutine tell_uncertainty(name)
       character(len=*), intent(in) :: name
       type(place_t) :: place
+      type(readings_t) :: found
 
       place = outcome%places%place_of(name)
-      exact = place%turns()
-    end function exact
+      if (place%turns()) return
+      found = outcome%places%read_numbers(problem, name, of_h0)
+      call summary%set(name // '_uncertainty', found%error(1))
+    end subroutine tell_uncertainty
 
     subroutine tell_trouble(name, branch)
       character(len=*), intent(in) :: name
@@ -179,7 +181,8 @@ contains
         call summary%fail_with('some numbers that are read from the path were not solved')
       if (allocated(readings%device)) call summarise_device(problem, readings, places, summary)
       if (places%has('table')) then
-        call summary%set('table_load_error', places%largest_of('table', of_load)*problem%load)
+        call summary%set('table_load_error', &
+          largest_of(places%number, of_table, of_load)*problem%load)
         call summary%set('table_interpolation_error', &
           readings%table_interpolation_error*problem%load)
       end if

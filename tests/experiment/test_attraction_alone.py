@@ -42,8 +42,8 @@ def test_stiff_bodies_touch_under_the_tension_of_rigid_ones(run, name):
     assert FALLS in result.warnings[0]
     last = {key: result.curve[key][-1] for key in ("stable", "h0", "displacement", "load")}
     assert last["stable"] == 1 and abs(last["h0"] + last["displacement"]) < 1e-15
-    # The step ends over its smoothing.
-    assert -last["load"] == pytest.approx(2 * math.pi * RADIUS * work, rel=2e-2)
+    # The step ends over its smoothing, of which meshes without a contact edge see different parts.
+    assert -last["load"] == pytest.approx(2 * math.pi * RADIUS * work, rel=3e-2)
 
 
 def test_a_singular_attraction_has_no_work_of_adhesion(run):

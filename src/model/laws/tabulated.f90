@@ -7,6 +7,7 @@ module tabulated
   use data_table, only: data_table_t, read_columns
   use force_law, only: force_law_t, of_pressure, of_energy
   use force_table, only: force_table_t, new_force_table, largest_step
+  use table_noise, only: noise_of, noise_of_integral
   use group_reading, only: check_decades
   implicit none
   private
@@ -19,12 +20,17 @@ module tabulated
     real(wp) :: share = 1
     !> Change of the energy of the tail if it fell as the last points do.
     real(wp) :: tail_error = 0
+    !> Errors of pressure and energy at the points that follow from the noise of the points.
+    real(wp), allocatable :: noise(:, :)
   contains
     procedure :: evaluate
     procedure :: table_error
+    procedure, private :: error_between
   end type tabulated_t
 
   integer, parameter :: fewest = 8
+  !> Error that noise is likely not to exceed, in standard deviations.
+  real(wp), parameter :: likely = 2
   !> The tail is compared with the points from this fraction of the last gap on; least power of a
   !> pressure that falls, less one.
   real(wp), parameter :: end_of_lever = 0.8_wp, nearly_none = 0.01_wp
@@ -143,6 +149,7 @@ contains
     this%share = merge(share_of_spline, share_of_monotone, interpolation == 'spline')
     i = max(1, count(g <= end_of_lever*g(n)))
     this%tail_error = tail_error_of(g([i, n]), this%pressure(g([i, n])))
+    call take_noise()
     call take_scales()
     if (.not. decay_length > 0) this%tail_power = exponent
     this%breaks = g
@@ -177,6 +184,27 @@ contains
       end if
     end function tail_error_of
 
+    !> Sets the errors by noise. Numbers times their inverse tail are smooth.
+    subroutine take_noise()
+      real(wp) :: tail(n), noise(n), beyond
+
+      associate (table => this%fine)
+        tail = exp(-table%rate*table%u)
+        noise = likely*tail*noise_of(table%u, value/tail)
+        allocate (this%noise(2, n))
+        if (table%of_energy) then
+          ! The pressure is the slope.
+          this%noise(2, :) = noise
+          this%noise(1, :n - 1) = noise(:n - 1)/(g(2:) - g(:n - 1))
+          this%noise(1, n) = this%noise(1, n - 1)
+        else
+          beyond = merge(decay_length, g(n)/max(table%energy_rate, tiny(1.0_wp)), decay_length > 0)
+          this%noise(1, :) = noise
+          this%noise(2, :) = noise_of_integral(g, noise, beyond)
+        end if
+      end associate
+    end subroutine take_noise
+
     !> Finds the points about which the error of the table is not small. At the others the
     !> derivatives jump by so little that the nodes of a mesh need not know.
     subroutine find_kinks()
@@ -187,7 +215,7 @@ contains
       call deck%get('numerics', 'accuracy', accuracy)
       associate (g => this%breaks, n => size(middle))
         middle = (g(:n) + g(2:))/2
-        error = this%table_error(middle)
+        error = this%error_between(middle)
         rough = .false.
         rough(1:n) = error(1, :) > max(unnoticed*accuracy, least)* &
           max(abs(this%pressure(middle)), middle*abs(this%slope(middle)))
@@ -224,9 +252,24 @@ contains
     value = quantity_of(self%fine, quantity, max(gap, self%smallest_gap))
   end subroutine evaluate
 
-  !> From the table of every second point: for smooth laws its additional error is a known multiple
-  !> of the error of the whole table. The energy also has the error of the tail.
+  !> The error of the interpolation, that of the tail, and that by the noise of the points.
   pure function table_error(self, gap) result(value)
+    class(tabulated_t), intent(in) :: self
+    real(wp), intent(in) :: gap(:)
+    real(wp) :: value(2, size(gap))
+    integer :: i, k
+
+    value = self%error_between(gap)
+    value(2, :) = value(2, :) + self%tail_error
+    do k = 1, size(gap)
+      i = min(max(1, count(self%breaks <= gap(k))), size(self%breaks) - 1)
+      value(:, k) = value(:, k) + maxval(self%noise(:, i:i + 1), 2)
+    end do
+  end function table_error
+
+  !> From the table of every second point: for smooth laws its additional error is a known multiple
+  !> of the error of the whole table.
+  pure function error_between(self, gap) result(value)
     class(tabulated_t), intent(in) :: self
     real(wp), intent(in) :: gap(:)
     real(wp) :: value(2, size(gap))
@@ -236,8 +279,7 @@ contains
       value(2, :) = quantity_of(self%coarse, of_energy, at) - self%energy(gap)
     end associate
     value = self%share*abs(value)
-    value(2, :) = value(2, :) + self%tail_error
-  end function table_error
+  end function error_between
 
   !> A quantity of a table at a gap.
   elemental real(wp) function quantity_of(table, quantity, gap) result(value)

@@ -1,0 +1,190 @@
+!> Named numbers of a run, and their errors from other runs of the same scene. The error of a number
+!> is a multiple of its difference from the same number, by name and element, of another run; a
+!> number that another run does not have, or has more often, is not known.
+module reported_numbers
+  use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
+  use kinds, only: wp
+  use reported_place, only: quantities, of_load, of_profile, least, rounding
+  implicit none
+  private
+  public :: number_t, run_numbers_t, judge, largest_error, largest_of, of_table, of_turns, &
+    name_length
+
+  integer, parameter :: name_length = 24
+
+  !> All quantities of an element of a number, units of `dimensionless_problem`, with their errors.
+  type :: number_t
+    character(len=name_length) :: name = ''
+    integer :: element = 1
+    real(wp), dimension(quantities) :: value = 0, error = 0
+    !> The quantities whose relative errors count.
+    logical :: compared(quantities) = .false.
+    !> Whether all other runs have this number.
+    logical :: known = .true.
+    !> A profile: gaps and pressures at the radii of the first run.
+    real(wp), allocatable, dimension(:) :: gap, pressure
+  end type number_t
+
+  !> The numbers of another run.
+  type :: run_numbers_t
+    type(number_t), allocatable :: number(:)
+  end type run_numbers_t
+
+  !> Factor of the differences. It accounts for the error of the other run, which is a tenth or less
+  !> for a finer mesh, and for differences that are small by chance.
+  real(wp), parameter :: margin = 3
+  !> The relative error that stands for an unknown value.
+  real(wp), parameter :: most = 1.0e6_wp
+  !> The loads of a table, whose errors are relative to the largest of them; and turns of the path,
+  !> which count only if other runs do not have them.
+  character(len=*), parameter :: of_table = 'table', of_turns = 'turns'
+
+contains
+
+  !> Sets the errors of numbers, which at first have what iteration and rounding leave. rough: the
+  !> force or the bodies are not smooth, so that errors decrease slowly and two meshes may agree by
+  !> chance; then no error is smaller than the median of the relative errors.
+  pure subroutine judge(number, others, rough)
+    type(number_t), intent(inout) :: number(:)
+    type(run_numbers_t), intent(in) :: others(:)
+    logical, intent(in) :: rough
+    real(wp), allocatable :: relative(:)
+    real(wp) :: middle
+    integer :: i, k, n
+
+    do k = 1, size(others)
+      do i = 1, size(number)
+        call compare(number(i), count(number%name == number(i)%name), others(k)%number)
+      end do
+    end do
+    if (.not. rough) return
+    allocate (relative(0))
+    do i = 1, size(number)
+      if (number(i)%known .and. number(i)%name /= of_table) &
+        relative = [relative, pack(parts_of(number(i)), number(i)%compared)]
+    end do
+    relative = pack(relative, relative > 0)
+    if (size(relative) == 0) return
+    middle = median(relative)
+    do i = 1, size(number)
+      associate (error => number(i)%error, value => number(i)%value)
+        do n = 1, quantities
+          if (error(n) > 0) error(n) = max(error(n), middle*max(abs(value(n)), least(n)))
+        end do
+      end associate
+    end do
+  end subroutine judge
+
+  !> Adds to the errors of a number the difference from another run; held: its number of elements.
+  pure subroutine compare(number, held, theirs)
+    type(number_t), intent(inout) :: number
+    integer, intent(in) :: held
+    type(number_t), intent(in) :: theirs(:)
+    integer :: k
+
+    if (count(theirs%name == number%name) /= held) number%known = .false.
+    do k = size(theirs), 1, -1
+      if (theirs(k)%name == number%name .and. theirs(k)%element == number%element) exit
+    end do
+    if (k == 0) then
+      number%known = .false.
+      return
+    end if
+    associate (a => number%value, b => theirs(k)%value)
+      ! A load exists at every place.
+      if (ieee_is_nan(a(of_load)) .neqv. ieee_is_nan(b(of_load))) number%known = .false.
+      where (.not. (ieee_is_nan(a) .and. ieee_is_nan(b))) number%error = number%error + &
+        margin*abs(a - b)
+    end associate
+    if (number%compared(of_profile)) number%error(of_profile) = number%error(of_profile) + &
+      margin*profile_difference(number, theirs(k))
+  end subroutine compare
+
+  !> The largest difference of gaps, and of pressures over the largest pressure, between two
+  !> profiles. Differences of gaps above the law's length are relative: at large gaps rounding is
+  !> proportional to the gap.
+  pure real(wp) function profile_difference(a, b) result(largest)
+    type(number_t), intent(in) :: a, b
+    real(wp) :: strongest
+    integer :: j
+
+    largest = 1
+    if (.not. (allocated(a%gap) .and. allocated(b%gap))) return
+    if (size(a%gap) /= size(b%gap)) return
+    strongest = max(maxval(abs(a%pressure)), tiny(1.0_wp))
+    largest = 0
+    do j = 1, size(a%gap)
+      ! A mesh may have no values there.
+      if (ieee_is_nan(a%gap(j)) .or. ieee_is_nan(b%gap(j))) cycle
+      largest = max(largest, abs(a%gap(j) - b%gap(j))/max(1.0_wp, a%gap(j)), &
+        abs(a%pressure(j) - b%pressure(j))/strongest)
+    end do
+  end function profile_difference
+
+  !> The largest relative error of all reported numbers. A turn of the path that other runs do not
+  !> have counts even if it is not reported, since the stability of all later states depends on it.
+  pure real(wp) function largest_error(number) result(largest)
+    type(number_t), intent(in) :: number(:)
+    real(wp) :: load
+    integer :: i
+
+    largest = rounding
+    load = tiny(1.0_wp)
+    do i = 1, size(number)
+      if (number(i)%name == of_table) then
+        load = max(load, abs(number(i)%value(of_load)))
+      else if (number(i)%name /= of_turns .or. .not. number(i)%known) then
+        largest = max(largest, relative_error(number(i)))
+      end if
+    end do
+    largest = max(largest, largest_of(number, of_table, of_load)/load)
+  end function largest_error
+
+  !> The largest error of a quantity over all elements of a number, units of
+  !> `dimensionless_problem`.
+  pure real(wp) function largest_of(number, name, quantity) result(largest)
+    type(number_t), intent(in) :: number(:)
+    character(len=*), intent(in) :: name
+    integer, intent(in) :: quantity
+    integer :: i
+
+    largest = 0
+    do i = 1, size(number)
+      if (number(i)%name /= name) cycle
+      largest = max(largest, number(i)%error(quantity))
+      if (.not. number(i)%known) largest = max(largest, abs(number(i)%value(quantity)))
+    end do
+  end function largest_of
+
+  !> The largest relative error of the compared quantities of a number.
+  pure real(wp) function relative_error(number) result(largest)
+    type(number_t), intent(in) :: number
+
+    largest = maxval([0.0_wp, pack(parts_of(number), number%compared)])
+    if (.not. number%known) largest = max(1.0_wp, largest)
+  end function relative_error
+
+  !> The relative errors of all quantities of a number.
+  pure function parts_of(number) result(part)
+    type(number_t), intent(in) :: number
+    real(wp) :: part(quantities)
+
+    part = 0
+    where (number%error > 0) part = &
+      min(number%error/max(abs(number%value), least, tiny(1.0_wp)), most)
+    part(of_profile) = number%error(of_profile)
+  end function parts_of
+
+  pure real(wp) function median(values)
+    real(wp), intent(in) :: values(:)
+    integer :: i
+
+    median = values(1)
+    do i = 1, size(values)
+      median = values(i)
+      if (count(values < median) <= size(values)/2 .and. &
+        count(values <= median) > size(values)/2) return
+    end do
+  end function median
+
+end module reported_numbers
