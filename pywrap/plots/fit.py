@@ -17,6 +17,10 @@ _WAYS = {"approach": SKY, "retreat": BLUE}
 _BEYOND = 0.15
 # Outliers with larger residuals are drawn at this multiple of the largest residual in use.
 _EDGE = 1.1
+# Numbers of fit.nml that follow from the fitted ones, and their units.
+_DERIVED = (("work_of_adhesion", "work of adhesion", "J/m²"),
+            ("reduced_modulus", "reduced modulus", "Pa"),
+            ("young_of_sample", "Young's modulus of the sample", "Pa"))
 # A signal above this many times the median residual is a force.
 _STANDS_OUT = 10
 
@@ -60,8 +64,32 @@ def draw_fit(folder, whole=False):
     if not whole:
         _show_contact(panel, z, table, force)
     panel.legend(frameon=False, markerscale=3)
+    panel.text(0.98, 0.04, "\n".join(_numbers_of(folder)), transform=panel.transAxes, ha="right",
+               va="bottom", fontsize="small", color=GREY)
     entitle(figure, title_of(folder, summary))
     return figure
+
+
+def _numbers_of(folder):
+    """Return lines with the fitted values and with what follows from them, from fit.nml."""
+    fit = f90nml.read(pathlib.Path(folder) / "fit.nml")["fit"]
+    names, values, errors, units = (np.atleast_1d(fit[key]) for key in (
+        "parameters", "estimate", "standard_error", "units"))
+    rows = [(name.split(".", 1)[1].replace("_", " "), *row)
+            for name, *row in zip(names, values, errors, units)]
+    rows += [(words, fit[key], fit[key + "_error"], unit) for key, words, unit in _DERIVED
+             if key in fit]
+    return [f"{name} {_with_error(value, error, unit)}" for name, value, error, unit in rows]
+
+
+def _with_error(value, error, unit):
+    """Return a value down to the second digit of its error, in the unit or a multiple of it."""
+    size, unit = scale([value], unit) if unit in ("m", "Pa") else (1.0, unit)
+    value, error = value / size, error / size
+    if not (np.isfinite(error) and error > 0):
+        return f"{value:.3g} {unit}"
+    digits = max(0, 1 - int(np.floor(np.log10(error))))
+    return f"{value:.{digits}f} \u00b1 {error:.{digits}f} {unit}"
 
 
 def _unit_of(folder):
