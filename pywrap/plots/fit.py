@@ -18,7 +18,7 @@ _BEYOND = 0.15
 # Outliers with larger residuals are drawn at this multiple of the largest residual in use.
 _EDGE = 1.1
 # Numbers of fit.nml that follow from the fitted ones, and their units.
-_DERIVED = (("work_of_adhesion", "work of adhesion", "J/m²"),
+_DERIVED = (("work_of_adhesion", "work of adhesion", "J/m^2"),
             ("reduced_modulus", "reduced modulus", "Pa"),
             ("young_of_sample", "Young's modulus of the sample", "Pa"))
 # A signal above this many times the median residual is a force.
@@ -63,9 +63,10 @@ def draw_fit(folder, whole=False):
           f"residual [{lefts[1]}]")
     if not whole:
         _show_contact(panel, z, table, force)
-    panel.legend(frameon=False, markerscale=3)
-    panel.text(0.98, 0.04, "\n".join(_numbers_of(folder)), transform=panel.transAxes, ha="right",
-               va="bottom", fontsize="small", color=GREY)
+    # As entries of the legend the numbers lie where no curve is.
+    for line in _numbers_of(folder):
+        panel.plot([], [], " ", label=line)
+    panel.legend(frameon=False, markerscale=3, fontsize="small")
     entitle(figure, title_of(folder, summary))
     return figure
 
@@ -77,8 +78,9 @@ def _numbers_of(folder):
         "parameters", "estimate", "standard_error", "units"))
     rows = [(name.split(".", 1)[1].replace("_", " "), *row)
             for name, *row in zip(names, values, errors, units)]
+    # A work of adhesion or a modulus that is fitted itself is there once.
     rows += [(words, fit[key], fit[key + "_error"], unit) for key, words, unit in _DERIVED
-             if key in fit]
+             if key in fit and not np.isclose(fit[key], values, rtol=1e-9, atol=0).any()]
     return [f"{name} {_with_error(value, error, unit)}" for name, value, error, unit in rows]
 
 
@@ -89,7 +91,7 @@ def _with_error(value, error, unit):
     if not (np.isfinite(error) and error > 0):
         return f"{value:.3g} {unit}"
     digits = max(0, 1 - int(np.floor(np.log10(error))))
-    return f"{value:.{digits}f} \u00b1 {error:.{digits}f} {unit}"
+    return f"{value:.{digits}f} \u00b1 {error:.{digits}f} {unit}".replace("^2", "²")
 
 
 def _unit_of(folder):

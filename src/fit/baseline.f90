@@ -1,14 +1,14 @@
-!> The baseline of a measured curve, the signal without a force: a polynomial of the position, with a
-!> constant of its own on each way, and a ripple, which interference of light makes in a detector. A
-!> drift in time is a slope of its own on each way.
+!> The baseline of a measured curve, the signal without a force: a polynomial of the position, with
+!> a constant of its own on each way, and a ripple, which interference of light makes in a detector.
+!> A drift in time is a slope of its own on each way.
 module baseline
   use kinds, only: wp, pi
   implicit none
   private
   public :: baseline_t, waves_of, scaled
 
-  !> degree: of the polynomial. slope_each_way: the slopes of the two ways are independent. ripple: a
-  !> sinusoid of one period on both ways, with its own amplitude and phase on each.
+  !> degree: of the polynomial. slope_each_way: the slopes of the two ways are independent. ripple:
+  !> a sinusoid of one period on both ways, with its own amplitude and phase on each.
   type :: baseline_t
     integer :: degree = 1
     logical :: slope_each_way = .false., ripple = .false.
@@ -22,8 +22,8 @@ module baseline
 contains
 
   !> The columns whose sums are baselines, at positions z on the way in or out. If the amplitudes of
-  !> the ripple are known, one column is its derivative by the period, so that errors include that of
-  !> the period.
+  !> the ripple are known, one column is its derivative by the period, so that errors include that
+  !> of the period.
   pure function columns(self, z, inward) result(column)
     class(baseline_t), intent(in) :: self
     real(wp), intent(in) :: z(:)

@@ -1,7 +1,8 @@
-!> Tests whether a fit lacks a part of its baseline: a bow, a slope of its own on each way, a ripple.
-!> Each is a direction in the space of the residuals r. The unknowns and the present baseline explain a
-!> part of it; if g is the rest as a unit vector, the part would lower chi squared by (g.r)^2 and move
-!> the unknowns by known amounts. No further fit is needed (as in `held_numbers`).
+!> Tests whether a fit lacks a part of its baseline: a bow, a slope of its own on each way, a
+!> ripple. Each is a direction in the space of the residuals r. The unknowns and the present
+!> baseline explain a part of it; if g is the rest as a unit vector, the part would lower chi
+!> squared by (g.r)^2 and move the unknowns by known amounts. No further fit is needed (as in
+!> `held_numbers`).
 module baseline_test
   use kinds, only: wp
   use root_finding, only: bracket_t
@@ -12,17 +13,16 @@ module baseline_test
   use curve_residuals, only: curve_residuals_t
   implicit none
   private
-  public :: lacking_t, test_baseline, settle_ripple
+  public :: lacking_t, test_baseline, settle_ripple, chance_of, rarely
 
-  !> A part that the baseline does not have. name: what adds it in &measurement. gain: by how much it
-  !> would lower chi squared. chance: logarithm of the probability that chance does this. shift: by
-  !> how much it would move each unknown, in the unit of its key. period [m]: of a ripple, otherwise 0.
+  !> A part that the baseline does not have. name: what adds it in &measurement. gain: by how much
+  !> it would lower chi squared. chance: logarithm of the probability that chance does this. shift:
+  !> by how much it would move each unknown, in the unit of its key. period [m]: of a ripple,
+  !> otherwise 0.
   type :: lacking_t
     character(len=:), allocatable :: name
     real(wp) :: gain = 0, period = 0, chance = 0
     real(wp), allocatable :: shift(:)
-  contains
-    procedure :: is_sure
   end type lacking_t
 
   !> The residuals of a fit and an orthonormal basis of their derivatives by the unknowns, which the
@@ -33,9 +33,9 @@ module baseline_test
 
   !> Smallest part of a direction that must remain; rounding of the derivatives leaves less.
   real(wp), parameter :: rounding = 1.0e-4_wp
-  !> Ripples have from one to `most_periods` periods over the travel, and `fewest_samples` samples in a
-  !> period; periods tried for each of these; sections that refine the best one; number of samples
-  !> with which one is searched for.
+  !> Ripples have from one to `most_periods` periods over the travel, and `fewest_samples` samples
+  !> in a period; periods tried for each of these; sections that refine the best one; number of
+  !> samples with which one is searched for.
   integer, parameter :: most_periods = 64, fewest_samples = 5, oversampling = 4, sections = 25, &
     enough = 40
   !> Change of the phase of a ripple over the travel that does not matter.
@@ -81,14 +81,14 @@ contains
 
       new = explained(residuals%curve%data, tangent, column)
       new%name = name
-      new%chance = chance_of(new%gain, tangent, 1, 1)
+      new%chance = chance_of(new%gain, left_of(tangent, new), 1, 1)
       lacking = [lacking, new]
     end subroutine test
 
   end subroutine test_baseline
 
-  !> Tests for a ripple. Noise with it may have been taken for correlated noise; so the noise is found
-  !> again without the ripple.
+  !> Tests for a ripple. Noise with it may have been taken for correlated noise; so the noise is
+  !> found again without the ripple.
   subroutine test_ripple(residuals, value, lacking)
     type(curve_residuals_t), intent(in) :: residuals
     real(wp), intent(in) :: value(:)
@@ -123,7 +123,7 @@ contains
         new = explained(trial%curve%data, tangent, wave)
         new%name = 'ripple = .true.'
         new%period = period
-        new%chance = chance_of(new%gain, tangent, size(wave, 2), 2*most_periods)
+        new%chance = chance_of(new%gain, left_of(tangent, new), size(wave, 2), 2*most_periods)
         if (new%gain > best%gain) best = new
         if (.not. residuals%curve%data%noise%order > 0) exit
       end do
@@ -236,6 +236,15 @@ contains
     if (found) call orthonormalise(tangent%basis, tangent%triangle)
   end subroutine find_tangent
 
+  !> Chi squared per degree of freedom, with a further part of the baseline.
+  pure real(wp) function left_of(tangent, lacking)
+    type(tangent_t), intent(in) :: tangent
+    type(lacking_t), intent(in) :: lacking
+
+    left_of = (sum(tangent%residual**2) - lacking%gain)/ &
+      max(1, size(tangent%residual) - size(tangent%basis, 2))
+  end function left_of
+
   !> What further columns of the baseline, at all samples, would do to a fit. amplitude: of these
   !> columns.
   type(lacking_t) function explained(data, tangent, column, amplitude) result(new)
@@ -267,18 +276,16 @@ contains
     call solve_triangle(tangent%triangle, new%shift)
   end function explained
 
-  !> The logarithm of the probability that noise makes this gain of chi squared by further columns,
-  !> one or an even number, the best of `trials` choices of them. Where residuals exceed the noise,
-  !> they are the scale.
-  pure real(wp) function chance_of(gain, tangent, columns, trials) result(chance)
-    real(wp), intent(in) :: gain
-    type(tangent_t), intent(in) :: tangent
+  !> The logarithm of the probability that noise lowers chi squared so much by further columns, one
+  !> or an even number, the best of `trials` choices of them. left: chi squared per degree of
+  !> freedom with them, which is the scale if it exceeds that of noise.
+  pure real(wp) function chance_of(gain, left, columns, trials) result(chance)
+    real(wp), intent(in) :: gain, left
     integer, intent(in) :: columns, trials
     real(wp) :: half, term, total
     integer :: k
 
-    half = 0.5_wp*gain/max(1.0_wp, (sum(tangent%residual**2) - gain)/ &
-      max(1, size(tangent%residual) - size(tangent%basis, 2) - columns))
+    half = 0.5_wp*max(0.0_wp, gain)/max(1.0_wp, left)
     if (columns == 1) then
       chance = log(erfc_scaled(sqrt(half)))
     else
@@ -294,11 +301,12 @@ contains
     chance = chance - half + log(real(trials, wp))
   end function chance_of
 
-  !> Whether chance explains a part less often than an excess of the residuals that is reported.
-  elemental logical function is_sure(self)
-    class(lacking_t), intent(in) :: self
+  !> Whether a logarithm of a probability is smaller than that of an excess of the residuals that is
+  !> reported.
+  elemental logical function rarely(chance)
+    real(wp), intent(in) :: chance
 
-    is_sure = self%chance < log(erfc(hardly_ever/sqrt(2.0_wp)))
-  end function is_sure
+    rarely = chance < log(erfc(hardly_ever/sqrt(2.0_wp)))
+  end function rarely
 
 end module baseline_test

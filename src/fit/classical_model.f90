@@ -1,6 +1,7 @@
 !> The theories of JKR, DMT and Maugis-Dugdale as models of a measured curve, and Hertz's for bodies
-!> that do not attract each other. Separate bodies do not attract each other. Bodies in contact follow
-!> the theory's curve, ordered by contact radius. These theories do not predict the jump into contact.
+!> that do not attract each other. Separate bodies do not attract each other. Bodies in contact
+!> follow the theory's curve, ordered by contact radius. These theories do not predict the jump into
+!> contact.
 module classical_model
   use kinds, only: wp
   use root_finding, only: bracket_t
@@ -11,8 +12,8 @@ module classical_model
   private
   public :: classical_model_t, theories, hertz
 
-  character(len=*), parameter :: theories(*) = [character(len=14) :: 'jkr', 'dmt', 'maugis_dugdale'], &
-    hertz = 'hertz'
+  character(len=*), parameter :: theories(*) = [character(len=14) :: 'jkr', 'dmt', &
+    'maugis_dugdale'], hertz = 'hertz'
 
   !> Panels of the branch in contact; relative step of the differences.
   integer, parameter :: panels = 200

@@ -20,8 +20,8 @@ module curve_models
 
 contains
 
-  !> Sets the model of a family of problems, which attract each other or do not. `self` must exist as
-  !> long as the model is used.
+  !> Sets the model of a family of problems, which attract each other or do not. `self` must exist
+  !> as long as the model is used.
   subroutine set(self, family, numerics, attracts, model)
     class(curve_models_t), intent(inout), target :: self
     class(problem_family_t), intent(in) :: family

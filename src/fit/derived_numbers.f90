@@ -1,5 +1,5 @@
-!> Numbers that follow from the fitted values, with errors: the work of adhesion, the reduced modulus,
-!> and the Young's modulus of the sample.
+!> Numbers that follow from the fitted values, with errors: the work of adhesion, the reduced
+!> modulus, and the Young's modulus of the sample.
 module derived_numbers
   use kinds, only: wp
   use failure, only: failure_t
@@ -11,8 +11,8 @@ module derived_numbers
   private
   public :: derived_t, derive_numbers
 
-  !> A number with its standard error and unit; poisson: the Poisson's ratio that it assumes, where it
-  !> assumes one, and whether the deck gives it.
+  !> A number with its standard error and unit; poisson: the Poisson's ratio that it assumes, where
+  !> it assumes one, and whether the deck gives it.
   type :: derived_t
     character(len=:), allocatable :: name, unit
     real(wp) :: value = 0, error = 0

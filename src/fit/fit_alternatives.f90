@@ -11,8 +11,8 @@ module fit_alternatives
   private
   public :: alternative_t, find_alternative, contact_slope
 
-  !> An alternative that describes the data. name: retreat, approach, or spring_constant, whose value
-  !> and error it then has [N/m].
+  !> An alternative that describes the data. name: retreat, approach, or spring_constant, whose
+  !> value and error it then has [N/m].
   type :: alternative_t
     character(len=:), allocatable :: name
     real(wp) :: value = 0, error = 0, chi_squared = 0
@@ -26,8 +26,8 @@ module fit_alternatives
 
 contains
 
-  !> Looks for an alternative; not allocated if there is none. curve, start: the fit and its starting
-  !> values.
+  !> Looks for an alternative; not allocated if there is none. curve, start: the fit and its
+  !> starting values.
   subroutine find_alternative(curve, model, start, fitted, alternative)
     type(modelled_curve_t), intent(in) :: curve
     class(force_model_t), intent(inout), target :: model
@@ -48,16 +48,18 @@ contains
       type(modelled_curve_t) :: trial
       type(fitted_t) :: other
 
-      if (.not. (any(curve%data%measured%inward) .and. .not. all(curve%data%measured%inward))) return
+      associate (ways => curve%data%measured%inward)
+        if (all(ways) .or. .not. any(ways)) return
+      end associate
       trial = curve
       call trial%data%keep_way(inward)
       call fit_curve(trial, model, reshape(fitted%value, [size(fitted%value), 1]), .true., other)
       call accept(name, other)
     end subroutine try_way
 
-    !> Fits the spring constant too, if the signal is the force; of a deflection the data cannot show
-    !> it. In contact with a much stiffer body the signal changes by the spring constant times the
-    !> travel.
+    !> Fits the spring constant too, if the signal is the force; of a deflection the data cannot
+    !> show it. In contact with a much stiffer body the signal changes by the spring constant times
+    !> the travel.
     subroutine try_spring()
       type(modelled_curve_t) :: trial
       type(fitted_t) :: other

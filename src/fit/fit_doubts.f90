@@ -10,6 +10,7 @@ module fit_doubts
   use held_numbers, only: held_t
   use fit_run, only: fit_outcome_t
   use fit_alternatives, only: contact_slope
+  use baseline_test, only: rarely
   use measured_checks, only: open_end, find_saturated
   implicit none
   private
@@ -79,13 +80,13 @@ contains
 
   contains
 
-    !> Doubt about a spring constant that is fitted to forces: forces that an instrument computed from
-    !> deflections would change with it.
+    !> Doubt about a spring constant that is fitted to forces: forces that an instrument computed
+    !> from deflections would change with it.
     subroutine doubt_spring()
       if (.not. outcome%curve%is_force) return
       if (.not. any(outcome%curve%unknown%role == of_spring)) return
-      call add('the signal counts as the force for any spring constant: if it was computed with ' // &
-        'spring_constant, give sensitivity = ' // rounded(1/outcome%curve%spring) // &
+      call add('the signal counts as the force for any spring constant: if it was computed ' // &
+        'with spring_constant, give sensitivity = ' // rounded(1/outcome%curve%spring) // &
         ', so that it counts as a deflection')
     end subroutine doubt_spring
 
@@ -120,7 +121,7 @@ contains
       if (.not. allocated(outcome%lacking)) return
       if (size(outcome%lacking) == 0) return
       i = minloc(outcome%lacking%chance, 1)
-      if (.not. outcome%lacking(i)%is_sure()) return
+      if (.not. rarely(outcome%lacking(i)%chance)) return
       associate (fitted => outcome%fitted, unknown => outcome%curve%unknown, &
         lacking => outcome%lacking(i))
         if (.not. fitted%lack%is_noise() .and. lacking%gain < most_of*(fitted%chi_squared - &

@@ -8,7 +8,8 @@ module fit_request
   implicit none
   private
   public :: measurement_t, fit_t, unknown_t, of_model, of_contact_point, of_sensitivity, &
-    of_spring, free_of, value_of, fitted_of, value_by_free, value_by_fitted, farthest_off, is_at_end, is_beyond
+    of_spring, free_of, value_of, fitted_of, value_by_free, value_by_fitted, farthest_off, &
+    is_at_end, is_beyond
 
   !> &measurement [SI]. sensitivity: of a signal in volts; not allocated: the signal is the force.
   type :: measurement_t

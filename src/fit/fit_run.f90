@@ -24,7 +24,7 @@ module fit_run
   use curve_fit, only: fit_curve
   use fit_errors, only: fitted_t, least_effect
   use held_numbers, only: held_t, test_held
-  use baseline_test, only: lacking_t, test_baseline
+  use baseline_test, only: lacking_t, test_baseline, chance_of, rarely
   use fit_alternatives, only: alternative_t, find_alternative
   use derived_numbers, only: derived_t, derive_numbers
   use theory_fits, only: theory_fit_t, fit_theories, suggested_characters
@@ -104,7 +104,8 @@ contains
       deallocate (outcome%problem)
       return
     end if
-    call derive_numbers(family, fit, curve%unknown, outcome%fitted, outcome%problem, outcome%derived)
+    call derive_numbers(family, fit, curve%unknown, outcome%fitted, outcome%problem, &
+      outcome%derived)
     call fit_theories(curve, outcome%fitted, family, outcome%problem, outcome%theory)
 
   contains
@@ -211,6 +212,8 @@ contains
             // suggestion
           return
         end if
+        call check_gain(trouble)
+        if (allocated(trouble)) return
         if (.not. fitted%lack%is_noise() .and. any(fitted%effect <= least_effect .or. &
           is_at_end(curve%unknown, fitted%value))) then
           trouble = other_order(curve, model)
@@ -229,6 +232,25 @@ contains
         end do
       end associate
     end subroutine check_fit
+
+    !> Sets `trouble` if the baseline alone describes the data as well as the model, whose contact
+    !> may be at any of many samples.
+    subroutine check_gain(trouble)
+      character(len=:), allocatable, intent(inout) :: trouble
+      real(wp) :: left(size(curve%data%sample), 1)
+      integer :: columns
+
+      left(:, 1) = curve%data%measured%signal(curve%data%sample)
+      call curve%data%clean(left)
+      columns = 2*((size(curve%unknown) + 1)/2)
+      associate (fitted => outcome%fitted)
+        if (rarely(chance_of(sum(left**2) - fitted%chi_squared, fitted%chi_squared/ &
+          max(1, fitted%freedom), columns, size(left)))) return
+        trouble = 'no contact in the data: the baseline alone leaves a chi squared of ' // &
+          rounded(sum(left**2)) // ', and the model ' // rounded(fitted%chi_squared) // ', with ' &
+          // rounded(real(fitted%freedom, wp)) // ' degrees of freedom'
+      end associate
+    end subroutine check_gain
 
   end subroutine run_fit
 

@@ -1,8 +1,8 @@
 !> The samples of a measured curve that count in a fit: the side of a jump on which each one is, and
 !> the whitening of residuals and the removal of their baseline.
 !>
-!> The baseline is a sum of given columns (`baseline`). It does not depend on the unknowns of a model,
-!> so one projection removes it from residuals and from their derivatives.
+!> The baseline is a sum of given columns (`baseline`). It does not depend on the unknowns of a
+!> model, so one projection removes it from residuals and from their derivatives.
 module fit_samples
   use kinds, only: wp
   use measured_curve, only: measured_t

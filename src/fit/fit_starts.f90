@@ -1,6 +1,6 @@
 !> Starting values of a model's unknowns: the deck's, and those that give the work of adhesion,
-!> stiffness and range of force that the data and the classical theories suggest. Where bodies do not
-!> attract each other, only the stiffness counts.
+!> stiffness and range of force that the data and the classical theories suggest. Where bodies do
+!> not attract each other, only the stiffness counts.
 module fit_starts
   use kinds, only: wp
   use failure, only: failure_t

@@ -30,8 +30,8 @@ module held_numbers
 contains
 
   !> Tests all numbers that are held. curve, value: the fit. wider: the family of the fit with the
-  !> deck's other positive numbers as further parameters. attracts: whether the bodies do. Numbers that the unknowns compensate
-  !> completely, or that cannot be varied, are left out.
+  !> deck's other positive numbers as further parameters. attracts: whether the bodies do. Numbers
+  !> that the unknowns compensate completely, or that cannot be varied, are left out.
   subroutine test_held(curve, value, numerics, wider, attracts, held)
     type(modelled_curve_t), intent(in) :: curve
     real(wp), intent(in) :: value(:)

@@ -1,7 +1,7 @@
 !> Checks whether a measured curve can be fitted; if not, with the reason and advice.
 module measured_checks
   use kinds, only: wp
-  use text, only: brief, rounded
+  use text, only: counted, rounded
   use measured_curve, only: measured_t
   use measured_jumps, only: measured_jump_t, find_jump, off_baseline
   use noise, only: noise_t, white_noise, rough_deviation
@@ -12,8 +12,9 @@ module measured_checks
 
   !> Limits: a signal in standard deviations of the noise; the part of the travel that counts as an
   !> end; the slope of an end in contact, over that of the spring; standard errors of a certain
-  !> statement.
-  real(wp), parameter :: stands_out = 8, nearest_part = 0.05_wp, steep = 0.2_wp, surely = 5
+  !> statement; a part that is most of a sum.
+  real(wp), parameter :: stands_out = 8, nearest_part = 0.05_wp, steep = 0.2_wp, surely = 5, &
+    most_part = 0.5_wp
   integer, parameter :: parts = nint(1/nearest_part)
 
 contains
@@ -33,10 +34,10 @@ contains
 
     left = off_baseline(measured)
     call check_contact(measured, left, noise, stiffness, trouble)
-    if (.not. allocated(trouble)) call check_ways()
+    ! Under a ripple, means and lines through the far samples say nothing of small contacts.
+    if (allocated(trouble) .or. measured%baseline%ripple) return
+    call check_ways()
     if (allocated(trouble)) return
-    ! The line through the far samples of a ripple may have any slope.
-    if (measured%baseline%ripple) return
     call nearest()
     if (near >= 0 .or. near >= before .or. .not. falls) then
       ! Backwards in time a contact lies at the far end, and seems pressed relative to its line.
@@ -77,7 +78,7 @@ contains
     !> difference is within the noise, a contact at the far end decides.
     subroutine check_ways()
       real(wp) :: position(size(measured%z)), slope(2), slope_error(2), taken(2), sure
-      real(wp), allocatable :: above(:), error(:)
+      real(wp), allocatable :: above(:), error(:), between(:)
 
       if (.not. (any(measured%inward) .and. .not. all(measured%inward))) return
       position = measured%facing*measured%z
@@ -89,14 +90,19 @@ contains
       if (sum(slope) < 0) return
       taken = sum(above)/size(above) - above([1, size(above)])
       sure = surely*maxval(error([1, size(error)]))
-      if (all(taken < -sure)) then
+      ! A ripple or a drift makes differences of either sign.
+      between = above - 0.5_wp*(above(1) + above(size(above)))
+      if (all(taken < -sure) .and. sum(between) < -most_part*sum(abs(between))) then
         trouble = 'a cycle would gain energy, as the adhesion is stronger on the way in than ' // &
-          'on the way out: the rows of the file are in reverse order, or approach and retreat ' // &
-          'are exchanged in the third column'
+          'on the way out (by ' // rounded(-sum(between)/size(between)) // ' on average, of a ' // &
+          'signal with errors of ' // rounded(sure/surely) // '): the rows of the file are in ' // &
+          'reverse order, or approach and retreat are exchanged in the third column'
       else if (sum(taken) < 0.2_wp*sure .and. slope(2) > steep*stiffness + surely*slope_error(2) &
         .and. abs(slope(1)) + surely*slope_error(1) < slope(2)/4) then
-        trouble = 'the bodies press on each other at the largest distance of the base: approach ' &
-          // 'and retreat are exchanged in the third column, or its rows are in reverse order'
+        trouble = 'the bodies press on each other at the largest distance of the base, where the ' &
+          // 'signal has a slope of ' // rounded(slope(2)/stiffness) // ' of that of the spring: ' &
+          // 'approach and retreat are exchanged in the third column, or its rows are in reverse ' &
+          // 'order'
       end if
     end subroutine check_ways
 
@@ -116,8 +122,8 @@ contains
     end subroutine slope_at
 
     !> The mean residual of the samples nearest to the other body, that of as many before them, the
-    !> distance between the two groups, and whether the signal falls among the nearest ones too: after
-    !> a contact that pulls before it presses it rises there.
+    !> distance between the two groups, and whether the signal falls among the nearest ones too:
+    !> after a contact that pulls before it presses it rises there.
     subroutine nearest()
       real(wp) :: position(size(left)), low, width
       logical :: mask(size(left))
@@ -136,8 +142,8 @@ contains
 
   end subroutine check_measured
 
-  !> Sets `trouble` if a straight line on each way describes the samples: single ones, and means over
-  !> neighbours. left: the signal off the baseline.
+  !> Sets `trouble` if a straight line on each way describes the samples: single ones, and means
+  !> over neighbours. left: the signal off the baseline.
   subroutine check_contact(measured, left, noise, stiffness, trouble)
     type(measured_t), intent(in) :: measured
     real(wp), intent(in) :: left(:), stiffness
@@ -178,7 +184,7 @@ contains
     else
       trouble = 'no contact in the data: the signal differs from a straight line by no more ' // &
         'than the noise of ' // rounded(white%deviation) // ' (means over ' // &
-        brief(lack%width) // merge(' sample  are ', ' samples are ', lack%width == 1) // &
+        counted(lack%width, 'sample') // ' are ' // &
         rounded(lack%times) // ' times those of noise); data must reach from outside ' // &
         'contact into the forces; check that columns names the signal'
     end if

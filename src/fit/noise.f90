@@ -11,8 +11,8 @@ module noise
   public :: noise_t, white_noise, noise_of, noise_of_steps, rough_deviation, rounding_of, &
     median_of, normal_median, whiten, stand_apart
 
-  !> Deviation over that of second differences above which residuals are no noise. A filter with this
-  !> ratio would average over 60 samples.
+  !> Deviation over that of second differences above which residuals are no noise. A filter with
+  !> this ratio would average over 60 samples.
   real(wp), parameter :: smooth = 10
   !> Number of samples that are many for a parabola: ten for each of its unknowns.
   integer, parameter :: many = 30
@@ -33,10 +33,10 @@ module noise
   type :: noise_t
     real(wp) :: deviation = 0, correlation(0:longest) = 0
     integer :: order = 0
-    !> Number of independent samples that give the deviation, and whether the steps between samples
-    !> give it.
+    !> Number of independent samples that give the deviation, whether the steps between samples give
+    !> it, and whether residuals were no noise, so that second differences do.
     real(wp) :: known_by = huge(1.0_wp)
-    logical :: of_steps = .false.
+    logical :: of_steps = .false., of_differences = .false.
     real(wp) :: weight(longest, longest) = 0, left(0:longest) = 1
   contains
     procedure :: long_deviation
@@ -60,10 +60,11 @@ contains
     noise%left = deviation
   end function white_noise
 
-  !> The noise of a signal at equal steps, which is a straight line in z over each run, or a parabola
-  !> where there are many samples: a bow is no noise. Neither is what differs so little from sample to
-  !> sample that no filter explains it, a ripple, a drift, or the bend of a contact; then the noise is
-  !> the white one of the second differences. run(i): number of the run of sample i.
+  !> The noise of a signal at equal steps, which is a straight line in z over each run, or a
+  !> parabola where there are many samples: a bow is no noise. Neither is what differs so little
+  !> from sample to sample that no filter explains it, a ripple, a drift, or the bend of a contact;
+  !> then the noise is the white one of the second differences. run(i): number of the run of sample
+  !> i.
   pure type(noise_t) function noise_of(z, signal, run) result(noise)
     real(wp), intent(in) :: z(:), signal(:)
     integer, intent(in) :: run(:)
@@ -87,6 +88,7 @@ contains
     if (noise%deviation > smooth*rough) then
       noise = white_noise(rough)
       noise%known_by = n
+      noise%of_differences = .true.
       return
     end if
     noise%correlation = covariance/covariance(0)

@@ -105,7 +105,8 @@ contains
     left = curve%data%measured%signal - model
     associate (data => curve%data)
       ! The model must reach all loads; where it does not, it continues on a straight line.
-      settled = .not. curve%needs_more(maxval(data%measured%signal - baseline, data%measured%usable))
+      settled = .not. curve%needs_more(maxval(data%measured%signal - baseline, &
+        data%measured%usable))
       usable = data%measured%usable
       deviation = data%noise%deviation
       ! A wrong model leaves large residuals nearly everywhere.
@@ -147,7 +148,8 @@ contains
         far_noise = noise_of(pack(data%measured%z, far), pack(left, far), pack(data%way, far))
         bare = noise_of(pack(data%measured%z, far), pack(data%measured%signal, far), &
           pack(data%way, far))
-        if (bare%deviation < far_noise%deviation) far_noise = bare
+        if (bare%deviation < far_noise%deviation .and. &
+          .not. bare%of_differences) far_noise = bare
         if (far_noise%order > 0 .or. abs(log(all_noise%deviation/far_noise%deviation)) > &
           differs*sqrt(0.5_wp/count(far) + 0.75_wp/steps)) all_noise = far_noise
       end if

@@ -65,9 +65,9 @@ contains
       'the curve cannot be used: ' // trouble%message)
   end subroutine take_fit
 
-  !> ', such as ...' with a stiffness above which it does not matter for rigid bodies: the strength of
-  !> adhesion or, without attraction, the deformation under the law's own pressure is so small that
-  !> loads differ by less than a hundredth.
+  !> ', such as ...' with a stiffness above which it does not matter for rigid bodies: the strength
+  !> of adhesion or, without attraction, the deformation under the law's own pressure is so small
+  !> that loads differ by less than a hundredth.
   function stiff_enough(scene) result(words)
     type(scene_t), intent(in) :: scene
     character(len=:), allocatable :: words

@@ -69,15 +69,25 @@ def test_a_wrong_range_of_force_is_said(branches, tmp_path):
     assert any("does not describe" in text for text in result.summary["warnings"])
 
 
-@pytest.mark.parametrize("off, bound", [(1e-3, "largest"), (1e3, "smallest")])
+@pytest.mark.parametrize("off", [1e-3, 1e3])
+def test_a_start_a_thousand_times_off_is_enough(branches, tmp_path, off):
+    """The search once ended 148 times from the deck's value, whatever the data suggested."""
+    result = fitted(tmp_path, branches.measure(400, NOISE, seed=3), started(stiffness=off), TRUTH)
+    assert np.abs(errors_off(result)).max() < 4
+    assert not result.summary.get("warnings")
+
+
+@pytest.mark.parametrize("off, bound", [(1e-7, "largest"), (1e7, "smallest")])
 def test_a_value_at_the_end_of_the_search_is_said(branches, tmp_path, off, bound):
     """The model is right, and would be found from a start that is nearer."""
     result = fitted(tmp_path, branches.measure(400, NOISE, seed=3), started(stiffness=off), TRUTH)
     found = result.fitted["fit"]["estimate"][1]
-    assert found / (1e10 * off) == pytest.approx(np.exp(5 if off < 1 else -5), rel=1e-3)
+    factor = max(found / (1e10 * off), 1e10 * off / found)
+    # The ends are 148 times from the deck's value, or from one that the data suggest.
+    assert factor > 148
     told = result.summary["warnings"]
     assert any(text.startswith("fit: bodies.stiffness ends at") and "start nearer" in text and
-               f"the {bound} value that is tried, a factor of 148" in text for text in told), told
+               f"the {bound} value that is tried, a factor of " in text for text in told), told
     assert not any("does not describe" in text for text in told), told
 
 

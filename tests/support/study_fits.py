@@ -1,8 +1,9 @@
-"""Fits of curves of the independent solution: clean ones of strongly adhering bodies from starts that
-are far off, and curves of several kinds of noise and baseline, whose intervals must hold the truth.
+"""Fits of curves of the independent solution: clean ones of strongly adhering bodies from starts
+that are far off, and curves of several kinds of noise and baseline, whose intervals must hold the
+truth.
 
-The curves are those of `reference_curves`, spoilt here by an instrument: filtered noise, digits of a
-converter, a bow of the baseline, a drift in time, interference, a rest at the turn.
+The curves are those of `reference_curves`, spoilt here by an instrument: filtered noise, digits of
+a converter, a bow of the baseline, a drift in time, interference.
 """
 
 import resource
@@ -139,6 +140,7 @@ def cpu():
 
 
 def examine(job):
+    """A list of the finding of a job."""
     true, curve, start, keys = made(job)
     began = cpu()
     with tempfile.TemporaryDirectory() as folder, warnings.catch_warnings():
@@ -147,8 +149,7 @@ def examine(job):
         try:
             result = snapin.run(deck_of(true, file, start, keys))
         except snapin.SnapinError as refused:
-            return Finding(job, true.sigma, (), (), cpu() - began, (),
-                           [f"refused: {refused}"])
+            return [Finding(job, true.sigma, (), (), cpu() - began, (), [f"refused: {refused}"])]
     seconds = cpu() - began
     fit, warned = result.fitted["fit"], tuple(result.summary.get("warnings", []))
     truths = np.array([true.energy, true.stiffness, 0.0])
@@ -160,7 +161,7 @@ def examine(job):
     if job.kind == "clean":
         wrong += [f"{name} {found / value:.3f} of the truth" for name, found, value
                   in zip(PARAMETERS, estimate, truths[:1]) if abs(found / value - 1) > CLOSE]
-    return Finding(job, true.sigma, tuple(off), inside, seconds, warned, wrong)
+    return [Finding(job, true.sigma, tuple(off), inside, seconds, warned, wrong)]
 
 
 def table(findings):
@@ -173,8 +174,9 @@ def table(findings):
         shares = " ".join(f"{x:6.1%}" for x in inside.mean(axis=0)) if len(inside) else "none"
         alarms = sum(any("does not describe" in text for text in one.warned) for one in ones)
         seconds = [one.seconds for one in ones]
-        lines.append(f"{kind:<14} {len(ones):4d} curves, wrong {sum(bool(o.wrong) for o in ones):3d}"
-                     f", called wrong {alarms:3d}, seconds {np.median(seconds):5.1f} median "
+        wrong = sum(bool(one.wrong) for one in ones)
+        lines.append(f"{kind:<14} {len(ones):4d} curves, wrong {wrong:3d}, called wrong {alarms:3d}, "
+                     f"seconds {np.median(seconds):5.1f} median "
                      f"{max(seconds):5.1f} most, 95 % intervals hold {shares}")
         lines += [f"    {one.job.number} sigma {one.sigma:g}: {'; '.join(one.wrong)}; warned: "
                   f"{' | '.join(one.warned)[:150]}" for one in ones if one.wrong]
