@@ -2,7 +2,12 @@
 !> alone, of the approach alone. One that describes its data tells what is wrong.
 module fit_alternatives
   use kinds, only: wp
+  use dimensionless_problem, only: problem_t
+  use variation, only: problem_family_t
   use fit_request, only: unknown_t, of_spring
+  use measured_jumps, only: find_jump
+  use fit_starts, only: starts_like
+  use theory_fits, only: suggested_characters
   use force_model, only: force_model_t
   use modelled_curve, only: modelled_curve_t
   use curve_fit, only: fit_curve
@@ -19,25 +24,30 @@ module fit_alternatives
     integer :: freedom = 0
   end type alternative_t
 
-  !> The part of the largest signal above which a sample is in contact.
-  real(wp), parameter :: in_contact = 0.5_wp
+  !> Parts of the travel over which slopes are taken, and the fewest samples of one.
+  integer, parameter :: parts = 10, fewest = 5
   !> A spring constant that differs by less than this factor is no mistake.
   real(wp), parameter :: other_spring = 1.1_wp
+  !> The softest spring that is tried, over the deck's.
+  real(wp), parameter :: softest = 1.0e-4_wp
 
 contains
 
-  !> Looks for an alternative; not allocated if there is none. curve, start: the fit and its
-  !> starting values.
-  subroutine find_alternative(curve, model, start, fitted, alternative)
+  !> Looks for an alternative; not allocated if there is none. family, problem: as of `run_fit`.
+  !> curve: the fit. spring_first: whether the data ask for another spring constant.
+  subroutine find_alternative(family, problem, curve, model, spring_first, fitted, alternative)
+    class(problem_family_t), intent(in) :: family
+    type(problem_t), intent(in) :: problem
     type(modelled_curve_t), intent(in) :: curve
     class(force_model_t), intent(inout), target :: model
-    real(wp), intent(in) :: start(:, :)
+    logical, intent(in) :: spring_first
     type(fitted_t), intent(in) :: fitted
     type(alternative_t), allocatable, intent(out) :: alternative
 
-    call try_way(.false., 'retreat')
+    if (spring_first) call try_spring()
+    if (.not. allocated(alternative)) call try_way(.false., 'retreat')
     if (.not. allocated(alternative)) call try_way(.true., 'approach')
-    if (.not. allocated(alternative)) call try_spring()
+    if (.not. (allocated(alternative) .or. spring_first)) call try_spring()
 
   contains
 
@@ -64,17 +74,26 @@ contains
       type(modelled_curve_t) :: trial
       type(fitted_t) :: other
       type(unknown_t) :: unknown
-      real(wp), allocatable :: starts(:, :)
+      real(wp), allocatable :: start(:, :), starts(:, :)
       integer :: n
 
       n = size(curve%unknown)
       if (.not. curve%is_force .or. any(curve%unknown%role == of_spring)) return
+      ! Jumps and starting values are those of a spring as stiff as the contact.
       trial = curve
+      trial%spring = max(contact_slope(curve), softest*curve%spring)
+      trial%sensitivity = 1/trial%spring
+      associate (data => trial%data)
+        data%jump = [find_jump(data%measured, data%noise%deviation, trial%spring, .true.), &
+          find_jump(data%measured, data%noise%deviation, trial%spring, .false.)]
+        call data%take(1)
+      end associate
+      call starts_like(suggested_characters(trial, problem), family, trial%unknown, start)
       unknown%name = 'measurement.spring_constant'
       unknown%unit = 'N/m'
       unknown%role = of_spring
       unknown%in_log = .true.
-      unknown%value = max(contact_slope(curve), 1.0e-4_wp*curve%spring)
+      unknown%value = trial%spring
       unknown%scale = unknown%value
       trial%unknown = [trial%unknown, unknown]
       allocate (starts(n + 1, size(start, 2)))
@@ -103,22 +122,31 @@ contains
 
   end subroutine find_alternative
 
-  !> The mean slope of the load [N/m] against the travel of the base in contact, where the signal
-  !> exceeds half of the largest one.
+  !> The steepest slope of the load [N/m] against the travel of the base in contact: the largest of
+  !> those of straight lines through the samples of a way over a part of the travel. In jumps the
+  !> load changes the other way.
   pure real(wp) function contact_slope(curve) result(slope)
     type(modelled_curve_t), intent(in) :: curve
-    real(wp) :: middle(2)
-    logical, allocatable :: pressed(:)
+    real(wp) :: middle(2), low, width
+    logical, allocatable :: there(:)
+    integer :: i, way
 
     slope = 0
     associate (data => curve%data%measured)
       associate (z => data%z, s => data%signal)
-        pressed = data%usable .and. s - minval(s, data%usable) > &
-          in_contact*(maxval(s, data%usable) - minval(s, data%usable))
-        if (count(pressed) < 3) return
-        middle = [sum(z, pressed), sum(s, pressed)]/count(pressed)
-        slope = -data%facing*sum((z - middle(1))*(s - middle(2)), pressed)/ &
-          max(sum((z - middle(1))**2, pressed), tiny(1.0_wp))*curve%spring*curve%sensitivity
+        low = minval(z)
+        width = (maxval(z) - low)/parts
+        do way = 1, 2
+          do i = 0, 2*parts - 2
+            there = data%usable .and. (data%inward .eqv. way == 1) .and. &
+              abs(z - low - (0.5_wp*i + 0.5_wp)*width) <= 0.5_wp*width
+            if (count(there) < fewest) cycle
+            middle = [sum(z, there), sum(s, there)]/count(there)
+            slope = max(slope, -data%facing*sum((z - middle(1))*(s - middle(2)), there)/ &
+              max(sum((z - middle(1))**2, there), tiny(1.0_wp)))
+          end do
+        end do
+        slope = slope*curve%spring*curve%sensitivity
       end associate
     end associate
   end function contact_slope

@@ -94,7 +94,8 @@ contains
     call test_baseline(residuals, outcome%fitted%value, outcome%lacking)
     if (.not. outcome%fitted%lack%is_noise()) then
       call listener%hear('looking for what is wrong')
-      call find_alternative(curve, model, start, outcome%fitted, outcome%alternative)
+      call find_alternative(family, problem, curve, model, asked_most(outcome%held) == &
+        'measurement.spring_constant', outcome%fitted, outcome%alternative)
     end if
     call listener%hear('fitting classical theories')
     allocate (outcome%theory(0), outcome%derived(0), outcome%problem)
@@ -194,6 +195,15 @@ contains
         words = words // curve%unknown(i)%name // ' = ' // rounded(value(i))
       end do
     end function values_of
+
+    !> The number that is held and that the data contradict most; '' without any.
+    function asked_most(held) result(name)
+      type(held_t), intent(in) :: held(:)
+      character(len=:), allocatable :: name
+
+      name = ''
+      if (size(held) > 0) name = held(maxloc(abs(held%asked), 1))%name
+    end function asked_most
 
     !> Sets `trouble` if the search did not end in a fit.
     subroutine check_fit(trouble)
