@@ -53,6 +53,8 @@ module fit_run
 
   !> Smallest noise over the largest signal, for computed signals.
   real(wp), parameter :: least_noise = 1.0e-9_wp
+  !> Chi squared per degree of freedom of data without contact, at most.
+  real(wp), parameter :: bare = 2
   !> Works of adhesion of further starts, over the deck's.
   real(wp), parameter :: works(*) = [0.2_wp, 5.0_wp]
 
@@ -256,9 +258,15 @@ contains
       associate (fitted => outcome%fitted)
         if (rarely(chance_of(sum(left**2) - fitted%chi_squared, fitted%chi_squared/ &
           max(1, fitted%freedom), columns, size(left)))) return
-        trouble = 'no contact in the data: the baseline alone leaves a chi squared of ' // &
-          rounded(sum(left**2)) // ', and the model ' // rounded(fitted%chi_squared) // ', with ' &
-          // rounded(real(fitted%freedom, wp)) // ' degrees of freedom'
+        trouble = 'the baseline alone leaves a chi squared of ' // rounded(sum(left**2)) // &
+          ', and the model ' // rounded(fitted%chi_squared) // ', with ' // &
+          rounded(real(fitted%freedom, wp)) // ' degrees of freedom'
+        if (sum(left**2) < bare*fitted%freedom) then
+          trouble = 'no contact in the data: ' // trouble
+        else
+          trouble = 'no start led to a contact like that of the data: ' // trouble // &
+            '; start from other values' // suggestion
+        end if
       end associate
     end subroutine check_gain
 
