@@ -16,6 +16,10 @@ _WAYS = {"approach": SKY, "retreat": BLUE}
 _BEYOND = 0.15
 # Outliers with larger residuals are drawn at this multiple of the largest residual in use.
 _EDGE = 1.1
+# Numbers of fit.nml that follow from the fitted ones, and their units.
+_DERIVED = (("work_of_adhesion", "work of adhesion", "J/m^2"),
+            ("reduced_modulus", "reduced modulus", "Pa"),
+            ("young_of_sample", "Young's modulus of the sample", "Pa"))
 # A signal above this many times the median residual is a force.
 _STANDS_OUT = 10
 
@@ -59,9 +63,35 @@ def draw_fit(folder, whole=False):
           f"residual [{lefts[1]}]")
     if not whole:
         _show_contact(panel, z, table, force)
-    panel.legend(frameon=False, markerscale=3)
+    # As entries of the legend the numbers lie where no curve is.
+    for line in _numbers_of(files):
+        panel.plot([], [], " ", label=line)
+    panel.legend(frameon=False, markerscale=3, fontsize="small")
     entitle(figure, title_of(folder, summary))
     return figure
+
+
+def _numbers_of(files):
+    """Return lines with the fitted values and with what follows from them, from fit.nml."""
+    fit = f90nml.reads(files.text("fit.nml"))["fit"]
+    names, values, errors, units = (np.atleast_1d(fit[key]) for key in (
+        "parameters", "estimate", "standard_error", "units"))
+    rows = [(name.split(".", 1)[1].replace("_", " "), *row)
+            for name, *row in zip(names, values, errors, units)]
+    # A work of adhesion or a modulus that is fitted itself is there once.
+    rows += [(words, fit[key], fit[key + "_error"], unit) for key, words, unit in _DERIVED
+             if key in fit and not np.isclose(fit[key], values, rtol=1e-9, atol=0).any()]
+    return [f"{name} {_with_error(value, error, unit)}" for name, value, error, unit in rows]
+
+
+def _with_error(value, error, unit):
+    """Return a value down to the second digit of its error, in the unit or a multiple of it."""
+    size, unit = scale([value], unit) if unit in ("m", "Pa") else (1.0, unit)
+    value, error = value / size, error / size
+    if not (np.isfinite(error) and error > 0):
+        return f"{value:.3g} {unit}"
+    digits = max(0, 1 - int(np.floor(np.log10(error))))
+    return f"{value:.{digits}f} \u00b1 {error:.{digits}f} {unit}".replace("^2", "²")
 
 
 def _unit_of(files):

@@ -43,7 +43,8 @@ module simulation
   use fit_group, only: family_of_fit
   use fit_run, only: run_fit, fit_outcome_t
   use fit_doubts, only: doubts_of
-  use fit_rows, only: write_fit_rows, fit_text, fit_words
+  use fit_rows, only: write_fit_rows, fit_text
+  use fit_words, only: words_of_fit
   implicit none
   private
   public :: run_scene
@@ -263,7 +264,7 @@ contains
       do i = 1, size(lines)
         call summary%warn('fit: ' // lines(i)%text)
       end do
-      lines = fit_words(outcome)
+      lines = words_of_fit(outcome)
       do i = 1, size(lines)
         call destination%say('fit: ' // lines(i)%text)
       end do

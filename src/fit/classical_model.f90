@@ -1,6 +1,7 @@
-!> The theories of JKR, DMT and Maugis-Dugdale as models of a measured curve. Separate bodies do not
-!> attract each other. Bodies in contact follow the theory's curve, ordered by contact radius. These
-!> theories do not predict the jump into contact.
+!> The theories of JKR, DMT and Maugis-Dugdale as models of a measured curve, and Hertz's for bodies
+!> that do not attract each other. Separate bodies do not attract each other. Bodies in contact
+!> follow the theory's curve, ordered by contact radius. These theories do not predict the jump into
+!> contact.
 module classical_model
   use kinds, only: wp
   use root_finding, only: bracket_t
@@ -9,9 +10,10 @@ module classical_model
   use force_model, only: force_model_t, response_t, way_t, branch_t, inward, outward
   implicit none
   private
-  public :: classical_model_t, theories
+  public :: classical_model_t, theories, hertz
 
-  character(len=*), parameter :: theories(*) = [character(len=14) :: 'jkr', 'dmt', 'maugis_dugdale']
+  character(len=*), parameter :: theories(*) = [character(len=14) :: 'jkr', 'dmt', &
+    'maugis_dugdale'], hertz = 'hertz'
 
   !> Panels of the branch in contact; relative step of the differences.
   integer, parameter :: panels = 200
@@ -44,6 +46,7 @@ contains
 
     number = [self%work, self%stiffness]
     number(pack([1, 2], [self%finds_work, self%finds_stiffness])) = value
+    if (self%theory == hertz) number(1) = 0
     ! Hertz's contact radius at the largest load and a hundred times the adhesion.
     widest = (1.5_wp*self%radius*(2*max(largest, 0.0_wp) + 100*number(1)*self%radius)/ &
       number(2))**(1.0_wp/3)
@@ -64,6 +67,8 @@ contains
     call response%branch(2)%close(stiffness)
     response%way(inward) = way_t([1, 2], [0.0_wp, -huge(1.0_wp)], 1, .false.)
     response%way(outward) = way_t([2, 1], [response%branch(2)%position(1), huge(1.0_wp)], 1)
+    ! Without adhesion there is no jump.
+    if (self%theory == hertz) response%way%main = 0
   end subroutine respond
 
   !> The branch in contact, from the turn of the position inward. Panels become longer as the
@@ -126,7 +131,7 @@ contains
       select case (model%theory)
       case ('jkr')
         state = [-jkr_displacement(a, r, y, w), jkr_load(a, r, y, w)]
-      case ('dmt')
+      case ('dmt', hertz)
         state = [-hertz_displacement(a, r), dmt_load(a, r, y, w)]
       case default
         theory = new_maugis(r, y, w, w/model%range)

@@ -10,6 +10,7 @@ module curve_fit
   use root_finding, only: bracket_t
   use noise, only: white_noise
   use second_look, only: look_again
+  use baseline_test, only: settle_ripple
   use fit_errors, only: fitted_t, judge, widen
   implicit none
   private
@@ -107,7 +108,8 @@ contains
         k = minloc(cost, 1)
         cost(k) = huge(cost)
         call search(residuals, value(:, k), left(k), found(k))
-        if (found(k) .and. left(k) < freedom + 3*sqrt(2.0_wp*freedom)) return
+        ! Residuals far below a noise show that the noise is too large, and prove nothing.
+        if (found(k) .and. abs(left(k) - freedom) < 3*sqrt(2.0_wp*freedom)) return
         if (count(left < (1 + same)*minval(left)) == enough) return
       end do
     end subroutine search_from
@@ -124,6 +126,7 @@ contains
         call residuals%curve%ask(fitted%value, .false., done)
         if (.not. done) return
         call look_again(residuals%curve, fitted%value, done)
+        call settle_ripple(residuals, fitted%value, done)
         if (done) return
         call search(residuals, fitted%value, left, fitted%found)
       end do

@@ -5,7 +5,7 @@
 module curve_residuals
   use kinds, only: wp
   use fit_request, only: unknown_t, value_of, value_by_free, value_by_fitted, fitted_of, &
-    farthest_off
+    is_beyond
   use least_squares, only: residuals_t
   use modelled_curve, only: modelled_curve_t
   implicit none
@@ -66,8 +66,7 @@ contains
     real(wp) :: left(size(self%curve%data%sample), 1)
     integer :: i, n
 
-    found = .not. any(self%curve%unknown%in_log .and. &
-      abs(fitted_of(self%curve%unknown, value)) > farthest_off)
+    found = .not. any(is_beyond(self%curve%unknown, value, 0.0_wp))
     if (found) call self%curve%ask(value, .false., found)
     if (.not. found) return
     associate (s => self%curve%data%sample)

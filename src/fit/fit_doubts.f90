@@ -4,11 +4,13 @@ module fit_doubts
   use kinds, only: wp
   use text, only: brief, rounded, rounded_to
   use namelist_writer, only: line_t
-  use fit_request, only: unknown_t, fitted_of, is_at_end, farthest_off
+  use fit_request, only: unknown_t, of_spring, fitted_of, is_at_end, farthest_off
   use second_look, only: lack_t, hardly_ever
   use fit_errors, only: fitted_t
   use held_numbers, only: held_t
   use fit_run, only: fit_outcome_t
+  use fit_alternatives, only: contact_slope
+  use baseline_test, only: rarely
   use measured_checks, only: open_end, find_saturated
   implicit none
   private
@@ -17,6 +19,8 @@ module fit_doubts
   !> Limits: correlation of two unknowns; smallest singular value; standard deviation of a
   !> logarithm; distance of a jump in standard deviations.
   real(wp), parameter :: alike = 0.98_wp, lost = 1.0e-3_wp, vague = 0.7_wp, far = 4
+  !> The part of the excess of chi squared that is most of it.
+  real(wp), parameter :: most_of = 0.5_wp
   character(len=*), parameter :: not_described = ': the model does not describe these data, ' // &
     'and the true errors are larger than the standard errors'
 
@@ -26,7 +30,7 @@ contains
   function doubts_of(outcome) result(lines)
     type(fit_outcome_t), intent(in) :: outcome
     type(line_t), allocatable :: lines(:)
-    logical :: stopped
+    logical :: stopped, explained
     integer :: i, k
 
     allocate (lines(0))
@@ -35,22 +39,30 @@ contains
         if (.not. is_at_end(unknown(i), fitted%value(i))) cycle
         call add(unknown(i)%name // ' ends at ' // rounded(fitted%value(i)) // ', the ' // &
           trim(merge('largest ', 'smallest', fitted_of(unknown(i), fitted%value(i)) > 0)) // &
-          ' value that is tried, a factor of ' // rounded(exp(farthest_off)) // &
+          ' value that is tried, a factor of ' // &
+          rounded(exp(abs(fitted_of(unknown(i), fitted%value(i))))) // &
           ' from the value in the deck: other values may fit better, and standard errors mean ' // &
           'nothing; start nearer')
       end do
       ! Then the model may describe the data with other values.
       stopped = size(lines) > 0
+      explained = .false.
       if (.not. fitted%found) call add('the search ended before it found the best values')
       if (.not. outcome%resolved) call add('the meshes do not resolve the force law, ' // &
         'and the model is not exact; smoother forces are resolved')
       if (.not. fitted%lack%is_noise()) call add(what_is_left(fitted%lack) // &
         ' times what noise leaves (' // rounded(fitted%lack%excess) // ' standard ' // &
         'deviations more)' // not_described(:merge(0, len(not_described), stopped)))
-      if (fitted%lack%excess < -hardly_ever .and. outcome%curve%data%noise_is_given) &
-        call add(what_is_left(fitted%lack) // ' times what the noise of the deck leaves: ' // &
-        'the noise is smaller, and the standard errors are larger than the true errors')
-      if (.not. stopped) call doubt_held(outcome%held)
+      ! The noise of rounding is a bound.
+      if (fitted%lack%excess < -hardly_ever .and. (outcome%curve%data%noise_is_given .or. &
+        outcome%curve%data%noise%deviation > outcome%curve%data%least_noise)) &
+        call add(what_is_left(fitted%lack) // ' times what the noise ' // &
+        trim(merge('of the deck     ', 'far from contact', outcome%curve%data%noise_is_given)) // &
+        ' leaves: the noise is smaller, and the standard errors are larger than the true errors')
+      call doubt_spring()
+      call doubt_alternative()
+      call doubt_baseline()
+      if (.not. (stopped .or. explained)) call doubt_held(outcome%held)
       do i = 1, size(fitted%value)
         call doubt_unknown(fitted, unknown(i), i)
         do k = 1, i - 1
@@ -67,6 +79,71 @@ contains
     call doubt_signal()
 
   contains
+
+    !> Doubt about a spring constant that is fitted to forces: forces that an instrument computed
+    !> from deflections would change with it.
+    subroutine doubt_spring()
+      if (.not. outcome%curve%is_force) return
+      if (.not. any(outcome%curve%unknown%role == of_spring)) return
+      call add('the signal counts as the force for any spring constant: if it was computed ' // &
+        'with spring_constant, give sensitivity = ' // rounded(1/outcome%curve%spring) // &
+        ', so that it counts as a deflection')
+    end subroutine doubt_spring
+
+    !> Another fit that describes the data.
+    subroutine doubt_alternative()
+      character(len=:), allocatable :: words
+
+      if (.not. allocated(outcome%alternative)) return
+      explained = .true.
+      associate (other => outcome%alternative)
+        words = ' (chi squared ' // rounded_to(other%chi_squared, 1.0_wp) // ' with ' // &
+          brief(other%freedom) // ' degrees of freedom)'
+        if (other%name == 'spring_constant') then
+          call add('with spring_constant = ' // rounded_to(other%value, other%error) // ' +- ' // &
+            rounded(other%error) // ' N/m the model describes these data' // words // ': in ' // &
+            'contact the load changes by ' // rounded(contact_slope(outcome%curve)) // &
+            ' N per metre of the travel, where spring_constant is ' // &
+            rounded(outcome%curve%spring) // ' N/m; check it')
+        else
+          call add('approach and retreat disagree, and the model describes the ' // other%name // &
+            ' alone' // words // ': fit segment = ''' // other%name // '''')
+        end if
+      end associate
+    end subroutine doubt_alternative
+
+    !> What the baseline lacks. Where the model does not describe the data, only a part that is most
+    !> of what it leaves.
+    subroutine doubt_baseline()
+      character(len=:), allocatable :: words
+      integer :: i, k
+
+      if (.not. allocated(outcome%lacking)) return
+      if (size(outcome%lacking) == 0) return
+      i = minloc(outcome%lacking%chance, 1)
+      if (.not. rarely(outcome%lacking(i)%chance)) return
+      associate (fitted => outcome%fitted, unknown => outcome%curve%unknown, &
+        lacking => outcome%lacking(i))
+        if (.not. fitted%lack%is_noise() .and. lacking%gain < most_of*(fitted%chi_squared - &
+          fitted%freedom)) return
+        explained = .true.
+        words = 'slope of the approach differs from that of the retreat'
+        if (lacking%name == 'baseline = ''quadratic''') words = 'is bent'
+        if (lacking%name == 'baseline = ''linear''') words = 'has a slope'
+        if (lacking%period > 0) words = 'has a ripple with a period of ' // &
+          rounded(lacking%period) // ' m'
+        if (index(words, 'slope of') == 1) then
+          words = 'the ' // words // ' on the baseline'
+        else
+          words = 'the baseline ' // words
+        end if
+        k = maxloc(abs(lacking%shift)/fitted%deviation, 1)
+        call add(words // ': ' // lacking%name // ' would lower chi squared by ' // &
+          rounded(lacking%gain) // ' and move ' // unknown(k)%name // ' by ' // &
+          rounded(lacking%shift(k)) // ' (' // rounded(abs(lacking%shift(k))/ &
+          fitted%deviation(k)) // ' standard errors)')
+      end associate
+    end subroutine doubt_baseline
 
     !> Doubts about numbers that the deck holds fixed: the one that the data contradict most.
     subroutine doubt_held(held)

@@ -3,7 +3,7 @@
 module fit_errors
   use kinds, only: wp
   use linear_algebra, only: singular_values
-  use fit_request, only: unknown_t, fitted_of, value_by_fitted, farthest_off
+  use fit_request, only: unknown_t, fitted_of, value_by_fitted
   use curve_residuals, only: curve_residuals_t
   use second_look, only: lack_t, lack_in
   implicit none
@@ -225,7 +225,7 @@ contains
       sign = merge(1, -1, upward)
       u = fitted_of(unknown, value)
       room = huge(room)
-      if (unknown%in_log) room = farthest_off - sign*u
+      if (unknown%in_log) room = unknown%farthest(merge(2, 1, upward)) - sign*u
       if (upward .and. allocated(unknown%upper)) &
         room = min(room, fitted_of(unknown, unknown%upper) - u)
       if (.not. upward .and. allocated(unknown%lower)) &

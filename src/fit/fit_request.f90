@@ -4,10 +4,12 @@
 !> two bounds are mapped by a sine, a single one by a hyperbola.
 module fit_request
   use kinds, only: wp
+  use baseline, only: baseline_t
   implicit none
   private
   public :: measurement_t, fit_t, unknown_t, of_model, of_contact_point, of_sensitivity, &
-    of_spring, free_of, value_of, fitted_of, value_by_free, value_by_fitted, farthest_off, is_at_end
+    of_spring, free_of, value_of, fitted_of, value_by_free, value_by_fitted, farthest_off, &
+    is_at_end, is_beyond
 
   !> &measurement [SI]. sensitivity: of a signal in volts; not allocated: the signal is the force.
   type :: measurement_t
@@ -24,30 +26,34 @@ module fit_request
     real(wp), allocatable :: skip(:)
     !> Units of position and signal in the file; 0: as the names of the columns say, or SI.
     real(wp) :: unit(2) = 0
+    type(baseline_t) :: baseline
   end type measurement_t
 
   !> The role of an unknown: a number of the problem, contact point, detector, spring.
   integer, parameter :: of_model = 0, of_contact_point = 1, of_sensitivity = 2, of_spring = 3
 
+  !> Largest logarithm of a trial over the deck's value, or over a value that the data suggest: the
+  !> path of a very different problem may take too long.
+  real(wp), parameter :: farthest_off = 5
+
   !> An unknown, in the unit of its key. in_log: it is positive and its logarithm is fitted;
   !> otherwise its difference from `origin`, over `scale`. prior: prior standard deviation about the
-  !> deck's value; 0: none.
+  !> deck's value; 0: none. farthest: the largest logarithms of a trial below and above the deck's
+  !> value.
   type :: unknown_t
-    character(len=:), allocatable :: name
+    character(len=:), allocatable :: name, unit
     integer :: role = of_model
     logical :: in_log = .false.
     real(wp) :: value = 0, origin = 0, scale = 1, prior = 0
+    real(wp) :: farthest(2) = farthest_off
     real(wp), allocatable :: lower, upper
   end type unknown_t
 
-  !> Largest logarithm of a trial over the deck's value: the path of a very different problem may
-  !> take too long.
-  real(wp), parameter :: farthest_off = 5
-
-  !> &fit. noise: standard deviation of the signal; not allocated: that of the baseline.
+  !> &fit. noise: standard deviation of the signal; not allocated: that of the baseline. poisson:
+  !> Poisson's ratios of the bodies, if the deck gives them.
   type :: fit_t
     type(unknown_t), allocatable :: unknown(:)
-    real(wp), allocatable :: noise
+    real(wp), allocatable :: noise, poisson(:)
   end type fit_t
 
 contains
@@ -67,9 +73,20 @@ contains
     real(wp), intent(in) :: value
     real(wp), parameter :: within = 1.0e-3_wp
 
-    is_at_end = .false.
-    if (unknown%in_log) is_at_end = abs(fitted_of(unknown, value)) >= farthest_off - within
+    is_at_end = is_beyond(unknown, value, -within)
   end function is_at_end
+
+  !> Whether a value is beyond the ends of the search by more than `excess`, in its logarithm.
+  elemental logical function is_beyond(unknown, value, excess)
+    type(unknown_t), intent(in) :: unknown
+    real(wp), intent(in) :: value, excess
+    real(wp) :: u
+
+    is_beyond = .false.
+    if (.not. unknown%in_log) return
+    u = fitted_of(unknown, value)
+    is_beyond = u < -unknown%farthest(1) - excess .or. u > unknown%farthest(2) + excess
+  end function is_beyond
 
   !> The free number of a value. A value at or beyond its bound is moved slightly inside.
   elemental real(wp) function free_of(unknown, value) result(x)

@@ -1,36 +1,36 @@
-!> A whole fit: finds noise and jumps of the measured curve, fits the model of the path, then fits
-!> the classical theories to the same samples.
+!> A whole fit: finds noise and jumps of the measured curve, fits the model of the path, tests it,
+!> then fits the classical theories to the same samples.
 module fit_run
-  use kinds, only: wp, pi
+  use kinds, only: wp
   use text, only: rounded
   use failure, only: failure_t
   use listener, only: listener_t
   use dimensionless_problem, only: problem_t
   use variation, only: problem_family_t
   use experiment_request, only: numerics_t
-  use fit_request, only: fit_t, unknown_t, of_model, of_contact_point, is_at_end
+  use fit_request, only: fit_t, of_model, of_contact_point, is_at_end, farthest_off
   use measured_curve, only: measured_t
   use measured_jumps, only: find_jump, find_far, off_baseline
-  use measured_checks, only: check_measured, check_loads, other_order
+  use measured_checks, only: check_measured
+  use measured_loads, only: check_loads, other_order
+  use turn_rest, only: leave_out_rest
   use noise, only: white_noise, rounding_of
   use fit_starts, only: character_t, character_of, starts_like
   use mending, only: too_much
-  use path_model, only: path_model_t
-  use classical_model, only: classical_model_t, theories
-  use modelled_curve, only: modelled_curve_t
+  use force_model, only: force_model_t
+  use curve_models, only: curve_models_t
+  use modelled_curve, only: modelled_curve_t, beyond, level_of
+  use curve_residuals, only: curve_residuals_t
   use curve_fit, only: fit_curve
   use fit_errors, only: fitted_t, least_effect
   use held_numbers, only: held_t, test_held
+  use baseline_test, only: lacking_t, test_baseline, chance_of, rarely
+  use fit_alternatives, only: alternative_t, find_alternative
+  use derived_numbers, only: derived_t, derive_numbers
+  use theory_fits, only: theory_fit_t, fit_theories, suggested_characters
   implicit none
   private
   public :: fit_outcome_t, run_fit
-
-  !> The fit of a classical theory.
-  type :: theory_fit_t
-    character(len=14) :: theory = ''
-    type(unknown_t), allocatable :: unknown(:)
-    type(fitted_t) :: fitted
-  end type theory_fit_t
 
   !> The result. trouble: the reason why there is no fit, with advice.
   type :: fit_outcome_t
@@ -42,19 +42,21 @@ module fit_run
     type(theory_fit_t), allocatable :: theory(:)
     !> The test of each number that the deck holds fixed.
     type(held_t), allocatable :: held(:)
+    !> What the baseline may lack; and another fit that describes the data where this one does not.
+    type(lacking_t), allocatable :: lacking(:)
+    type(alternative_t), allocatable :: alternative
+    !> Numbers that follow from the fitted values.
+    type(derived_t), allocatable :: derived(:)
     !> The problem with the fitted values, if it could be posed.
     type(problem_t), allocatable :: problem
   end type fit_outcome_t
 
   !> Smallest noise over the largest signal, for computed signals.
   real(wp), parameter :: least_noise = 1.0e-9_wp
-  !> The model is solved up to this many times the largest signal, since a trial may be too soft.
-  real(wp), parameter :: beyond = 1.2_wp
-  !> Starting stiffnesses of the theories over the deck's; starting ranges of the force over the
-  !> deck's; samples to which the theories are fitted to find starting values.
-  real(wp), parameter :: factors(*) = [1.0_wp, 0.1_wp, 10.0_wp, 0.01_wp, 100.0_wp], &
-    ranges(*) = [0.25_wp, 4.0_wp], works(*) = [0.2_wp, 5.0_wp]
-  integer, parameter :: few_samples = 1000
+  !> Chi squared per degree of freedom of data without contact, at most.
+  real(wp), parameter :: bare = 2
+  !> Works of adhesion of further starts, over the deck's.
+  real(wp), parameter :: works(*) = [0.2_wp, 5.0_wp]
 
 contains
 
@@ -69,48 +71,45 @@ contains
     type(problem_t), intent(in) :: problem
     class(listener_t), intent(inout) :: listener
     type(fit_outcome_t), intent(out) :: outcome
-    type(path_model_t), target :: model
+    type(curve_models_t), target :: models
+    class(force_model_t), pointer :: model
     type(modelled_curve_t) :: curve
+    type(curve_residuals_t) :: residuals
+    type(failure_t), allocatable :: error
+    character(len=:), allocatable :: suggestion
     real(wp), allocatable :: start(:, :)
-    integer :: i
 
     call take_curve(outcome%trouble)
     if (allocated(outcome%trouble)) return
     call listener%hear('fitting the path')
-    allocate (model%family, source=family)
-    model%numerics = numerics
-    call starts_like(likely_characters(), family, curve%unknown, start)
+    call models%set(family, numerics, problem%law%adhesion > 0, model)
+    call find_starts()
     call fit_curve(curve, model, start, .true., outcome%fitted)
-    outcome%resolved = model%left_out <= too_much*model%numerics%accuracy
+    outcome%resolved = models%path%left_out <= too_much*numerics%accuracy
     outcome%curve = curve
-    if (.not. outcome%fitted%has_curve) then
-      outcome%trouble = 'with the values of the deck the path could not be solved over the ' // &
-        'range of the data, or is far from them; start from other values, or fit a part of the data'
-      return
+    call check_fit(outcome%trouble)
+    if (allocated(outcome%trouble)) return
+    call test_held(curve, outcome%fitted%value, numerics, wider, problem%law%adhesion > 0, &
+      outcome%held)
+    residuals%curve = curve
+    call residuals%curve%use_model(model)
+    call test_baseline(residuals, outcome%fitted%value, outcome%lacking)
+    if (.not. outcome%fitted%lack%is_noise()) then
+      call listener%hear('looking for what is wrong')
+      call find_alternative(family, problem, curve, model, asked_most(outcome%held) == &
+        'measurement.spring_constant', outcome%fitted, outcome%alternative)
     end if
-    if (.not. allocated(outcome%fitted%effect)) then
-      outcome%trouble = &
-        'the search ended where the path has no derivatives; start from other values'
-      return
-    end if
-    associate (fitted => outcome%fitted)
-      if (.not. fitted%lack%is_noise() .and. any(fitted%effect <= least_effect .or. &
-        is_at_end(outcome%curve%unknown, fitted%value))) then
-        outcome%trouble = other_order(outcome%curve, model)
-        if (len(outcome%trouble) > 0) return
-        deallocate (outcome%trouble)
-      end if
-    end associate
-    do i = 1, size(outcome%fitted%effect)
-      if (outcome%fitted%effect(i) > least_effect) cycle
-      outcome%trouble = outcome%curve%unknown(i)%name // &
-        ' has no effect on this curve near the best value found, ' // &
-        rounded(outcome%fitted%value(i)) // '; remove it from parameters, or give a prior'
-      return
-    end do
-    call test_held(outcome%curve, outcome%fitted%value, numerics, wider, outcome%held)
     call listener%hear('fitting classical theories')
-    call fit_theories()
+    allocate (outcome%theory(0), outcome%derived(0), outcome%problem)
+    call family%pose(pack(outcome%fitted%value, curve%unknown%role == of_model), outcome%problem, &
+      error)
+    if (allocated(error)) then
+      deallocate (outcome%problem)
+      return
+    end if
+    call derive_numbers(family, fit, curve%unknown, outcome%fitted, outcome%problem, &
+      outcome%derived)
+    call fit_theories(curve, outcome%fitted, family, outcome%problem, outcome%theory)
 
   contains
 
@@ -121,10 +120,13 @@ contains
 
       curve%data%measured = measured
       curve%unknown = fit%unknown
-      where (curve%unknown%role == of_contact_point) curve%unknown%scale = problem%length
+      ! A shift by the range of the force, or by a step of the base, is large.
+      where (curve%unknown%role == of_contact_point) curve%unknown%scale = max(problem%length, &
+        (maxval(measured%z) - minval(measured%z))/size(measured%z))
       curve%spring = measured%spring_constant
       curve%sensitivity = 1/measured%spring_constant
-      if (allocated(measured%sensitivity)) curve%sensitivity = measured%sensitivity
+      curve%is_force = .not. allocated(measured%sensitivity)
+      if (.not. curve%is_force) curve%sensitivity = measured%sensitivity
       if (allocated(measured%contact_point)) curve%contact_point = measured%contact_point
       slope = 1/curve%sensitivity
       associate (data => curve%data%measured)
@@ -138,12 +140,13 @@ contains
         end if
         if (curve%data%noise%deviation < curve%data%least_noise) &
           curve%data%noise = white_noise(curve%data%least_noise)
+        call leave_out_rest(data, curve%data%noise, slope)
         call check_measured(data, curve%data%noise, slope, trouble)
         if (.not. allocated(trouble)) call check_loads(curve, trouble)
         if (allocated(trouble)) return
         curve%data%jump = [find_jump(data, curve%data%noise%deviation, slope, .true.), &
           find_jump(data, curve%data%noise%deviation, slope, .false.)]
-        curve%largest = beyond*max(maxval(data%signal, data%usable) - level_of(data), &
+        curve%largest = beyond*max(maxval(data%signal, data%usable) - level_of(curve), &
           maxval(off_baseline(data), data%usable))
       end associate
       call curve%data%take(1)
@@ -151,139 +154,121 @@ contains
         trouble = 'too few samples for so many parameters'
     end subroutine take_curve
 
-    !> Likely works of adhesion, stiffnesses and ranges of force: from the pull-off below the mean
-    !> of the baseline and below its slope, and from JKR and DMT fits, each with the range of the
-    !> deck's force and with others.
-    function likely_characters() result(likely)
+    !> Sets the starting values, and the ends of the search, which are about the deck's values and
+    !> about those that the data suggest.
+    subroutine find_starts()
       type(character_t), allocatable :: likely(:)
-      type(character_t) :: own, new
-      type(classical_model_t), target :: model
-      type(modelled_curve_t) :: few
-      type(fitted_t) :: fitted
-      real(wp) :: start(2 + size(curve%unknown), size(factors)), pull_off(2)
+      type(character_t) :: new
+      real(wp) :: off
       integer :: i, k
 
-      allocate (likely(0))
-      own = character_of(problem)
-      if (.not. own%work > 0) return
+      likely = suggested_characters(curve, problem)
+      suggestion = ''
+      call starts_like(likely, family, curve%unknown, start)
+      if (size(start, 2) > 1) suggestion = '; the data suggest ' // values_of(start(:, 2))
+      do i = 1, size(curve%unknown)
+        associate (unknown => curve%unknown(i))
+          if (.not. unknown%in_log) cycle
+          do k = 1, size(start, 2)
+            off = log(start(i, k)/unknown%value)
+            unknown%farthest = max(unknown%farthest, farthest_off + [-off, off])
+          end do
+        end associate
+      end do
+      if (.not. problem%law%adhesion > 0) return
       do k = 1, size(works)
-        new = own
-        new%work = own%work*works(k)
+        new = character_of(problem)
+        new%work = new%work*works(k)
         likely = [likely, new]
       end do
-      associate (data => curve%data%measured)
-        pull_off = -[minval(data%signal, data%usable) - level_of(data), &
-          minval(off_baseline(data), data%usable)]
-      end associate
-      do i = size(pull_off), 1, -1
-        own%work = pull_off(i)*curve%spring*curve%sensitivity/(1.5_wp*pi*problem%radius)
-        if (own%work > 0) likely = [likely, own]
-      end do
-      if (size(likely) == size(works)) return
-      own = likely(size(likely))
-      model%radius = problem%radius
-      few = curve
-      few%data%noise = white_noise(curve%data%noise%deviation)
-      call few%data%take(max(1, size(curve%data%sample)/few_samples))
-      do i = 1, 2
-        if (.not. problem%shape%parabolic) exit
-        model%theory = theories(i)
-        call take_unknowns(few, curve, model, own)
-        do k = 1, size(factors)
-          start(:size(few%unknown), k) = few%unknown%value
-          start(2, k) = own%stiffness*factors(k)
-        end do
-        call fit_curve(few, model, start(:size(few%unknown), :), .false., fitted)
-        if (.not. allocated(fitted%effect)) cycle
-        new = character_t(fitted%value(1), fitted%value(2), own%range)
-        likely = [likely, new]
-        do k = 1, size(ranges)
-          new%range = own%range*ranges(k)
-          likely = [likely, new]
-        end do
-      end do
-      do k = 1, size(factors)
-        new = own
-        new%stiffness = own%stiffness*factors(k)
-        likely = [likely, new]
-      end do
-    end function likely_characters
+      call starts_like(likely, family, curve%unknown, start)
+    end subroutine find_starts
 
-    !> Fits JKR, DMT and Maugis-Dugdale theory to the same curve, if the bodies are parabolas. The
-    !> work of adhesion is unknown if the deck fits a number of a force, the stiffness if it fits
-    !> one of the bodies.
-    subroutine fit_theories()
-      type(classical_model_t), target :: model
-      type(modelled_curve_t) :: curve
-      type(problem_t) :: final
-      type(failure_t), allocatable :: error
-      real(wp), allocatable :: start(:, :)
-      logical :: elastic(size(family%parameter))
+    !> The values of the model's unknowns in words.
+    function values_of(value) result(words)
+      real(wp), intent(in) :: value(:)
+      character(len=:), allocatable :: words
       integer :: i
 
-      allocate (outcome%theory(0))
-      call family%pose(pack(outcome%fitted%value, outcome%curve%unknown%role == of_model), final, &
-        error)
-      if (allocated(error)) return
-      outcome%problem = final
-      if (.not. problem%shape%parabolic .or. .not. final%law%work > 0) return
-      if (.not. final%body%is_homogeneous()) return
-      elastic = [(index(family%parameter(i)%name, 'bodies.') == 1 .and. &
-        family%parameter(i)%name /= 'bodies.radius', i=1, size(elastic))]
-      model%radius = final%radius
-      model%finds_stiffness = any(elastic)
-      model%finds_work = .not. all(elastic)
-      curve = outcome%curve
-      call take_unknowns(curve, outcome%curve, model, character_of(final))
-      deallocate (outcome%theory)
-      allocate (outcome%theory(size(theories)))
-      start = reshape([pack(curve%unknown%value, curve%unknown%role == of_model), &
-        pack(outcome%fitted%value, outcome%curve%unknown%role /= of_model)], [size(curve%unknown), &
-        1])
-      do i = 1, size(theories)
-        model%theory = theories(i)
-        outcome%theory(i)%theory = theories(i)
-        outcome%theory(i)%unknown = curve%unknown
-        call fit_curve(curve, model, start, .false., outcome%theory(i)%fitted)
+      words = ''
+      do i = 1, size(value)
+        if (curve%unknown(i)%role /= of_model) cycle
+        if (len(words) > 0) words = words // ', '
+        words = words // curve%unknown(i)%name // ' = ' // rounded(value(i))
       end do
-    end subroutine fit_theories
+    end function values_of
 
-    !> Sets the unknowns of a theory and those of the measurement.
-    subroutine take_unknowns(curve, measured, model, start)
-      type(modelled_curve_t), intent(inout) :: curve
-      type(modelled_curve_t), intent(in) :: measured
-      type(classical_model_t), intent(inout) :: model
-      type(character_t), intent(in) :: start
-      type(unknown_t) :: unknown(2)
+    !> The number that is held and that the data contradict most; '' without any.
+    function asked_most(held) result(name)
+      type(held_t), intent(in) :: held(:)
+      character(len=:), allocatable :: name
 
-      model%work = start%work
-      model%stiffness = start%stiffness
-      model%range = start%range
-      unknown(1) = unknown_of('work_of_adhesion', model%work)
-      unknown(2) = unknown_of('stiffness', model%stiffness)
-      curve%unknown = [pack(unknown, [model%finds_work, model%finds_stiffness]), &
-        pack(measured%unknown, measured%unknown%role /= of_model)]
-    end subroutine take_unknowns
+      name = ''
+      if (size(held) > 0) name = held(maxloc(abs(held%asked), 1))%name
+    end function asked_most
 
-    !> The mean of the far samples.
-    pure real(wp) function level_of(data) result(level)
-      type(measured_t), intent(in) :: data
+    !> Sets `trouble` if the search did not end in a fit.
+    subroutine check_fit(trouble)
+      character(len=:), allocatable, intent(out) :: trouble
+      integer :: i
 
-      associate (far => data%far .and. data%usable)
-        level = sum(data%signal, far)/max(1, count(far))
+      associate (fitted => outcome%fitted)
+        if (.not. fitted%has_curve) then
+          trouble = 'with the values of the deck the path could not be solved over the range ' // &
+            'of the data, or is far from them; start from other values, or fit a part of the ' // &
+            'data' // suggestion
+          return
+        end if
+        if (.not. allocated(fitted%effect)) then
+          trouble = 'the search ended where the path has no derivatives; start from other values' &
+            // suggestion
+          return
+        end if
+        call check_gain(trouble)
+        if (allocated(trouble)) return
+        if (.not. fitted%lack%is_noise() .and. any(fitted%effect <= least_effect .or. &
+          is_at_end(curve%unknown, fitted%value))) then
+          trouble = other_order(curve, model)
+          if (len(trouble) > 0) then
+            trouble = trouble // suggestion
+            return
+          end if
+          deallocate (trouble)
+        end if
+        do i = 1, size(fitted%effect)
+          if (fitted%effect(i) > least_effect) cycle
+          trouble = curve%unknown(i)%name // &
+            ' has no effect on this curve near the best value found, ' // &
+            rounded(fitted%value(i)) // '; remove it from parameters, or give a prior' // suggestion
+          return
+        end do
       end associate
-    end function level_of
+    end subroutine check_fit
 
-    !> A positive unknown of a theory.
-    type(unknown_t) function unknown_of(name, value) result(unknown)
-      character(len=*), intent(in) :: name
-      real(wp), intent(in) :: value
+    !> Sets `trouble` if the baseline alone describes the data as well as the model, whose contact
+    !> may be at any of many samples.
+    subroutine check_gain(trouble)
+      character(len=:), allocatable, intent(inout) :: trouble
+      real(wp) :: left(size(curve%data%sample), 1)
+      integer :: columns
 
-      unknown%name = name
-      unknown%in_log = .true.
-      unknown%value = value
-      unknown%scale = value
-    end function unknown_of
+      left(:, 1) = curve%data%measured%signal(curve%data%sample)
+      call curve%data%clean(left)
+      columns = 2*((size(curve%unknown) + 1)/2)
+      associate (fitted => outcome%fitted)
+        if (rarely(chance_of(sum(left**2) - fitted%chi_squared, fitted%chi_squared/ &
+          max(1, fitted%freedom), columns, size(left)))) return
+        trouble = 'the baseline alone leaves a chi squared of ' // rounded(sum(left**2)) // &
+          ', and the model ' // rounded(fitted%chi_squared) // ', with ' // &
+          rounded(real(fitted%freedom, wp)) // ' degrees of freedom'
+        if (sum(left**2) < bare*fitted%freedom) then
+          trouble = 'no contact in the data: ' // trouble
+        else
+          trouble = 'no start led to a contact like that of the data: ' // trouble // &
+            '; start from other values' // suggestion
+        end if
+      end associate
+    end subroutine check_gain
 
   end subroutine run_fit
 

@@ -1,8 +1,8 @@
 !> The samples of a measured curve that count in a fit: the side of a jump on which each one is, and
 !> the whitening of residuals and the removal of their baseline.
 !>
-!> The baseline is a constant for each way and a slope common to both. It does not depend on the
-!> unknowns of a model, so one projection removes it from residuals and from their derivatives.
+!> The baseline is a sum of given columns (`baseline`). It does not depend on the unknowns of a
+!> model, so one projection removes it from residuals and from their derivatives.
 module fit_samples
   use kinds, only: wp
   use measured_curve, only: measured_t
@@ -11,7 +11,7 @@ module fit_samples
   use force_model, only: inward, outward
   implicit none
   private
-  public :: fit_samples_t
+  public :: fit_samples_t, orthonormalise, solve_triangle
 
   type :: fit_samples_t
     type(measured_t) :: measured
@@ -29,9 +29,11 @@ module fit_samples
     real(wp), allocatable, private :: column(:, :), basis(:, :), triangle(:, :)
   contains
     procedure :: take
+    procedure :: keep_way
     procedure :: baseline_numbers
     procedure :: clean
     procedure :: baseline_under
+    procedure :: amplitudes_under
   end type fit_samples_t
 
 contains
@@ -71,21 +73,39 @@ contains
     end associate
   end subroutine take
 
+  !> Drops the samples of the other way.
+  subroutine keep_way(self, inward)
+    class(fit_samples_t), intent(inout) :: self
+    logical, intent(in) :: inward
+    logical :: keep(size(self%measured%z))
+    integer :: way, first
+
+    way = merge(1, 2, inward)
+    associate (data => self%measured)
+      keep = data%inward .eqv. inward
+      first = findloc(keep, .true., 1) - 1
+      data%z = pack(data%z, keep)
+      data%signal = pack(data%signal, keep)
+      data%far = pack(data%far, keep)
+      data%usable = pack(data%usable, keep)
+      data%skipped = pack(data%skipped, keep)
+      data%rested = pack(data%rested, keep)
+      data%inward = pack(data%inward, keep)
+    end associate
+    self%jump(3 - way) = measured_jump_t()
+    if (self%jump(way)%before > 0) then
+      self%jump(way)%before = self%jump(way)%before - first
+      self%jump(way)%after = self%jump(way)%after - first
+    end if
+    call self%take(1)
+  end subroutine keep_way
+
   !> Makes the columns of the baseline, and their whitened basis.
   pure subroutine set_baseline(self)
     type(fit_samples_t), intent(inout) :: self
     real(wp), allocatable :: column(:, :)
-    integer :: n, ways
 
-    associate (z => self%measured%z, inward => self%measured%inward)
-      n = size(z)
-      ways = merge(2, 1, any(inward) .and. .not. all(inward))
-      allocate (column(n, ways + 1))
-      column(:, 1) = merge(1.0_wp, 0.0_wp, inward .eqv. inward(1))
-      column(:, ways) = merge(1.0_wp, 0.0_wp, inward .eqv. inward(n))
-      column(:, ways + 1) = z - sum(z)/n
-      column(:, ways + 1) = column(:, ways + 1)/maxval(abs(column(:, ways + 1)))
-    end associate
+    column = self%measured%baseline%columns(self%measured%z, self%measured%inward)
     self%basis = column(self%sample, :)
     call move_alloc(column, self%column)
     call whiten(self%noise, self%run(self%sample), self%basis)
@@ -109,7 +129,7 @@ contains
         end do
       end do
       r(j, j) = norm2(q(:, j))
-      q(:, j) = q(:, j)/r(j, j)
+      q(:, j) = q(:, j)/max(r(j, j), tiny(1.0_wp))
     end do
   end subroutine orthonormalise
 
@@ -133,18 +153,32 @@ contains
   pure function baseline_under(self, signal) result(line)
     class(fit_samples_t), intent(in) :: self
     real(wp), intent(in) :: signal(:)
-    real(wp) :: line(size(signal)), left(size(self%sample), 1), part(size(self%column, 2))
-    integer :: i
+    real(wp) :: line(size(signal))
+
+    line = matmul(self%column, self%amplitudes_under(signal))
+  end function baseline_under
+
+  !> The amplitudes of the columns in this baseline.
+  pure function amplitudes_under(self, signal) result(part)
+    class(fit_samples_t), intent(in) :: self
+    real(wp), intent(in) :: signal(:)
+    real(wp) :: left(size(self%sample), 1), part(size(self%column, 2))
 
     left(:, 1) = signal(self%sample)
     call whiten(self%noise, self%run(self%sample), left)
     part = matmul(left(:, 1), self%basis)
-    associate (r => self%triangle)
-      do i = size(part), 1, -1
-        part(i) = (part(i) - dot_product(r(i, i + 1:), part(i + 1:)))/r(i, i)
-      end do
-    end associate
-    line = matmul(self%column, part)
-  end function baseline_under
+    call solve_triangle(self%triangle, part)
+  end function amplitudes_under
+
+  !> Replaces x by the solution of r x = x.
+  pure subroutine solve_triangle(r, x)
+    real(wp), intent(in) :: r(:, :)
+    real(wp), intent(inout) :: x(:)
+    integer :: i
+
+    do i = size(x), 1, -1
+      x(i) = (x(i) - dot_product(r(i, i + 1:), x(i + 1:)))/max(r(i, i), tiny(1.0_wp))
+    end do
+  end subroutine solve_triangle
 
 end module fit_samples

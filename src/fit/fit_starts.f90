@@ -1,5 +1,6 @@
 !> Starting values of a model's unknowns: the deck's, and those that give the work of adhesion,
-!> stiffness and range of force that the data and the classical theories suggest.
+!> stiffness and range of force that the data and the classical theories suggest. Where bodies do
+!> not attract each other, only the stiffness counts.
 module fit_starts
   use kinds, only: wp
   use failure, only: failure_t
@@ -128,7 +129,7 @@ contains
       trait = 0
       call family%pose(pack(value, unknown%role == of_model), problem, error)
       found = .not. allocated(error)
-      if (found) found = surface_energy(problem) > 0
+      if (found) found = surface_energy(problem) > 0 .or. .not. problem%law%adhesion > 0
       if (found) trait = logarithms(character_of(problem))
     end subroutine traits
 

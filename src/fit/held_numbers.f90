@@ -11,7 +11,8 @@ module held_numbers
   use experiment_request, only: numerics_t
   use modelled_curve, only: modelled_curve_t
   use curve_residuals, only: curve_residuals_t
-  use path_model, only: path_model_t
+  use force_model, only: force_model_t
+  use curve_models, only: curve_models_t
   implicit none
   private
   public :: held_t, test_held
@@ -29,15 +30,18 @@ module held_numbers
 contains
 
   !> Tests all numbers that are held. curve, value: the fit. wider: the family of the fit with the
-  !> deck's other positive numbers as further parameters. Numbers that the unknowns compensate
-  !> completely, or that cannot be varied, are left out.
-  subroutine test_held(curve, value, numerics, wider, held)
+  !> deck's other positive numbers as further parameters. attracts: whether the bodies do. Numbers
+  !> that the unknowns compensate completely, or that cannot be varied, are left out.
+  subroutine test_held(curve, value, numerics, wider, attracts, held)
     type(modelled_curve_t), intent(in) :: curve
     real(wp), intent(in) :: value(:)
     type(numerics_t), intent(in) :: numerics
     class(problem_family_t), intent(in) :: wider
+    logical, intent(in) :: attracts
     type(held_t), allocatable, intent(out) :: held(:)
-    type(path_model_t), target :: model
+    class(problem_family_t), allocatable :: family
+    type(curve_models_t), target :: models
+    class(force_model_t), pointer :: model
     type(curve_residuals_t) :: residuals
     type(held_t) :: new
     real(wp), allocatable :: jacobian(:, :), residual(:), all_values(:)
@@ -47,11 +51,11 @@ contains
 
     allocate (held(0))
     n = size(value)
-    allocate (model%family, source=wider)
-    call keep_variable(pack(value, curve%unknown%role == of_model), model%family)
-    model%numerics = numerics
+    allocate (family, source=wider)
+    call keep_variable(pack(value, curve%unknown%role == of_model), family)
+    call models%set(family, numerics, attracts, model)
     residuals%curve = curve
-    call add_held(model%family, curve, residuals%curve%unknown)
+    call add_held(family, curve, residuals%curve%unknown)
     all_values = [value, residuals%curve%unknown(n + 1:)%value]
     call residuals%curve%use_model(model)
     allocate (residual(residuals%rows()), jacobian(residuals%rows(), size(all_values)))
@@ -121,6 +125,7 @@ contains
 
       if (role /= of_model .and. any(unknown%role == role)) return
       new%name = name
+      new%unit = ''
       new%role = role
       new%in_log = role /= of_contact_point
       new%value = value

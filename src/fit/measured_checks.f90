@@ -1,26 +1,21 @@
-!> Checks whether a measured curve can be fitted; if not, with the reason and advice. In a wrong
-!> unit its loads are off by orders of magnitude.
+!> Checks whether a measured curve can be fitted; if not, with the reason and advice.
 module measured_checks
   use kinds, only: wp
-  use text, only: rounded
+  use text, only: counted, rounded
   use measured_curve, only: measured_t
   use measured_jumps, only: measured_jump_t, find_jump, off_baseline
-  use noise, only: noise_t
-  use fit_request, only: of_sensitivity, farthest_off
-  use path_model, only: path_model_t
-  use modelled_curve, only: modelled_curve_t
+  use noise, only: noise_t, white_noise, rough_deviation
+  use second_look, only: lack_t, lack_in
   implicit none
   private
-  public :: check_measured, check_loads, other_order, open_end, find_saturated
+  public :: check_measured, open_end, find_saturated
 
   !> Limits: a signal in standard deviations of the noise; the part of the travel that counts as an
   !> end; the slope of an end in contact, over that of the spring; standard errors of a certain
-  !> statement.
-  real(wp), parameter :: stands_out = 8, nearest_part = 0.05_wp, steep = 0.2_wp, surely = 5
+  !> statement; a part that is most of a sum.
+  real(wp), parameter :: stands_out = 8, nearest_part = 0.05_wp, steep = 0.2_wp, surely = 5, &
+    most_part = 0.5_wp
   integer, parameter :: parts = nint(1/nearest_part)
-  !> Factor by which a sensitivity that is not fitted may be wrong; factor between loads of another
-  !> order; part of the change of a signal that is most of it.
-  real(wp), parameter :: wrong = 3, order = 10, most_part = 0.5_wp
 
 contains
 
@@ -34,29 +29,33 @@ contains
     type(measured_jump_t) :: jump(2), back(2)
     real(wp), allocatable :: left(:)
     real(wp) :: near, before, travel
+    logical :: falls
+    integer :: i
 
     left = off_baseline(measured)
-    if (.not. maxval(abs(left), measured%usable) > stands_out*noise%deviation) then
-      trouble = 'no contact in the data: the signal differs from a straight line by no more ' // &
-        'than the noise of ' // rounded(noise%deviation) // '; data must reach from outside ' // &
-        'contact into the forces; check that columns names the signal'
-      return
-    end if
+    call check_contact(measured, left, noise, stiffness, trouble)
+    ! Under a ripple, means and lines through the far samples say nothing of small contacts.
+    if (allocated(trouble) .or. measured%baseline%ripple) return
     call check_ways()
     if (allocated(trouble)) return
     call nearest()
-    if (near >= 0 .or. near >= before) then
+    if (near >= 0 .or. near >= before .or. .not. falls) then
       ! Backwards in time a contact lies at the far end, and seems pressed relative to its line.
       jump = jumps_in(left)
       back = jumps_in(-left)
-      if (maxval(abs(back%change)) > maxval(abs(jump%change))) trouble = 'the force jumps up ' // &
-        'on the approach or down on the retreat: the rows of the file are in reverse order, ' // &
+      if (.not. maxval(abs(back%change)) > maxval(abs(jump%change))) return
+      i = maxloc(abs(back%change), 1)
+      trouble = 'the force jumps ' // trim(merge('up on the approach ', 'down on the retreat', &
+        i == 1)) // ' at z = ' // rounded(back(i)%z) // ' m, by ' // &
+        rounded(abs(back(i)%change)) // ' over ' // rounded(abs(measured%z(back(i)%after) - &
+        measured%z(back(i)%before))) // ' m: the rows of the file are in reverse order, ' // &
         'or the position is a separation and not that of the base'
       return
     end if
     back = jumps_in(-measured%signal)
     if (before - near > steep*stiffness*travel .or. any(back%before > 0)) trouble = &
-      'the force falls where the bodies are pressed together, but repulsion must be positive; ' // &
+      'the force falls where the bodies are pressed together (by ' // rounded(before - near) // &
+      ' over the nearest ' // rounded(travel) // ' m), but repulsion must be positive; ' // &
       'a minus before the name of a column changes its sign; if they are not in contact ' // &
       'there, but only attract each other, skip the nearest twentieth of the travel'
 
@@ -79,7 +78,7 @@ contains
     !> difference is within the noise, a contact at the far end decides.
     subroutine check_ways()
       real(wp) :: position(size(measured%z)), slope(2), slope_error(2), taken(2), sure
-      real(wp), allocatable :: above(:), error(:)
+      real(wp), allocatable :: above(:), error(:), between(:)
 
       if (.not. (any(measured%inward) .and. .not. all(measured%inward))) return
       position = measured%facing*measured%z
@@ -91,14 +90,19 @@ contains
       if (sum(slope) < 0) return
       taken = sum(above)/size(above) - above([1, size(above)])
       sure = surely*maxval(error([1, size(error)]))
-      if (all(taken < -sure)) then
+      ! A ripple or a drift makes differences of either sign.
+      between = above - 0.5_wp*(above(1) + above(size(above)))
+      if (all(taken < -sure) .and. sum(between) < -most_part*sum(abs(between))) then
         trouble = 'a cycle would gain energy, as the adhesion is stronger on the way in than ' // &
-          'on the way out: the rows of the file are in reverse order, or approach and retreat ' // &
-          'are exchanged in the third column'
+          'on the way out (by ' // rounded(-sum(between)/size(between)) // ' on average, of a ' // &
+          'signal with errors of ' // rounded(sure/surely) // '): the rows of the file are in ' // &
+          'reverse order, or approach and retreat are exchanged in the third column'
       else if (sum(taken) < 0.2_wp*sure .and. slope(2) > steep*stiffness + surely*slope_error(2) &
         .and. abs(slope(1)) + surely*slope_error(1) < slope(2)/4) then
-        trouble = 'the bodies press on each other at the largest distance of the base: approach ' &
-          // 'and retreat are exchanged in the third column, or its rows are in reverse order'
+        trouble = 'the bodies press on each other at the largest distance of the base, where the ' &
+          // 'signal has a slope of ' // rounded(slope(2)/stiffness) // ' of that of the spring: ' &
+          // 'approach and retreat are exchanged in the third column, or its rows are in reverse ' &
+          // 'order'
       end if
     end subroutine check_ways
 
@@ -117,8 +121,9 @@ contains
       error = noise%long_deviation()/sqrt(squares)
     end subroutine slope_at
 
-    !> The mean residual of the samples nearest to the other body, that of as many before them, and
-    !> the distance between the two groups.
+    !> The mean residual of the samples nearest to the other body, that of as many before them, the
+    !> distance between the two groups, and whether the signal falls among the nearest ones too:
+    !> after a contact that pulls before it presses it rises there.
     subroutine nearest()
       real(wp) :: position(size(left)), low, width
       logical :: mask(size(left))
@@ -128,12 +133,62 @@ contains
       width = nearest_part*(maxval(position) - low)
       mask = measured%usable .and. position <= low + width
       near = sum(left, mask)/max(1, count(mask))
+      falls = sum(left, mask .and. position <= low + width/2)/ &
+        max(1, count(mask .and. position <= low + width/2)) < near
       mask = measured%usable .and. position > low + width .and. position <= low + 2*width
       before = sum(left, mask)/max(1, count(mask))
       travel = width
     end subroutine nearest
 
   end subroutine check_measured
+
+  !> Sets `trouble` if a straight line on each way describes the samples: single ones, and means
+  !> over neighbours. left: the signal off the baseline.
+  subroutine check_contact(measured, left, noise, stiffness, trouble)
+    type(measured_t), intent(in) :: measured
+    real(wp), intent(in) :: left(:), stiffness
+    type(noise_t), intent(in) :: noise
+    character(len=:), allocatable, intent(inout) :: trouble
+    type(noise_t) :: white
+    type(lack_t) :: lack
+    integer, allocatable :: way(:)
+    real(wp), allocatable :: off_line(:)
+    real(wp) :: middle(2), squares, slope
+    integer :: k
+
+    if (maxval(abs(left), measured%usable) > stands_out*noise%deviation) return
+    ! A bend of a contact that reaches far would count as noise there.
+    white = white_noise(min(noise%deviation, rough_deviation(pack(measured%signal, &
+      measured%usable))))
+    off_line = measured%signal
+    slope = 0
+    do k = 1, 2
+      associate (mine => measured%usable .and. (measured%inward .eqv. k == 1), z => measured%z)
+        if (count(mine) < 2) cycle
+        middle = [sum(z, mine), sum(measured%signal, mine)]/count(mine)
+        squares = sum((z - middle(1))**2, mine)
+        associate (own => sum((z - middle(1))*(measured%signal - middle(2)), mine)/squares)
+          where (mine) off_line = measured%signal - middle(2) - own*(z - middle(1))
+          if (abs(own) > abs(slope)) slope = own
+        end associate
+      end associate
+    end do
+    way = pack(merge(1, 2, measured%inward), measured%usable)
+    lack = lack_in(pack(off_line, measured%usable)/white%deviation, way, size(way) - 4, white)
+    if (.not. lack%is_noise()) return
+    if (-measured%facing*slope > steep*stiffness) then
+      trouble = 'no baseline in the data: all samples lie on a straight line with ' // &
+        rounded(100*abs(slope)/stiffness) // ' % of the slope of the spring, and none is far ' // &
+        'from contact; the signal differs from a straight line by no more than the noise of ' // &
+        rounded(white%deviation)
+    else
+      trouble = 'no contact in the data: the signal differs from a straight line by no more ' // &
+        'than the noise of ' // rounded(white%deviation) // ' (means over ' // &
+        counted(lack%width, 'sample') // ' are ' // &
+        rounded(lack%times) // ' times those of noise); data must reach from outside ' // &
+        'contact into the forces; check that columns names the signal'
+    end if
+  end subroutine check_contact
 
   !> Height of the approach above the retreat, without their common slope, and its error, in each
   !> part of the travel in which both have samples, nearest first.
@@ -216,66 +271,5 @@ contains
       if (first == 0) last = 0
     end associate
   end subroutine find_saturated
-
-  !> Sets `trouble` if the load falls more than the spring permits. As h0 grows with the position of
-  !> the base, the load falls by the stiffness of the spring times the travel at most, for any
-  !> bodies.
-  subroutine check_loads(curve, trouble)
-    type(modelled_curve_t), intent(in) :: curve
-    character(len=:), allocatable, intent(inout) :: trouble
-    real(wp), dimension(size(curve%data%measured%z)) :: left, travel, excess
-    logical :: mine(size(left))
-    real(wp) :: most, newtons
-    integer :: way, near, far
-
-    most = merge(exp(farthest_off), wrong, any(curve%unknown%role == of_sensitivity))/ &
-      curve%sensitivity
-    newtons = curve%spring*curve%sensitivity
-    associate (data => curve%data%measured)
-      left = off_baseline(data)
-      do way = 1, 2
-        mine = data%usable .and. (data%inward .eqv. way == 1)
-        if (.not. any(mine)) cycle
-        travel = data%facing*data%z
-        near = minloc(travel, 1, mine)
-        travel = travel - travel(near)
-        excess = left(near) - left - most*travel
-        far = maxloc(excess, 1, mine)
-        if (excess(far) < max(stands_out*curve%data%noise%deviation, &
-          most_part*(maxval(left, mine) - minval(left, mine)))) cycle
-        trouble = 'the largest load of the data is ' // rounded(maxval(abs(left), mine)*newtons) &
-          // ' N, and from contact the load falls by ' // &
-          rounded((left(near) - left(far))*newtons) // ' N, where the spring permits ' // &
-          rounded(curve%spring*travel(far)) // ' N at most: check the unit of the signal ' // &
-          '(units), sensitivity if it is in volts, and spring_constant'
-      end do
-    end associate
-  end subroutine check_loads
-
-  !> Says that the tension of the data is of another order than that of the model with the deck's
-  !> values; otherwise ''.
-  function other_order(curve, model) result(words)
-    type(modelled_curve_t), intent(in) :: curve
-    type(path_model_t), intent(inout), target :: model
-    character(len=:), allocatable :: words
-    type(modelled_curve_t) :: start
-    real(wp) :: tension, own
-    logical :: found
-    integer :: i
-
-    words = ''
-    start = curve
-    call start%use_model(model)
-    call start%ask(start%unknown%value, .false., found)
-    if (.not. found) return
-    associate (branch => start%response%branch, data => curve%data%measured)
-      own = -minval([(minval(branch(i)%load(:2, :)), i=1, size(branch))])
-      tension = -minval(off_baseline(data), data%usable)*curve%spring*curve%sensitivity
-    end associate
-    if (own < order*tension .and. tension < order*own) return
-    words = 'the largest tension of the data is ' // rounded(tension) // ' N, and that of the ' // &
-      'model with the values of the deck ' // rounded(own) // ' N: check the unit of the ' // &
-      'signal (units), sensitivity and spring_constant, or start nearer'
-  end function other_order
 
 end module measured_checks

@@ -21,8 +21,8 @@ module measured_curve
     real(wp) :: facing = 1
     !> Samples far from contact, which show the baseline, once they are known.
     logical, allocatable :: far(:)
-    !> Samples in use: neither outliers nor skipped by the deck.
-    logical, allocatable :: usable(:), skipped(:)
+    !> Samples in use: neither outliers nor skipped, by the deck or since the base rested.
+    logical, allocatable :: usable(:), skipped(:), rested(:)
     !> How the file was understood, for the user: columns, units, rows of each segment and rows that
     !> are left out.
     character(len=:), allocatable :: understood

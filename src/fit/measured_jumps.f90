@@ -231,7 +231,8 @@ contains
       outer = position > limit
       if (count(outer .and. measured%usable) < 2*fewest_far) exit
       outer_noise = noise_at(outer)
-      if (outer_noise%deviation > less*noise%deviation) exit
+      ! Residuals that are no noise reach into the contact.
+      if (.not. noise%of_differences .and. outer_noise%deviation > less*noise%deviation) exit
       measured%far = outer
       noise = outer_noise
     end do

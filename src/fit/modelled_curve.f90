@@ -11,7 +11,7 @@ module modelled_curve
   use force_model, only: force_model_t, response_t, load_at_t
   implicit none
   private
-  public :: modelled_curve_t
+  public :: modelled_curve_t, beyond, level_of
 
   !> Least distance of the ends of contact over the travel of the base: a model with a single branch
   !> may end its contact outside Z = 0.
@@ -19,15 +19,18 @@ module modelled_curve
   !> Slope over the stiffness of the spring above which a sample is at the turn of its branch, where
   !> derivatives have no limit and tell nothing.
   real(wp), parameter :: steep = 10
+  !> The model is solved up to this many times the largest signal, since a trial may be too soft.
+  real(wp), parameter :: beyond = 1.2_wp
 
   type :: modelled_curve_t
     !> The target must exist as long as this object is used.
     class(force_model_t), pointer :: model => null()
     type(fit_samples_t) :: data
     type(unknown_t), allocatable :: unknown(:)
-    !> Spring, detector and contact point if they are not unknown. If the signal is a force, the
-    !> detector measures the deflection of the deck's spring.
+    !> Spring, detector and contact point if they are not unknown.
     real(wp) :: spring = 1, sensitivity = 1, contact_point = 0
+    !> Whether the signal is the force, with the sensitivity 1/k for any k.
+    logical :: is_force = .false.
     !> The largest signal, without baseline, that the model must reach.
     real(wp) :: largest = 0
     type(response_t) :: response
@@ -36,6 +39,7 @@ module modelled_curve
     logical, private :: has_rates = .false.
   contains
     procedure :: use_model
+    procedure :: needs_more
     procedure :: ask
     procedure :: signal_of
     procedure :: signal_rates
@@ -43,7 +47,7 @@ module modelled_curve
     procedure :: jump_rates
     procedure :: split
     procedure :: reach
-    procedure, private :: number_of, position_of
+    procedure, private :: number_of, position_of, newtons
   end type modelled_curve_t
 
 contains
@@ -57,6 +61,18 @@ contains
     if (allocated(self%asked)) deallocate (self%asked)
   end subroutine use_model
 
+  !> Whether the model must reach a larger signal than it did. If so, it will. The spring cannot be
+  !> bent by more than the travel.
+  logical function needs_more(self, signal)
+    class(modelled_curve_t), intent(inout) :: self
+    real(wp), intent(in) :: signal
+    real(wp) :: most
+
+    most = (maxval(self%data%measured%z) - minval(self%data%measured%z))/self%sensitivity
+    needs_more = signal > self%largest .and. self%largest < most
+    if (needs_more) self%largest = min(beyond*signal, most)
+  end function needs_more
+
   !> Makes the model respond for these values, unless the last response is sufficient.
   subroutine ask(self, value, with_rates, found)
     class(modelled_curve_t), intent(inout) :: self
@@ -68,7 +84,7 @@ contains
 
     k = self%number_of(value, of_spring, self%spring)
     asked = [pack(value, self%unknown%role == of_model), k]
-    largest = self%largest*k*self%number_of(value, of_sensitivity, self%sensitivity)
+    largest = self%largest*self%newtons(value)
     found = allocated(self%asked)
     if (found) found = all(abs(asked - self%asked) <= 0) .and. largest <= self%deepest .and. &
       (self%has_rates .or. .not. with_rates)
@@ -102,8 +118,7 @@ contains
       load = self%response%load_on(self%data%way(i), on_side, self%position_of(value, i))
       signal(n) = load%load
     end do
-    signal = signal/(self%number_of(value, of_spring, self%spring)* &
-      self%number_of(value, of_sensitivity, self%sensitivity))
+    signal = signal/self%newtons(value)
   end function signal_of
 
   !> Derivatives of the signal by the unknowns, (sample, unknown), at the samples that count.
@@ -112,11 +127,13 @@ contains
     real(wp), intent(in) :: value(:)
     real(wp) :: by(size(self%data%sample), size(value))
     type(load_at_t) :: load
-    real(wp) :: k, s
+    real(wp) :: k, s, by_force
     integer :: i, n
 
     k = self%number_of(value, of_spring, self%spring)
-    s = self%number_of(value, of_sensitivity, self%sensitivity)
+    s = self%newtons(value)/k
+    ! A signal that is the force does not depend on the spring otherwise.
+    by_force = merge(0.0_wp, 1.0_wp, self%is_force)
     do n = 1, size(self%data%sample)
       i = self%data%sample(n)
       load = self%response%load_on(self%data%way(i), self%data%side(i), self%position_of(value, i))
@@ -124,7 +141,7 @@ contains
       if (self%data%side(i) == 0 .and. abs(load%slope) > steep*k) cycle
       by(n, :) = unfolded(self%unknown%role, load%rate/(k*s), &
         -self%data%measured%facing*load%slope/(k*s), -load%load/(k*s**2), &
-        -(load%slope*load%load/k**2 + load%load/k)/(k*s))
+        -(load%slope*load%load/k**2 + by_force*load%load/k)/(k*s))
     end do
   end function signal_rates
 
@@ -221,6 +238,16 @@ contains
       self%number_of(value, of_contact_point, self%contact_point))
   end function position_of
 
+  !> The load of a unit of the signal, k s.
+  pure real(wp) function newtons(self, value)
+    class(modelled_curve_t), intent(in) :: self
+    real(wp), intent(in) :: value(:)
+
+    newtons = 1
+    if (.not. self%is_force) newtons = self%number_of(value, of_spring, self%spring)* &
+      self%number_of(value, of_sensitivity, self%sensitivity)
+  end function newtons
+
   !> The value of the unknown with a role; `otherwise` if there is none.
   pure real(wp) function number_of(self, value, role, otherwise) result(number)
     class(modelled_curve_t), intent(in) :: self
@@ -232,5 +259,16 @@ contains
     i = findloc(self%unknown%role, role, 1)
     if (i > 0) number = value(i)
   end function number_of
+
+  !> The mean of the far samples.
+  pure real(wp) function level_of(curve) result(level)
+    type(modelled_curve_t), intent(in) :: curve
+
+    associate (data => curve%data%measured)
+      associate (far => data%far .and. data%usable)
+        level = sum(data%signal, far)/max(1, count(far))
+      end associate
+    end associate
+  end function level_of
 
 end module modelled_curve

@@ -11,6 +11,11 @@ module noise
   public :: noise_t, white_noise, noise_of, noise_of_steps, rough_deviation, rounding_of, &
     median_of, normal_median, whiten, stand_apart
 
+  !> Deviation over that of second differences above which residuals are no noise. A filter with
+  !> this ratio would average over 60 samples.
+  real(wp), parameter :: smooth = 10
+  !> Number of samples that are many for a parabola: ten for each of its unknowns.
+  integer, parameter :: many = 30
   !> Largest number of samples that a prediction uses.
   integer, parameter :: longest = 8
 
@@ -28,10 +33,10 @@ module noise
   type :: noise_t
     real(wp) :: deviation = 0, correlation(0:longest) = 0
     integer :: order = 0
-    !> Number of independent samples that give the deviation, and whether the steps between samples
-    !> give it.
+    !> Number of independent samples that give the deviation, whether the steps between samples give
+    !> it, and whether residuals were no noise, so that second differences do.
     real(wp) :: known_by = huge(1.0_wp)
-    logical :: of_steps = .false.
+    logical :: of_steps = .false., of_differences = .false.
     real(wp) :: weight(longest, longest) = 0, left(0:longest) = 1
   contains
     procedure :: long_deviation
@@ -55,25 +60,37 @@ contains
     noise%left = deviation
   end function white_noise
 
-  !> The noise of a signal at equal steps, which is a straight line in z over each run. run(i):
-  !> number of the run of sample i.
+  !> The noise of a signal at equal steps, which is a straight line in z over each run, or a
+  !> parabola where there are many samples: a bow is no noise. Neither is what differs so little
+  !> from sample to sample that no filter explains it, a ripple, a drift, or the bend of a contact;
+  !> then the noise is the white one of the second differences. run(i): number of the run of sample
+  !> i.
   pure type(noise_t) function noise_of(z, signal, run) result(noise)
     real(wp), intent(in) :: z(:), signal(:)
     integer, intent(in) :: run(:)
-    real(wp) :: r(size(z)), covariance(0:longest)
-    integer :: k, i, n
+    real(wp) :: r(size(z)), covariance(0:longest), rough
+    integer :: k, i, n, unknowns
 
+    unknowns = 0
     do i = minval(run), maxval(run)
-      where (run == i) r = off_line(z, signal, run == i)
+      k = merge(2, 1, count(run == i) >= many)
+      where (run == i) r = off_line(z, signal, run == i, k)
+      unknowns = unknowns + k + 1
     end do
     n = size(r)
     do k = 0, longest
       covariance(k) = sum(r(1 + k:)*r(:n - k), run(1 + k:) == run(:n - k))/n
     end do
-    ! Each line has two unknowns.
-    noise = white_noise(sqrt(covariance(0)*n/max(1, n - 2*(maxval(run) - minval(run) + 1))))
+    noise = white_noise(sqrt(covariance(0)*n/max(1, n - unknowns)))
     noise%known_by = n
     if (.not. covariance(0) > 0) return
+    rough = max(rough_deviation(r), rounding_of(signal))
+    if (noise%deviation > smooth*rough) then
+      noise = white_noise(rough)
+      noise%known_by = n
+      noise%of_differences = .true.
+      return
+    end if
     noise%correlation = covariance/covariance(0)
     call find_weights(noise, n)
   end function noise_of
@@ -141,16 +158,21 @@ contains
     end do
   end function median_of
 
-  !> The samples in `mask` minus their straight line.
-  pure function off_line(z, signal, mask) result(r)
+  !> The samples in `mask` minus their straight line, or minus their parabola.
+  pure function off_line(z, signal, mask, degree) result(r)
     real(wp), intent(in) :: z(:), signal(:)
     logical, intent(in) :: mask(:)
-    real(wp) :: r(size(z)), middle(2)
+    integer, intent(in) :: degree
+    real(wp) :: r(size(z)), x(size(z)), power(size(z))
 
-    middle = [sum(z, mask), sum(signal, mask)]/max(1, count(mask))
-    r = signal - middle(2)
-    r = r - (z - middle(1))*sum((z - middle(1))*r, mask)/ &
-      max(sum((z - middle(1))**2, mask), tiny(1.0_wp))
+    x = (z - sum(z, mask)/max(1, count(mask)))
+    x = x/max(maxval(abs(x), mask), tiny(1.0_wp))
+    r = signal - sum(signal, mask)/max(1, count(mask))
+    r = r - x*sum(x*r, mask)/max(sum(x**2, mask), tiny(1.0_wp))
+    if (degree < 2) return
+    power = x**2 - sum(x**2, mask)/count(mask)
+    power = power - x*sum(x*power, mask)/max(sum(x**2, mask), tiny(1.0_wp))
+    r = r - power*sum(power*r, mask)/max(sum(power**2, mask), tiny(1.0_wp))
   end function off_line
 
   !> The weights of all orders from the correlations, and the order with the smallest n ln(left^2) +

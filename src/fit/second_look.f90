@@ -9,7 +9,7 @@ module second_look
   use modelled_curve, only: modelled_curve_t
   implicit none
   private
-  public :: lack_t, lack_in, hardly_ever, look_again
+  public :: lack_t, lack_in, hardly_ever, renew_noise, look_again
 
   !> The largest lack of fit. excess: by how many standard deviations the means of blocks of `width`
   !> samples exceed those of noise. times: their ratio to those of noise.
@@ -104,6 +104,9 @@ contains
     call curve%split(value, model, baseline)
     left = curve%data%measured%signal - model
     associate (data => curve%data)
+      ! The model must reach all loads; where it does not, it continues on a straight line.
+      settled = .not. curve%needs_more(maxval(data%measured%signal - baseline, &
+        data%measured%usable))
       usable = data%measured%usable
       deviation = data%noise%deviation
       ! A wrong model leaves large residuals nearly everywhere.
@@ -112,7 +115,7 @@ contains
       data%measured%usable = merge(usable, .not. (data%measured%skipped .or. &
         stand_apart(left, 3*data%way + data%side, .not. data%measured%skipped, &
         [(apart*spread, way=1, size(left))])), data%side < 0)
-      settled = all(usable .eqv. data%measured%usable)
+      settled = settled .and. all(usable .eqv. data%measured%usable)
       if (.not. data%noise_is_given) call renew_noise(curve, left)
       settled = settled .and. abs(data%noise%deviation - deviation) < 0.01_wp*deviation
       do way = 1, 2
@@ -126,11 +129,12 @@ contains
     call curve%data%take(1)
   end subroutine look_again
 
-  !> Finds the noise of the residuals, of all samples if possible.
+  !> Finds the noise of the residuals, of all samples if possible. The samples far from contact show
+  !> their noise without a model. What a model adds to it there is the model's misfit.
   subroutine renew_noise(curve, left)
     type(modelled_curve_t), intent(inout) :: curve
     real(wp), intent(in) :: left(:)
-    type(noise_t) :: far_noise, all_noise
+    type(noise_t) :: far_noise, all_noise, bare
     logical :: far(size(left))
     integer :: steps
 
@@ -142,6 +146,10 @@ contains
       if (steps < enough) return
       if (count(far) >= enough) then
         far_noise = noise_of(pack(data%measured%z, far), pack(left, far), pack(data%way, far))
+        bare = noise_of(pack(data%measured%z, far), pack(data%measured%signal, far), &
+          pack(data%way, far))
+        if (bare%deviation < far_noise%deviation .and. &
+          .not. bare%of_differences) far_noise = bare
         if (far_noise%order > 0 .or. abs(log(all_noise%deviation/far_noise%deviation)) > &
           differs*sqrt(0.5_wp/count(far) + 0.75_wp/steps)) all_noise = far_noise
       end if

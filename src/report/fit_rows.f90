@@ -1,7 +1,6 @@
-!> The results of a fit: fit.csv, sample by sample; fit.nml, the unknowns; and messages.
+!> The results of a fit: fit.csv, sample by sample; fit.nml, the unknowns.
 module fit_rows
   use kinds, only: wp
-  use text, only: rounded, rounded_to, counted
   use dimensionless_problem, only: adhesion_strength, tabor_parameter
   use namelist_writer, only: line_t, assignment_of
   use results, only: results_t
@@ -10,14 +9,14 @@ module fit_rows
   use measured_jumps, only: measured_jump_t
   use fit_errors, only: fitted_t
   use held_numbers, only: held_t
+  use baseline_test, only: lacking_t
+  use fit_alternatives, only: alternative_t
   use fit_run, only: fit_outcome_t
   use fit_doubts, only: doubts_of
   implicit none
   private
-  public :: write_fit_rows, fit_text, fit_words
+  public :: write_fit_rows, fit_text
 
-  !> Difference of chi squared up to which two fits are equally good.
-  real(wp), parameter :: as_well = 4
   !> Half-width of a 95 % interval in standard deviations.
   real(wp), parameter :: most = 1.959964_wp
   character(len=1), parameter :: nl = new_line('a')
@@ -61,10 +60,22 @@ contains
       end if
       text = text // numbers('noise', [curve%data%noise%deviation])
       text = text // numbers('noise_correlation', curve%data%noise%correlation(1:))
+      text = text // numbers('rested', [real(count(curve%data%measured%rested), wp)])
+      if (curve%data%measured%baseline%period > 0) text = text // &
+        numbers('ripple_period', [curve%data%measured%baseline%period])
       text = text // of_jump('jump_in', curve%data%jump(1), outcome%fitted%jump_z(1)) // &
         of_jump('jump_out', curve%data%jump(2), outcome%fitted%jump_z(2))
     end associate
-    text = text // of_held(outcome%held)
+    text = text // of_held(outcome%held) // of_lacking(outcome%lacking)
+    do i = 1, size(outcome%derived)
+      associate (derived => outcome%derived(i))
+        text = text // numbers(derived%name, [derived%value]) // &
+          numbers(derived%name // '_error', [derived%error])
+        if (allocated(derived%poisson)) text = text // &
+          numbers(derived%name // '_poisson', [derived%poisson])
+      end associate
+    end do
+    if (allocated(outcome%alternative)) text = text // of_alternative(outcome%alternative)
     doubts = doubts_of(outcome)
     text = text // assignment_of('warnings', doubts) // '/' // nl
     do i = 1, size(outcome%theory)
@@ -81,7 +92,7 @@ contains
     type(unknown_t), intent(in) :: unknown(:)
     type(fitted_t), intent(in) :: fitted
     character(len=:), allocatable :: text
-    type(line_t), allocatable :: names(:)
+    type(line_t), allocatable :: names(:), units(:)
     logical, allocatable :: found
     integer :: i
 
@@ -90,7 +101,12 @@ contains
     do i = 1, size(unknown)
       names(i)%text = unknown(i)%name
     end do
+    allocate (units(size(unknown)))
+    do i = 1, size(unknown)
+      units(i)%text = unknown(i)%unit
+    end do
     text = assignment_of('converged', found) // assignment_of('parameters', names) // &
+      assignment_of('units', units) // &
       assignment_of('estimate', fitted%value) // assignment_of('standard_error', fitted%deviation)
     text = text // numbers('lower_68', &
       [(fitted%end_of(i, unknown(i), -1.0_wp), i=1, size(unknown))])
@@ -118,6 +134,38 @@ contains
     text = assignment_of('held', names) // numbers('held_asked', held%asked)
   end function of_held
 
+  !> What the baseline may lack.
+  function of_lacking(lacking) result(text)
+    type(lacking_t), intent(in) :: lacking(:)
+    character(len=:), allocatable :: text
+    type(line_t), allocatable :: names(:)
+    integer :: i
+
+    allocate (names(size(lacking)))
+    do i = 1, size(lacking)
+      names(i)%text = lacking(i)%name
+    end do
+    text = assignment_of('baseline_tested', names) // numbers('baseline_gain', lacking%gain) // &
+      numbers('baseline_chance', exp(lacking%chance))
+    do i = 1, size(lacking)
+      if (lacking(i)%period > 0) text = text // numbers('ripple_tested', [lacking(i)%period])
+    end do
+  end function of_lacking
+
+  !> Another fit that describes the data where this one does not.
+  function of_alternative(alternative) result(text)
+    type(alternative_t), intent(in) :: alternative
+    character(len=:), allocatable :: text
+    type(line_t), allocatable :: names(:)
+
+    allocate (names(1))
+    names(1)%text = alternative%name
+    text = assignment_of('described_with', names) // &
+      numbers('described_chi_squared', [alternative%chi_squared])
+    if (alternative%value > 0) text = text // &
+      numbers('described_value', [alternative%value, alternative%error])
+  end function of_alternative
+
   !> Positions of the base at a jump, measured and modelled; without a measured jump only the
   !> model's.
   function of_jump(name, jump, model) result(text)
@@ -143,55 +191,5 @@ contains
     written = values
     text = assignment_of(key, written)
   end function numbers
-
-  !> The fit in words, for the terminal.
-  function fit_words(outcome) result(lines)
-    type(fit_outcome_t), intent(in) :: outcome
-    type(line_t), allocatable :: lines(:)
-    type(line_t) :: line
-    integer :: i
-
-    allocate (lines(0))
-    associate (curve => outcome%curve)
-      line%text = counted(size(curve%data%sample), 'sample') // ', noise ' // &
-        rounded(curve%data%noise%deviation) // ', correlation of neighbours ' // &
-        rounded(curve%data%noise%correlation(1)) // ', ' // counted(count( &
-        curve%data%measured%outlier()), 'outlier') // ' left out'
-      lines = [lines, line]
-      do i = 1, size(curve%unknown)
-        line%text = curve%unknown(i)%name // ' = ' // rounded_to(outcome%fitted%value(i), &
-          outcome%fitted%deviation(i)) // ' +- ' // rounded(outcome%fitted%deviation(i))
-        lines = [lines, line]
-      end do
-    end associate
-    line%text = 'the residuals are ' // rounded(left_of(outcome%fitted)) // ' times the noise'
-    do i = 1, size(outcome%theory)
-      associate (theory => outcome%theory(i))
-        if (.not. allocated(theory%fitted%effect)) cycle
-        line%text = line%text // '; by ' // trim(theory%theory) // ' ' // &
-          rounded(left_of(theory%fitted))
-      end associate
-    end do
-    lines = [lines, line]
-    do i = 1, size(outcome%theory)
-      associate (theory => outcome%theory(i))
-        if (.not. allocated(theory%fitted%effect) .or. .not. theory%fitted%lack%is_noise()) cycle
-        if (theory%fitted%chi_squared > outcome%fitted%chi_squared + as_well) cycle
-        line%text = trim(theory%theory) // ', which has no force before contact, describes ' // &
-          'these data ' // trim(merge('better ', 'as well', theory%fitted%chi_squared < &
-          outcome%fitted%chi_squared - as_well)) // ': chi squared ' // &
-          rounded_to(theory%fitted%chi_squared, 1.0_wp) // ' against ' // &
-          rounded_to(outcome%fitted%chi_squared, 1.0_wp)
-        lines = [lines, line]
-      end associate
-    end do
-  end function fit_words
-
-  !> Standard deviation of the residuals of a fit, over the noise.
-  pure real(wp) function left_of(fitted)
-    type(fitted_t), intent(in) :: fitted
-
-    left_of = sqrt(fitted%chi_squared/max(1, fitted%freedom))
-  end function left_of
 
 end module fit_rows

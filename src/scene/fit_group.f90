@@ -2,7 +2,7 @@
 module fit_group
   use kinds, only: wp
   use failure, only: failure_t
-  use text, only: lower, quoted, word_count, word_of
+  use text, only: lower, quoted, rounded, word_count, word_of
   use deck, only: deck_t
   use deck_numbers, only: find_number
   use deck_keys, only: key_spec, real_value, real_list, names_value
@@ -51,14 +51,12 @@ contains
         return
       end if
       if (deck%has_group('sweep')) call deck%mistake('fit', '', 'not together with &sweep')
-      if (allocated(scene%law)) then
-        if (scene%bodies%rigid .or. .not. scene%law%adhesion > 0) call deck%mistake('fit', '', &
-          'needs elastic bodies and a force that attracts; beside a repulsion a weak ' // &
-          '&van_der_waals with &born is enough')
-      end if
+      if (scene%bodies%rigid) call deck%mistake('fit', '', 'needs elastic bodies' // &
+        stiff_enough(scene))
     end associate
     if (allocated(scene%deck%error)) return
     allocate (scene%measured, scene%fit)
+    if (allocated(scene%bodies%poisson)) scene%fit%poisson = scene%bodies%poisson
     call take_measurement(scene)
     if (.not. allocated(scene%deck%error)) call take_unknowns(scene)
     if (allocated(scene%deck%error)) return
@@ -66,6 +64,23 @@ contains
     if (allocated(trouble)) call scene%deck%mistake('measurement', 'file', &
       'the curve cannot be used: ' // trouble%message)
   end subroutine take_fit
+
+  !> ', such as ...' with a stiffness above which it does not matter for rigid bodies: the strength
+  !> of adhesion or, without attraction, the deformation under the law's own pressure is so small
+  !> that loads differ by less than a hundredth.
+  function stiff_enough(scene) result(words)
+    type(scene_t), intent(in) :: scene
+    character(len=:), allocatable :: words
+    real(wp), parameter :: hardly = 1.0e-3_wp
+
+    words = ''
+    if (.not. (allocated(scene%law) .and. allocated(scene%shape))) return
+    associate (law => scene%law)
+      words = '; with stiffness = ' // rounded(law%pressure_unit*sqrt(scene%shape%radius/ &
+        law%length)*max(law%adhesion, merge(0.0_wp, 1.0_wp, law%adhesion > 0))/hardly) // &
+        ' or more they are as good as rigid'
+    end associate
+  end function stiff_enough
 
   !> The family of problems whose parameters are the unknowns of bodies, shape and forces, in order.
   subroutine family_of_fit(deck, family, error)
@@ -116,6 +131,7 @@ contains
           unknown%value = family%parameter(own)%value
           unknown%scale = family%parameter(own)%scale
           call find_number(scene%deck, unknown%name, row, term, trouble)
+          unknown%unit = trim(scene%deck%specs(row)%unit)
           unknown%in_log = unknown%value > 0 .and. &
             max(scene%deck%specs(row)%low, scene%deck%specs(row)%above) >= 0
           unknown%origin = unknown%value
@@ -160,12 +176,15 @@ contains
 
     select case (unknown%name)
     case ('measurement.contact_point')
+      unknown%unit = 'm'
       unknown%role = of_contact_point
       if (allocated(scene%measured%contact_point)) unknown%value = scene%measured%contact_point
     case ('measurement.spring_constant')
+      unknown%unit = 'N/m'
       unknown%role = of_spring
       unknown%value = scene%measured%spring_constant
     case ('measurement.sensitivity')
+      unknown%unit = 'm/V'
       unknown%role = of_sensitivity
       if (allocated(scene%measured%sensitivity)) then
         unknown%value = scene%measured%sensitivity

@@ -7,8 +7,9 @@ module measurement_group
   use deck, only: deck_t
   use deck_source, only: source_t, load_source
   use data_table, only: largest_table, plain_label
-  use deck_keys, only: key_spec, real_value, real_list, integer_value, word_value, &
+  use deck_keys, only: key_spec, real_value, real_list, integer_value, logical_value, word_value, &
     text_value, names_value
+  use baseline, only: baseline_t
   use scene_groups, only: scene_t
   use units, only: find_unit
   implicit none
@@ -16,6 +17,8 @@ module measurement_group
   public :: measurement_keys, take_measurement
 
   integer, parameter :: most_skipped = 40, most_labels = 8
+  !> The baselines by their degree, from 0.
+  character(len=*), parameter :: kinds(*) = [character(len=9) :: 'constant', 'linear', 'quadratic']
 
   !> The rows of &measurement.
   type(key_spec), parameter :: measurement_keys(*) = [ &
@@ -48,7 +51,15 @@ module measurement_group
     key_spec('measurement', 'skip', real_list, 'Pairs of positions of the base, SI; samples ' // &
       'between the two of a pair are left out.', 'm', most=most_skipped, otherwise='none'), &
     key_spec('measurement', 'segment', word_value, 'The branches to fit.', &
-      choices='both approach retreat', default='both')]
+      choices='both approach retreat', default='both'), &
+    key_spec('measurement', 'baseline', word_value, 'The signal without force: a constant on ' // &
+      'each way, and for linear a slope, for quadratic also a bow, common to both.', &
+      choices='constant linear quadratic', default='linear'), &
+    key_spec('measurement', 'slope_each_way', logical_value, 'Whether the slope of the ' // &
+      'baseline is another one on each way, as under a drift in time.', default='.false.'), &
+    key_spec('measurement', 'ripple', logical_value, 'Whether the baseline has a ripple, as ' // &
+      'interference of light makes it: a sinusoid of one period on both ways.', &
+      default='.false.')]
 
 contains
 
@@ -98,6 +109,7 @@ contains
       else if (any(measurement%skip(1::2) > measurement%skip(2::2))) then
         call deck%mistake('measurement', 'skip', 'the first of each pair must be the smaller')
       end if
+      call take_baseline(deck, measurement%baseline)
       call take_units(deck, measurement%unit)
       call deck%get_optional('fit', 'noise', scene%fit%noise)
     end associate
@@ -118,6 +130,24 @@ contains
       labels(i) = plain_label(spelled(word_of(names, i)))
     end do
   end subroutine take_labels
+
+  !> Reads the kind of the baseline.
+  subroutine take_baseline(deck, baseline)
+    type(deck_t), intent(inout) :: deck
+    type(baseline_t), intent(inout) :: baseline
+    character(len=:), allocatable :: kind
+    integer :: i
+
+    call deck%get('measurement', 'baseline', kind)
+    ! Not findloc, which finds no shorter string: compiler note 14.
+    do i = 1, size(kinds)
+      if (kind == kinds(i)) baseline%degree = i - 1
+    end do
+    call deck%get('measurement', 'slope_each_way', baseline%slope_each_way)
+    call deck%get('measurement', 'ripple', baseline%ripple)
+    if (baseline%slope_each_way .and. baseline%degree == 0) call deck%mistake('measurement', &
+      'slope_each_way', 'baseline = ''constant'' has no slope')
+  end subroutine take_baseline
 
   !> Reads the units of the file's columns: metres, newtons and volts, with SI prefixes.
   subroutine take_units(deck, unit)

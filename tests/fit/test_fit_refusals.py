@@ -38,7 +38,7 @@ BAD_DATA = {
     "separations": (lambda z, f, s, rng: (z + f / SPRING, f, s), "a separation and not that of"),
     "all in contact": (lambda z, f, s, rng: (z[z < 1e-9], (f + 5 * flat(rng, z))[z < 1e-9],
                                              s[z < 1e-9]),
-                       "from a straight line by no more than the noise"),
+                       "no baseline in the data.*from a straight line by no more than the noise"),
     "picometres": (lambda z, f, s, rng: (1e-9 * z, f, s), "less than a picometre"),
     "heights": (lambda z, f, s, rng: (z, f, 1e6 * z), "more than 64 different values"),
 }

@@ -12,6 +12,8 @@
     layers      the same for bodies with layers
     experiments the same for springs and fixed loads under every law
     shapes      the same for springs, fixed loads and cycles of every shape, layers among them
+    starts      fits of strongly adhering bodies from starts that are up to ten times off
+    fits        fits of curves with several kinds of noise and baseline
 
 The program is $SNAPIN, else build/snapin. Ends with status 1 if a study finds an error.
 """
@@ -28,7 +30,7 @@ os.environ["OMP_NUM_THREADS"] = os.environ["OPENBLAS_NUM_THREADS"] = "1"
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 sys.path.insert(0, str(ROOT / "tests"))
 
-from support import study_bodies, study_cycles, study_estimates  # noqa: E402
+from support import study_bodies, study_cycles, study_estimates, study_fits  # noqa: E402
 from support import study_folds, study_laws  # noqa: E402
 from support.comparison import is_bad  # noqa: E402
 from support.decks_in_units import program_path  # noqa: E402
@@ -49,8 +51,10 @@ STUDIES = {
     "experiments": (study_bodies, study_bodies.experiments, 500, is_bad),
     "shapes": (study_bodies, study_bodies.shapes, 500, is_bad),
     "energy": (study_estimates, study_estimates.energy_jobs, 40, is_bad),
+    "starts": (study_fits, study_fits.clean_jobs, 200, lambda finding: finding.wrong),
+    "fits": (study_fits, study_fits.noisy_jobs, 150, lambda finding: finding.wrong),
 }
-SEEDED = ("cycles", "cusp", "laws", "layers", "experiments", "shapes")
+SEEDED = ("starts", "fits", "cycles", "cusp", "laws", "layers", "experiments", "shapes")
 
 
 def study(name, arguments, folder):

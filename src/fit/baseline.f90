@@ -1,0 +1,96 @@
+!> The baseline of a measured curve, the signal without a force: a polynomial of the position, with
+!> a constant of its own on each way, and a ripple, which interference of light makes in a detector.
+!> A drift in time is a slope of its own on each way.
+module baseline
+  use kinds, only: wp, pi
+  implicit none
+  private
+  public :: baseline_t, waves_of, scaled
+
+  !> degree: of the polynomial. slope_each_way: the slopes of the two ways are independent. ripple:
+  !> a sinusoid of one period on both ways, with its own amplitude and phase on each.
+  type :: baseline_t
+    integer :: degree = 1
+    logical :: slope_each_way = .false., ripple = .false.
+    !> The period [m]; 0 while it is not known. wave: amplitudes of `waves_of`, once they are known.
+    real(wp) :: period = 0
+    real(wp), allocatable :: wave(:)
+  contains
+    procedure :: columns
+  end type baseline_t
+
+contains
+
+  !> The columns whose sums are baselines, at positions z on the way in or out. If the amplitudes of
+  !> the ripple are known, one column is its derivative by the period, so that errors include that
+  !> of the period.
+  pure function columns(self, z, inward) result(column)
+    class(baseline_t), intent(in) :: self
+    real(wp), intent(in) :: z(:)
+    logical, intent(in) :: inward(:)
+    real(wp), allocatable :: column(:, :), wave(:, :)
+    logical :: mine(size(z), 2)
+    integer :: k, way, n, ways
+
+    n = size(z)
+    ways = merge(2, 1, any(inward) .and. .not. all(inward))
+    mine(:, 1) = inward .eqv. inward(1)
+    mine(:, 2) = .not. mine(:, 1)
+    allocate (column(n, 0))
+    do way = 1, ways
+      call add(merge(1.0_wp, 0.0_wp, mine(:, way)))
+    end do
+    do k = 1, self%degree
+      do way = 1, merge(ways, 1, k == 1 .and. self%slope_each_way)
+        call add(scaled(z)**k*merge(1.0_wp, 0.0_wp, mine(:, way) .or. &
+          .not. (k == 1 .and. self%slope_each_way)))
+      end do
+    end do
+    if (.not. self%period > 0) return
+    wave = waves_of(z, inward, self%period)
+    do k = 1, size(wave, 2)
+      call add(wave(:, k))
+    end do
+    if (.not. allocated(self%wave)) return
+    associate (a => self%wave)
+      call add(scaled(z)*matmul(wave, [(a(2*way), -a(2*way - 1), way=1, size(a)/2)]))
+    end associate
+
+  contains
+
+    pure subroutine add(new)
+      real(wp), intent(in) :: new(:)
+
+      column = reshape([column, new], [n, size(column, 2) + 1])
+    end subroutine add
+
+  end function columns
+
+  !> Cosine and sine of a period, each on one way alone.
+  pure function waves_of(z, inward, period) result(wave)
+    real(wp), intent(in) :: z(:), period
+    logical, intent(in) :: inward(:)
+    real(wp), allocatable :: wave(:, :)
+    integer :: way, ways
+
+    ways = merge(2, 1, any(inward) .and. .not. all(inward))
+    allocate (wave(size(z), 2*ways))
+    wave(:, 1) = cos(2*pi*(z - minval(z))/period)
+    wave(:, 2) = sin(2*pi*(z - minval(z))/period)
+    if (ways == 1) return
+    do way = 2, 1, -1
+      wave(:, 2*way - 1) = merge(wave(:, 1), 0.0_wp, inward .eqv. (inward(1) .eqv. way == 1))
+      wave(:, 2*way) = merge(wave(:, 2), 0.0_wp, inward .eqv. (inward(1) .eqv. way == 1))
+    end do
+  end function waves_of
+
+  !> Positions from -1 to 1 or less, about their mean.
+  pure function scaled(z) result(x)
+    real(wp), intent(in) :: z(:)
+    real(wp) :: x(size(z))
+
+    x = z - sum(z)/size(z)
+    x = x/maxval(abs(x))
+  end function scaled
+
+end module baseline

@@ -1,0 +1,312 @@
+!> Tests whether a fit lacks a part of its baseline: a bow, a slope of its own on each way, a
+!> ripple. Each is a direction in the space of the residuals r. The unknowns and the present
+!> baseline explain a part of it; if g is the rest as a unit vector, the part would lower chi
+!> squared by (g.r)^2 and move the unknowns by known amounts. No further fit is needed (as in
+!> `held_numbers`).
+module baseline_test
+  use kinds, only: wp
+  use root_finding, only: bracket_t
+  use noise, only: white_noise
+  use baseline, only: waves_of, scaled
+  use fit_samples, only: fit_samples_t, orthonormalise, solve_triangle
+  use second_look, only: hardly_ever, renew_noise
+  use curve_residuals, only: curve_residuals_t
+  implicit none
+  private
+  public :: lacking_t, test_baseline, settle_ripple, chance_of, rarely
+
+  !> A part that the baseline does not have. name: what adds it in &measurement. gain: by how much
+  !> it would lower chi squared. chance: logarithm of the probability that chance does this. shift:
+  !> by how much it would move each unknown, in the unit of its key. period [m]: of a ripple,
+  !> otherwise 0.
+  type :: lacking_t
+    character(len=:), allocatable :: name
+    real(wp) :: gain = 0, period = 0, chance = 0
+    real(wp), allocatable :: shift(:)
+  end type lacking_t
+
+  !> The residuals of a fit and an orthonormal basis of their derivatives by the unknowns, which the
+  !> triangle maps to these.
+  type :: tangent_t
+    real(wp), allocatable :: residual(:), basis(:, :), triangle(:, :)
+  end type tangent_t
+
+  !> Smallest part of a direction that must remain; rounding of the derivatives leaves less.
+  real(wp), parameter :: rounding = 1.0e-4_wp
+  !> Ripples have from one to `most_periods` periods over the travel, and `fewest_samples` samples
+  !> in a period; periods tried for each of these; sections that refine the best one; number of
+  !> samples with which one is searched for.
+  integer, parameter :: most_periods = 64, fewest_samples = 5, oversampling = 4, sections = 25, &
+    enough = 40
+  !> Change of the phase of a ripple over the travel that does not matter.
+  real(wp), parameter :: same_phase = 0.01_wp
+
+contains
+
+  !> Tests a fit. residuals: of the fit, with the values of the unknowns.
+  subroutine test_baseline(residuals, value, lacking)
+    type(curve_residuals_t), intent(inout) :: residuals
+    real(wp), intent(in) :: value(:)
+    type(lacking_t), allocatable, intent(out) :: lacking(:)
+    type(tangent_t) :: tangent
+    real(wp), allocatable :: column(:, :)
+    logical :: found
+    integer :: n
+
+    allocate (lacking(0))
+    call find_tangent(residuals, value, tangent, found)
+    if (.not. found) return
+    associate (data => residuals%curve%data%measured)
+      n = size(data%z)
+      if (data%baseline%degree < 1) then
+        column = reshape(scaled(data%z), [n, 1])
+        call test('baseline = ''linear''')
+      else if (data%baseline%degree < 2) then
+        column = reshape(scaled(data%z)**2, [n, 1])
+        call test('baseline = ''quadratic''')
+      end if
+      if (any(data%inward) .and. .not. all(data%inward) .and. data%baseline%degree > 0 .and. &
+        .not. data%baseline%slope_each_way) then
+        column = reshape(merge(scaled(data%z), 0.0_wp, data%inward), [n, 1])
+        call test('slope_each_way = .true.')
+      end if
+      if (.not. data%baseline%ripple) call test_ripple(residuals, value, lacking)
+    end associate
+
+  contains
+
+    subroutine test(name)
+      character(len=*), intent(in) :: name
+      type(lacking_t) :: new
+
+      new = explained(residuals%curve%data, tangent, column)
+      new%name = name
+      new%chance = chance_of(new%gain, left_of(tangent, new), 1, 1)
+      lacking = [lacking, new]
+    end subroutine test
+
+  end subroutine test_baseline
+
+  !> Tests for a ripple. Noise with it may have been taken for correlated noise; so the noise is
+  !> found again without the ripple.
+  subroutine test_ripple(residuals, value, lacking)
+    type(curve_residuals_t), intent(in) :: residuals
+    real(wp), intent(in) :: value(:)
+    type(lacking_t), allocatable, intent(inout) :: lacking(:)
+    type(curve_residuals_t) :: trial
+    type(tangent_t) :: tangent
+    type(lacking_t) :: new, best
+    real(wp), allocatable :: model(:), line(:), wave(:, :), left(:), amplitude(:)
+    real(wp) :: period
+    logical :: found
+    integer :: pass
+
+    associate (z => residuals%curve%data%measured%z, inward => residuals%curve%data%measured%inward)
+      if (size(residuals%curve%data%sample) < enough) return
+      best%gain = -1
+      do pass = 1, 2
+        trial = residuals
+        if (pass == 1) trial%curve%data%noise = white_noise(trial%curve%data%noise%deviation)
+        call trial%curve%data%take(1)
+        call find_tangent(trial, value, tangent, found)
+        if (.not. found) return
+        call find_period(trial%curve%data, tangent, period, new%gain, amplitude)
+        if (.not. period > 0) return
+        wave = waves_of(z, inward, period)
+        call trial%curve%split(value, model, line)
+        left = trial%curve%data%measured%signal - model - matmul(wave, amplitude)
+        trial = residuals
+        if (.not. trial%curve%data%noise_is_given) call renew_noise(trial%curve, left)
+        call trial%curve%data%take(1)
+        call find_tangent(trial, value, tangent, found)
+        if (.not. found) return
+        new = explained(trial%curve%data, tangent, wave)
+        new%name = 'ripple = .true.'
+        new%period = period
+        new%chance = chance_of(new%gain, left_of(tangent, new), size(wave, 2), 2*most_periods)
+        if (new%gain > best%gain) best = new
+        if (.not. residuals%curve%data%noise%order > 0) exit
+      end do
+      lacking = [lacking, best]
+    end associate
+  end subroutine test_ripple
+
+  !> Finds the period of the ripple of a fit's baseline again. done: it has hardly changed.
+  subroutine settle_ripple(residuals, value, done)
+    type(curve_residuals_t), intent(inout) :: residuals
+    real(wp), intent(in) :: value(:)
+    logical, intent(inout) :: done
+    type(curve_residuals_t) :: bare
+    type(tangent_t) :: tangent
+    real(wp), allocatable :: model(:), line(:), amplitude(:)
+    real(wp) :: period, gain, travel
+    logical :: found
+
+    associate (baseline => residuals%curve%data%measured%baseline, &
+      z => residuals%curve%data%measured%z)
+      if (.not. baseline%ripple) return
+      bare = residuals
+      bare%curve%data%measured%baseline%period = 0
+      call bare%curve%data%take(1)
+      call find_tangent(bare, value, tangent, found)
+      if (.not. found) return
+      call find_period(bare%curve%data, tangent, period, gain, amplitude)
+      if (.not. period > 0) return
+      travel = maxval(z) - minval(z)
+      done = done .and. baseline%period > 0
+      if (done) done = travel*abs(1/period - 1/baseline%period) < same_phase
+      if (allocated(baseline%wave)) deallocate (baseline%wave)
+      baseline%period = period
+      call residuals%curve%data%take(1)
+      call residuals%curve%split(value, model, line)
+      amplitude = residuals%curve%data%amplitudes_under(residuals%curve%data%measured%signal - &
+        model + line)
+      baseline%wave = amplitude(size(amplitude) - merge(3, 1, has_both(residuals%curve%data)):)
+      call residuals%curve%data%take(1)
+    end associate
+  end subroutine settle_ripple
+
+  pure logical function has_both(data)
+    type(fit_samples_t), intent(in) :: data
+
+    has_both = any(data%measured%inward) .and. .not. all(data%measured%inward)
+  end function has_both
+
+  !> The period whose ripple lowers chi squared most; 0 if there are too few samples. amplitude: of
+  !> its waves.
+  subroutine find_period(data, tangent, period, gain, amplitude)
+    type(fit_samples_t), intent(in) :: data
+    type(tangent_t), intent(in) :: tangent
+    real(wp), intent(out) :: period, gain
+    real(wp), allocatable, intent(out) :: amplitude(:)
+    type(bracket_t) :: bracket
+    type(lacking_t) :: there
+    real(wp) :: travel, points(2), best
+    integer :: i, last
+
+    period = 0
+    gain = 0
+    allocate (amplitude(0))
+    associate (z => data%measured%z)
+      travel = maxval(z) - minval(z)
+      last = min(most_periods, minval([(max(count(data%measured%inward .eqv. i == 1), &
+        merge(size(z), 0, .not. any(data%measured%inward .eqv. i == 1))), i=1, 2)])/fewest_samples)
+    end associate
+    best = -1
+    do i = oversampling, oversampling*last
+      gain = gain_at(real(i, wp)/oversampling)
+      if (.not. gain > best) cycle
+      best = gain
+      period = i
+    end do
+    if (.not. period > 0) return
+    bracket = bracket_t((period - 1)/oversampling, (period + 1)/oversampling)
+    do i = 1, sections
+      points = bracket%golden_points()
+      call bracket%keep_larger([gain_at(points(1)), gain_at(points(2))])
+    end do
+    period = travel/bracket%middle()
+    there = explained(data, tangent, waves_of(data%measured%z, data%measured%inward, period), &
+      amplitude)
+    gain = there%gain
+
+  contains
+
+    real(wp) function gain_at(periods)
+      real(wp), intent(in) :: periods
+      type(lacking_t) :: there
+
+      there = explained(data, tangent, waves_of(data%measured%z, data%measured%inward, &
+        travel/periods))
+      gain_at = there%gain
+    end function gain_at
+
+  end subroutine find_period
+
+  !> The residuals of a fit and their derivatives.
+  subroutine find_tangent(residuals, value, tangent, found)
+    type(curve_residuals_t), intent(inout) :: residuals
+    real(wp), intent(in) :: value(:)
+    type(tangent_t), intent(out) :: tangent
+    logical, intent(out) :: found
+
+    allocate (tangent%residual(residuals%rows()), tangent%basis(residuals%rows(), size(value)))
+    call residuals%residuals_of(value, tangent%residual, found)
+    if (found) call residuals%jacobian_of(value, tangent%basis, found)
+    if (found) call orthonormalise(tangent%basis, tangent%triangle)
+  end subroutine find_tangent
+
+  !> Chi squared per degree of freedom, with a further part of the baseline.
+  pure real(wp) function left_of(tangent, lacking)
+    type(tangent_t), intent(in) :: tangent
+    type(lacking_t), intent(in) :: lacking
+
+    left_of = (sum(tangent%residual**2) - lacking%gain)/ &
+      max(1, size(tangent%residual) - size(tangent%basis, 2))
+  end function left_of
+
+  !> What further columns of the baseline, at all samples, would do to a fit. amplitude: of these
+  !> columns.
+  type(lacking_t) function explained(data, tangent, column, amplitude) result(new)
+    type(fit_samples_t), intent(in) :: data
+    type(tangent_t), intent(in) :: tangent
+    real(wp), intent(in) :: column(:, :)
+    real(wp), allocatable, intent(out), optional :: amplitude(:)
+    real(wp) :: cleaned(size(tangent%residual), size(column, 2)), &
+      at_samples(size(data%sample), size(column, 2)), rest(size(tangent%residual), size(column, 2))
+    real(wp), dimension(size(column, 2)) :: whole, part
+    real(wp), allocatable :: triangle(:, :)
+    integer :: k
+
+    at_samples = column(data%sample, :)
+    call data%clean(at_samples)
+    cleaned = 0
+    cleaned(:size(data%sample), :) = at_samples
+    whole = norm2(cleaned, 1)
+    rest = cleaned - matmul(tangent%basis, matmul(transpose(tangent%basis), cleaned))
+    do k = 1, size(part)
+      if (.not. norm2(rest(:, k)) > rounding*whole(k)) rest(:, k) = 0
+    end do
+    call orthonormalise(rest, triangle)
+    part = matmul(tangent%residual, rest)
+    new%gain = sum(part**2)
+    call solve_triangle(triangle, part)
+    if (present(amplitude)) amplitude = part
+    new%shift = matmul(matmul(cleaned, part) - tangent%residual, tangent%basis)
+    call solve_triangle(tangent%triangle, new%shift)
+  end function explained
+
+  !> The logarithm of the probability that noise lowers chi squared so much by further columns, one
+  !> or an even number, the best of `trials` choices of them. left: chi squared per degree of
+  !> freedom with them, which is the scale if it exceeds that of noise.
+  pure real(wp) function chance_of(gain, left, columns, trials) result(chance)
+    real(wp), intent(in) :: gain, left
+    integer, intent(in) :: columns, trials
+    real(wp) :: half, term, total
+    integer :: k
+
+    half = 0.5_wp*max(0.0_wp, gain)/max(1.0_wp, left)
+    if (columns == 1) then
+      chance = log(erfc_scaled(sqrt(half)))
+    else
+      ! The distribution of chi squared with an even number of degrees of freedom.
+      term = 1
+      total = 1
+      do k = 1, columns/2 - 1
+        term = term*half/k
+        total = total + term
+      end do
+      chance = log(total)
+    end if
+    chance = chance - half + log(real(trials, wp))
+  end function chance_of
+
+  !> Whether a logarithm of a probability is smaller than that of an excess of the residuals that is
+  !> reported.
+  elemental logical function rarely(chance)
+    real(wp), intent(in) :: chance
+
+    rarely = chance < log(erfc(hardly_ever/sqrt(2.0_wp)))
+  end function rarely
+
+end module baseline_test

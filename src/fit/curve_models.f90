@@ -1,0 +1,43 @@
+!> The model of a deck's bodies for measured curves: along the path if they attract each other, else
+!> stepped in h0.
+module curve_models
+  use variation, only: problem_family_t
+  use experiment_request, only: numerics_t
+  use force_model, only: force_model_t
+  use path_model, only: path_model_t
+  use stepped_model, only: stepped_model_t
+  implicit none
+  private
+  public :: curve_models_t
+
+  !> Both kinds, of which one is used.
+  type :: curve_models_t
+    type(path_model_t) :: path
+    type(stepped_model_t) :: stepped
+  contains
+    procedure :: set
+  end type curve_models_t
+
+contains
+
+  !> Sets the model of a family of problems, which attract each other or do not. `self` must exist
+  !> as long as the model is used.
+  subroutine set(self, family, numerics, attracts, model)
+    class(curve_models_t), intent(inout), target :: self
+    class(problem_family_t), intent(in) :: family
+    type(numerics_t), intent(in) :: numerics
+    logical, intent(in) :: attracts
+    class(force_model_t), pointer, intent(out) :: model
+
+    if (attracts) then
+      allocate (self%path%family, source=family)
+      self%path%numerics = numerics
+      model => self%path
+    else
+      allocate (self%stepped%family, source=family)
+      self%stepped%numerics = numerics
+      model => self%stepped
+    end if
+  end subroutine set
+
+end module curve_models

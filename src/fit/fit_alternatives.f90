@@ -1,0 +1,154 @@
+!> Other fits of data that the model does not describe: with another spring constant, of the retreat
+!> alone, of the approach alone. One that describes its data tells what is wrong.
+module fit_alternatives
+  use kinds, only: wp
+  use dimensionless_problem, only: problem_t
+  use variation, only: problem_family_t
+  use fit_request, only: unknown_t, of_spring
+  use measured_jumps, only: find_jump
+  use fit_starts, only: starts_like
+  use theory_fits, only: suggested_characters
+  use force_model, only: force_model_t
+  use modelled_curve, only: modelled_curve_t
+  use curve_fit, only: fit_curve
+  use fit_errors, only: fitted_t
+  implicit none
+  private
+  public :: alternative_t, find_alternative, contact_slope
+
+  !> An alternative that describes the data. name: retreat, approach, or spring_constant, whose
+  !> value and error it then has [N/m].
+  type :: alternative_t
+    character(len=:), allocatable :: name
+    real(wp) :: value = 0, error = 0, chi_squared = 0
+    integer :: freedom = 0
+  end type alternative_t
+
+  !> Parts of the travel over which slopes are taken, and the fewest samples of one.
+  integer, parameter :: parts = 10, fewest = 5
+  !> A spring constant that differs by less than this factor is no mistake.
+  real(wp), parameter :: other_spring = 1.1_wp
+  !> The softest spring that is tried, over the deck's.
+  real(wp), parameter :: softest = 1.0e-4_wp
+
+contains
+
+  !> Looks for an alternative; not allocated if there is none. family, problem: as of `run_fit`.
+  !> curve: the fit. spring_first: whether the data ask for another spring constant.
+  subroutine find_alternative(family, problem, curve, model, spring_first, fitted, alternative)
+    class(problem_family_t), intent(in) :: family
+    type(problem_t), intent(in) :: problem
+    type(modelled_curve_t), intent(in) :: curve
+    class(force_model_t), intent(inout), target :: model
+    logical, intent(in) :: spring_first
+    type(fitted_t), intent(in) :: fitted
+    type(alternative_t), allocatable, intent(out) :: alternative
+
+    if (spring_first) call try_spring()
+    if (.not. allocated(alternative)) call try_way(.false., 'retreat')
+    if (.not. allocated(alternative)) call try_way(.true., 'approach')
+    if (.not. (allocated(alternative) .or. spring_first)) call try_spring()
+
+  contains
+
+    !> Fits one way alone, from the values of the fit of both.
+    subroutine try_way(inward, name)
+      logical, intent(in) :: inward
+      character(len=*), intent(in) :: name
+      type(modelled_curve_t) :: trial
+      type(fitted_t) :: other
+
+      associate (ways => curve%data%measured%inward)
+        if (all(ways) .or. .not. any(ways)) return
+      end associate
+      trial = curve
+      call trial%data%keep_way(inward)
+      call fit_curve(trial, model, reshape(fitted%value, [size(fitted%value), 1]), .true., other)
+      call accept(name, other)
+    end subroutine try_way
+
+    !> Fits the spring constant too, if the signal is the force; of a deflection the data cannot
+    !> show it. In contact with a much stiffer body the signal changes by the spring constant times
+    !> the travel.
+    subroutine try_spring()
+      type(modelled_curve_t) :: trial
+      type(fitted_t) :: other
+      type(unknown_t) :: unknown
+      real(wp), allocatable :: start(:, :), starts(:, :)
+      integer :: n
+
+      n = size(curve%unknown)
+      if (.not. curve%is_force .or. any(curve%unknown%role == of_spring)) return
+      ! Jumps and starting values are those of a spring as stiff as the contact.
+      trial = curve
+      trial%spring = max(contact_slope(curve), softest*curve%spring)
+      trial%sensitivity = 1/trial%spring
+      associate (data => trial%data)
+        data%jump = [find_jump(data%measured, data%noise%deviation, trial%spring, .true.), &
+          find_jump(data%measured, data%noise%deviation, trial%spring, .false.)]
+        call data%take(1)
+      end associate
+      call starts_like(suggested_characters(trial, problem), family, trial%unknown, start)
+      unknown%name = 'measurement.spring_constant'
+      unknown%unit = 'N/m'
+      unknown%role = of_spring
+      unknown%in_log = .true.
+      unknown%value = trial%spring
+      unknown%scale = unknown%value
+      trial%unknown = [trial%unknown, unknown]
+      allocate (starts(n + 1, size(start, 2)))
+      starts(:n, :) = start
+      starts(n + 1, :) = unknown%value
+      call fit_curve(trial, model, starts, .true., other)
+      if (.not. allocated(other%effect)) return
+      if (abs(log(other%value(n + 1)/curve%spring)) < log(other_spring)) return
+      call accept('spring_constant', other)
+      if (.not. allocated(alternative)) return
+      alternative%value = other%value(n + 1)
+      alternative%error = other%deviation(n + 1)
+    end subroutine try_spring
+
+    subroutine accept(name, other)
+      character(len=*), intent(in) :: name
+      type(fitted_t), intent(in) :: other
+
+      if (.not. allocated(other%effect)) return
+      if (.not. (other%found .and. other%lack%is_noise())) return
+      allocate (alternative)
+      alternative%name = name
+      alternative%chi_squared = other%chi_squared
+      alternative%freedom = other%freedom
+    end subroutine accept
+
+  end subroutine find_alternative
+
+  !> The steepest slope of the load [N/m] against the travel of the base in contact: the largest of
+  !> those of straight lines through the samples of a way over a part of the travel. In jumps the
+  !> load changes the other way.
+  pure real(wp) function contact_slope(curve) result(slope)
+    type(modelled_curve_t), intent(in) :: curve
+    real(wp) :: middle(2), low, width
+    logical, allocatable :: there(:)
+    integer :: i, way
+
+    slope = 0
+    associate (data => curve%data%measured)
+      associate (z => data%z, s => data%signal)
+        low = minval(z)
+        width = (maxval(z) - low)/parts
+        do way = 1, 2
+          do i = 0, 2*parts - 2
+            there = data%usable .and. (data%inward .eqv. way == 1) .and. &
+              abs(z - low - (0.5_wp*i + 0.5_wp)*width) <= 0.5_wp*width
+            if (count(there) < fewest) cycle
+            middle = [sum(z, there), sum(s, there)]/count(there)
+            slope = max(slope, -data%facing*sum((z - middle(1))*(s - middle(2)), there)/ &
+              max(sum((z - middle(1))**2, there), tiny(1.0_wp)))
+          end do
+        end do
+        slope = slope*curve%spring*curve%sensitivity
+      end associate
+    end associate
+  end function contact_slope
+
+end module fit_alternatives

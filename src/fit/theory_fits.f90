@@ -1,0 +1,167 @@
+!> Fits of the classical theories to a measured curve: beside the fit of the model, to show their
+!> errors, and before it, for starting values.
+module theory_fits
+  use kinds, only: wp, pi
+  use dimensionless_problem, only: problem_t
+  use variation, only: problem_family_t
+  use noise, only: white_noise
+  use measured_jumps, only: off_baseline
+  use fit_request, only: unknown_t, of_model
+  use fit_starts, only: character_t, character_of
+  use classical_model, only: classical_model_t, theories, hertz
+  use modelled_curve, only: modelled_curve_t, level_of
+  use curve_fit, only: fit_curve
+  use fit_errors, only: fitted_t
+  implicit none
+  private
+  public :: theory_fit_t, fit_theories, suggested_characters
+
+  !> The fit of a classical theory.
+  type :: theory_fit_t
+    character(len=14) :: theory = ''
+    type(unknown_t), allocatable :: unknown(:)
+    type(fitted_t) :: fitted
+  end type theory_fit_t
+
+  !> Starting stiffnesses of the theories over the deck's; starting ranges of the force over the
+  !> deck's; samples to which the theories are fitted to find starting values.
+  real(wp), parameter :: factors(*) = [1.0_wp, 0.1_wp, 10.0_wp, 0.01_wp, 100.0_wp], &
+    ranges(*) = [0.25_wp, 4.0_wp]
+  integer, parameter :: few_samples = 1000
+
+contains
+
+  !> Works of adhesion, stiffnesses and ranges of force that the data suggest: from the pull-off
+  !> below the mean of the baseline and below its slope, and from JKR and DMT fits, each with the
+  !> range of the deck's force and with others; without attraction stiffnesses from Hertz fits.
+  function suggested_characters(curve, problem) result(likely)
+    type(modelled_curve_t), intent(in) :: curve
+    type(problem_t), intent(in) :: problem
+    type(character_t), allocatable :: likely(:)
+    type(character_t) :: own, new
+    type(classical_model_t), target :: model
+    type(modelled_curve_t) :: few
+    type(fitted_t) :: fitted
+    real(wp) :: start(2 + size(curve%unknown), size(factors)), pull_off(2)
+    integer :: i, k, n
+
+    allocate (likely(0))
+    own = character_of(problem)
+    model%finds_work = problem%law%adhesion > 0
+    if (model%finds_work) then
+      if (.not. own%work > 0) return
+      associate (data => curve%data%measured)
+        pull_off = -[minval(data%signal, data%usable) - level_of(curve), &
+          minval(off_baseline(data), data%usable)]
+      end associate
+      do i = size(pull_off), 1, -1
+        own%work = pull_off(i)*curve%spring*curve%sensitivity/(1.5_wp*pi*problem%radius)
+        if (own%work > 0) likely = [likely, own]
+      end do
+      if (size(likely) == 0) return
+      own = likely(size(likely))
+    end if
+    if (problem%shape%parabolic) then
+      model%radius = problem%radius
+      few = curve
+      few%data%noise = white_noise(curve%data%noise%deviation)
+      call few%data%take(max(1, size(curve%data%sample)/few_samples))
+      do i = 1, 2
+        model%theory = theories(i)
+        if (.not. model%finds_work) model%theory = hertz
+        call take_unknowns(few, curve, model, own)
+        n = size(few%unknown)
+        do k = 1, size(factors)
+          start(:n, k) = few%unknown%value
+          start(count([model%finds_work, .true.]), k) = own%stiffness*factors(k)
+        end do
+        call fit_curve(few, model, start(:n, :), .false., fitted)
+        if (.not. allocated(fitted%effect)) cycle
+        new = own
+        if (model%finds_work) new%work = fitted%value(1)
+        new%stiffness = fitted%value(count([model%finds_work, .true.]))
+        likely = [likely, new]
+        if (.not. model%finds_work) exit
+        do k = 1, size(ranges)
+          new%range = own%range*ranges(k)
+          likely = [likely, new]
+        end do
+      end do
+    end if
+    do k = 1, size(factors)
+      new = own
+      new%stiffness = own%stiffness*factors(k)
+      likely = [likely, new]
+    end do
+  end function suggested_characters
+
+  !> Fits JKR, DMT and Maugis-Dugdale theory to the same curve, or Hertz theory if the bodies do not
+  !> attract each other, if they are parabolas. The work of adhesion is unknown if the deck fits a
+  !> number of a force, the stiffness if it fits one of the bodies. final: the fitted problem.
+  subroutine fit_theories(fitted_curve, fitted, family, final, theory)
+    type(modelled_curve_t), intent(in) :: fitted_curve
+    type(fitted_t), intent(in) :: fitted
+    class(problem_family_t), intent(in) :: family
+    type(problem_t), intent(in) :: final
+    type(theory_fit_t), allocatable, intent(out) :: theory(:)
+    type(classical_model_t), target :: model
+    type(modelled_curve_t) :: curve
+    real(wp), allocatable :: start(:, :)
+    logical :: elastic(size(family%parameter)), attracts
+    integer :: i
+
+    allocate (theory(0))
+    attracts = final%law%adhesion > 0
+    if (.not. final%shape%parabolic .or. (attracts .and. .not. final%law%work > 0)) return
+    if (.not. final%body%is_homogeneous()) return
+    elastic = [(index(family%parameter(i)%name, 'bodies.') == 1 .and. &
+      family%parameter(i)%name /= 'bodies.radius', i=1, size(elastic))]
+    model%radius = final%radius
+    model%finds_stiffness = any(elastic)
+    model%finds_work = attracts .and. .not. all(elastic)
+    curve = fitted_curve
+    call take_unknowns(curve, fitted_curve, model, character_of(final))
+    if (size(curve%unknown) == 0) return
+    deallocate (theory)
+    allocate (theory(merge(size(theories), 1, attracts)))
+    start = reshape([pack(curve%unknown%value, curve%unknown%role == of_model), &
+      pack(fitted%value, fitted_curve%unknown%role /= of_model)], [size(curve%unknown), 1])
+    do i = 1, size(theory)
+      model%theory = hertz
+      if (attracts) model%theory = theories(i)
+      theory(i)%theory = model%theory
+      theory(i)%unknown = curve%unknown
+      call fit_curve(curve, model, start, .false., theory(i)%fitted)
+    end do
+  end subroutine fit_theories
+
+  !> Sets the unknowns of a theory and those of the measurement.
+  subroutine take_unknowns(curve, measured, model, start)
+    type(modelled_curve_t), intent(inout) :: curve
+    type(modelled_curve_t), intent(in) :: measured
+    type(classical_model_t), intent(inout) :: model
+    type(character_t), intent(in) :: start
+    type(unknown_t) :: unknown(2)
+
+    model%work = start%work
+    model%stiffness = start%stiffness
+    model%range = start%range
+    unknown(1) = unknown_of('work_of_adhesion', 'J/m^2', model%work)
+    unknown(2) = unknown_of('stiffness', 'Pa', model%stiffness)
+    curve%unknown = [pack(unknown, [model%finds_work, model%finds_stiffness]), &
+      pack(measured%unknown, measured%unknown%role /= of_model)]
+  end subroutine take_unknowns
+
+  !> A positive unknown of a theory.
+  type(unknown_t) function unknown_of(name, unit, value) result(unknown)
+    character(len=*), intent(in) :: name, unit
+    real(wp), intent(in) :: value
+
+    unknown%name = name
+    unknown%unit = unit
+    unknown%in_log = .true.
+    unknown%value = value
+    unknown%scale = value
+  end function unknown_of
+
+end module theory_fits

@@ -1,0 +1,59 @@
+!> Samples taken at the turn while the base rests: a contact that is held there relaxes, or creeps,
+!> so that the load changes by more than the travel of the base explains. They show the time and not
+!> the equilibrium, and do not count.
+module turn_rest
+  use kinds, only: wp
+  use noise, only: noise_t
+  use measured_curve, only: measured_t
+  implicit none
+  private
+  public :: leave_out_rest
+
+  !> Smallest number of samples of a rest; standard errors of a certain change.
+  integer, parameter :: fewest = 4
+  real(wp), parameter :: surely = 5
+
+contains
+
+  !> Marks the rests of both ways as skipped. stiffness: of the spring, units of signal over z.
+  pure subroutine leave_out_rest(measured, noise, stiffness)
+    type(measured_t), intent(inout) :: measured
+    type(noise_t), intent(in) :: noise
+    real(wp), intent(in) :: stiffness
+    integer, allocatable :: at(:)
+    integer :: way, i, n
+
+    measured%rested = [(.false., i=1, size(measured%z))]
+    do way = 1, 2
+      ! The samples of a way, beginning at the turn.
+      at = pack([(i, i=1, size(measured%z))], measured%usable .and. &
+        (measured%inward .eqv. way == 1))
+      if (size(at) < 2) cycle
+      if (way == 1) at = at(size(at):1:-1)
+      n = resting(abs(measured%z(at) - measured%z(at(1))), measured%signal(at), &
+        noise%long_deviation(), stiffness)
+      measured%rested(at(:n)) = .true.
+    end do
+    measured%skipped = measured%skipped .or. measured%rested
+    measured%usable = measured%usable .and. .not. measured%rested
+  end subroutine leave_out_rest
+
+  !> The number of the first samples that are a rest: all those within a mean step of the first
+  !> one, if the means of their halves differ by more than spring and noise explain; otherwise 0.
+  pure integer function resting(travel, signal, deviation, stiffness) result(n)
+    real(wp), intent(in) :: travel(:), signal(:), deviation, stiffness
+    real(wp) :: change
+    integer :: half
+
+    n = findloc(travel > maxval(travel)/size(travel), .true., 1) - 1
+    if (n < fewest) then
+      n = 0
+      return
+    end if
+    half = n/2
+    change = abs(sum(signal(:half))/half - sum(signal(half + 1:n))/(n - half))
+    if (.not. change > stiffness*maxval(travel(:n)) + surely*deviation*sqrt(1.0_wp/half + &
+      1.0_wp/(n - half))) n = 0
+  end function resting
+
+end module turn_rest

@@ -1,0 +1,118 @@
+!> A fit in words, for the terminal.
+module fit_words
+  use kinds, only: wp
+  use text, only: brief, rounded, rounded_to, counted
+  use namelist_writer, only: line_t
+  use fit_errors, only: fitted_t
+  use derived_numbers, only: derived_t
+  use fit_run, only: fit_outcome_t
+  implicit none
+  private
+  public :: words_of_fit
+
+  !> Difference of chi squared up to which two fits are equally good.
+  real(wp), parameter :: as_well = 4
+
+contains
+
+  !> The fit in words, for the terminal.
+  function words_of_fit(outcome) result(lines)
+    type(fit_outcome_t), intent(in) :: outcome
+    type(line_t), allocatable :: lines(:)
+    type(line_t) :: line
+    integer :: i
+
+    allocate (lines(0))
+    associate (curve => outcome%curve)
+      line%text = counted(size(curve%data%sample), 'sample') // ', noise ' // &
+        rounded(curve%data%noise%deviation) // ', correlation of neighbours ' // &
+        rounded(curve%data%noise%correlation(1)) // ', ' // counted(count( &
+        curve%data%measured%outlier()), 'outlier') // ' left out'
+      lines = [lines, line]
+      do i = 1, size(curve%unknown)
+        line%text = curve%unknown(i)%name // ' = ' // with_unit(outcome%fitted%value(i), &
+          outcome%fitted%deviation(i), curve%unknown(i)%unit)
+        lines = [lines, line]
+      end do
+      if (any(curve%data%measured%rested)) then
+        line%text = counted(count(curve%data%measured%rested), 'sample') // ' at the turn left ' &
+          // 'out: the load changes there while the base rests'
+        lines = [lines, line]
+      end if
+    end associate
+    do i = 1, size(outcome%derived)
+      line%text = words_of(outcome%derived(i))
+      lines = [lines, line]
+    end do
+    line%text = 'the residuals are ' // rounded(left_of(outcome%fitted)) // ' times the noise'
+    do i = 1, size(outcome%theory)
+      associate (theory => outcome%theory(i))
+        if (.not. allocated(theory%fitted%effect)) cycle
+        line%text = line%text // '; by ' // trim(theory%theory) // ' ' // &
+          rounded(left_of(theory%fitted))
+      end associate
+    end do
+    lines = [lines, line]
+    do i = 1, size(outcome%theory)
+      associate (theory => outcome%theory(i))
+        if (.not. allocated(theory%fitted%effect) .or. .not. theory%fitted%lack%is_noise()) cycle
+        if (theory%fitted%chi_squared > outcome%fitted%chi_squared + as_well) cycle
+        line%text = trim(theory%theory) // ', which has no force before contact, describes ' // &
+          'these data ' // trim(merge('better ', 'as well', theory%fitted%chi_squared < &
+          outcome%fitted%chi_squared - as_well)) // ': chi squared ' // &
+          rounded_to(theory%fitted%chi_squared, 1.0_wp) // ' against ' // &
+          rounded_to(outcome%fitted%chi_squared, 1.0_wp)
+        lines = [lines, line]
+      end associate
+    end do
+  end function words_of_fit
+
+  !> A derived number with what it assumes.
+  function words_of(derived) result(words)
+    type(derived_t), intent(in) :: derived
+    character(len=:), allocatable :: words
+
+    words = with_unit(derived%value, derived%error, derived%unit)
+    select case (derived%name)
+    case ('work_of_adhesion')
+      words = 'work of adhesion ' // words
+    case ('reduced_modulus')
+      words = 'reduced modulus ' // words
+    case default
+      words = 'Young''s modulus of the sample ' // words // ' (nu = ' // brief(derived%poisson)
+      if (derived%of_deck) then
+        words = words // ', from &bodies)'
+      else
+        words = words // ', rigid tip; for others give young and poisson in &bodies)'
+      end if
+    end select
+  end function words_of
+
+  !> A value with its error in a unit, for pascals and metres with a prefix.
+  function with_unit(value, error, unit) result(words)
+    real(wp), intent(in) :: value, error
+    character(len=*), intent(in) :: unit
+    character(len=:), allocatable :: words
+    character(len=*), parameter :: prefixes = 'pnum kMGT'
+    integer, parameter :: plain = index(prefixes, ' ')
+    integer :: prefix
+    real(wp) :: size
+
+    prefix = plain
+    size = max(abs(value), error)
+    if ((unit == 'm' .or. unit == 'Pa') .and. size > 0 .and. size < huge(size)) &
+      prefix = max(1, min(len(prefixes), plain + floor(log10(size)/3)))
+    associate (scale => 10.0_wp**(3*(prefix - plain)))
+      words = rounded_to(value/scale, error/scale) // ' +- ' // rounded(error/scale)
+    end associate
+    if (len_trim(unit) > 0) words = words // ' ' // trim(adjustl(prefixes(prefix:prefix) // unit))
+  end function with_unit
+
+  !> Standard deviation of the residuals of a fit, over the noise.
+  pure real(wp) function left_of(fitted)
+    type(fitted_t), intent(in) :: fitted
+
+    left_of = sqrt(fitted%chi_squared/max(1, fitted%freedom))
+  end function left_of
+
+end module fit_words
