@@ -12,6 +12,8 @@ crosses; cases without the value are dots. Where a largest tension is that of th
 of a branch, it is no pull-off: such cases are open circles, outside colours and curves.
 """
 
+import re
+
 import numpy as np
 from drawing import (
     BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILION, entitle, run, title_of, units_of)

@@ -107,7 +107,7 @@ contains
 
   !> A step by mixing. If it converges the bodies are also moved from the last row that converged:
   !> mixing does not tell a jump from a branch that continues. Plain mixing begins at constant
-  !> separation and is itself a relaxation, which says where bodies land; accelerated mixing is none.
+  !> separation and is itself a relaxation, which says where bodies land; accelerated mixing is not.
   subroutine mixing_step(self, h0, position, event)
     class(fixed_stepper_t), intent(inout) :: self
     real(wp), intent(in) :: h0

@@ -23,9 +23,10 @@ def test_short_ranged_repulsion_multiplies_by_few_columns(run):
     for numerics, most in (({}, 0.85), ({"grid": "uniform", "nodes": 300}, 0.75)):
         cost = run(exponential(200, loading=loading(10, -20, 0.5), numerics=numerics)).cost
         assert cost["operator_columns"] < most * cost["operator_products"] * cost["nodes"]
-    # Attraction reaches everywhere.
+    # Attraction reaches everywhere. Two of the three runs that are counted, those that judge the
+    # grid, have two thirds and five sixths of its nodes.
     cost = run(lennard_jones(0.1, loading=loading(8, -2, 0.5), numerics=numerics)).cost
-    assert cost["operator_columns"] >= 0.95 * cost["operator_products"] * cost["nodes"]
+    assert cost["operator_columns"] >= 0.95 * 5 / 6 * cost["operator_products"] * cost["nodes"]
 
 
 def test_forces_that_are_absent_are_not_evaluated(run):
@@ -148,14 +149,15 @@ def test_classical_theory_alone_solves_nothing(run):
 @pytest.mark.parametrize("sigma", [0.1, 0.87, 8.7])
 def test_a_smooth_state_takes_few_products_and_rare_factorisations(run, sigma):
     """Six products a state (median) and a factorisation every six states, the jumps aside: with so
-    few nodes it costs as much as three iterations, and is renewed when it has cost these."""
+    few nodes it costs as much as three iterations, and is renewed when it has cost these. The
+    factorisations of the two runs that estimate the errors are counted too: half as many."""
     scene = lennard_jones(sigma, loading=loading(4, -20, 0.05), unloading={"h0_end": 4.0})
     result = run(scene)
     iterations = sorted(result.curve["iterations"])
     assert iterations[len(iterations) // 2] <= 6
     smooth = exponential(100, loading=loading(0, -20, 0.05))
     result = run(smooth)
-    assert result.cost["factorisations"] <= len(result.curve) / 6
+    assert result.cost["factorisations"] <= 1.5 * len(result.curve) / 6
     iterations = sorted(result.curve["iterations"])
     assert iterations[len(iterations) // 2] <= 6
 

@@ -99,12 +99,14 @@ def test_jump_out_is_found_whether_or_not_the_edge_is_pinned(run):
     exact = run(cycle()).summary["jump_out_h0"]
     summary = run(cycle(numerics=on_grid(0.1))).summary
     assert abs(summary["jump_out_h0"] - exact) < 5e-12 + summary["jump_out_uncertainty"]
-    assert summary["jump_out_uncertainty"] < 1e-12
+    # The error of the grid is part of it.
+    assert summary["jump_out_uncertainty"] < 1e-11
 
 
-@pytest.mark.parametrize(("spacing", "a_state"), [(0.2, 12), (0.3, 25), (0.5, 50), (1.0, 45)])
+@pytest.mark.parametrize(("spacing", "a_state"), [(0.2, 36), (0.3, 75), (0.5, 150), (1.0, 135)])
 def test_a_state_on_a_fixed_grid_costs_few_factorisations(run, spacing, a_state):
     """Following each false fold by halving alone took 125 a state at 0.5, 228 at 1. With 52 nodes
-    one takes as long as three iterations, and pays where it saves more."""
+    one takes as long as three iterations, and pays where it saves more. The two runs that judge the
+    grid are counted, but not their states."""
     cost = run(cycle(numerics=on_grid(spacing))).cost
     assert cost["factorisations"] < a_state * cost["states"]

@@ -113,8 +113,8 @@ def checked(snapin, folder, texts):
             assert 1 <= int(match[2]) <= ends
         elif match := re.match(
                 r"snapin: (d\d{4}\.nml): .*"
-                r"(may take|its results take|not computed: |a sweep writes no)", line):
-            # What is accepted may be long or too large, or leave tables out.
+                r"(may take|its results take|not computed: |a sweep writes no|warning: )", line):
+            # What is accepted may be long or too large, leave tables out, or promise no success.
             assert match[1] in accepted
         else:
             assert re.match(r" {4}( *\d+| +) \| |further mistakes are not shown$", line), line

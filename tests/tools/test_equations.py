@@ -24,8 +24,8 @@ def test_each_equation_has_a_place_or_a_reason(number):
     (15, "src/mesh/elastic_kernel.f90", None), (17, "src/equilibrium/equilibrium.f90", "residual"),
     (16, "src/equilibrium/equilibrium.f90", "residual"),
     (20, "src/equilibrium/equilibrium.f90", "residual"), (14, "src/equilibrium/mixing.f90", None),
-    (10, "src/theory/classical.f90", "jkr_load"), (29, "src/equilibrium/stability.f90",
-                                                   "axis_criterion")])
+    (10, "src/theory/classical.f90", "jkr_load"),
+    (29, "src/equilibrium/local_criteria.f90", "axis_criterion")])
 def test_places_that_a_reader_of_the_paper_looks_for(number, path, name):
     assert path in INDEX[number]["source"]
     assert name is None or name in INDEX[number]["source"][path]
