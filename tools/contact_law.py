@@ -18,11 +18,11 @@ import pages  # noqa: F401 - computes on one thread
 
 sys.path.append(str(pathlib.Path(__file__).resolve().parent / "law"))
 
-import calculator  # noqa: E402
-import header  # noqa: E402
-import measure  # noqa: E402
-import solved  # noqa: E402
-import tables  # noqa: E402
+import law_calculator  # noqa: E402
+import law_errors  # noqa: E402
+import law_header  # noqa: E402
+import law_states  # noqa: E402
+import law_tables  # noqa: E402
 
 TABLE = pages.ROOT / "pywrap" / "snapin" / "contact_law.json"
 SCRIPT = pages.ROOT / "contact_law" / "snapin_contact.js"
@@ -35,33 +35,35 @@ STATES, SEED = 10000, 59
 
 def made(deck, title, least, largest, states):
     """Return the law of a deck with its measured errors."""
-    force = solved.Force(deck)
-    law = tables.law_tables(force, title, least, largest)
+    force = law_states.Force(deck)
+    law = law_tables.law_tables(force, title, least, largest)
     law["errors"] = measured(law, force, states)
     return law
 
 
 def measured(law, force, states):
     """Return the largest errors within the range of Tabor's parameter and beyond it."""
-    ranges = {"within": (law["least"], law["largest"], states),
-              "above": (law["largest"], 5*law["largest"], states//20)}
+    ranges = {"within": (law["least"], law["largest"], states)}
+    if not law["highest"]:
+        ranges["above"] = law["largest"], 5*law["largest"], states//20
     if not law["lowest"]:
         ranges["below"] = law["least"]/10, law["least"], states//20
     return {name: {"low": low, "high": high, "states": count,
-                   "largest": measure.largest_errors(law, force, count, SEED, low, high)}
+                   "largest": law_errors.largest_errors(law, force, count, SEED, low, high)}
             for name, (low, high, count) in ranges.items()}
 
 
 def write(law, folder=None):
     """Write the files of a law: those of the project, or into a folder."""
     text = json.dumps(law, separators=(",", ":"))
-    files = {TABLE: text + "\n", HEADER: header.header_text(law), SCRIPT: calculator.script_text(law)}
+    files = {TABLE: text + "\n", HEADER: law_header.header_text(law),
+             SCRIPT: law_calculator.script_text(law)}
     for place, content in files.items():
         place = place if folder is None else folder / place.name
         place.parent.mkdir(parents=True, exist_ok=True)
         place.write_text(content, encoding="utf-8")
     if folder is None:
-        CALCULATOR.write_text(calculator.page_text(law), encoding="utf-8")
+        CALCULATOR.write_text(law_calculator.page_text(law), encoding="utf-8")
 
 
 def main():
@@ -71,7 +73,7 @@ def main():
     parser.add_argument("--out", type=pathlib.Path, help="folder of another force's files")
     parser.add_argument("--remake", action="store_true", help="only header and calculator")
     parser.add_argument("--tabor", type=float, nargs=2, metavar=("LOW", "HIGH"),
-                        default=(tables.LEAST, tables.LARGEST))
+                        default=(law_tables.LEAST, law_tables.LARGEST))
     parser.add_argument("--states", type=int, default=STATES, help="random states for the errors")
     options = parser.parse_args()
     if bool(options.deck) != bool(options.out):
@@ -82,11 +84,11 @@ def main():
     try:
         law = made(options.deck or LENNARD_JONES, options.deck.stem if options.deck else TITLE,
                    *options.tabor, options.states)
-    except solved.Unsuitable as reason:
+    except law_states.Unsuitable as reason:
         sys.exit(f"{options.deck}: {reason}")
     write(law, options.out)
     for kind, (error, mu) in law["errors"]["within"]["largest"].items():
-        print(f"{measure.KINDS[kind]}: {error:.1e}, at Tabor's parameter {mu:.3g}")
+        print(f"{law_errors.KINDS[kind]}: {error:.1e}, at Tabor's parameter {mu:.3g}")
 
 
 if __name__ == "__main__":

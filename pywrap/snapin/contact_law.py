@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.polynomial import chebyshev, polynomial
 
-from .arguments import positive, reals
+from .arguments import flags, positive, vector
 
 # JKR theory's units of h0 and contact radius, with K = 4 E*/3: (pi^2 w^2 R/K^2)^(1/3) is GAP mu z0,
 # and (pi w R^2/K)^(1/3) is SPREAD sigma^(1/3) sqrt(R z0), sigma = mu^(3/2)/2.
@@ -34,7 +34,7 @@ def coefficients():
     return json.loads(pathlib.Path(__file__).with_name("contact_law.json").read_text())
 
 
-class Place(NamedTuple):
+class _Place(NamedTuple):
     """A place on the path: its panel and xi there, and h0 in z0."""
 
     panel: int
@@ -61,9 +61,9 @@ class ContactLaw:
     z0 is the length of the force law, for the law 9-3 the gap of zero force. `table` has the
     coefficients of another force, as tools/contact_law.py --deck writes them.
 
-    `load`, `contact_radius`, `stiffness` and `energy` take h0 and whether the bodies are in
-    contact, arrays or numbers, element by element. Where the bodies cannot be in this state, they
-    have jumped to the other; `in_contact` tells, and `history` follows a sequence of h0.
+    `load`, `contact_radius`, `stiffness` and `energy` take h0 and whether the bodies were in
+    contact before, for all h0 or for each, and return arrays. Where the bodies cannot be in this
+    state they have jumped to the other; `in_contact` tells. `history` follows a sequence of h0.
     """
 
     def __init__(self, radius, reduced_modulus, work_of_adhesion, z0, *, table=None):
@@ -73,9 +73,10 @@ class ContactLaw:
         self.radius, self.reduced_modulus = radius, modulus
         self.work_of_adhesion, self.z0 = work, z0
         log_mu = (np.log(radius) + 2*(np.log(work) - np.log(modulus)))/3 - np.log(z0)
-        if not (abs(log_mu) < 100 and np.exp(log_mu) >= self._table["lowest"]*(1 - 1e-12)):
-            raise ValueError("Tabor's parameter is beyond what can be computed")
-        self.tabor = float(np.exp(log_mu))
+        self.tabor = float(np.exp(log_mu)) if abs(log_mu) < 50 else np.inf
+        low, high = self._table["lowest"], self._table["highest"] or np.inf
+        if not low*(1 - 1e-12) <= self.tabor <= high*(1 + 1e-12) or np.isinf(self.tabor):
+            raise ValueError("Tabor's parameter is beyond the range of the law")
         self._load_unit, self._radius_unit = np.pi*work*radius, np.sqrt(radius*z0)
         self._jkr_gap = _GAP*self.tabor
         self._jkr_radius = _SPREAD*np.exp(log_mu/2)/2**(1/3)
@@ -129,7 +130,7 @@ class ContactLaw:
         """Energy [J] lost in both jumps; 0 without jumps."""
         if not self.jumps:
             return 0.0
-        ends = self.z0*np.array([self._snap_in.gap, self._snap_off.gap])
+        ends = np.array([self.snap_in, self.snap_off])
         outside, contact = self.energy(ends, False), self.energy(ends, True)
         return float(outside[0] - outside[1] - contact[0] + contact[1])
 
@@ -137,19 +138,16 @@ class ContactLaw:
 
     def in_contact(self, h0, before=False):
         """Return whether the bodies are in contact at h0 [m] if they were or were not before."""
-        gap, before = np.broadcast_arrays(reals("h0", h0)/self.z0, before)
-        if not self.jumps:
-            return before.astype(bool)
-        # A snap-off that was converted to metres and back is not beyond itself.
-        slack = 1e-14
-        return np.where(before, gap <= self._snap_off.gap*(1 + slack),
-                        gap < self._snap_in.gap*(1 - slack))
+        gap = vector("h0", h0)/self.z0
+        return self._contact(gap, flags("before", before, gap.size))
 
     def history(self, h0, before=False):
         """Return whether the bodies are in contact at each of a sequence of h0 [m]."""
-        found = np.empty(np.shape(h0), bool)
-        for index, value in enumerate(reals("h0", h0)):
-            before = found[index] = self.in_contact(value, before)
+        gap = vector("h0", h0)/self.z0
+        state, found = flags("before", before, 1), np.empty(gap.shape, bool)
+        for index in range(gap.size):
+            state = self._contact(gap[index:index + 1], state)
+            found[index] = state[0]
         return found
 
     def load(self, h0, in_contact=False):
@@ -190,30 +188,35 @@ class ContactLaw:
             lambda panel, xi: polynomial.polyval(xi, panel.energy),
             lambda root: self._deep_energy + self._jkr_gap*polynomial.polyval(root, _JKR_ENERGY))
 
+    def _contact(self, gap, before):
+        """Return whether bodies are in contact, for arrays in z0."""
+        if not self.jumps:
+            return before
+        # A snap-off that was converted to metres and back is not beyond itself.
+        return np.where(before, gap <= self._snap_off.gap*(1 + 1e-14),
+                        gap < self._snap_in.gap*(1 - 1e-14))
+
     def _evaluate(self, h0, in_contact, far, inside, deep):
-        """Return a function of h0: outside the panels, on them, and beyond the last."""
-        gap, contact = np.broadcast_arrays(
-            reals("h0", h0)/self.z0, self.in_contact(h0, in_contact))
-        shape, gap, contact = gap.shape, gap.ravel(), contact.ravel()
+        """Return a function of h0: beyond the panels' first, on them, and beyond their last."""
+        gap = vector("h0", h0)/self.z0
+        contact = self._contact(gap, flags("in_contact", in_contact, gap.size))
         found = np.full(gap.shape, np.nan)
         for state in (False, True):
-            pieces = self._pieces[state]
             rest = contact == state
-            if not rest.any():
-                continue
-            beyond = rest & (gap > self._far_gap)
-            if pieces[0][0] == 0 and pieces[0][1] == -1:
+            if not (state and self.jumps):
+                beyond = rest & (gap > self._far_gap)
                 found[beyond] = far(gap[beyond])
                 rest &= ~beyond
-            for panel, low, high, bottom in pieces:
-                here = rest & (gap >= bottom) if (panel, low, high, bottom) != pieces[-1] else rest
-                if panel == len(self._panels) - 1:
-                    here = rest & (gap >= bottom)
+            for panel, low, high, bottom in self._pieces[state]:
+                here = rest & (gap >= bottom)
+                if self.jumps and not state and panel == self._snap_in.panel:
+                    # Whose end is a snap-in that may be missed by rounding.
+                    here = rest
                 xi = _solved(self._panels[panel].gap, gap[here], low, high)
                 found[here] = inside(self._panels[panel], xi)
-                rest &= ~here
+                rest = rest & ~here
             found[rest] = deep(self._deep_root(gap[rest]))
-        return found.reshape(shape)[()]
+        return found
 
     # --- The path
 
@@ -336,7 +339,7 @@ class ContactLaw:
             bend = polynomial.polyder(slope)
             for xi in _real_roots(slope):
                 kind = np.sign(polynomial.polyval(xi, bend))
-                turns.append((kind, Place(index, xi, float(polynomial.polyval(xi, panel.gap)))))
+                turns.append((kind, _Place(index, xi, float(polynomial.polyval(xi, panel.gap)))))
         least = [place for kind, place in turns if kind > 0]
         most = [place for kind, place in turns if kind < 0]
         both = bool(least and most)
@@ -348,7 +351,7 @@ class ContactLaw:
         for index, low, high, _ in self._pieces[True]:
             panel = self._panels[index]
             for xi in _real_roots(polynomial.polyder(panel.load), low, high):
-                candidates.append(Place(index, xi, float(polynomial.polyval(xi, panel.gap))))
+                candidates.append(_Place(index, xi, float(polynomial.polyval(xi, panel.gap))))
         self._tension = min(candidates, key=self._load_at)
 
     def _load_at(self, place):

@@ -16,7 +16,7 @@ series too.
 """
 
 import numpy as np
-from solved import GAP, SPREAD, Unsuitable, jkr, jkr_root, mu_of, path, sigma_of
+from law_states import GAP, SPREAD, Unsuitable, jkr, jkr_root, mu_of, path, sigma_of
 
 ORDER = 12           # coefficients of a function of the path on one tile
 UNIT = 1e-7          # what a coefficient is rounded to
@@ -292,6 +292,7 @@ def law_tables(force, title, least=LEAST, largest=LARGEST, told=print):
         "rest": force.rest, "contact": force.contact, "length": force.length,
         "power": force.power, "tail": force.tail, "decay": force.decay,
         "least": least, "largest": largest, "lowest": 0.0 if least < RIGID_TO else least,
+        "highest": largest if near[-1]["whole"] else 0.0,
         "join_load": JOIN_LOAD, "wall_low": float(np.log(WALL[0])),
         "wall_high": float(np.log(WALL[1])), "wall": rounded(wall[None]),
         "deep_edges": panel.edges.tolist(), "deep": deep, "near": near}

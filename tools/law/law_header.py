@@ -4,7 +4,7 @@ import pathlib
 import textwrap
 
 import numpy as np
-from measure import KINDS
+from law_errors import KINDS
 
 TEMPLATE = pathlib.Path(__file__).with_name("snapin_contact.h.in")
 DEEP_PANELS = 8
@@ -63,6 +63,7 @@ def tables_text(law):
         "unit": law["wall"]["unit"], "rest": law["rest"], "power": law["power"],
         "tail": -law["tail"], "decay": law["decay"] or 1.0, "least": law["least"],
         "largest": law["largest"], "lowest": law["lowest"],
+        "highest": law["highest"],
         "gap_of_mu": (9*np.pi**2/16)**(1/3),
         "radius_of_sigma": (1.5*np.pi)**(1/3), "join_load": law["join_load"],
         "join_root": float(((np.sqrt(6) + np.sqrt(6 + 4*law["join_load"]))/2)**(1/3)),

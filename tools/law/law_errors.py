@@ -2,7 +2,7 @@
 
 import numpy as np
 from snapin.contact_law import ContactLaw
-from solved import GAP, jkr, jkr_root, path
+from law_states import GAP, jkr, jkr_root, path
 
 # What is measured, and in what it is told.
 KINDS = {
