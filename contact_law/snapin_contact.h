@@ -702,7 +702,8 @@ static inline void snapin_contact_clear_(snapin_contact_panel *panel) {
    between are left out, in pi w R z0. */
 static inline double snapin_contact_near_(snapin_contact *law, double log_mu) {
   const snapin_contact_near_panel *near = snapin_contact_near_panels_;
-  double mu = exp(log_mu), log_sigma = 1.5 * log_mu - log(2.0), sigma = exp(log_sigma), held = fmin(log_mu, log(snapin_contact_largest_));
+  double mu = exp(log_mu), log_sigma = 1.5 * log_mu - log(2.0), sigma = exp(log_sigma);
+  double held = fmin(log_mu, log(snapin_contact_largest_));
   double beyond = exp(held - log_mu), local, scale, stretch, spread, energy[SNAPIN_CONTACT_ORDER];
   int i, k, table;
   while (near->last == 0 && (near->by_sigma ? sigma : held) > near->high) ++near;
@@ -776,7 +777,8 @@ static inline void snapin_contact_cut_(double *c, double end) {
   double found[SNAPIN_CONTACT_ORDER] = {0}, middle = (end - 1) / 2, half = (end + 1) / 2;
   int i, k;
   for (k = SNAPIN_CONTACT_ORDER - 1; k >= 0; --k) {
-    for (i = SNAPIN_CONTACT_ORDER - 1; i > 0; --i) found[i] = middle * found[i] + half * found[i - 1];
+    for (i = SNAPIN_CONTACT_ORDER - 1; i > 0; --i)
+      found[i] = middle * found[i] + half * found[i - 1];
     found[0] = middle * found[0] + c[k];
   }
   for (k = 0; k < SNAPIN_CONTACT_ORDER; ++k) c[k] = found[k];
@@ -826,7 +828,8 @@ static inline void snapin_contact_deep_(snapin_contact *law, double log_mu) {
       double q = low * (1.5 + 0.5 * node[k]), length = 2 * log(q), x, plain, found;
       double end = snapin_contact_deep_edges_[SNAPIN_CONTACT_TILES], inside = fmin(length, end);
       tile = 0;
-      while (tile < SNAPIN_CONTACT_TILES - 1 && inside > snapin_contact_deep_edges_[tile + 1]) ++tile;
+      while (tile < SNAPIN_CONTACT_TILES - 1 && inside > snapin_contact_deep_edges_[tile + 1])
+        ++tile;
       x = (2 * inside - snapin_contact_deep_edges_[tile] - snapin_contact_deep_edges_[tile + 1]) /
           (snapin_contact_deep_edges_[tile + 1] - snapin_contact_deep_edges_[tile]);
       gaps[k] = snapin_contact_wall_(wall, pressure + length) +
@@ -911,7 +914,8 @@ static inline double snapin_contact_steepest_(const snapin_contact *law, int pan
   double left = high - golden * (high - low), right = low + golden * (high - low);
   int i;
   for (i = 0; i < 40; ++i) {
-    if (snapin_contact_gap_slope_(law, panel, left) > snapin_contact_gap_slope_(law, panel, right)) {
+    if (snapin_contact_gap_slope_(law, panel, left) >
+        snapin_contact_gap_slope_(law, panel, right)) {
       high = right;
       right = left;
       left = high - golden * (high - low);
@@ -1148,7 +1152,8 @@ static inline int snapin_contact_ready_(const snapin_contact *law, double h0, do
   return 1;
 }
 
-static inline double snapin_contact_far_load_(const snapin_contact *law, double gap, double *slope) {
+static inline double snapin_contact_far_load_(const snapin_contact *law, double gap,
+                                              double *slope) {
   double load, ratio, second;
   if (snapin_contact_power_ > 0) {
     ratio = law->far_gap / gap;
@@ -1209,8 +1214,7 @@ static inline double snapin_contact_load(const snapin_contact *law, double h0, i
   if (!snapin_contact_ready_(law, h0, &gap)) return (double)NAN;
   at = snapin_contact_state_(law, gap, in_contact, &xi);
   if (at < 0) return law->load_unit * snapin_contact_far_load_(law, gap, &slope);
-  if (at == law->panels)
-    return law->load_unit * snapin_contact_jkr_load_(xi);
+  if (at == law->panels) return law->load_unit * snapin_contact_jkr_load_(xi);
   return law->load_unit *
          snapin_contact_value_(law->panel[at].load, SNAPIN_CONTACT_ORDER, xi);
 }

@@ -283,7 +283,8 @@ const snapinContact = (() => {
       const drive = panel => k > 0 ? sum(panel.gap, panel.load, -1 / relative)
         : panel.load.map(one => -one);
       const found = turns(panels, drive);
-      const jumpIn = found.find(one => one.sign > 0), jumpOff = found.filter(one => one.sign < 0).pop();
+      const jumpIn = found.find(one => one.sign > 0);
+      const jumpOff = found.filter(one => one.sign < 0).pop();
       if (!jumpIn || !jumpOff) return null;
       const landing = (turn, range) => {
         const goal = value(drive(panels[turn.panel]), turn.xi);
@@ -303,7 +304,8 @@ const snapinContact = (() => {
         if (index >= jumpOff.panel)
           after.push([index, index === jumpOff.panel ? jumpOff.xi : -1, 1]);
       });
-      const result = {in: {from: si(onPanel(jumpIn.panel, jumpIn.xi)), to: si(landing(jumpIn, after))},
+      const result = {
+        in: {from: si(onPanel(jumpIn.panel, jumpIn.xi)), to: si(landing(jumpIn, after))},
         off: {from: si(onPanel(jumpOff.panel, jumpOff.xi)), to: si(landing(jumpOff, before))},
         turnIn: jumpIn, turnOff: jumpOff};
       if (k > 0 && !result.off.to) {

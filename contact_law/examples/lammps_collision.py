@@ -118,7 +118,8 @@ def collision(law):
         run.command("run 20000 pre yes post no")
         steps += 20000
         x, v = (run.numpy.extract_atom(name)[:2] for name in "xv")
-        if abs(x[1, 0] - x[0, 0]) - 2*SPHERE > START and (x[1, 0] - x[0, 0])*(v[1, 0] - v[0, 0]) > 0:
+        apart, parting = x[1, 0] - x[0, 0], v[1, 0] - v[0, 0]
+        if abs(apart) - 2*SPHERE > START and apart*parting > 0:
             break
     after = kinetic()
     run.close()

@@ -43,8 +43,8 @@ def text_of(window, element):
 
 def test_the_page_needs_nothing_but_itself():
     text = PAGE.read_text(encoding="utf-8")
-    assert not re.search(r"""(?:src|href)=["'](?!data:)|@import|fetch\(|XMLHttpRequest|url\((?!#)""",
-                         text)
+    foreign = r"""(?:src|href)=["'](?!data:)|@import|fetch\(|XMLHttpRequest|url\((?!#)"""
+    assert not re.search(foreign, text)
     assert PAGE.stat().st_size < 200_000
 
 
@@ -157,7 +157,8 @@ def test_it_can_be_used_by_keyboard(window):
     # The focus is visible.
     window.run("document.getElementById('w').focus(); document.getElementById('w').select()")
     window.type(TAB)
-    assert float(window.run("return getComputedStyle(document.activeElement).outlineWidth")[:-2]) >= 2
+    width = window.run("return getComputedStyle(document.activeElement).outlineWidth")
+    assert float(width[:-2]) >= 2
     window.run("document.getElementById('w').focus(); document.getElementById('w').select()")
     window.type("100")
     assert window.run("return window.calculated.law.work") == pytest.approx(0.1)
@@ -184,8 +185,9 @@ def test_wrong_values_are_named_and_give_no_numbers(window, field, value, said):
 @needs_browser
 def test_every_field_and_picture_has_a_name(window):
     window.open(ADDRESS)
-    unnamed = window.run("""return [...document.querySelectorAll('input, select, textarea')].filter(
-        one => !(one.labels && one.labels.length) && !one.getAttribute('aria-label')).map(one => one.id)""")
+    unnamed = window.run("""return [...document.querySelectorAll('input, select, textarea')]
+        .filter(one => !(one.labels && one.labels.length) && !one.getAttribute('aria-label'))
+        .map(one => one.id)""")
     assert unnamed == []
     names = window.run("return [...document.querySelectorAll('svg[role=img]')]"
                        ".map(one => one.getAttribute('aria-label'))")
@@ -205,8 +207,9 @@ def test_the_deck_is_one_that_the_program_runs(window, snapin_path, tmp_path):
 
 
 @needs_browser
-@pytest.mark.parametrize("values", ["", "#k=", "#r1=1&r1_unit=nm&e1=200&k=0.1", "#e1=50&e1_unit=kPa",
-                                    "#k=1&k_unit=kN/m&f=0", "#f=-1e5"])
+@pytest.mark.parametrize("values", [
+    "", "#k=", "#r1=1&r1_unit=nm&e1=200&k=0.1", "#e1=50&e1_unit=kPa", "#k=1&k_unit=kN/m&f=0",
+    "#f=-1e5"])
 def test_it_fits_a_telephone(telephone, values):
     telephone.open(ADDRESS + values)
     assert telephone.run("return document.documentElement.scrollWidth") <= 390

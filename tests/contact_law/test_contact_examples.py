@@ -1,4 +1,4 @@
-"""Claims about contact_law/examples: the programs run, and collisions lose what the program says."""
+"""Claims about contact_law/examples: they run, and collisions lose what the program says."""
 
 import importlib.util
 import os

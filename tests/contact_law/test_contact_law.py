@@ -142,7 +142,8 @@ def test_load_and_stiffness_are_slopes_of_the_energy(mu):
             load[calm], rel=1e-6, abs=1e-5*law.pull_off + 10*largest)
         loads = [law.load(middle + sign*step, contact) for sign in (-1, 1)]
         assert ((loads[0] - loads[1])/(2*step))[calm] == pytest.approx(
-            stiffness[calm], rel=1e-4, abs=1e-4*law.pull_off/law.z0 + 1e-9*np.abs(loads[0]).max()/law.z0)
+            stiffness[calm], rel=1e-4,
+            abs=1e-4*law.pull_off/law.z0 + 1e-9*np.abs(loads[0]).max()/law.z0)
 
 
 def test_panels_of_tabor_s_parameter_meet():

@@ -1,9 +1,9 @@
 """Every public callable of the package `snapin`, with one good call of each and the kinds of its
 arguments. tests/support/wrapper_values.py has the values, good and bad, for each kind of argument.
 
-A kind is a word: vector, paired (a vector as long as another), flags (bools, likewise), scalar, positive, count, name, law,
-mesh; number, whole, word and switch are keys of a deck, whose range and type the program
-checks.
+A kind is a word: vector, paired (a vector as long as another), flags (bools, likewise), scalar,
+positive, count, name, law, mesh; number, whole, word and switch are keys of a deck, whose range
+and type the program checks.
 """
 
 import dataclasses

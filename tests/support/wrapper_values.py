@@ -176,7 +176,8 @@ def flags(good):
     foreign = {label: value for label, value in FOREIGN.items() if "bool" not in label}
     return {"foreign": refused(foreign), "none": refused(NONE), "finite": refused(NOT_FINITE),
             "number": refused({"0": 0, "1": 1, "numbers": good.astype(float)}),
-            "shape": refused({"row": good[None, :], "one more": np.r_[good, True], "empty": good[:0]}),
+            "shape": refused({
+                "row": good[None, :], "one more": np.r_[good, True], "empty": good[:0]}),
             "masked": refused({"masked": np.ma.array(good, mask=np.arange(n) == 0)}),
             "one": taken({"bool": True, "numpy bool": np.True_}, np.full(n, True)),
             "same": taken({"list": good.tolist(), "strided": np.repeat(good, 2)[::2]}, good)}

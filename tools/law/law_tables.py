@@ -256,7 +256,8 @@ def ladder(force, least, largest):
     for whole, low, high in ((True, max(RIGID_TO, least), min(split, largest)),
                              (False, max(split, least), largest)):
         if low < high:
-            edges = np.log(np.geomspace(low, high, 1 + int(np.ceil(np.log(high/low)/LONGEST[whole]))))
+            count = int(np.ceil(np.log(high/low)/LONGEST[whole]))
+            edges = np.log(np.geomspace(low, high, 1 + count))
             panels += [(whole, "mu", *pair) for pair in zip(edges[:-1], edges[1:])]
     return panels
 
