@@ -1,7 +1,7 @@
 /* snapin_contact.h: adhesive contact of two elastic spheres, solved and not approximated.
 
-Force: Lennard-Jones, exponents 9 and 3. It was computed from the deck's &force law = lennard_jones, surface_energy = 0.05, z0 = 3e-10
-and scales with work of adhesion and z0 together.
+Force: Lennard-Jones, exponents 9 and 3, from a deck with &force law = lennard_jones,
+surface_energy = 0.05, z0 = 3e-10. It scales with work of adhesion and z0.
 
 Largest errors within the range of tables: 10000 random stable states of solved paths,
 Tabor's parameter 0.0001 to 200:
@@ -27,8 +27,8 @@ Tabor's parameter 200 to 1e+03:
   3.6e-07  loads there, in pull-off forces
   2.2e-03  energy lost in a cycle, in pull-off force times z0
 
-Copyright (c) the authors of snapin. MIT license: see LICENSE of the project, or
-https://opensource.org/license/mit. Made by tools/contact_law.py; do not edit.
+Made by tools/contact_law.py of snapin; do not edit. SPDX-License-Identifier: MIT; the license is at
+the end.
 
 Use: one header, C99 or C++11, no library but libm. All quantities are in SI units.
 
@@ -1355,3 +1355,27 @@ static inline double snapin_contact_tabor(const snapin_contact *law) {
 #endif
 
 #endif
+
+/*
+MIT License
+
+Copyright (c) 2025 snapin developers
+
+Permission is hereby granted, free of charge, to any person obtaining a copy
+of this software and associated documentation files (the "Software"), to deal
+in the Software without restriction, including without limitation the rights
+to use, copy, modify, merge, publish, distribute, sublicense, and/or sell
+copies of the Software, and to permit persons to whom the Software is
+furnished to do so, subject to the following conditions:
+
+The above copyright notice and this permission notice shall be included in all
+copies or substantial portions of the Software.
+
+THE SOFTWARE IS PROVIDED "AS IS", WITHOUT WARRANTY OF ANY KIND, EXPRESS OR
+IMPLIED, INCLUDING BUT NOT LIMITED TO THE WARRANTIES OF MERCHANTABILITY,
+FITNESS FOR A PARTICULAR PURPOSE AND NONINFRINGEMENT. IN NO EVENT SHALL THE
+AUTHORS OR COPYRIGHT HOLDERS BE LIABLE FOR ANY CLAIM, DAMAGES OR OTHER
+LIABILITY, WHETHER IN AN ACTION OF CONTRACT, TORT OR OTHERWISE, ARISING FROM,
+OUT OF OR IN CONNECTION WITH THE SOFTWARE OR THE USE OR OTHER DEALINGS IN THE
+SOFTWARE.
+*/

@@ -7,6 +7,7 @@ import numpy as np
 from law_errors import KINDS
 
 TEMPLATE = pathlib.Path(__file__).with_name("snapin_contact.h.in")
+LICENSE = pathlib.Path(__file__).resolve().parents[2] / "LICENSE"
 DEEP_PANELS = 8
 
 
@@ -108,12 +109,12 @@ def about(law):
     groups = "; ".join(
         f"&{name} " + ", ".join(f"{key} = {value}" for key, value in keys.items())
         for name, keys in law["force"].items())
-    lines = [f"Force: {law['title']}. It was computed from the deck's {groups}",
-             "and scales with work of adhesion and z0 together."]
-    for name, told in (("within", "within"), ("below", "below"), ("above", "above")):
+    lines = textwrap.wrap(f"Force: {law['title']}, from a deck with {groups}. It scales with work of "
+                          "adhesion and z0.", 98)
+    for name in ("within", "below", "above"):
         found = law.get("errors", {}).get(name)
         if found:
-            lines += ["", f"Largest errors {told} the range of tables: {found['states']} random "
+            lines += ["", f"Largest errors {name} the range of tables: {found['states']} random "
                       "stable states of solved paths,",
                       f"Tabor's parameter {found['low']:.3g} to {found['high']:.3g}:"]
             lines += [f"  {value[0]:.1e}  {KINDS[kind]}"
@@ -127,6 +128,7 @@ def header_text(law):
     text = TEMPLATE.read_text(encoding="utf-8")
     for name, value in {"ABOUT": about(law), "ORDER": str(law["order"]),
                         "PANELS": str(panels + DEEP_PANELS),
-                        "TABLES": tables_text(law)}.items():
+                        "TABLES": tables_text(law),
+                        "LICENSE": LICENSE.read_text(encoding="utf-8").strip()}.items():
         text = text.replace(f"@{name}@", value)
     return text
