@@ -31,6 +31,7 @@ CALCULATOR = pages.ROOT / "docs" / "calculator.html"
 LENNARD_JONES = {"force": {"law": "lennard_jones", "surface_energy": 0.05, "z0": 3e-10}}
 TITLE = "Lennard-Jones, exponents 9 and 3"
 STATES, SEED = 10000, 59
+WORST = 1e-2  # error of a law that is not written
 
 
 def made(deck, title, least, largest, states):
@@ -38,6 +39,10 @@ def made(deck, title, least, largest, states):
     force = law_states.Force(deck)
     law = law_tables.law_tables(force, title, least, largest)
     law["errors"] = measured(law, force, states)
+    error = law["errors"]["within"]["largest"]["load"][0]
+    if not error < WORST:
+        raise law_states.Unsuitable(f"the law has errors of {error:.1e} pull-off forces: its path "
+                                    "is not that of one attractive well")
     return law
 
 

@@ -14,8 +14,10 @@ import snapin
 
 ACCURACY = 1e-9
 FORCES = {"force", "morse", "van_der_waals", "born", "hydration", "hydrophobic", "double_layer"}
-REFUSED = {"shape", "layer", "viscoelastic", "fluid", "drive", "steric", "structural",
-           "depletion", "capillary", "dugdale", "tabulated"}
+# Other groups of a deck that do not change the contact.
+IGNORED = {"scene", "bodies", "loading", "unloading", "equilibrium_path", "device", "fixed_load",
+           "table", "sensitivity", "regime", "profiles", "approximations", "classical",
+           "stability", "sweep", "numerics", "summary", "cost"}
 WITH_Z0 = "force", "born", "morse"
 # JKR theory's units of h0 and of the contact radius, with K = 4 E*/3: (pi^2 w^2 R/K^2)^(1/3) is
 # GAP mu z0, and (pi w R^2/K)^(1/3) is SPREAD sigma^(1/3) sqrt(R z0).
@@ -42,7 +44,7 @@ class Force:
 
     def __init__(self, deck):
         groups = deck if isinstance(deck, dict) else f90nml.read(pathlib.Path(deck)).todict()
-        for name in sorted(REFUSED & set(groups)):
+        for name in sorted(set(groups) - FORCES - IGNORED):
             raise Unsuitable(f"&{name}: the law is for smooth forces between parabolic elastic "
                              "half-spaces at rest")
         self.groups = {name: dict(keys) for name, keys in groups.items() if name in FORCES}
