@@ -174,7 +174,9 @@ def test_wrong_values_are_named_and_give_no_numbers(window, field, value, said):
     assert said in text_of(window, "problem")
     assert window.run(f"return document.getElementById('{field}').getAttribute('aria-invalid')"
                       ) == "true"
-    assert window.run("return window.calculated === undefined")
+    assert window.run("return [window.calculated === undefined,"
+                      "getComputedStyle(document.getElementById('pull_off') || "
+                      "document.getElementById('numbers')).visibility]") == [True, "hidden"]
     # A comma is a decimal point in many countries.
     window.open(f"{ADDRESS}#r1=2,5&f=−10")
     assert window.run("return [window.calculated.values.r1, window.calculated.values.f]"
@@ -193,6 +195,25 @@ def test_every_field_and_picture_has_a_name(window):
                        ".map(one => one.getAttribute('aria-label'))")
     assert len(names) == 2 and all("Pull-off force 1.2" in name for name in names)
     assert "NaN" not in window.run("return document.documentElement.outerHTML.split('<script>')[0]")
+
+
+@needs_browser
+def test_numbers_of_earlier_values_do_not_remain(window):
+    window.open(ADDRESS)
+    assert text_of(window, "pull_off")
+    window.run("const r = document.getElementById('r1'); r.value = '';"
+               "r.dispatchEvent(new Event('input', {bubbles: true}))")
+    assert text_of(window, "pull_off") == ""
+
+
+@needs_browser
+@pytest.mark.parametrize("values, said", [
+    ("", ""), ("#e1=100&e1_unit=kPa&f=20&f_unit=µN", "contact radius is"),
+    ("#e1=10&e1_unit=MPa", "largest tension of the force")])
+def test_bodies_beyond_the_model_are_told(window, values, said):
+    window.open(ADDRESS + values)
+    assert said in text_of(window, "caution")
+    assert bool(said) == bool(text_of(window, "caution"))
 
 
 @needs_browser
