@@ -426,7 +426,7 @@ class ContactLaw:
 
 def _folded(table, local):
     """Return the Chebyshev coefficients of a function at a place in a panel of parameters."""
-    width = max(map(len, table["rows"]))
+    width = max(1, *map(len, table["rows"]))
     rows = np.array([row + [0]*(width - len(row)) for row in table["rows"]], float)
     return chebyshev.chebval(local, rows)*table["unit"]
 

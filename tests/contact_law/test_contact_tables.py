@@ -93,6 +93,23 @@ def test_the_law_of_another_force(tmp_path, monkeypatch, capsys):
         ContactLaw(*bodies_at(1.0), table=table)
 
 
+@pytest.mark.skipif(COMPILER is None, reason="no C compiler")
+def test_functions_that_round_to_nothing_are_nothing(tmp_path):
+    """As the deformation under forces that decrease exponentially, far outside contact."""
+    table = json.loads(json.dumps(coefficients()))
+    for panel in table["near"]:
+        panel["outside"][-1][0]["rows"] = [[]]
+    for panel in table["deep"]:
+        panel["tiles"][-1][0]["rows"] = [[]]
+    header = tmp_path / "snapin_contact.h"
+    header.write_text(law_header.header_text(table), encoding="utf-8")
+    law, h0 = ContactLaw(*bodies_at(0.5), table=table), np.array([-1e-6, -1e-9, 2e-9])
+    failed, found, *_ = Header(tmp_path, header)(bodies_at(0.5), h0, 0)
+    assert failed == 0 and found["load"] == pytest.approx(law.load(h0), rel=1e-8)
+    # Without what was rounded away the law is nearly the same.
+    assert law.load(h0) == pytest.approx(ContactLaw(*bodies_at(0.5)).load(h0), rel=1e-2)
+
+
 @pytest.mark.parametrize("groups, reason", [
     ({"force": {"law": "lennard_jones", "surface_energy": 0.05, "z0": 3e-10},
       "layer": {"thickness": 1e-9, "young": 1e9, "poisson": 0.3}}, "layer"),
