@@ -149,7 +149,7 @@ tests_of() {
   folder=$1
   shift
   SNAPIN=$top/$folder/snapin tests -o pythonpath="pywrap $folder/pywrap tests pywrap/plots tools \
-tools/verify tools/reproduce" "$@"
+tools/verify tools/reproduce tools/law" "$@"
 }
 
 # The conditions of environment and build: their place, since both contain absolute paths, the

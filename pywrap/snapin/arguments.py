@@ -134,6 +134,19 @@ def as_long_as(name, values, size):
     return array
 
 
+def flags(name, values, size):
+    """Return `values`, one bool or `size` of them, as an array of `size` bools."""
+    known = isinstance(values, (bool, np.bool_, list, tuple, np.ndarray))
+    if isinstance(values, (list, tuple)):
+        known = all(isinstance(one, (bool, np.bool_)) for one in values)
+    given = np.asarray(values, dtype=None if known else object)
+    if not known or np.ma.is_masked(values) or given.dtype != bool or given.ndim > 1:
+        raise TypeError(f"{name}: True, False or an array of these is needed, not {shown(values)}")
+    if given.ndim == 1 and given.size != size:
+        raise ValueError(f"{name}: {size} values are needed, not {given.size}")
+    return np.full(size, given)
+
+
 def scalar(name, value):
     """Return `value` as a finite float."""
     array = reals(name, value, _MOST)

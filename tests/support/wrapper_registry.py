@@ -1,9 +1,9 @@
 """Every public callable of the package `snapin`, with one good call of each and the kinds of its
 arguments. tests/support/wrapper_values.py has the values, good and bad, for each kind of argument.
 
-A kind is a word: vector, paired (a vector as long as another), scalar, positive, count, name, law,
-mesh; number, whole, word and switch are keys of a deck, whose range and type the program
-checks.
+A kind is a word: vector, paired (a vector as long as another), flags (bools, likewise), scalar,
+positive, count, name, law, mesh; number, whole, word and switch are keys of a deck, whose range
+and type the program checks.
 """
 
 import dataclasses
@@ -11,7 +11,7 @@ import math
 
 import numpy as np
 import snapin
-from snapin import numerics
+from snapin import contact_law, numerics
 from support.scenes import UNIT  # noqa: F401 (tests import it from here too)
 
 
@@ -22,9 +22,10 @@ def law_of(sigma, part="full"):
 
 LAW = snapin.lennard_jones(hamaker=5.0, z0=1.0)
 MESH = snapin.panel_mesh([0.0, 1.0, 3.0], 4)
+CONTACT = contact_law.ContactLaw(1.0, 1.0, 2.0, 1.0)
 
 VECTOR, PAIRED, SCALAR, POSITIVE = "vector", "paired", "scalar", "positive"
-COUNT, NAME, LAWS, MESHES = "count", "name", "law", "mesh"
+COUNT, NAME, LAWS, MESHES, FLAGS = "count", "name", "law", "mesh", "flags"
 NUMBER, WHOLE, WORD, SWITCH = "number", "whole", "word", "switch"
 
 
@@ -60,6 +61,9 @@ ONE_STATE = {
     "scale": (POSITIVE, 1.5),
     "tolerance": (POSITIVE, 1e-8),
 }
+
+# Between snap-in and snap-off both states exist.
+CONTACT_STATE = {"h0": (VECTOR, RISING + 1), "in_contact": (FLAGS, np.array([True, False] * 2))}
 
 REGISTRY = {
     "approximation_rows": entry(
@@ -126,6 +130,14 @@ REGISTRY = {
     "Mesh": entry(
         numerics.Mesh, kind=(NAME, "panels"), centre=(SCALAR, 1.0), ends=(VECTOR, RISING),
         order=(COUNT, 5)),
+    "ContactLaw.contact_radius": entry(CONTACT.contact_radius, **CONTACT_STATE),
+    "ContactLaw.energy": entry(CONTACT.energy, **CONTACT_STATE),
+    "ContactLaw.history": entry(
+        CONTACT.history, h0=(VECTOR, RISING + 1), before=(FLAGS, np.array([True]))),
+    "ContactLaw.in_contact": entry(
+        CONTACT.in_contact, h0=(VECTOR, RISING + 1), before=(FLAGS, np.array([True, False] * 2))),
+    "ContactLaw.load": entry(CONTACT.load, **CONTACT_STATE),
+    "ContactLaw.stiffness": entry(CONTACT.stiffness, **CONTACT_STATE),
     "Mesh.matrix": entry(MESH.matrix),
     "Mesh.interpolate": entry(
         MESH.interpolate, values=(PAIRED, np.linspace(1.0, 2.0, 8)), at=(VECTOR, RISING)),

@@ -170,6 +170,19 @@ def switches(good):
             "kind": taken({"numpy bool": np.bool_(good)}, good)}
 
 
+def flags(good):
+    """Cases of as many bools as the call has values."""
+    n = good.size
+    foreign = {label: value for label, value in FOREIGN.items() if "bool" not in label}
+    return {"foreign": refused(foreign), "none": refused(NONE), "finite": refused(NOT_FINITE),
+            "number": refused({"0": 0, "1": 1, "numbers": good.astype(float)}),
+            "shape": refused({
+                "row": good[None, :], "one more": np.r_[good, True], "empty": good[:0]}),
+            "masked": refused({"masked": np.ma.array(good, mask=np.arange(n) == 0)}),
+            "one": taken({"bool": True, "numpy bool": np.True_}, np.full(n, True)),
+            "same": taken({"list": good.tolist(), "strided": np.repeat(good, 2)[::2]}, good)}
+
+
 def laws(good):
     """Cases of a law: a group, with one key exchanged."""
     keys = good["force"]
@@ -202,6 +215,7 @@ def meshes(good):
 _CASES = {
     "vector": vectors, "paired": pairs, "scalar": scalars, "positive": positives, "count": counts,
     "name": names, "law": laws, "mesh": meshes, "switch": switches,
+    "flags": flags,
     # An integer that float64 cannot represent is rounded to the nearest, as in a deck.
     "number": in_deck(scalars, ("list", "1-d"), ("inexact whole",)),
     "whole": in_deck(counts, ("list", "1-d")),

@@ -1,0 +1,75 @@
+"""The header of the contact law, compiled and called through ctypes."""
+
+import ctypes
+import pathlib
+import shutil
+import subprocess
+
+import numpy as np
+
+FOLDER = pathlib.Path(__file__).resolve().parents[2] / "contact_law"
+HEADER = FOLDER / "snapin_contact.h"
+COMPILER = shutil.which("cc") or shutil.which("gcc")
+WARNINGS = ["-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Wsign-conversion", "-Werror"]
+# All functions at many h0, each with the state before, and the numbers of the law.
+_SHARED = """
+#include "snapin_contact.h"
+int values(const double *b, int n, const double *h0, const int *before, double *out, int *after,
+           double *numbers) {
+  static snapin_contact law;
+  int i, k, failed = snapin_contact_init(&law, b[0], b[1], b[2], b[3]);
+  for (i = 0; i < n; ++i) {
+    k = before[i]; out[4 * i] = snapin_contact_load(&law, h0[i], &k);
+    k = before[i]; out[4 * i + 1] = snapin_contact_radius(&law, h0[i], &k);
+    k = before[i]; out[4 * i + 2] = snapin_contact_stiffness(&law, h0[i], &k);
+    k = before[i]; out[4 * i + 3] = snapin_contact_energy(&law, h0[i], &k);
+    after[i] = k;
+  }
+  numbers[0] = snapin_contact_pull_off(&law);
+  numbers[1] = snapin_contact_pull_off_h0(&law);
+  numbers[2] = snapin_contact_snap_in(&law);
+  numbers[3] = snapin_contact_snap_off(&law);
+  numbers[4] = snapin_contact_snap_in_load(&law);
+  numbers[5] = snapin_contact_snap_off_load(&law);
+  numbers[6] = snapin_contact_energy_lost(&law);
+  numbers[7] = snapin_contact_tabor(&law);
+  return failed;
+}
+"""
+FUNCTIONS = "load", "contact_radius", "stiffness", "energy"
+NUMBERS = ("pull_off", "pull_off_h0", "snap_in", "snap_off", "snap_in_load", "snap_off_load",
+           "energy_lost", "tabor")
+
+
+def compiled(folder, source, name, *options, header=HEADER):
+    """Compile a program, or with -shared a library, from C text."""
+    text, made = folder / f"{name}.c", folder / name
+    text.write_text(source)
+    subprocess.run([COMPILER, "-std=c99", "-O2", f"-I{header.parent}", *options, str(text), "-o",
+                    str(made), "-lm"], check=True)
+    return made
+
+
+class Header:
+    """The functions of a compiled header."""
+
+    def __init__(self, folder, header=HEADER):
+        made = compiled(folder, _SHARED, "law.so", "-shared", "-fPIC", header=header)
+        self._call = ctypes.CDLL(str(made)).values
+
+    def __call__(self, bodies, h0, before):
+        """Return the code, functions at h0 (rows), contact after, and the law's numbers."""
+        h0 = np.ascontiguousarray(h0, float)
+        before = np.ascontiguousarray(np.broadcast_to(before, h0.shape), np.int32)
+        found, after, numbers = np.empty((h0.size, 4)), np.empty_like(before), np.empty(8)
+        failed = self._call(*(one.ctypes.data_as(ctypes.c_void_p) if isinstance(one, np.ndarray)
+                              else ctypes.c_int(one) for one in (
+                                  np.array(bodies, float), h0.size, h0, before, found, after,
+                                  numbers)))
+        return (failed, dict(zip(FUNCTIONS, found.T)), after.astype(bool),
+                dict(zip(NUMBERS, numbers)))
+
+
+def bodies_at(mu, radius=2e-6, work=0.04, z0=0.35e-9):
+    """Radius, E*, work of adhesion and z0 with a Tabor parameter."""
+    return radius, np.sqrt(radius*work**2/(mu*z0)**3), work, z0
