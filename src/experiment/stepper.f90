@@ -48,7 +48,7 @@ module stepper
     !> places that were not looked for; of the states just before jumps and slips, the one of
     !> largest tension.
     logical :: slipped = .false., jagged = .false.
-    type(extreme_t) :: before
+    type(extreme_t) :: before = extreme_t()
     !> Whether it is not known if the bodies jumped between unsure_from and the end of the step.
     logical :: unsure = .false.
     real(wp) :: unsure_from = 0

@@ -38,33 +38,32 @@ contains
     mine(:, 2) = .not. mine(:, 1)
     allocate (column(n, 0))
     do way = 1, ways
-      call add(merge(1.0_wp, 0.0_wp, mine(:, way)))
+      call add(column, merge(1.0_wp, 0.0_wp, mine(:, way)))
     end do
     do k = 1, self%degree
       do way = 1, merge(ways, 1, k == 1 .and. self%slope_each_way)
-        call add(scaled(z)**k*merge(1.0_wp, 0.0_wp, mine(:, way) .or. &
+        call add(column, scaled(z)**k*merge(1.0_wp, 0.0_wp, mine(:, way) .or. &
           .not. (k == 1 .and. self%slope_each_way)))
       end do
     end do
     if (.not. self%period > 0) return
     wave = waves_of(z, inward, self%period)
     do k = 1, size(wave, 2)
-      call add(wave(:, k))
+      call add(column, wave(:, k))
     end do
     if (.not. allocated(self%wave)) return
     associate (a => self%wave)
-      call add(scaled(z)*matmul(wave, [(a(2*way), -a(2*way - 1), way=1, size(a)/2)]))
+      call add(column, scaled(z)*matmul(wave, [(a(2*way), -a(2*way - 1), way=1, size(a)/2)]))
     end associate
-
-  contains
-
-    pure subroutine add(new)
-      real(wp), intent(in) :: new(:)
-
-      column = reshape([column, new], [n, size(column, 2) + 1])
-    end subroutine add
-
   end function columns
+
+  !> Adds a column.
+  pure subroutine add(column, new)
+    real(wp), allocatable, intent(inout) :: column(:, :)
+    real(wp), intent(in) :: new(:)
+
+    column = reshape([column, new], [size(new), size(column, 2) + 1])
+  end subroutine add
 
   !> Cosine and sine of a period, each on one way alone.
   pure function waves_of(z, inward, period) result(wave)
