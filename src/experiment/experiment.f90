@@ -9,7 +9,6 @@ module experiment
   use numerics_choice, only: choose, more_digits, with_fewer_nodes, with_less_extent
   use mesh_digits, only: most_digits
   use mesh_store, only: mesh_store_t
-  use solver, only: solver_t
   use stepper, only: keeping_stepper_t
   use locked_stepper, only: locked_stepper_t, unique_stepper_t
   use path_stepper, only: path_stepper_t
@@ -17,7 +16,7 @@ module experiment
   use rigid_bodies, only: run_rigid
   use experiment_result, only: experiment_result_t
   use one_run, only: begin_run, run_once
-  use reported_numbers, only: run_numbers_t, largest_error
+  use reported_numbers, only: run_numbers_t, largest_error, chance, chance_on_grids
   use place_rates, only: rate_places
   use timed_run, only: run_timed
   use journal, only: journal_t
@@ -125,7 +124,7 @@ contains
     call run_once(steps, request, .not. outcome%chosen%is_fixed(), .true., observer, outcome, &
       keeper, ahead%places)
     others(1)%number = ahead%places%numbers()
-    call outcome%places%judge_by(others, is_rough(steps))
+    call outcome%places%judge_by(others, chance)
     outcome%error_estimate = largest_error(outcome%places%number)
     steps%cost%solve_seconds = steps%cost%solve_seconds + seconds() - began
     outcome%nodes = outcome%nodes + sum(steps%meshes%grid%nodes)
@@ -180,7 +179,7 @@ contains
         keep=before < 1)
       call run_once(finer, request, with_cycle, .false., silent, ahead, like=outcome%places)
       others(1)%number = ahead%places%numbers()
-      call outcome%places%judge_by(others, is_rough(steps))
+      call outcome%places%judge_by(others, chance)
       error = largest_error(outcome%places%number)
       finer%cost%estimate_seconds = finer%cost%estimate_seconds + seconds() - began
       finer%cost%states = steps%cost%states
@@ -194,17 +193,6 @@ contains
       outcome = ahead
     end do
   end subroutine agree
-
-  !> Whether errors decrease slowly with the number of nodes: where short panels contain a law or a
-  !> body that is not smooth; or without a contact edge, where the mesh is not locked to the sharp
-  !> features of a collapse.
-  pure logical function is_rough(steps)
-    class(solver_t), intent(in) :: steps
-    integer :: k
-
-    is_rough = .not. steps%problem%law%edge_gap > 0 .or. any([(steps%meshes%has_short_panels(k), &
-      k=1, size(steps%meshes%grid))])
-  end function is_rough
 
   !> Runs the cycle on a grid that is fixed in space, then on a coarser one and on a smaller one,
   !> one at a time, so that their differences cannot cancel. outcome: has the numbers of the path.
@@ -220,7 +208,7 @@ contains
     type(run_numbers_t) :: others(2)
     type(observer_t) :: silent
     real(wp) :: began
-    integer :: k
+    integer :: k, runs
 
     of_path%places = outcome%places
     began = seconds()
@@ -231,7 +219,9 @@ contains
     outcome%nodes = outcome%nodes + sum(steps%meshes%grid%nodes)
     began = seconds()
     call observer%hear('estimating errors')
-    do k = 1, 2
+    ! Without any equilibrium there are no numbers.
+    runs = merge(size(others), 0, allocated(outcome%loading%finish))
+    do k = 1, runs
       ahead = of_path
       ahead%chosen = with_fewer_nodes(outcome%chosen)
       if (k == 2) ahead%chosen = with_less_extent(outcome%chosen)
@@ -242,7 +232,7 @@ contains
       coarse%cost%states = steps%cost%states
       steps%cost = coarse%cost
     end do
-    call outcome%places%judge_by(others, .true.)
+    call outcome%places%judge_by(others(:runs), chance_on_grids)
     outcome%error_estimate = largest_error(outcome%places%number)
     steps%cost%estimate_seconds = steps%cost%estimate_seconds + seconds() - began
     outcome%cost = steps%cost

@@ -30,8 +30,9 @@ module located_places
 
 contains
 
-  !> Sets the values at all places. like: the table of another run of the same scene, whose
-  !> profiles say at which radii gaps are read; without it, they are read at the nodes.
+  !> Sets the values at all places, except those that another stepper, on other meshes, has located.
+  !> like: the table of another run of the same scene, whose profiles say at which radii gaps are
+  !> read; without it, they are read at the nodes.
   subroutine locate_places(steps, places, like)
     class(solver_t), intent(inout) :: steps
     type(places_t), intent(inout) :: places
@@ -42,11 +43,13 @@ contains
     select type (steps)
     class is (path_stepper_t)
       do i = 1, size(places%place)
-        call find_on_path(steps, places%place(i))
+        if (.not. places%place(i)%located) call find_on_path(steps, places%place(i))
       end do
     end select
     do i = 1, size(places%place)
       associate (place => places%place(i))
+        if (place%located) cycle
+        place%located = .true.
         call add_leftovers(steps, place)
         if (.not. (place%with_profile .and. place%mesh > 0)) cycle
         k = 0

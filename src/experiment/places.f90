@@ -148,8 +148,14 @@ contains
   subroutine forget(self, name)
     class(places_t), intent(inout) :: self
     character(len=*), intent(in) :: name
+    integer :: i
 
     if (allocated(self%entry)) self%entry = pack(self%entry, self%entry%name /= name)
+    if (.not. allocated(self%number)) return
+    ! The errors are those of the removed places.
+    do i = 1, size(self%number)
+      if (self%number(i)%name == name) self%number(i)%name = ''
+    end do
   end subroutine forget
 
   !> Whether the table has a number, or an element of it.
@@ -241,14 +247,25 @@ contains
     end associate
   end subroutine add_term
 
-  !> Finds the errors of all numbers from those of other runs; rough: see `judge`.
-  pure subroutine judge_by(self, others, rough)
+  !> Finds the errors of the numbers that have none from those of other runs; part: see `judge`.
+  pure subroutine judge_by(self, others, part)
     class(places_t), intent(inout) :: self
     type(run_numbers_t), intent(in) :: others(:)
-    logical, intent(in) :: rough
+    real(wp), intent(in) :: part
+    type(number_t), allocatable :: all(:)
+    integer :: i, k
 
-    self%number = self%numbers()
-    call judge(self%number, others, rough)
+    all = self%numbers()
+    if (allocated(self%number)) then
+      do i = 1, size(all)
+        do k = 1, size(self%number)
+          if (self%number(k)%name == all(i)%name .and. &
+            self%number(k)%element == all(i)%element) all(i) = self%number(k)
+        end do
+      end do
+    end if
+    call judge(all, others, part)
+    call move_alloc(all, self%number)
   end subroutine judge_by
 
   !> The elements of a number, with errors and derivatives; empty if the number does not exist. An

@@ -7,8 +7,8 @@ module reported_numbers
   use reported_place, only: quantities, of_load, of_profile, least, rounding
   implicit none
   private
-  public :: number_t, run_numbers_t, judge, largest_error, largest_of, of_table, of_turns, &
-    name_length
+  public :: number_t, run_numbers_t, judge, chance, chance_on_grids, largest_error, &
+    largest_of, of_table, of_turns, name_length
 
   integer, parameter :: name_length = 24
 
@@ -21,6 +21,8 @@ module reported_numbers
     logical :: compared(quantities) = .false.
     !> Whether all other runs have this number.
     logical :: known = .true.
+    !> Whether the errors are final, from other runs.
+    logical :: judged = .false.
     !> A profile: gaps and pressures at the radii of the first run.
     real(wp), allocatable, dimension(:) :: gap, pressure
   end type number_t
@@ -33,6 +35,12 @@ module reported_numbers
   !> Factor of the differences. It accounts for the error of the other run, which is a tenth or less
   !> for a finer mesh, and for differences that are small by chance.
   real(wp), parameter :: margin = 3
+  !> Part of the median error below which no error is, on meshes of other digits, which seldom agree
+  !> by chance; and on grids that are fixed in space, whose errors depend on where the contact edge
+  !> is between nodes. Of 1546 numbers on meshes locked to the edge under random laws, 0.45 % had
+  !> errors above such estimates and 2.6 % below a thirtieth of them; without a least error it is
+  !> 0.9 % and 0.8 %, with the whole median under laws that are not smooth 0.45 % and 5.5 %.
+  real(wp), parameter :: chance = 0.1_wp, chance_on_grids = 1
   !> The relative error that stands for an unknown value.
   real(wp), parameter :: most = 1.0e6_wp
   !> The loads of a table, whose errors are relative to the largest of them; and turns of the path,
@@ -41,36 +49,34 @@ module reported_numbers
 
 contains
 
-  !> Sets the errors of numbers, which at first have what iteration and rounding leave. rough: the
-  !> force or the bodies are not smooth, so that errors decrease slowly and two meshes may agree by
-  !> chance; then no error is smaller than the median of the relative errors.
-  pure subroutine judge(number, others, rough)
+  !> Sets the errors of the numbers that are not judged yet, which at first have what iteration and
+  !> rounding leave. Two meshes may agree by chance: no error is smaller than a part of the median
+  !> of the relative errors.
+  pure subroutine judge(number, others, part)
     type(number_t), intent(inout) :: number(:)
     type(run_numbers_t), intent(in) :: others(:)
-    logical, intent(in) :: rough
+    real(wp), intent(in) :: part
     real(wp), allocatable :: relative(:)
-    real(wp) :: middle
-    integer :: i, k, n
+    real(wp) :: lowest
+    integer :: i, k
 
-    do k = 1, size(others)
-      do i = 1, size(number)
-        call compare(number(i), count(number%name == number(i)%name), others(k)%number)
-      end do
-    end do
-    if (.not. rough) return
     allocate (relative(0))
     do i = 1, size(number)
+      if (number(i)%judged) cycle
+      do k = 1, size(others)
+        call compare(number(i), count(number%name == number(i)%name), others(k)%number)
+      end do
       if (number(i)%known .and. number(i)%name /= of_table) &
         relative = [relative, pack(parts_of(number(i)), number(i)%compared)]
     end do
     relative = pack(relative, relative > 0)
-    if (size(relative) == 0) return
-    middle = median(relative)
+    lowest = 0
+    if (size(relative) > 0) lowest = part*median(relative)
     do i = 1, size(number)
+      if (number(i)%judged) cycle
+      number(i)%judged = .true.
       associate (error => number(i)%error, value => number(i)%value)
-        do n = 1, quantities
-          if (error(n) > 0) error(n) = max(error(n), middle*max(abs(value(n)), least(n)))
-        end do
+        where (error > 0) error = max(error, lowest*max(abs(value), least))
       end associate
     end do
   end subroutine judge

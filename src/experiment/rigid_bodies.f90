@@ -13,7 +13,7 @@ module rigid_bodies
   use ending, only: touching, turn_not_reached
   use reported_place, only: place_t, of_h0, of_load, of_radius, rounding
   use places, only: places_t
-  use reported_numbers, only: run_numbers_t, largest_error
+  use reported_numbers, only: run_numbers_t, largest_error, chance
   use records, only: observer_t, record_t, stable_yes, stable_unasked
   use experiment_request, only: request_t
   use experiment_result, only: experiment_result_t
@@ -72,7 +72,7 @@ contains
       end do
     end if
     ! The load is an integral with a known error.
-    call outcome%places%judge_by(others, .false.)
+    call outcome%places%judge_by(others, chance)
     outcome%error_estimate = largest_error(outcome%places%number)
     outcome%cost%solve_seconds = seconds() - began
 

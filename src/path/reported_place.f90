@@ -43,7 +43,8 @@ module reported_place
     !> searched: h0 was found by a search between steps.
     logical :: searched = .false.
     !> Values at the place, and what the iteration and rounding leave of them as an error; both are
-    !> set by `located_places`, except h0 and load.
+    !> set by `located_places`, except h0 and load; located: they are set.
+    logical :: located = .false.
     real(wp), dimension(read_of_states) :: at = 0, left = 0
     !> Magnitude below which the relative error of a load does not matter.
     real(wp) :: negligible = 0
@@ -178,7 +179,9 @@ contains
 
     compared = .false.
     compared(of_profile) = self%with_profile
-    compared(of_load) = .not. abs(self%at(of_load)) < self%negligible
+    ! A given load is exact, and may be 0.
+    compared(of_load) = (self%drive(1) > 0 .or. self%turns() .or. self%after > 0) .and. &
+      .not. abs(self%at(of_load)) < self%negligible
     compared(of_radius) = with_radius .and. self%at(of_radius) > 0
     if (self%after > 0) return
     if (.not. self%searched) compared(merge(of_position, of_h0, product(self%drive) < 0)) = .true.

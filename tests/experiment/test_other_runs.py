@@ -3,7 +3,7 @@ that were wrong in silence when each place was judged alone."""
 
 import numpy as np
 import pytest
-from support.scenes import deck, lennard_jones, several
+from support.scenes import deck, exponential, lennard_jones, loading, several
 
 # A strength of adhesion, nodes and extent [m] of a uniform grid, and an end h0 [m].
 GRIDS = {
@@ -42,6 +42,34 @@ def test_numbers_on_a_uniform_grid_have_the_error_of_the_grid(run, kind):
             assert found[f"jump_{way}_uncertainty"] == found[f"jump_{way}_h0_error"]
     assert found["error_estimate"] > 3e-5
     assert any("the error is estimated as" in line for line in result.warnings)
+
+
+@pytest.mark.parametrize("grid", ["uniform", "panels"])
+def test_a_cycle_on_another_grid_leaves_the_numbers_of_the_path_alone(run, grid):
+    """They had the errors of the grid of the cycle."""
+    numerics = {"grid": grid, "nodes": 60, "method": "mixing" if grid == "panels" else "auto"}
+    both, alone = (run(lennard_jones(0.87, equilibrium_path={"h0_end": -2.0}, **more)).summary
+                   for more in ({"loading": loading(4, 1.5, 0.5), "numerics": numerics}, {}))
+    for key in ("folds_h0", "folds_load", "load_folds_load", "load_folds_h0"):
+        assert both[key] == pytest.approx(alone[key], rel=1e-6), key
+        assert both[key + "_error"] == pytest.approx(alone[key + "_error"], rel=0.01), key
+
+
+def test_states_of_a_path_are_not_read_on_the_grid_of_a_cycle(run):
+    """The grid has fewer meshes and nodes, and the program read beyond the end of its arrays."""
+    found = run(exponential(0.87, equilibrium_path={"h0_end": -2.0}, profiles={"h0": [-1.0, -2.0]},
+                            loading=loading(4, -2, 0.5),
+                            numerics={"grid": "uniform", "nodes": 10}))
+    assert found.summary["converged"]
+
+
+def test_a_given_load_is_exact_though_it_is_zero(run):
+    """What rounding left of a load of zero counted as its relative error, of everything."""
+    scene = lennard_jones(0.003, equilibrium_path={"h0_end": -1.0}, fixed_load={"load": [0.0]},
+                          numerics={"residual_tolerance": 1e-8})
+    found = run(scene)
+    assert not found.warnings
+    assert found.summary["error_estimate"] < 1e-6
 
 
 @pytest.mark.parametrize("part", [0.75, 0.9, 1.2])
@@ -92,4 +120,5 @@ def test_every_fold_of_a_coarse_run_has_an_error(run):
         off = np.abs(np.subtract(several(summary[key]), several(exact[key])))
         error = several(summary[key + "_error"])
         assert (off <= error).all(), key
-        assert (np.array(error) <= 300 * off).all(), key
+        # At least a tenth of the median, which is 600 times as large as the error of the far fold.
+        assert (np.array(error) <= 1000 * off).all(), key

