@@ -6,7 +6,6 @@ module experiment_result
   use kinds, only: wp
   use numerics_choice, only: choice_t
   use equilibrium, only: cost_t
-  use ending, only: ending_t
   use records, only: quality_t
   use stepped_branch, only: branch_t
   use path, only: path_t
@@ -56,18 +55,16 @@ contains
   !> The quality of the rows of all experiments together.
   pure type(quality_t) function quality(self)
     class(experiment_result_t), intent(in) :: self
-    type(ending_t) :: planned
     integer :: k
 
-    if (allocated(self%path)) call quality%join(self%path%quality, self%path%ending)
-    if (allocated(self%stepped_path)) &
-      call quality%join(self%stepped_path%quality, self%stepped_path%ending)
-    if (allocated(self%loading)) call quality%join(self%loading%quality, self%loading%ending)
-    if (allocated(self%readings)) call quality%join(self%readings%quality, planned)
-    if (allocated(self%timed)) call quality%join(self%timed%quality, planned)
+    if (allocated(self%path)) call quality%join(self%path%quality)
+    if (allocated(self%stepped_path)) call quality%join(self%stepped_path%quality)
+    if (allocated(self%loading)) call quality%join(self%loading%quality)
+    if (allocated(self%readings)) call quality%join(self%readings%quality)
+    if (allocated(self%timed)) call quality%join(self%timed%quality)
     if (.not. allocated(self%unloading)) return
     do k = 1, size(self%unloading)
-      call quality%join(self%unloading(k)%quality, self%unloading(k)%ending)
+      call quality%join(self%unloading(k)%quality)
     end do
   end function quality
 

@@ -6,7 +6,6 @@ module records
   use dimensionless_problem, only: problem_t, spacing_over_neck
   use discretisation, only: discretisation_t
   use contact_state, only: state_t, contact_radius_of
-  use ending, only: ending_t
   implicit none
   private
   public :: record_t, observer_t, record_of, quality_t, stable_yes, stable_no, stable_unasked
@@ -31,12 +30,11 @@ module records
 
   !> The quality of some rows: the largest residual, the widest spacing of nodes at the contact edge
   !> over the neck width, the widest contact [m], the largest magnitude of pressure, in the law's
-  !> unit, the deepest approach below h0 = 0 [m], the largest magnitude of load [N], the smallest
-  !> gap, in the law's unit, and whether an experiment ended early.
+  !> unit, the deepest approach below h0 = 0 [m], the largest magnitude of load [N], and the
+  !> smallest gap, in the law's unit.
   type :: quality_t
     real(wp) :: residual = 0, spacing = 0, contact_radius = 0, pressure = 0, depth = 0, load = 0
     real(wp) :: gap = huge(1.0_wp)
-    logical :: early = .false.
   contains
     procedure :: cover
     procedure :: cover_extent
@@ -83,10 +81,9 @@ contains
   end subroutine cover_extent
 
   !> Includes all rows of an experiment.
-  pure subroutine join(self, other, ending)
+  pure subroutine join(self, other)
     class(quality_t), intent(inout) :: self
     class(quality_t), intent(in) :: other
-    type(ending_t), intent(in) :: ending
 
     self%residual = max(self%residual, other%residual)
     self%spacing = max(self%spacing, other%spacing)
@@ -95,7 +92,6 @@ contains
     self%gap = min(self%gap, other%gap)
     self%depth = max(self%depth, other%depth)
     self%load = max(self%load, other%load)
-    self%early = self%early .or. ending%early()
   end subroutine join
 
   !> Receives a record. state and grid: for the profile; profile: the scene requests the profile.

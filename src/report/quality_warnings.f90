@@ -98,14 +98,23 @@ contains
     call judge_derivatives()
     call judge_resolution(outcome%chosen%grid == edge_locked)
     call judge_accuracy()
-    if (.not. outcome%chosen%options%stop_on_change) return
-    call summary%warn('the iteration was stopped on a small change of the displacement, '// &
-      'which is not convergence: the largest residual left is '// &
-      rounded(quality%residual)//' lengths of the force law')
-    call summary%set('converged', .not. quality%early .and. &
-      quality%residual <= outcome%chosen%options%tolerance)
+    if (outcome%chosen%options%stop_on_change) call judge_change()
 
   contains
+
+    !> States where the displacement has stopped changing are a failure if they are not solved.
+    subroutine judge_change()
+      character(len=:), allocatable :: text
+
+      text = 'the iteration was stopped on a small change of the displacement, which is not ' // &
+        'convergence: the largest residual left is ' // rounded(quality%residual) // &
+        ' lengths of the force law'
+      if (quality%residual <= outcome%chosen%options%tolerance) then
+        call summary%warn(text)
+      else
+        call summary%fail_with(text)
+      end if
+    end subroutine judge_change
 
     subroutine judge_extent()
       real(wp) :: strain

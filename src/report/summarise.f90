@@ -146,7 +146,8 @@ contains
           counted(branch%states, 'state')//' did not converge, the first at h0 = '// &
           rounded(problem%law%separation_of(branch%first_unconverged))// &
           ' m; the largest residual is '//rounded(branch%quality%residual)// &
-          ' lengths of the force law')
+          ' lengths of the force law; largest tensions, last rows and errors are those of the '// &
+          'states that did')
       if (branch%unsure .and. .not. branch%ending%early()) &
         call summary%warn(name//': whether the bodies jump between h0 = '// &
         rounded(problem%law%separation_of(branch%unsure_between(1)))//' m and '// &

@@ -126,3 +126,17 @@ def test_values_of_a_row_are_those_of_one_iterate(run):
             2 * np.pi * mesh.weight @ pressure + beyond, rel=1e-9)
         off = gap - value - mesh.x**2 / 2 - 2 * matrix @ pressure
         assert result.curve["residual"][row] == pytest.approx(abs(off).max(), rel=1e-6)
+
+
+def test_numbers_of_a_branch_with_unsolved_states_are_said_to_be_those_of_the_others(run):
+    """The largest tension was a sixth of the pull-off with an error of a thousandth, and the only
+    word was that states did not converge."""
+    groups = {"loading": loading(4.0, -3.0, 0.5), "unloading": {}}
+    limited = run(lennard_jones(1.2, **groups, numerics={
+        **GRID, "r_max": 9.0, "method": "mixing", "max_iterations": 400}), status=1)
+    whole = run(lennard_jones(1.2, **groups))
+    part = limited.summary["max_tension"]
+    assert part + 3 * limited.summary["max_tension_error"] < 0.5 * whole.summary["max_tension"]
+    told = [text for text in limited.warnings if "did not converge" in text]
+    assert any("largest tensions" in text and "are those of the states that did" in text
+               for text in told)

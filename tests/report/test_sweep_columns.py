@@ -307,3 +307,15 @@ def test_warnings_of_cases_are_counted_and_the_first_is_shown(run):
         f"2 of 2 cases gave a warning; the first, case 1: {several(alone)[0]}"]
     assert "warnings" not in run(deck(
         **groups, sweep={"key": "bodies.stiffness", "values": [1e9, 2e9]})).summary
+
+
+def test_a_case_that_stopped_on_a_small_change_says_so(run):
+    """It had its first warning, on another matter, as the reason why it failed."""
+    table = run(lennard_jones(
+        0.87, loading=loading(4, 0, 0.5),
+        sweep={"key": "force.hamaker", "values": [hamaker(0.5), hamaker(0.87)]},
+        numerics={"method": "mixing", "nodes": 60, "r_max": 6.0, "grid": "uniform",
+                  "convergence": "displacement_change", "displacement_tolerance": 1e-2}),
+        status=1).table("sweep.csv")
+    assert not table["converged"].any()
+    assert all("stopped on a small change" in text for text in table["failure"])
