@@ -226,8 +226,8 @@ def test_a_thousand_decks_are_checked_in_little_status_and_memory(snapin_path, d
     _, alone = status_and_memory(snapin_path, "--check", names[0], cwd=decks)
     status, used = status_and_memory(snapin_path, "--check", *names, cwd=decks)
     assert status == 0
-    # A deck is its text and one value a key.
-    assert used < alone + 1000 * 120e3
+    # A deck is its text and one value a key: of some 350 keys with less than 400 bytes each.
+    assert used < alone + 1000 * 135e3
 
 
 def test_no_more_of_an_endless_file_is_read_than_a_deck_may_hold(snapin_path, decks):
