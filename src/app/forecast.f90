@@ -178,12 +178,11 @@ contains
   pure subroutine add(advice, text)
     type(advice_t), allocatable, intent(inout) :: advice(:)
     character(len=*), intent(in) :: text
-    type(advice_t), allocatable :: longer(:)
+    ! Not by a structure constructor: compiler note 1.
+    type(advice_t) :: new
 
-    allocate (longer(size(advice) + 1))
-    longer(:size(advice)) = advice
-    longer(size(longer))%text = text
-    call move_alloc(longer, advice)
+    new%text = text
+    advice = [advice, new]
   end subroutine add
 
 end module forecast
