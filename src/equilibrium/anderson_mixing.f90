@@ -8,9 +8,9 @@
 !> close by a fraction of itself in one step (`largest_step`). After many rejections without
 !> progress the iteration ends.
 !>
-!> Beyond a fold there is no equilibrium nearby, and on the way to the next one the residual must
-!> grow first. There `relax_by_mixing` moves the bodies by plain mixing, which is a relaxation,
-!> until the accelerated iteration converges.
+!> Where there is no equilibrium nearby the residual must grow first on the way to the next one.
+!> There `relax_by_mixing` moves the bodies by plain mixing, which is a relaxation, until the
+!> accelerated iteration converges to a stable state.
 module anderson_mixing
   use kinds, only: wp
   use acceleration, only: history_t, accelerate
@@ -22,7 +22,7 @@ module anderson_mixing
   use stability_by_products, only: is_stable
   implicit none
   private
-  public :: solve_anderson_mixing, relax_by_mixing
+  public :: solve_anderson_mixing
 
   !> Growth of the residual over that of the best state at which a state is rejected. Residuals grow
   !> several times on the way to equilibrium, since accelerated steps are not monotonic.
@@ -69,14 +69,13 @@ contains
     type(control_t), intent(in) :: control
     type(state_t), intent(inout) :: state
     logical, intent(out) :: converged
-    integer, intent(in), optional :: spent
+    integer, intent(in) :: spent
     type(solver_options_t) :: plain
     type(state_t) :: trial
     integer :: mixed, iterations
 
     converged = .false.
-    iterations = 0
-    if (present(spent)) iterations = spent
+    iterations = spent
     mixed = 0
     plain = options
     plain%mixing_depth = 0

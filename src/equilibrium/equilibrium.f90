@@ -152,9 +152,9 @@ contains
           rise(first_node - 1 + i)
       end do
       ! The axis need not be a node. In a stiff contact its equation magnifies the error of
-      ! interpolated pressures; extrapolation of the gaps at the nodes is more accurate. On a
-      ! mesh fixed in
-      ! space the state may be far from equilibrium, and all its values are those of its gaps.
+      ! interpolated pressures; extrapolation of the gaps at the nodes is more accurate. On a mesh
+      ! fixed in space the state may be far from equilibrium, and all its values are those of its
+      ! gaps.
       state%axis_gap = state%h0 + rise(axis_row)
       if (grid%centre > 0 .or. (equations%meshes%is_fixed() .and. control%kind == at_h0)) &
         state%axis_gap = dot_product(grid%at_axis, state%gap)

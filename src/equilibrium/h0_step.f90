@@ -23,13 +23,13 @@
 !> - From a predicted state, on the same meshes: `anderson_mixing`, which accelerates the mixing by
 !>   products alone, and `anderson`, with a factorised Jacobian. The prediction extrapolates the
 !>   last states, or moves the gap with the contact edge. It saves iterations; the equilibrium that
-!>   is found is the same, for a state far from the prediction counts as a jump.
+!>   is found is the same.
 !> - Along the path of all equilibria, which is traced before (`tracing`): the default. The mesh is
 !>   scaled with the contact, whose radius is an unknown. A step only reads the path, so jumps start
 !>   at its folds and land on its next stable piece; `path_stepper`.
 !>
-!> The first two are the business of `fixed_stepper`. What is a jump is decided there too: where the
-!> branch has no state at the new h0, the iteration lands on another branch.
+!> `fixed_stepper` makes the first two. The iteration does not decide what is a jump: between two
+!> rows `fixed_motion` looks for a fold of the equations, whatever the method.
 module h0_step
   use kinds, only: wp
   use contact_state, only: state_t

@@ -6,6 +6,8 @@
 !> that does not converge is no end.
 module branch_end
   use kinds, only: wp
+  use interpolation, only: hermite_t, hermite_through, hermite_weights
+  use root_finding, only: bracket_t
   use contact_state, only: state_t
   use controls, only: control_t
   use fixed_branch, only: expected_at, is_expected, is_pinned, change
@@ -203,14 +205,6 @@ contains
     end associate
   end function slope_between
 
-  !> Hermite's cubic through two points, at a part of the way: values and slopes by Q at the ends.
-  elemental real(wp) function between(part, width, a, slope_a, b, slope_b)
-    real(wp), intent(in) :: part, width, a, slope_a, b, slope_b
-
-    between = a + part**2*(3 - 2*part)*(b - a) + &
-      width*part*(1 - part)*((1 - part)*slope_a - part*slope_b)
-  end function between
-
   !> The fold between two points, of which the second is beyond it.
   subroutine find_fold(self, options, h0, sense, first, second, found)
     class(stepper_t), intent(inout) :: self
@@ -228,7 +222,7 @@ contains
     do round = 1, most_rounds
       slope = slope_between(low, high)
       part = 2*slope(1)/(-slope(2) + sqrt(max(0.0_wp, slope(2)**2 - 4*slope(1)*slope(3))))
-      trial = guess_between(low, high, part)
+      trial = guess_between(low, high, low%q + part*(high%q - low%q))
       call reach(self, options, low%tangent%along, trial, good)
       if (.not. good) return
       bend = abs(slope(2) + 2*part*slope(3))/abs(high%q - low%q)
@@ -249,19 +243,19 @@ contains
     found%uncertainty = max(exact, 0.5_wp*abs(trial%tangent%h0*way)) + trial%state%residual
   end subroutine find_fold
 
-  !> The state at a part of the way between two points, as a guess.
-  type(point_t) function guess_between(low, high, part) result(guess)
+  !> The state at a Q between two points, as a guess: by Hermite's cubics.
+  type(point_t) function guess_between(low, high, q) result(guess)
     type(point_t), intent(in) :: low, high
-    real(wp), intent(in) :: part
+    real(wp), intent(in) :: q
+    real(wp), dimension(2) :: of_value, of_slope
 
     guess = low
-    associate (width => high%q - low%q)
-      guess%q = low%q + part*width
-      guess%state%h0 = between(part, width, low%state%h0, low%tangent%h0, high%state%h0, &
-        high%tangent%h0)
-      guess%state%gap = between(part, width, low%state%gap, low%tangent%gap, high%state%gap, &
-        high%tangent%gap)
-    end associate
+    guess%q = q
+    call hermite_weights([low%q, high%q], q, of_value, of_slope)
+    guess%state%h0 = of_value(1)*low%state%h0 + of_value(2)*high%state%h0 + &
+      of_slope(1)*low%tangent%h0 + of_slope(2)*high%tangent%h0
+    guess%state%gap = of_value(1)*low%state%gap + of_value(2)*high%state%gap + &
+      of_slope(1)*low%tangent%gap + of_slope(2)*high%tangent%gap
     if (minval(guess%state%gap) < 0.5_wp*minval(low%state%gap)) guess%state%gap = low%state%gap
   end function guess_between
 
@@ -272,29 +266,24 @@ contains
     real(wp), intent(in) :: h0, sense
     type(point_t), intent(in) :: first, second
     type(found_t), intent(inout) :: found
+    type(hermite_t) :: h0_of
+    type(bracket_t) :: bracket
     type(point_t) :: guess
-    type(control_t) :: control
-    real(wp) :: low, high
     logical :: good
-    integer :: halving
 
     found%state = second%state
     good = abs(second%state%h0 - h0) <= 0
     if (.not. good) then
-      low = 0
-      high = 1
-      do halving = 1, digits(low)
-        guess = guess_between(first, second, 0.5_wp*(low + high))
-        if ((guess%state%h0 - h0)*sense < 0) then
-          low = 0.5_wp*(low + high)
-        else
-          high = 0.5_wp*(low + high)
-        end if
+      h0_of = hermite_through([first%q, second%q], [first%state%h0, second%state%h0], &
+        [first%tangent%h0, second%tangent%h0])
+      bracket = bracket_t(first%q, second%q)
+      do while (bracket%is_open())
+        call bracket%narrow((h0_of%value(bracket%middle()) - h0)*sense < 0)
       end do
-      control%value = h0
+      guess = guess_between(first, second, bracket%middle())
       found%state = guess%state
       call self%frozen%forget()
-      call self%correct(control, found%state, good, options)
+      call self%correct(control_t(value=h0), found%state, good, options)
       if (good) good = change(guess%state, found%state) <= beside
     end if
     if (good) found%outcome = arrived

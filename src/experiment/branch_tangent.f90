@@ -86,11 +86,10 @@ contains
     if (has) has = all(abs(frozen%state%gap - state%gap) <= 0)
   end function has_factors_at
 
-  !> Weights with which Q increases with h0 here, and beyond a fold that is ahead: those of the
-  !> load where it is attractive, which increases with h0 near a fold; where it decreases no fold
-  !> is near, and Q is h0. Where the
-  !> edge is pinned between nodes a fold concerns a few nodes and hardly the load; the weights are
-  !> then those of the gaps that change.
+  !> Weights with which Q increases with h0 here and past the next fold. Near a fold the attraction
+  !> changes fast with h0: the weights are those of the attractive part of the load. Where the load
+  !> decreases with h0 no fold is near, and Q is h0. Where the edge is pinned between nodes, a fold
+  !> concerns a few nodes and hardly the load: the weights are then the changes of the gaps.
   pure function passing(tangent, pinned) result(along)
     type(tangent_t), intent(in) :: tangent
     logical, intent(in) :: pinned

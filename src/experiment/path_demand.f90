@@ -3,6 +3,7 @@
 module path_demand
   use kinds, only: wp, pi
   use dimensionless_problem, only: problem_t, coupling_over, yielding_gap
+  use barriers, only: pass_barrier
   use contact_scales, only: beyond_contact
   use convex_contact, only: jkr_like_pull_off
   use undeformed, only: load_undeformed
@@ -18,12 +19,6 @@ module path_demand
   !> Ratio of successive trial radii of the contact; and margin for the error of an h0 of JKR
   !> theory.
   real(wp), parameter :: ratio = 1.1_wp, margin = 0.1_wp
-  !> Slope of the bodies at the edge of a contact above which a drive does not bring them through a
-  !> barrier: it is no longer small, and paths through such wide contacts take minutes.
-  real(wp), parameter :: too_steep = 0.1_wp
-  !> Gaps at which the pressure of a barrier is evaluated, and their ratio.
-  integer, parameter :: gaps = 600
-  real(wp), parameter :: gap_ratio = 1.02_wp
   !> Number of h0 at which the tension of rigid bodies is evaluated.
   integer, parameter :: tried = 100
 
@@ -193,54 +188,6 @@ contains
       gap = ratio*gap
     end do
   end function gap_of_load
-
-  !> Estimates of the h0 and the load at which the highest barrier outside contact gives way: under
-  !> undeformed bodies, or where the pressure on the axis of a Hertz contact is that of the barrier.
-  !> passed: the second contact is within the model.
-  pure subroutine pass_barrier(problem, h0, load, passed)
-    type(problem_t), intent(in) :: problem
-    real(wp), intent(out) :: h0, load
-    logical, intent(out) :: passed
-    real(wp) :: pressure, hertz, from, c
-    integer :: k
-
-    h0 = 1
-    load = barrier_load(problem)
-    passed = .true.
-    if (problem%rigid) return
-    from = max(problem%law%edge_gap, problem%law%rest_gap)
-    if (.not. from > 0) return
-    pressure = maxval(problem%law%pressure(from*gap_ratio**[(k, k=1, gaps)]))
-    if (.not. pressure > 0) return
-    c = 1/ratio**60
-    do k = 1, 400
-      passed = problem%shape%slope(c)*problem%length/problem%lateral < too_steep
-      hertz = problem%shape%indentation_load(c)/coupling_over(problem, c)
-      if (.not. passed) exit
-      if (1.5_wp*hertz > pi*c**2*pressure) exit
-      c = ratio*c
-    end do
-    ! The pressure under a cone does not grow with the contact.
-    if (.not. passed .or. k > 400) return
-    h0 = min(h0, 1 - problem%shape%indentation(c))
-    load = max(load, hertz)
-  end subroutine pass_barrier
-
-  !> The largest repulsion between undeformed bodies outside the contact; 0 if there is none.
-  pure real(wp) function barrier_load(problem) result(load)
-    type(problem_t), intent(in) :: problem
-    integer :: step
-    real(wp) :: gap
-
-    load = 0
-    gap = max(problem%law%edge_gap, problem%law%rest_gap)
-    ! Bodies that only attract each other have no barrier.
-    if (.not. gap > 0) return
-    do step = 1, 200
-      load = max(load, load_undeformed(problem, gap))
-      gap = ratio*gap
-    end do
-  end function barrier_load
 
   !> A tension that no pull-off exceeds: for parabolas that of rigid bodies; for other shapes the
   !> larger one of rigid bodies and JKR theory. Thin films reach up to twice this tension.
