@@ -2,7 +2,7 @@
 !> base moves to the other body and back.
 module measured_curve
   use kinds, only: wp
-  use noise, only: median_of
+  use order_statistics, only: median_of
   use failure, only: failure_t, fail, bad_input
   use text, only: counted
   use curve_rows, only: curve_rows_t, read_curve_rows, fewest, of_approach, of_retreat, of_pause

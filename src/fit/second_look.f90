@@ -3,8 +3,8 @@
 !> jumps, which they show better than the curve itself.
 module second_look
   use kinds, only: wp
-  use noise, only: noise_t, noise_of, white_noise, noise_of_steps, median_of, normal_median, &
-    stand_apart
+  use noise, only: noise_t, noise_of, white_noise, noise_of_steps, normal_median, stand_apart
+  use order_statistics, only: median_of
   use measured_jumps, only: measured_jump_t, likely_jump
   use modelled_curve, only: modelled_curve_t
   implicit none
