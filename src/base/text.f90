@@ -5,7 +5,7 @@ module text
   implicit none
   private
   public :: lower, quoted, unquoted, brief, counted, rounded, rounded_to, full, guess, clip, &
-    listing, printable, word_count, word_of, first_line, held_blank, spelled
+    listing, listed, printable, word_count, word_of, first_line, held_blank, spelled, replaced
 
   !> Stands for a blank within a name, where blanks separate the names of a list.
   character, parameter :: held_blank = achar(31)
@@ -192,13 +192,37 @@ contains
   pure function spelled(word) result(name)
     character(len=*), intent(in) :: word
     character(len=len(word)) :: name
+
+    name = replaced(word, held_blank, ' ')
+  end function spelled
+
+  !> `text` with the character `new` in place of each `old`.
+  pure function replaced(text, old, new) result(other)
+    character(len=*), intent(in) :: text
+    character, intent(in) :: old, new
+    character(len=len(text)) :: other
     integer :: i
 
-    name = word
-    do i = 1, len(word)
-      if (word(i:i) == held_blank) name(i:i) = ' '
+    other = text
+    do i = 1, len(text)
+      if (text(i:i) == old) other(i:i) = new
     end do
-  end function spelled
+  end function replaced
+
+  !> Names for a message, in quotes; of many the first ones, and the number of the others.
+  pure function listed(names) result(text)
+    character(len=*), intent(in) :: names(:)
+    character(len=:), allocatable :: text
+    integer, parameter :: most = 12
+    integer :: i
+
+    text = ''
+    do i = 1, min(most, size(names))
+      if (i > 1) text = text // ', '
+      text = text // quoted(trim(names(i)))
+    end do
+    if (size(names) > most) text = text // ' and ' // brief(size(names) - most) // ' more'
+  end function listed
 
   !> The words of `list` as `<before>w1<after>, <before>w2<after>, ...`.
   pure function listing(list, before, after) result(text)

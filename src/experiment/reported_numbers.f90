@@ -4,6 +4,7 @@
 module reported_numbers
   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
   use kinds, only: wp
+  use order_statistics, only: ranked
   use reported_place, only: quantities, of_load, of_profile, least, rounding
   implicit none
   private
@@ -71,7 +72,8 @@ contains
     end do
     relative = pack(relative, relative > 0)
     lowest = 0
-    if (size(relative) > 0) lowest = part*median(relative)
+    ! Of two in the middle the larger one.
+    if (size(relative) > 0) lowest = part*ranked(relative, size(relative)/2 + 1)
     do i = 1, size(number)
       if (number(i)%judged) cycle
       number(i)%judged = .true.
@@ -180,17 +182,5 @@ contains
       min(number%error/max(abs(number%value), least, tiny(1.0_wp)), most)
     part(of_profile) = number%error(of_profile)
   end function parts_of
-
-  pure real(wp) function median(values)
-    real(wp), intent(in) :: values(:)
-    integer :: i
-
-    median = values(1)
-    do i = 1, size(values)
-      median = values(i)
-      if (count(values < median) <= size(values)/2 .and. &
-        count(values <= median) > size(values)/2) return
-    end do
-  end function median
 
 end module reported_numbers

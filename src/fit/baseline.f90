@@ -5,7 +5,7 @@ module baseline
   use kinds, only: wp, pi
   implicit none
   private
-  public :: baseline_t, waves_of, scaled
+  public :: baseline_t, waves_of, ways_in, scaled
 
   !> degree: of the polynomial. slope_each_way: the slopes of the two ways are independent. ripple:
   !> a sinusoid of one period on both ways, with its own amplitude and phase on each.
@@ -29,21 +29,20 @@ contains
     real(wp), intent(in) :: z(:)
     logical, intent(in) :: inward(:)
     real(wp), allocatable :: column(:, :), wave(:, :)
-    logical :: mine(size(z), 2)
-    integer :: k, way, n, ways
+    logical :: mine(size(z), 2), each
+    integer :: k, way, ways
 
-    n = size(z)
-    ways = merge(2, 1, any(inward) .and. .not. all(inward))
+    ways = ways_in(inward)
     mine(:, 1) = inward .eqv. inward(1)
     mine(:, 2) = .not. mine(:, 1)
-    allocate (column(n, 0))
+    allocate (column(size(z), 0))
     do way = 1, ways
       call add(column, merge(1.0_wp, 0.0_wp, mine(:, way)))
     end do
     do k = 1, self%degree
-      do way = 1, merge(ways, 1, k == 1 .and. self%slope_each_way)
-        call add(column, scaled(z)**k*merge(1.0_wp, 0.0_wp, mine(:, way) .or. &
-          .not. (k == 1 .and. self%slope_each_way)))
+      each = k == 1 .and. self%slope_each_way
+      do way = 1, merge(ways, 1, each)
+        call add(column, scaled(z)**k*merge(1.0_wp, 0.0_wp, mine(:, way) .or. .not. each))
       end do
     end do
     if (.not. self%period > 0) return
@@ -72,7 +71,7 @@ contains
     real(wp), allocatable :: wave(:, :)
     integer :: way, ways
 
-    ways = merge(2, 1, any(inward) .and. .not. all(inward))
+    ways = ways_in(inward)
     allocate (wave(size(z), 2*ways))
     wave(:, 1) = cos(2*pi*(z - minval(z))/period)
     wave(:, 2) = sin(2*pi*(z - minval(z))/period)
@@ -82,6 +81,13 @@ contains
       wave(:, 2*way) = merge(wave(:, 2), 0.0_wp, inward .eqv. (inward(1) .eqv. way == 1))
     end do
   end function waves_of
+
+  !> The number of ways that have samples, 1 or 2.
+  pure integer function ways_in(inward) result(ways)
+    logical, intent(in) :: inward(:)
+
+    ways = merge(2, 1, any(inward) .and. .not. all(inward))
+  end function ways_in
 
   !> Positions from -1 to 1 or less, about their mean.
   pure function scaled(z) result(x)

@@ -7,13 +7,13 @@ module baseline_test
   use kinds, only: wp
   use root_finding, only: bracket_t
   use noise, only: white_noise
-  use baseline, only: waves_of, scaled
+  use baseline, only: waves_of, ways_in, scaled
   use fit_samples, only: fit_samples_t, orthonormalise, solve_triangle
-  use second_look, only: hardly_ever, renew_noise
+  use second_look, only: chance_of, renew_noise
   use curve_residuals, only: curve_residuals_t
   implicit none
   private
-  public :: lacking_t, test_baseline, settle_ripple, chance_of, rarely
+  public :: lacking_t, test_baseline, settle_ripple
 
   !> A part that the baseline does not have. name: what adds it in &measurement. gain: by how much
   !> it would lower chi squared. chance: logarithm of the probability that chance does this. shift:
@@ -65,7 +65,7 @@ contains
         column = reshape(scaled(data%z)**2, [n, 1])
         call test('baseline = ''quadratic''')
       end if
-      if (any(data%inward) .and. .not. all(data%inward) .and. data%baseline%degree > 0 .and. &
+      if (ways_in(data%inward) == 2 .and. data%baseline%degree > 0 .and. &
         .not. data%baseline%slope_each_way) then
         column = reshape(merge(scaled(data%z), 0.0_wp, data%inward), [n, 1])
         call test('slope_each_way = .true.')
@@ -143,7 +143,7 @@ contains
     logical :: found
 
     associate (baseline => residuals%curve%data%measured%baseline, &
-      z => residuals%curve%data%measured%z)
+      z => residuals%curve%data%measured%z, inward => residuals%curve%data%measured%inward)
       if (.not. baseline%ripple) return
       bare = residuals
       bare%curve%data%measured%baseline%period = 0
@@ -161,16 +161,10 @@ contains
       call residuals%curve%split(value, model, line)
       amplitude = residuals%curve%data%amplitudes_under(residuals%curve%data%measured%signal - &
         model + line)
-      baseline%wave = amplitude(size(amplitude) - merge(3, 1, has_both(residuals%curve%data)):)
+      baseline%wave = amplitude(size(amplitude) - 2*ways_in(inward) + 1:)
       call residuals%curve%data%take(1)
     end associate
   end subroutine settle_ripple
-
-  pure logical function has_both(data)
-    type(fit_samples_t), intent(in) :: data
-
-    has_both = any(data%measured%inward) .and. .not. all(data%measured%inward)
-  end function has_both
 
   !> The period whose ripple lowers chi squared most; 0 if there are too few samples. amplitude: of
   !> its waves.
@@ -182,16 +176,16 @@ contains
     type(bracket_t) :: bracket
     type(lacking_t) :: there
     real(wp) :: travel, points(2), best
-    integer :: i, last
+    integer :: samples(2), i, last
 
     period = 0
     gain = 0
     allocate (amplitude(0))
-    associate (z => data%measured%z)
+    associate (z => data%measured%z, inward => data%measured%inward)
       travel = maxval(z) - minval(z)
-      last = min(most_periods, minval([(max(count(data%measured%inward .eqv. i == 1), &
-        merge(size(z), 0, .not. any(data%measured%inward .eqv. i == 1))), i=1, 2)])/fewest_samples)
+      samples = [count(inward), count(.not. inward)]
     end associate
+    last = min(most_periods, minval(samples, samples > 0)/fewest_samples)
     best = -1
     do i = oversampling, oversampling*last
       gain = gain_at(real(i, wp)/oversampling)
@@ -275,38 +269,5 @@ contains
     new%shift = matmul(matmul(cleaned, part) - tangent%residual, tangent%basis)
     call solve_triangle(tangent%triangle, new%shift)
   end function explained
-
-  !> The logarithm of the probability that noise lowers chi squared so much by further columns, one
-  !> or an even number, the best of `trials` choices of them. left: chi squared per degree of
-  !> freedom with them, which is the scale if it exceeds that of noise.
-  pure real(wp) function chance_of(gain, left, columns, trials) result(chance)
-    real(wp), intent(in) :: gain, left
-    integer, intent(in) :: columns, trials
-    real(wp) :: half, term, total
-    integer :: k
-
-    half = 0.5_wp*max(0.0_wp, gain)/max(1.0_wp, left)
-    if (columns == 1) then
-      chance = log(erfc_scaled(sqrt(half)))
-    else
-      ! The distribution of chi squared with an even number of degrees of freedom.
-      term = 1
-      total = 1
-      do k = 1, columns/2 - 1
-        term = term*half/k
-        total = total + term
-      end do
-      chance = log(total)
-    end if
-    chance = chance - half + log(real(trials, wp))
-  end function chance_of
-
-  !> Whether a logarithm of a probability is smaller than that of an excess of the residuals that is
-  !> reported.
-  elemental logical function rarely(chance)
-    real(wp), intent(in) :: chance
-
-    rarely = chance < log(erfc(hardly_ever/sqrt(2.0_wp)))
-  end function rarely
 
 end module baseline_test

@@ -76,7 +76,8 @@ contains
       call put_in_order(count(whole), rows)
     end if
     if (size(rows%z) < fewest) then
-      what = 'a curve needs 20 samples or more; the file has ' // counted(size(rows%z), 'row')
+      what = 'a curve needs ' // counted(fewest, 'sample') // ' or more; the file has ' // &
+        counted(size(rows%z), 'row')
       if (rows%incomplete > 0) what = what // ', and ' // counted(rows%incomplete, 'row') // &
         ' with an empty cell or NaN'
       call fail(error, bad_input, rows%file // ': ' // what)

@@ -4,7 +4,7 @@
 module curve_segments
   use kinds, only: wp
   use failure, only: failure_t, fail, bad_input
-  use text, only: brief, counted, quoted
+  use text, only: counted, listed, quoted
   use curve_rows, only: curve_rows_t, of_approach, of_retreat, of_pause
   use fit_request, only: measurement_t
   implicit none
@@ -136,19 +136,5 @@ contains
     if (min(turn, size(z) - turn) < margin) turn = merge(0, size(z), segment == 'retreat')
     inward = [(i <= turn, i=1, size(z))]
   end function before_turn
-
-  !> Labels for a message, the first ones of many.
-  pure function listed(label) result(list)
-    character(len=*), intent(in) :: label(:)
-    character(len=:), allocatable :: list
-    integer, parameter :: most = 8
-    integer :: k
-
-    list = quoted(trim(label(1)))
-    do k = 2, min(most, size(label))
-      list = list // ', ' // quoted(trim(label(k)))
-    end do
-    if (size(label) > most) list = list // ' and ' // brief(size(label) - most) // ' more'
-  end function listed
 
 end module curve_segments

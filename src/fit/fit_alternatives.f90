@@ -5,6 +5,7 @@ module fit_alternatives
   use dimensionless_problem, only: problem_t
   use variation, only: problem_family_t
   use fit_request, only: unknown_t, of_spring
+  use baseline, only: ways_in
   use measured_jumps, only: find_jump
   use fit_starts, only: starts_like
   use theory_fits, only: suggested_characters
@@ -58,9 +59,7 @@ contains
       type(modelled_curve_t) :: trial
       type(fitted_t) :: other
 
-      associate (ways => curve%data%measured%inward)
-        if (all(ways) .or. .not. any(ways)) return
-      end associate
+      if (ways_in(curve%data%measured%inward) < 2) return
       trial = curve
       call trial%data%keep_way(inward)
       call fit_curve(trial, model, reshape(fitted%value, [size(fitted%value), 1]), .true., other)

@@ -5,12 +5,11 @@ module fit_doubts
   use text, only: brief, rounded, rounded_to
   use namelist_writer, only: line_t
   use fit_request, only: unknown_t, of_spring, fitted_of, is_at_end, farthest_off
-  use second_look, only: lack_t, hardly_ever
+  use second_look, only: lack_t, hardly_ever, rarely
   use fit_errors, only: fitted_t
   use held_numbers, only: held_t
   use fit_run, only: fit_outcome_t
   use fit_alternatives, only: contact_slope
-  use baseline_test, only: rarely
   use measured_checks, only: open_end, find_saturated
   implicit none
   private
@@ -127,16 +126,16 @@ contains
         if (.not. fitted%lack%is_noise() .and. lacking%gain < most_of*(fitted%chi_squared - &
           fitted%freedom)) return
         explained = .true.
-        words = 'slope of the approach differs from that of the retreat'
-        if (lacking%name == 'baseline = ''quadratic''') words = 'is bent'
-        if (lacking%name == 'baseline = ''linear''') words = 'has a slope'
-        if (lacking%period > 0) words = 'has a ripple with a period of ' // &
-          rounded(lacking%period) // ' m'
-        if (index(words, 'slope of') == 1) then
-          words = 'the ' // words // ' on the baseline'
-        else
-          words = 'the baseline ' // words
-        end if
+        select case (lacking%name)
+        case ('baseline = ''linear''')
+          words = 'the baseline has a slope'
+        case ('baseline = ''quadratic''')
+          words = 'the baseline is bent'
+        case ('ripple = .true.')
+          words = 'the baseline has a ripple with a period of ' // rounded(lacking%period) // ' m'
+        case default
+          words = 'the slope of the approach differs from that of the retreat on the baseline'
+        end select
         k = maxloc(abs(lacking%shift)/fitted%deviation, 1)
         call add(words // ': ' // lacking%name // ' would lower chi squared by ' // &
           rounded(lacking%gain) // ' and move ' // unknown(k)%name // ' by ' // &

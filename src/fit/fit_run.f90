@@ -24,7 +24,8 @@ module fit_run
   use curve_fit, only: fit_curve
   use fit_errors, only: fitted_t, least_effect
   use held_numbers, only: held_t, test_held
-  use baseline_test, only: lacking_t, test_baseline, chance_of, rarely
+  use baseline_test, only: lacking_t, test_baseline
+  use second_look, only: chance_of, rarely
   use fit_alternatives, only: alternative_t, find_alternative
   use derived_numbers, only: derived_t, derive_numbers
   use theory_fits, only: theory_fit_t, fit_theories, suggested_characters

@@ -2,6 +2,7 @@
 module measured_checks
   use kinds, only: wp
   use text, only: counted, rounded
+  use baseline, only: ways_in
   use measured_curve, only: measured_t
   use measured_jumps, only: measured_jump_t, find_jump, off_baseline
   use noise, only: noise_t, white_noise, rough_deviation
@@ -80,7 +81,7 @@ contains
       real(wp) :: position(size(measured%z)), slope(2), slope_error(2), taken(2), sure
       real(wp), allocatable :: above(:), error(:), between(:)
 
-      if (.not. (any(measured%inward) .and. .not. all(measured%inward))) return
+      if (ways_in(measured%inward) < 2) return
       position = measured%facing*measured%z
       call compare_ways(measured, noise, above, error)
       if (size(above) == 0) return

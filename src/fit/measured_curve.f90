@@ -2,7 +2,7 @@
 !> base moves to the other body and back.
 module measured_curve
   use kinds, only: wp
-  use noise, only: median_of
+  use order_statistics, only: median_of
   use failure, only: failure_t, fail, bad_input
   use text, only: counted
   use curve_rows, only: curve_rows_t, read_curve_rows, fewest, of_approach, of_retreat, of_pause
@@ -154,9 +154,9 @@ contains
 
     n = [count(measured%inward), count(.not. measured%inward)]
     if (any(n < fewest .and. n > 0) .or. sum(n) == 0) then
-      call fail(error, bad_input, file // ': fewer than 20 samples of the approach or the ' // &
-        'retreat; segment chooses the branches to fit, and the third entry of ' // &
-        'columns is the column of the segments')
+      call fail(error, bad_input, file // ': fewer than ' // counted(fewest, 'sample') // &
+        ' of the approach or the retreat; segment chooses the branches to fit, and the third ' // &
+        'entry of columns is the column of the segments')
       return
     end if
     travel = 0

@@ -6,10 +6,11 @@
 !> change is not an outlier.
 module noise
   use kinds, only: wp
+  use order_statistics, only: median_of
   implicit none
   private
   public :: noise_t, white_noise, noise_of, noise_of_steps, rough_deviation, rounding_of, &
-    median_of, normal_median, whiten, stand_apart
+    normal_median, whiten, stand_apart
 
   !> Deviation over that of second differences above which residuals are no noise. A filter with
   !> this ratio would average over 60 samples.
@@ -114,7 +115,7 @@ contains
   end subroutine noise_of_steps
 
   !> The deviation of white noise in a smooth signal with outliers, from the median of its second
-  !> differences.
+  !> differences; at least that of rounding.
   pure real(wp) function rough_deviation(signal) result(deviation)
     real(wp), intent(in) :: signal(:)
     !> The sum of the squares of 1, -2, 1.
@@ -122,8 +123,8 @@ contains
     integer :: n
 
     n = size(signal)
-    deviation = median_of(abs(signal(3:) - 2*signal(2:n - 1) + signal(:n - 2)))/ &
-      (normal_median*sqrt(squares))
+    deviation = max(epsilon(1.0_wp)*maxval(abs(signal)), median_of(abs(signal(3:) - &
+      2*signal(2:n - 1) + signal(:n - 2)))/(normal_median*sqrt(squares)))
   end function rough_deviation
 
   !> The deviation that rounding makes in a signal of few digits, from the smallest step between
@@ -139,24 +140,6 @@ contains
     if (any(step > none*maxval(abs(signal)))) &
       deviation = minval(step, step > none*maxval(abs(signal)))/sqrt(12.0_wp)
   end function rounding_of
-
-  !> The median of numbers that are not negative, by bisection.
-  pure real(wp) function median_of(numbers) result(middle)
-    real(wp), intent(in) :: numbers(:)
-    real(wp) :: low, high
-    integer :: step
-
-    low = 0
-    high = maxval(numbers)
-    do step = 1, 60
-      middle = 0.5_wp*(low + high)
-      if (2*count(numbers > middle) > size(numbers)) then
-        low = middle
-      else
-        high = middle
-      end if
-    end do
-  end function median_of
 
   !> The samples in `mask` minus their straight line, or minus their parabola.
   pure function off_line(z, signal, mask, degree) result(r)

@@ -3,13 +3,13 @@
 !> jumps, which they show better than the curve itself.
 module second_look
   use kinds, only: wp
-  use noise, only: noise_t, noise_of, white_noise, noise_of_steps, median_of, normal_median, &
-    stand_apart
+  use noise, only: noise_t, noise_of, white_noise, noise_of_steps, normal_median, stand_apart
+  use order_statistics, only: median_of
   use measured_jumps, only: measured_jump_t, likely_jump
   use modelled_curve, only: modelled_curve_t
   implicit none
   private
-  public :: lack_t, lack_in, hardly_ever, renew_noise, look_again
+  public :: lack_t, lack_in, chance_of, rarely, hardly_ever, renew_noise, look_again
 
   !> The largest lack of fit. excess: by how many standard deviations the means of blocks of `width`
   !> samples exceed those of noise. times: their ratio to those of noise.
@@ -88,6 +88,39 @@ contains
 
     normal_of = ((total/n)**(1.0_wp/3) - 1 + 2.0_wp/(9*n))/sqrt(2.0_wp/(9*n) + 2/9.0_wp/known_by)
   end function normal_of
+
+  !> The logarithm of the probability that noise lowers chi squared so much by further columns, one
+  !> or an even number, the best of `trials` choices of them. left: chi squared per degree of
+  !> freedom with them, which is the scale if it exceeds that of noise.
+  pure real(wp) function chance_of(gain, left, columns, trials) result(chance)
+    real(wp), intent(in) :: gain, left
+    integer, intent(in) :: columns, trials
+    real(wp) :: half, term, total
+    integer :: k
+
+    half = 0.5_wp*max(0.0_wp, gain)/max(1.0_wp, left)
+    if (columns == 1) then
+      chance = log(erfc_scaled(sqrt(half)))
+    else
+      ! The distribution of chi squared with an even number of degrees of freedom.
+      term = 1
+      total = 1
+      do k = 1, columns/2 - 1
+        term = term*half/k
+        total = total + term
+      end do
+      chance = log(total)
+    end if
+    chance = chance - half + log(real(trials, wp))
+  end function chance_of
+
+  !> Whether a logarithm of a probability is smaller than that of an excess of the residuals that is
+  !> reported.
+  elemental logical function rarely(chance)
+    real(wp), intent(in) :: chance
+
+    rarely = chance < log(erfc(hardly_ever/sqrt(2.0_wp)))
+  end function rarely
 
   !> Finds outliers, jumps and, unless it is given, noise again. value: the best fit so far.
   !> settled: there was no significant change.

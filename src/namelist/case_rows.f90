@@ -82,7 +82,7 @@ contains
     end do
     names = self%cells
     named = self%line
-    if (.not. is_header(self%line, 1, self%cells)) then
+    if (.not. is_header(self%line%text, self%cells)) then
       self%waiting = .true.
       named = comment
       call split(after_mark(comment%text), names)

@@ -2,7 +2,7 @@
 module column_names
   use kinds, only: wp
   use failure, only: failure_t
-  use text, only: lower, quoted, clip, guess, counted, spelled
+  use text, only: lower, quoted, clip, guess, counted, listed
   use deck_number, only: parse_integer
   use deck_scan, only: span_t
   use deck_source, only: source_t
@@ -102,7 +102,7 @@ contains
       if (index(trim(names(k)), ' ') == 0) list = list // ' ' // lower(trim(names(k)))
     end do
     do i = 1, size(wanted)
-      name = plain_name(spelled(adjustl(wanted(i))))
+      name = plain_name(adjustl(wanted(i)))
       turned(i) = name(1:1) == '-'
       if (turned(i)) name = adjustl(name(2:))
       name = trim(name)
@@ -132,19 +132,5 @@ contains
     if (scan(bare(max(1, len(bare)):), ')]}') == 0 .or. len(unit_in(bare)) == 0) return
     bare = trim(bare(:scan(bare, '([{', back=.true.) - 1))
   end function without_unit
-
-  !> Names for a message, the first ones of many.
-  pure function listed(names) result(list)
-    character(len=*), intent(in) :: names(:)
-    character(len=:), allocatable :: list
-    integer, parameter :: most = 12
-    integer :: k
-
-    list = quoted(trim(names(1)))
-    do k = 2, min(size(names), most)
-      list = list // ', ' // quoted(trim(names(k)))
-    end do
-    if (size(names) > most) list = list // ', ...'
-  end function listed
 
 end module column_names

@@ -5,7 +5,7 @@ module data_table
   use kinds, only: wp
   use checksums, only: checksum
   use failure, only: failure_t
-  use text, only: brief, lower, spelled
+  use text, only: brief, lower
   use deck_number, only: parse_real
   use deck_scan, only: span_t
   use deck_source, only: source_t, load_source

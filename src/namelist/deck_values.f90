@@ -3,7 +3,7 @@
 module deck_values
   use kinds, only: wp
   use text, only: lower, quoted, unquoted, brief, full, guess, clip, word_count, word_of, &
-    held_blank, spelled
+    held_blank, spelled, replaced
   use deck_number, only: parse_real, parse_integer, parse_logical
   use deck_source, only: source_t
   use deck_scan, only: span_t
@@ -86,7 +86,6 @@ contains
     character(len=*), intent(in) :: token
     type(value_t), intent(inout) :: value
     character(len=:), allocatable, intent(out) :: what
-    character(len=:), allocatable :: name
     real(wp) :: x
     integer :: star, times, i
 
@@ -132,11 +131,7 @@ contains
       else if (word_count(value%text) == spec%most) then
         what = 'too many values'
       else
-        name = trim(adjustl(token))
-        do i = 1, len(name)
-          if (name(i:i) == ' ') name(i:i) = held_blank
-        end do
-        value%text = value%text // ' ' // name
+        value%text = value%text // ' ' // replaced(trim(adjustl(token)), ' ', held_blank)
       end if
     end select
   end subroutine convert

@@ -230,20 +230,13 @@ contains
   end function is_missing
 
   !> Whether a line of a table has names: no cell is a number.
-  logical function is_header(source, start, cells)
-    type(source_t), intent(in) :: source
-    integer, intent(in) :: start
+  pure logical function is_header(line, cells)
+    character(len=*), intent(in) :: line
     type(span_t), intent(in) :: cells(:)
-    character(len=:), allocatable :: what
-    real(wp) :: number
-    integer :: i
+    integer :: numbers, missing
 
-    is_header = .true.
-    do i = 1, size(cells)
-      call parse_real(source%part(start + cells(i)%first - 1, start + cells(i)%last - 1), number, &
-        what)
-      is_header = is_header .and. allocated(what)
-    end do
+    call count_cells(line, cells, numbers, missing)
+    is_header = numbers == 0
   end function is_header
 
   !> Finds the next line with cells at or after the position `next`, and moves `next` behind it. at:

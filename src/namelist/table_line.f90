@@ -2,7 +2,7 @@
 !> separate and which may stand in double quotes. In a line with semicolons, tabs or blanks between
 !> cells, a comma within a number is a decimal comma.
 module table_line
-  use text, only: counted
+  use text, only: counted, replaced
   use deck_scan, only: span_t
   implicit none
   private
@@ -32,10 +32,7 @@ contains
 
     i = index(lines, newline) - 1
     if (i < 0) i = len(lines)
-    line = lines(:i)
-    do i = 1, len(line)
-      if (line(i:i) == '#') line(i:i) = ' '
-    end do
+    line = replaced(lines(:i), '#', ' ')
   end function after_mark
 
   !> Replaces decimal commas by points: commas between digits in lines with other separators of

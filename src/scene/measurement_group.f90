@@ -3,7 +3,7 @@ module measurement_group
   use kinds, only: wp
   use checksums, only: checksum
   use failure, only: failure_t
-  use text, only: lower, quoted, spelled, word_count, word_of
+  use text, only: quoted, spelled, word_count, word_of
   use deck, only: deck_t
   use deck_source, only: source_t, load_source
   use data_table, only: largest_table, plain_label
@@ -88,7 +88,7 @@ contains
       end if
       allocate (measurement%columns(word_count(names)))
       do i = 1, size(measurement%columns)
-        measurement%columns(i) = word_of(names, i)
+        measurement%columns(i) = spelled(word_of(names, i))
       end do
       call deck%get('measurement', 'skip_lines', measurement%skip_lines)
       call take_labels(deck, 'approach', measurement%approach)

@@ -45,6 +45,19 @@ def test_carlson_s_integral_is_that_of_mpmath_and_has_its_closed_forms(ask):
                                rtol=1e-15)
 
 
+@pytest.mark.parametrize("numbers", [
+    [3.0], [2.0, 2.0, 2.0, 2.0], [1.0, np.nextafter(1.0, 2.0)], [np.nextafter(1.0, 0.0), 1.0, 1.0],
+    [1e300, -1e300, 0.0, 5e-324, 1e-300],
+    *(10 ** np.random.default_rng(3).uniform(-20, 20, n) for n in (50, 51)),
+    np.random.default_rng(4).integers(-3, 4, 40).astype(float)], ids=lambda numbers: len(numbers))
+def test_ranks_are_those_of_sorted_numbers(ask, numbers):
+    """Exactly: between neighbouring numbers, over many decades, and of numbers that repeat."""
+    n = len(numbers)
+    *ranked, median = ask("ranks", n, numbers)
+    assert ranked == sorted(numbers)
+    assert median == sorted(numbers)[(n - 1) // 2]
+
+
 @pytest.mark.parametrize("n", [1, 2, 5, 12, 40])
 def test_rules_are_those_of_numpy_and_a_logarithm_has_its_moments(ask, n):
     x, w, log_w, basis, legendre = ask("quadrature", n).reshape(5, n)

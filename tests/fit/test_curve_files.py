@@ -172,6 +172,9 @@ REFUSED = {
     "no such column": (
         lambda c: lines(c, PLAIN, "z (m),load (N),segment"), NAMED, {},
         r"no column 'force'; the file has 'z \(m\)', 'load \(N\)', 'segment'"),
+    "no such column among many": (
+        lambda c: lines(c, PLAIN + 11 * ",0", "z,load,segment," + ",".join("abcdefghijk")), NAMED,
+        {}, "no column 'force'; the file has 'z', 'load', 'segment', 'a', .*'i' and 2 more"),
     "volts": (
         lambda c: lines(c, PLAIN, "z (nm),Deflection (V),segment"), ["z", "deflection", "segment"],
         {}, r"'Deflection \(V\)' is no force; sensitivity is the deflection"),

@@ -44,8 +44,7 @@ def test_the_scene_may_be_a_text_and_the_segment_left_out(curve):
 
 
 def test_samples_without_a_value_do_not_count(curve):
-    z, force, segment = (np.insert(x.astype(float), 30, np.nan) for x in curve[:2]), None, None
-    z, force = z
+    z, force = (np.insert(x, 30, np.nan) for x in curve[:2])
     assert fit((z, force, np.insert(curve[2], 30, 0))).estimate == fit(curve).estimate
 
 

@@ -98,14 +98,12 @@ def test_a_contact_of_few_weak_samples_is_no_absence_of_contact(tmp_path):
     """Each sample is within eight deviations of the noise; their mean is not."""
     curve = hertz_curve(46, seed=2)
     z, force, segment = (column[:46] for column in curve)
-    weak = force + 1e-9 * np.random.default_rng(5).standard_normal(46)
     kept = z > -6e-7
     noise = 0.2 * force[kept].max()
     weak = force[kept] + noise * np.random.default_rng(5).standard_normal(kept.sum())
     result = fit_of_gel(tmp_path, (z[kept], weak, segment[kept]), segment="approach")
-    stiffness, _ = estimates(result)[STIFFNESS]
     fit = result.fitted["fit"]
-    assert fit["lower_95"][0] < SOFT < fit["upper_95"][0], (stiffness, fit["lower_95"])
+    assert fit["lower_95"][0] < SOFT < fit["upper_95"][0]
 
 
 def test_a_curve_that_is_nearly_all_contact_is_fitted(tmp_path):

@@ -10,6 +10,7 @@ program base_values
     interpolated_maximum, hermite_t, hermite_through
   use decimal, only: put_real, longest_real
   use linear_algebra, only: solve_tridiagonal, singular_values
+  use order_statistics, only: ranked, median_of
   use quadrature, only: gauss_legendre, legendre_values, logarithm_weights, barycentric_weights, &
     lagrange_basis, wave_rule
   use root_finding, only: bracket_t, root_search_t, new_root_search
@@ -70,6 +71,9 @@ program base_values
       hermite = hermite_through(x, y, z)
       print numbers, sum(polynomial_weights(x, 0.3_wp)*y), polynomial_slope(x, y, 0.3_wp), &
         interpolated_maximum(x, y, x(1), x(n)), hermite%value(0.3_wp), hermite%slope(0.3_wp)
+    case ('ranks')
+      read (*, *) x
+      print numbers, (ranked(x, i), i=1, n), median_of(x)
     case ('tridiagonal')
       read (*, *) x, y, z
       c = reshape([y(2:), y(2:)], [n - 1, 2])
