@@ -202,10 +202,16 @@ class ContactPath:
 def _jumps(panels):
     """Return the first place on the path where h0 ceases to fall, and the last where it begins to;
     None for both without jumps."""
-    turns = []
+    turns, before = [], 0.0
     for index, panel in enumerate(panels):
         slope = polynomial.polyder(panel.gap)
         bend = polynomial.polyder(slope)
+        first = polynomial.polyval(-1, slope)
+        if before*first < 0:
+            # Between two panels, whose slopes there differ by the rounding of the tables.
+            turns.append((np.sign(first), _Place(index, -1.0, float(polynomial.polyval(
+                -1, panel.gap)))))
+        before = polynomial.polyval(1, slope)
         for xi in real_roots(slope):
             kind = np.sign(polynomial.polyval(xi, bend))
             turns.append((kind, _Place(index, xi, float(polynomial.polyval(xi, panel.gap)))))
