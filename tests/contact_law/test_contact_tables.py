@@ -2,6 +2,7 @@
 and it makes the law of another force."""
 
 import json
+import re
 
 import contact_law as tool
 import law_calculator
@@ -21,6 +22,14 @@ from support.contact_header import COMPILER, NUMBERS, Header, bodies_at, parted
 def test_files_of_the_project_are_made_from_its_table(place, text):
     assert place.read_text(encoding="utf-8") == text(coefficients()), (
         "bring them up to date with: tools/contact_law.py --remake")
+
+
+def test_the_page_has_the_errors_of_the_table():
+    page = (tool.pages.ROOT / "docs" / "tables.md").read_text(encoding="utf-8")
+    told = re.findall(r"^\| .* \| (\d\.\de-\d) \|$", page, re.MULTILINE)
+    measured = coefficients()["errors"]["within"]["largest"]
+    assert told == [f"{error:.1e}".replace("e-0", "e-") for error, _ in measured.values()]
+    assert list(measured) == list(law_errors.KINDS) and len(told) == 6
 
 
 def whole_numbers(tables):
