@@ -16,10 +16,10 @@ from .polynomials import composed, folded, local, powers, series, solved
 
 # JKR theory's units of h0 and contact radius, with K = 4 E*/3: (pi^2 w^2 R/K^2)^(1/3) is GAP mu z0,
 # and (pi w R^2/K)^(1/3) is SPREAD sigma^(1/3) sqrt(R z0), sigma = mu^(3/2)/2.
-_GAP = (9*np.pi**2/16)**(1/3)
-_SPREAD = (1.5*np.pi)**(1/3)
+GAP = (9*np.pi**2/16)**(1/3)
+SPREAD = (1.5*np.pi)**(1/3)
 ROOT6 = np.sqrt(6)
-_DEEP_PANELS = 8
+DEEP_PANELS = 8
 # JKR theory over the root q of the contact radius: displacement, load and their integral.
 JKR_GAP = np.array([0, -2*ROOT6/3, 0, 0, 1])
 JKR_LOAD = np.array([0, 0, 0, -ROOT6, 0, 0, 1])
@@ -50,7 +50,7 @@ def tabor_of(log_mu):
 
 def jkr_units(log_mu):
     """Return JKR theory's units of h0 [z0] and contact radius [sqrt(R z0)]."""
-    return _GAP*tabor_of(log_mu), _SPREAD*np.exp(log_mu/2)/2**(1/3)
+    return GAP*tabor_of(log_mu), SPREAD*np.exp(log_mu/2)/2**(1/3)
 
 
 def near_panels(table, log_mu):
@@ -105,11 +105,11 @@ def deep_panels(table, log_mu, last):
     tiles = [[folded(one, local(held, deep["low"], deep["high"])) for one in tile]
              for tile in deep["tiles"]]
     # For parameters below the least one gap and radius deviate as for that.
-    unit = _SPREAD*np.exp(at/2)/2**(1/3)
+    unit = SPREAD*np.exp(at/2)/2**(1/3)
     ratio = jkr_radius/unit
     node = chebyshev.chebpts1(table["order"])
     start, found = _jkr_root(table["join_load"]), []
-    for low in start*2.0**np.arange(_DEEP_PANELS):
+    for low in start*2.0**np.arange(DEEP_PANELS):
         root = low*(1.5 + 0.5*node)
         length = 2*np.log(root)
         held_length = np.minimum(length, table["deep_edges"][-1])
@@ -135,7 +135,7 @@ def deep_panels(table, log_mu, last):
     shift = polynomial.polyval(1, last.gap) - polynomial.polyval(-1, found[0].gap)
     for panel in found:
         panel.gap[0] += shift
-    return [last, *found], start*2.0**_DEEP_PANELS
+    return [last, *found], start*2.0**DEEP_PANELS
 
 
 def _wall(table, pressure):
