@@ -93,6 +93,13 @@ def scales_of(law):
             "stiffness": load/law.z0, "energy": load*law.z0}
 
 
+def allowed(law, name, h0, expected):
+    """How far two programs of one law may differ at h0: by the ends of their iterations, since near
+    a jump the functions have infinite slopes over h0; far apart by rounding."""
+    near = scales_of(law)[name]*(1 + law.tabor)*(h0 < 40*law.z0*max(1.0, law.tabor)**0.5)
+    return 1e-8*(np.abs(expected) + near)
+
+
 def parted(table):
     """A table in which a turn of h0 lies between two panels, and Tabor's parameters about it.
 
