@@ -77,7 +77,8 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--deck", type=pathlib.Path, help="a deck, of which the force counts")
     parser.add_argument("--out", type=pathlib.Path, help="folder of another force's files")
-    parser.add_argument("--remake", action="store_true", help="only header, JavaScript and calculator")
+    parser.add_argument("--remake", action="store_true",
+                        help="only header, JavaScript and calculator")
     parser.add_argument("--tabor", type=float, nargs=2, metavar=("LOW", "HIGH"),
                         default=(law_tables.LEAST, law_tables.LARGEST))
     parser.add_argument("--states", type=int, default=STATES, help="random states for the errors")

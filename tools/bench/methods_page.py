@@ -108,8 +108,8 @@ def _cell(row):
 
 
 def _cycle_cell(row):
-    return (f"{row['milliseconds']:.{0 if row['milliseconds'] > 10 else 1}f} ({row['products']:.0f})"
-            + _lost(row))
+    digits = 0 if row["milliseconds"] > 10 else 1
+    return f"{row['milliseconds']:.{digits}f} ({row['products']:.0f})" + _lost(row)
 
 
 def _lost(row):

@@ -105,8 +105,8 @@ def about(law):
     groups = "; ".join(
         f"&{name} " + ", ".join(f"{key} = {value}" for key, value in keys.items())
         for name, keys in law["force"].items())
-    lines = textwrap.wrap(f"Force: {law['title']}, from a deck with {groups}. It scales with work of "
-                          "adhesion and z0.", 98)
+    lines = textwrap.wrap(f"Force: {law['title']}, from a deck with {groups}. It scales with work "
+                          "of adhesion and z0.", 98)
     for name in ("within", "below", "above"):
         found = law.get("errors", {}).get(name)
         if found:
