@@ -1,5 +1,5 @@
-/* snapin_contact.js: the contact law of snapin_contact.h for JavaScript, with the same numbers.
-Made by tools/contact_law.py; do not edit. MIT license.
+/* snapin_contact.js: the contact law of snapin_contact.h for JavaScript, with the same
+coefficients. Made by tools/contact_law.py; do not edit. MIT license.
 
     const law = snapinContact(radius, reducedModulus, workOfAdhesion, z0);   // SI units
     law.load(h0, inContact)
@@ -67,10 +67,14 @@ const snapinContact = (() => {
   // [panel, xi, sign after].
   function turns(panels, coefficients, from = {panel: 0, xi: -1}) {
     const found = [];
+    let before = 0;
     panels.forEach((panel, index) => {
       if (index < from.panel) return;
       const slope = slopeOf(coefficients(panel)), bend = slopeOf(slope), parts = 24;
-      const start = index === from.panel ? from.xi : -1;
+      const start = index === from.panel ? from.xi : -1, first = value(slope, start);
+      // Between two panels, whose slopes there differ by the rounding of the tables.
+      if (before * first < 0) found.push({panel: index, sign: Math.sign(first), xi: start});
+      before = value(slope, 1);
       const places = [];
       for (let i = 0; i <= parts; ++i) places.push(start + (1 - start) * i / parts);
       // Where the slope has an extremum its sign may change twice.

@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
-"""Make the contact law: its coefficients, the C header, and the calculator.
+"""Make the contact law: its coefficients, the C header, the JavaScript, and the calculator.
 
     tools/contact_law.py                    the law of the project, of Lennard-Jones 9-3: minutes
-    tools/contact_law.py --remake           header and calculator again from its coefficients
+    tools/contact_law.py --remake           the files again from its coefficients
     tools/contact_law.py --deck DECK --out FOLDER   the law of another force: that of a deck
 
+The calculator contains the JavaScript, so that it is one file.
 --tabor LOW HIGH restricts the range of Tabor's parameter. The deck's force needs a z0, one
 attractive well without a barrier, and a decay as a power of the gap or exponential.
 """
@@ -76,7 +77,8 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--deck", type=pathlib.Path, help="a deck, of which the force counts")
     parser.add_argument("--out", type=pathlib.Path, help="folder of another force's files")
-    parser.add_argument("--remake", action="store_true", help="only header and calculator")
+    parser.add_argument("--remake", action="store_true",
+                        help="only header, JavaScript and calculator")
     parser.add_argument("--tabor", type=float, nargs=2, metavar=("LOW", "HIGH"),
                         default=(law_tables.LEAST, law_tables.LARGEST))
     parser.add_argument("--states", type=int, default=STATES, help="random states for the errors")

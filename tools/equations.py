@@ -5,8 +5,8 @@
 
 The index is made from comments: a number in brackets, as in "equation (17)" or "(39) of the paper",
 in a comment of `src/` (with the procedure that the comment precedes or is in), in the texts and
-comments of a test, and in those of a figure's chapter. A number in brackets in these comments always
-is an equation of the paper. Equations that no comment names have a reason here.
+comments of a test, and in those of a figure's chapter. A number in brackets in these comments is
+always an equation of the paper. Equations that no comment names have a reason here.
 """
 
 import ast
@@ -140,8 +140,8 @@ def page():
         "Each equation of Attard and Parker (1992), where the program computes it, the tests that",
         "name it, and the [figures](reproduction/report.md) of the paper in whose chapters it",
         "occurs. `tools/equations.py` makes this page from the comments of the sources.", "",
-        "The method of section II C, (14) to (20), can be read in `src/equilibrium/`, beginning with",
-        "`h0_step.f90`.", "",
+        "The method of section II C, (14) to (20), can be read in `src/equilibrium/`, beginning",
+        "with `h0_step.f90`.", "",
         "| equation | | file and procedure | test | figure |", "|---|---|---|---|---|"]
     for number, where in index().items():
         source = "<br>".join(_place(path, names) for path, names in where["source"].items())

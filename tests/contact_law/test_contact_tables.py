@@ -2,6 +2,7 @@
 and it makes the law of another force."""
 
 import json
+import re
 
 import contact_law as tool
 import law_calculator
@@ -12,7 +13,7 @@ import law_tables
 import numpy as np
 import pytest
 from snapin.contact_law import ContactLaw, coefficients
-from support.contact_header import COMPILER, Header, bodies_at
+from support.contact_header import COMPILER, NUMBERS, Header, bodies_at, parted
 
 
 @pytest.mark.parametrize("place, text", [
@@ -21,6 +22,14 @@ from support.contact_header import COMPILER, Header, bodies_at
 def test_files_of_the_project_are_made_from_its_table(place, text):
     assert place.read_text(encoding="utf-8") == text(coefficients()), (
         "bring them up to date with: tools/contact_law.py --remake")
+
+
+def test_the_page_has_the_errors_of_the_table():
+    page = (tool.pages.ROOT / "docs" / "tables.md").read_text(encoding="utf-8")
+    told = re.findall(r"^\| .* \| (\d\.\de-\d) \|$", page, re.MULTILINE)
+    measured = coefficients()["errors"]["within"]["largest"]
+    assert told == [f"{error:.1e}".replace("e-0", "e-") for error, _ in measured.values()]
+    assert list(measured) == list(law_errors.KINDS) and len(told) == 6
 
 
 def whole_numbers(tables):
@@ -108,6 +117,24 @@ def test_functions_that_round_to_nothing_are_nothing(tmp_path):
     assert failed == 0 and found["load"] == pytest.approx(law.load(h0), rel=1e-8)
     # Without what was rounded away the law is nearly the same.
     assert law.load(h0) == pytest.approx(ContactLaw(*bodies_at(0.5)).load(h0), rel=1e-2)
+
+
+@pytest.mark.skipif(COMPILER is None, reason="no C compiler")
+def test_a_turn_between_two_panels_is_found(tmp_path):
+    """The slopes of two tiles may differ so that a turn lies in neither. In Python such a law had
+    no jumps, where the header found them."""
+    table, mus = parted(coefficients())
+    header = tmp_path / "snapin_contact.h"
+    header.write_text(law_header.header_text(table), encoding="utf-8")
+    called = Header(tmp_path, header)
+    for mu in mus:
+        law, exact = ContactLaw(*bodies_at(mu), table=table), ContactLaw(*bodies_at(mu))
+        assert law.jumps
+        # As far as the change of the table goes.
+        assert law.snap_in == pytest.approx(exact.snap_in, abs=1e-3*law.z0)
+        numbers = called(bodies_at(mu), [], 0)[3]
+        for name in NUMBERS:
+            assert numbers[name] == pytest.approx(getattr(law, name), rel=1e-7), name
 
 
 @pytest.mark.parametrize("groups, reason", [

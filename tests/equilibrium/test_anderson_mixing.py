@@ -65,8 +65,8 @@ def test_iterations_end_where_the_deck_says():
 
 
 def test_stability_is_that_of_the_dense_eigenvalues():
-    """Of gaps that are no equilibria as well, so that the smallest eigenvalue has either sign; one
-    of less than a tenth is not judged."""
+    """Equations (24) and (25), of gaps that are no equilibria as well, so that the smallest
+    eigenvalue has either sign; one of less than a tenth is not judged."""
     judged = {True: 0, False: 0}
     for seed in range(40):
         rng = np.random.default_rng(seed)

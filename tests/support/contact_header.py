@@ -1,5 +1,6 @@
 """The header of the contact law, compiled and called through ctypes."""
 
+import copy
 import ctypes
 import pathlib
 import shutil
@@ -36,6 +37,8 @@ int values(const double *b, int n, const double *h0, const int *before, double *
   return failed;
 }
 """
+# Tabor's parameters on all panels, at their ends, at the cusp and beyond the tables.
+MUS = [1e-8, 1e-3, 0.0299, 0.0301, 0.3, 0.696, 0.6973, 0.72, 0.9, 1.4, 5, 40, 199, 201, 3000]
 FUNCTIONS = "load", "contact_radius", "stiffness", "energy"
 NUMBERS = ("pull_off", "pull_off_h0", "snap_in", "snap_off", "snap_in_load", "snap_off_load",
            "energy_lost", "tabor")
@@ -73,3 +76,38 @@ class Header:
 def bodies_at(mu, radius=2e-6, work=0.04, z0=0.35e-9):
     """Radius, E*, work of adhesion and z0 with a Tabor parameter."""
     return radius, np.sqrt(radius*work**2/(mu*z0)**3), work, z0
+
+
+def gaps_of(law, generator):
+    """h0 of all kinds: about the jumps, far and deep."""
+    size = max(1.0, law.tabor)
+    return law.z0*np.concatenate([
+        generator.uniform(-6*size, 8*size, 400), 10**generator.uniform(0, 8, 60),
+        -10**generator.uniform(-3, 9, 60)])
+
+
+def scales_of(law):
+    """The unit of each function."""
+    load = np.pi*law.work_of_adhesion*law.radius
+    return {"load": load, "contact_radius": np.sqrt(law.radius*law.z0),
+            "stiffness": load/law.z0, "energy": load*law.z0}
+
+
+def allowed(law, name, h0, expected):
+    """How far two programs of one law may differ at h0: by the ends of their iterations, since near
+    a jump the functions have infinite slopes over h0; far apart by rounding."""
+    near = scales_of(law)[name]*(1 + law.tabor)*(h0 < 40*law.z0*max(1.0, law.tabor)**0.5)
+    return 1e-8*(np.abs(expected) + near)
+
+
+def parted(table):
+    """A table in which a turn of h0 lies between two panels, and Tabor's parameters about it.
+
+    At 0.75754 snap-in passes from the second to the first tile outside contact. The slope of the
+    second is lowered by more than the slopes of the two differ by there.
+    """
+    changed = copy.deepcopy(table)
+    near = next(panel for panel in changed["near"]
+                if panel["variable"] == "mu" and np.exp(panel["high"]) > 0.75754)
+    near["outside"][1][0]["rows"][0][1] -= 1000
+    return changed, np.linspace(0.757, 0.7582, 13)

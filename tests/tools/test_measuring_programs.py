@@ -71,6 +71,17 @@ def test_the_true_numbers_of_the_deck_of_accuracy_are_those_of_the_program(bench
         assert summary[name] == pytest.approx(float(value), rel=2e-10), name
 
 
+def test_the_tables_of_methods_are_made_of_their_measurements(bench):
+    import methods_page
+    import pages
+    import tables
+
+    rows, cycles = (tables.read(ROOT / "docs/bench" / name)
+                    for name in ("methods.csv", "methods_cycles.csv"))
+    page = (ROOT / "docs/methods.md").read_text(encoding="utf-8")
+    assert pages.replaced(page, "methods", methods_page.lines(rows, cycles)) == page
+
+
 class Known:
     """A program that knows methods, and whose runs end at once."""
 

@@ -31,7 +31,7 @@ def measure(program, quick, say):
     _lay_out_data(program)
     rows = []
     for problem in asked:
-        reference = (program.reference(problem) if problem.sigma == problem.sigma else
+        reference = (program.reference(problem) if problem.sigma is not None else
                      program.run(problem.path(f"accuracy = {_REFERENCE}"), _PATIENCE))
         for accuracy, run in _runs(program, quick, {
                 accuracy: problem.path(f"accuracy = {accuracy}") for accuracy in ACCURACIES}):

@@ -12,7 +12,6 @@ is that of the dense matrix at the solution. Beside the states stand whole cycle
 """
 
 import argparse
-import csv
 import pathlib
 import sys
 import warnings
@@ -23,8 +22,10 @@ TOP = pathlib.Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(TOP / "tools" / "bench"), str(TOP / "tools"), str(TOP / "build" / "pywrap"),
                 str(TOP / "pywrap"), str(TOP / "pywrap" / "plots")]
 
-import pictures  # noqa: E402 (found through the lines above)
+import methods_page  # noqa: E402 (found through the lines above)
+import pages  # noqa: E402
 import snapin  # noqa: E402
+import tables  # noqa: E402
 
 # Scenes in units of the law's length are beyond small strains, which does not matter here.
 warnings.simplefilter("ignore", snapin.SnapinWarning)
@@ -32,7 +33,6 @@ warnings.simplefilter("ignore", snapin.SnapinWarning)
 TABLE, CYCLES, PICTURE = (TOP / "docs" / "bench" / name for name in (
     "methods.csv", "methods_cycles.csv", "methods.png"))
 GUIDE = TOP / "docs" / "methods.md"
-BEGIN, END = "<!-- methods -->", "<!-- end of methods -->"
 
 SIGMAS = (0.0087, 0.087, 0.3, 0.87, 8.7, 100.0, 1000.0)
 LAMBDAS = (1.0, 1e2, 1e4)
@@ -231,129 +231,6 @@ def _median(values):
     return float(np.median(values)) if values else float("nan")
 
 
-def save(rows, path, fields):
-    with path.open("w", newline="", encoding="utf-8") as file:
-        writer = csv.DictWriter(file, fields, lineterminator="\n")
-        writer.writeheader()
-        writer.writerows({key: f"{value:.4g}" if isinstance(value, float) else value
-                          for key, value in row.items()} for row in rows)
-
-
-def load(path):
-    with path.open(encoding="utf-8") as file:
-        return [{key: _value(value) for key, value in row.items()} for row in csv.DictReader(file)]
-
-
-def _value(cell):
-    try:
-        return float(cell)
-    except ValueError:
-        return cell
-
-
-SHOWN = (("mixing", "", "", "mixing"), ("anderson_mixing", 5, 0.2, "anderson_mixing, depth 5"),
-         ("anderson_mixing", 10, 0.2, "anderson_mixing, 10"),
-         ("anderson_mixing", 20, 0.2, "anderson_mixing, 20"),
-         ("anderson", 0, "", "frozen Jacobian alone"), ("anderson", 1, "", "anderson, depth 1"),
-         ("anderson", 5, "", "anderson, 5"), ("anderson", 20, "", "anderson, 20"),
-         ("newton", "", "", "newton"))
-
-
-def _of(rows, mesh, method, depth, ratio):
-    return [row for row in rows if (row["mesh"], row["method"], row["depth"], row["ratio"]) ==
-            (mesh, method, depth, ratio)]
-
-
-def table(rows):
-    """Return the table: products, factorisations in brackets, a note where states are lost."""
-    cases = list(dict.fromkeys((row["law"], row["strength"]) for row in rows))
-    names = [f"{'σ' if law == LennardJones.name else 'Λ'} = {strength:g}"
-             for law, strength in cases]
-    lines = []
-    for mesh, title in (("uniform", f"Uniform, {NODES} nodes"), ("edge", "Panels about the edge")):
-        lines += [f"| {title} | " + " | ".join(names) + " |", "|---" * (len(cases) + 1) + "|"]
-        one = {case: next(row for row in rows if (row["law"], row["strength"], row["mesh"]) ==
-                          (*case, mesh)) for case in cases}
-        if mesh == "uniform":
-            lines.append("| spacing over the neck | " + " | ".join(
-                f"{one[case]['resolution']:.2g}".replace("e+0", "e") if one[case]["resolution"]
-                else "" for case in cases) + " |")
-        lines.append("| smallest eigenvalue | " + " | ".join(
-            f"{one[case]['least']:.2g}" for case in cases) + " |")
-        lines.append("| largest eigenvalue | " + " | ".join(
-            f"{one[case]['largest']:.2g}".replace("e+0", "e") for case in cases) + " |")
-        for method, depth, ratio, name in SHOWN:
-            cells = []
-            for case in cases:
-                row = next(row for row in _of(rows, mesh, method, depth, ratio)
-                           if (row["law"], row["strength"]) == case)
-                cells.append(_cell(row))
-            lines.append(f"| {name} | " + " | ".join(cells) + " |")
-        lines.append("")
-    return "\n".join(lines)
-
-
-def _cell(row):
-    if not row["converged"]:
-        return "–"
-    text = f"{row['products']:.0f}"
-    if row["factorisations"]:
-        text += f" ({row['factorisations']:.0f})"
-    if row["converged"] < row["states"]:
-        text += f", {row['converged']:.0f} of {row['states']:.0f}"
-    return text
-
-
-def cycle_table(cycles):
-    """Return the table of the cycles: milliseconds, and products in thousands."""
-    lines = ["| cycle of 202 states, ms (products) | " + " | ".join(
-        f"σ = {sigma:g}" for sigma in SIGMAS) + " |", "|---" * (len(SIGMAS) + 1) + "|"]
-    for name, *_ in CYCLE_METHODS:
-        cells = []
-        for sigma in SIGMAS:
-            mine = [row for row in cycles if (row["method"], row["strength"]) == (name, sigma)]
-            cells.append(_cycle_cell(mine[0]) if mine else "–")
-        lines.append(f"| {name} | " + " | ".join(cells) + " |")
-    return "\n".join(lines) + "\n"
-
-
-def _cycle_cell(row):
-    text = f"{row['milliseconds']:.{0 if row['milliseconds'] > 10 else 1}f} ({row['products']:.0f})"
-    if row["converged"] < row["states"]:
-        text += f", {row['converged']:.0f} of {row['states']:.0f}"
-    return text
-
-
-def draw(rows, cycles):
-    page, panels = pictures.figure(1, 3, (12.0, 4.4))
-    for panel, mesh, title in ((panels[0], "uniform", f"one state, {NODES} equal steps of r"),
-                               (panels[1], "edge", "one state, panels about the edge")):
-        pictures.dress(panel, title, "σ", "products for a state")
-        for (method, depth, ratio, label), look in zip(
-                [SHOWN[k] for k in (0, 1, 2, 3, 4, 6, 8)], pictures.LOOKS):
-            mine = [row for row in _of(rows, mesh, method, depth, ratio)
-                    if row["law"] == "lennard_jones"]
-            # Where no state converged, the number is NaN, and the line is interrupted.
-            panel.plot([row["strength"] for row in mine], [row["products"] for row in mine], **look,
-                       label=label, markersize=5)
-            lost = [row for row in mine if row["converged"] < row["states"]]
-            panel.plot([row["strength"] for row in lost], [row["products"] for row in lost],
-                       linestyle="none", **look, markerfacecolor="white", markersize=7)
-        panel.set_ylim(2, 6000)
-    pictures.dress(panels[2], "a cycle of 202 states", "σ", "time [ms]")
-    names = {"mixing": 0, "anderson_mixing, depth 5": 1, "anderson_mixing, 10": 2,
-             "anderson_mixing, 20": 3, "anderson": 5, "newton": 6, "default": 7}
-    for name, place in names.items():
-        mine = [row for row in cycles if row["method"] == name]
-        look = dict(pictures.LOOKS[place])
-        label = {"default": "default: edge-locked, along the path"}.get(name)
-        panels[2].plot([row["strength"] for row in mine], [row["milliseconds"] for row in mine],
-                       **look, label=label, markersize=5)
-    pictures.explain(panels[0], "some states lost", linestyle="none", **pictures.OPEN)
-    pictures.legend(page, 5)
-    pictures.save(page, PICTURE)
-
-
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--draw", action="store_true", help="from the present measurements")
@@ -361,14 +238,11 @@ def main():
         def say(text):
             print(text, file=sys.stderr, flush=True)
 
-        save(measure(say), TABLE, FIELDS)
-        save(measure_cycles(say), CYCLES, CYCLE_FIELDS)
-    rows, cycles = load(TABLE), load(CYCLES)
-    draw(rows, cycles)
-    text = GUIDE.read_text(encoding="utf-8")
-    before, rest = text.split(BEGIN)
-    GUIDE.write_text(f"{before}{BEGIN}\n\n{table(rows)}\n{cycle_table(cycles)}\n{END}{rest.split(END)[1]}",
-                     encoding="utf-8")
+        tables.write(TABLE, measure(say), [])
+        tables.write(CYCLES, measure_cycles(say), [])
+    rows, cycles = tables.read(TABLE), tables.read(CYCLES)
+    methods_page.draw(rows, cycles, PICTURE)
+    pages.insert(GUIDE, "methods", methods_page.lines(rows, cycles), measured=False)
 
 
 if __name__ == "__main__":

@@ -23,7 +23,7 @@ class Problem:
     step: float
     adhesive: bool = True
     # Strength of adhesion of a Lennard-Jones problem, whose numbers are known independently.
-    sigma: float = math.nan
+    sigma: float | None = None
 
     @property
     def load(self):

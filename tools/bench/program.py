@@ -185,7 +185,7 @@ class Program:
         """Return the true numbers: those of the independent solution for a Lennard-Jones problem,
         otherwise a converged run, the path with the highest accuracy of the program."""
         key = problem.name
-        if problem.sigma == problem.sigma:
+        if problem.sigma is not None:
             return independent(problem)
         if key not in self._references:
             self._references[key] = self.run(problem.path(

@@ -3,6 +3,8 @@
 import json
 import pathlib
 
+from snapin.contact_tables import DEEP_PANELS
+
 FOLDER = pathlib.Path(__file__).resolve().parent
 
 
@@ -10,6 +12,7 @@ def script_text(law):
     """Return the law in JavaScript."""
     kept = {name: value for name, value in law.items() if name not in ("errors", "force")}
     text = (FOLDER / "snapin_contact.js.in").read_text(encoding="utf-8")
+    text = text.replace("@DEEP@", str(DEEP_PANELS))
     return text.replace("@LAW@", json.dumps(kept, separators=(",", ":")))
 
 

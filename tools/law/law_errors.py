@@ -1,8 +1,9 @@
 """Errors of a contact law at random states of solved paths."""
 
 import numpy as np
+from law_states import jkr, jkr_root, path
 from snapin.contact_law import ContactLaw
-from law_states import GAP, jkr, jkr_root, path
+from snapin.contact_tables import GAP
 
 # What is measured, and in what it is told.
 KINDS = {

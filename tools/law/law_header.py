@@ -3,12 +3,12 @@
 import pathlib
 import textwrap
 
-import numpy as np
 from law_errors import KINDS
+from law_states import jkr_root
+from snapin.contact_tables import DEEP_PANELS, GAP, SPREAD
 
 TEMPLATE = pathlib.Path(__file__).with_name("snapin_contact.h.in")
 LICENSE = pathlib.Path(__file__).resolve().parents[2] / "LICENSE"
-DEEP_PANELS = 8
 
 
 class Numbers:
@@ -27,6 +27,10 @@ class Numbers:
             raise OverflowError("a coefficient exceeds 32 bits")
         return len(self.starts) - 1
 
+    def add_tiles(self, tiles):
+        """Append the tables of tiles and return the place of the first."""
+        return [self.add(table) for tile in tiles for table in tile][0]
+
 
 def array(kind, name, values):
     """Return the definition of an array in lines of up to 100 columns."""
@@ -40,19 +44,11 @@ def tables_text(law):
     store = Numbers()
     near, deep = [], []
     for panel in law["near"]:
-        first = len(store.starts)
-        for tile in panel["outside"] + panel["contact"]:
-            for table in tile:
-                store.add(table)
+        near.append((panel, store.add_tiles(panel["outside"] + panel["contact"])))
         if panel["energy"]:
             store.add(panel["energy"])
-        near.append((panel, first))
     for panel in law["deep"]:
-        first = len(store.starts)
-        for tile in panel["tiles"]:
-            for table in tile:
-                store.add(table)
-        deep.append((panel, first))
+        deep.append((panel, store.add_tiles(panel["tiles"])))
     wall = store.add(law["wall"])
     most = [max(len(panel[name]) for panel, _ in near)
             for name in ("outside_edges", "contact_edges")]
@@ -65,9 +61,9 @@ def tables_text(law):
         "tail": -law["tail"], "decay": law["decay"] or 1.0, "least": law["least"],
         "largest": law["largest"], "lowest": law["lowest"],
         "highest": law["highest"],
-        "gap_of_mu": (9*np.pi**2/16)**(1/3),
-        "radius_of_sigma": (1.5*np.pi)**(1/3), "join_load": law["join_load"],
-        "join_root": float(((np.sqrt(6) + np.sqrt(6 + 4*law["join_load"]))/2)**(1/3)),
+        "gap_of_mu": GAP,
+        "radius_of_sigma": SPREAD, "join_load": law["join_load"],
+        "join_root": float(jkr_root(law["join_load"])),
         "wall_low": law["wall_low"], "wall_high": law["wall_high"]}
     lines = [f"static const double snapin_contact_{name}_ = {value:.17g};"
              for name, value in constants.items()]
@@ -109,8 +105,8 @@ def about(law):
     groups = "; ".join(
         f"&{name} " + ", ".join(f"{key} = {value}" for key, value in keys.items())
         for name, keys in law["force"].items())
-    lines = textwrap.wrap(f"Force: {law['title']}, from a deck with {groups}. It scales with work of "
-                          "adhesion and z0.", 98)
+    lines = textwrap.wrap(f"Force: {law['title']}, from a deck with {groups}. It scales with work "
+                          "of adhesion and z0.", 98)
     for name in ("within", "below", "above"):
         found = law.get("errors", {}).get(name)
         if found:

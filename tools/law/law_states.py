@@ -19,10 +19,6 @@ IGNORED = {"scene", "bodies", "loading", "unloading", "equilibrium_path", "devic
            "table", "sensitivity", "regime", "profiles", "approximations", "classical",
            "stability", "sweep", "numerics", "summary", "cost"}
 WITH_Z0 = "force", "born", "morse"
-# JKR theory's units of h0 and of the contact radius, with K = 4 E*/3: (pi^2 w^2 R/K^2)^(1/3) is
-# GAP mu z0, and (pi w R^2/K)^(1/3) is SPREAD sigma^(1/3) sqrt(R z0).
-GAP = (9*np.pi**2/16)**(1/3)
-SPREAD = (1.5*np.pi)**(1/3)
 
 
 class Unsuitable(Exception):
