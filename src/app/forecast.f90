@@ -21,7 +21,7 @@ module forecast
   use progress, only: duration
   implicit none
   private
-  public :: advice_t, advice_on, spectrum_t, spectrum_of, iterations_of
+  public :: advice_t, advice_on
 
   type :: advice_t
     character(len=:), allocatable :: text
