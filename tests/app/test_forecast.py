@@ -1,4 +1,4 @@
-"""Claims about warnings before a run: hopeless numerical choices are named, good ones are not."""
+"""Claims about warnings before a run: choices that fail or take long are named, others are not."""
 
 import random
 import re
