@@ -21,7 +21,7 @@ module forecast
   use progress, only: duration
   implicit none
   private
-  public :: advice_t, advice_on, spectrum_t, spectrum_of, iterations_of
+  public :: advice_t, advice_on
 
   type :: advice_t
     character(len=:), allocatable :: text
@@ -133,7 +133,7 @@ contains
   !> The eigenvalues at an H0 in contact. The pressure in the middle of the contact is that of JKR
   !> or Hertz theory. Where the slope of the law is proportional to a pressure of Hertz, the row of
   !> -W p' on the axis has the sum pi coupling a |p'|, which no eigenvalue exceeds. The edge moves
-  !> nearly freely, and the less the narrower its neck is.
+  !> nearly freely: the narrower its neck, the smaller the eigenvalue.
   type(spectrum_t) function spectrum_of(problem, h0) result(spectrum)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: h0

@@ -13,9 +13,10 @@ module price
   use case_columns, only: columns_of, column_width
   use cost_columns, only: cost_columns_of
   use sweep_case, only: run_case
-  use price_table, only: price_row_t, keys, put_head, put_row, conclude
+  use price_table, only: price_row_t, keys, head_of, text_of_row, conclusion_of
   use mesh_store, only: mesh_store_t
   use preflight, only: check_room
+  use files, only: write_stdout
   use result_folder, only: to_stream
   use linear_algebra, only: claim_buffers
   use progress, only: progress_t
@@ -30,10 +31,12 @@ module price
   !> the first grid has this part of the nodes.
   real(wp), parameter :: accuracies(rows) = [1e-3_wp, 1e-4_wp, 1e-6_wp, 1e-8_wp, 1e-10_wp], &
     drive_range = 100, least_accurate = 0.1_wp, grid_range = 4
+
 contains
 
   !> Prints the table of a scene, whose deck has the name `name`. quiet: without progress.
-  !> converged: whether all rows were computed. error: the deck has no such table.
+  !> converged: whether all rows were computed. error: the deck has no such table, or it cannot be
+  !> written.
   subroutine price_scene(scene, name, quiet, converged, error)
     type(scene_t), intent(in) :: scene
     character(len=*), intent(in) :: name
@@ -67,12 +70,15 @@ contains
       call read_case(varied, problem, row(i))
       if (i == 1) then
         shown = .not. ieee_is_nan(row(1)%error) .or. .not. row(1)%case%converged
-        call put_head(name, varied%sweep%names, shown)
+        call write_stdout(head_of(name, varied%sweep%names, shown), error)
+        if (allocated(error)) return
       end if
-      call put_row(row(i), shown, any(row(:i - 1)%case%warning == row(i)%case%warning))
+      call write_stdout(text_of_row(row(i), shown, &
+        any(row(:i - 1)%case%warning == row(i)%case%warning)), error)
+      if (allocated(error)) return
     end do
     converged = all([(row(i)%case%converged, i=1, rows)])
-    call conclude(varied%sweep%names, row)
+    call write_stdout(conclusion_of(varied%sweep%names, row), error)
   end subroutine price_scene
 
   !> Fails for a deck that is more than one run, or no calculation of states.

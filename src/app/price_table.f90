@@ -1,13 +1,12 @@
-!> The table of what accuracy costs: its rows, and the sentences below it.
+!> The text of the table of what accuracy costs: its rows, and the sentences below it.
 module price_table
   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
-  use, intrinsic :: iso_fortran_env, only: output_unit
   use kinds, only: wp, nan
   use text, only: brief, rounded
   use sweep_case, only: case_t
   implicit none
   private
-  public :: price_row_t, keys, put_head, put_row, conclude
+  public :: price_row_t, keys, head_of, text_of_row, conclusion_of
 
   !> The numbers whose errors are shown, and the names of their columns.
   character(len=*), parameter :: keys(*) = [character(len=17) :: 'max_tension', 'jump_in_h0', &
@@ -19,6 +18,7 @@ module price_table
   character(len=*), parameter :: aim_names(*) = [character(len=15) :: 'errors of 1 %', &
     'errors of 0.1 %', 'six digits', 'nine digits']
   integer, parameter :: width = 13
+  character(len=1), parameter :: nl = new_line('a')
 
   !> One row: its case, time [s], estimated error, and the shown numbers with their relative errors.
   type :: price_row_t
@@ -29,24 +29,26 @@ module price_table
 
 contains
 
-  !> Prints the title and the names of the columns; `varied` is the key with the values of the
-  !> rows, `shown` says which of `keys` are columns.
-  subroutine put_head(name, varied, shown)
+  !> The title and the names of the columns; `varied` is the key with the values of the rows,
+  !> `shown` says which of `keys` are columns.
+  function head_of(name, varied, shown) result(text)
     character(len=*), intent(in) :: name, varied
     logical, intent(in) :: shown(:)
+    character(len=:), allocatable :: text
     character(len=width) :: cells(6)
 
-    call put(name//': processor time without start and files, and estimated relative errors')
     cells = [character(len=width) :: varied(index(varied, '.') + 1:), 'time', 'nodes', 'states', &
       'products', 'error']
-    call put_cells([cells, pack([character(len=width) :: names], shown)])
-  end subroutine put_head
+    text = name//': processor time without start and files, and estimated relative errors'//nl// &
+      line_of([cells, pack([character(len=width) :: names], shown)])
+  end function head_of
 
-  !> Prints a row, with the reason of a failure below it, or with its first warning, unless this
-  !> was `told` before.
-  subroutine put_row(row, shown, told)
+  !> A row, with the reason of a failure below it, or with its first warning, unless this was
+  !> `told` before.
+  function text_of_row(row, shown, told) result(text)
     type(price_row_t), intent(in) :: row
     logical, intent(in) :: shown(:), told
+    character(len=:), allocatable :: text
     character(len=width) :: cells(6 + count(shown))
     integer :: i, k
 
@@ -63,43 +65,43 @@ contains
       k = k + 1
       if (.not. ieee_is_nan(row%error(i))) cells(k) = two_digits(row%error(i))
     end do
-    call put_cells(cells)
-    if (row%case%failure /= '') call put('    failed: '//trim(row%case%failure))
-    if (row%case%warning /= '' .and. .not. told) call put('    warning: '//trim(row%case%warning))
-  end subroutine put_row
+    text = line_of(cells)
+    if (row%case%failure /= '') text = text//'    failed: '//trim(row%case%failure)//nl
+    if (row%case%warning /= '' .and. .not. told) &
+      text = text//'    warning: '//trim(row%case%warning)//nl
+  end function text_of_row
 
-  !> Says which row is enough for what, what a digit costs, and whether the rows agree.
-  subroutine conclude(varied, row)
+  !> Which row is enough for what, what a digit costs, and whether the rows agree.
+  function conclusion_of(varied, row) result(text)
     character(len=*), intent(in) :: varied
     type(price_row_t), intent(in) :: row(:)
-    character(len=:), allocatable :: key, purpose
-    logical :: good(size(row)), told
+    character(len=:), allocatable :: text, key, purpose
+    logical :: good(size(row))
     integer :: i, k, first, last
     real(wp) :: digits, off
 
+    text = ''
     key = varied(index(varied, '.') + 1:)
     good = [(row(i)%case%converged .and. .not. ieee_is_nan(row(i)%estimate), i=1, size(row))]
     first = findloc(good, .true., dim=1)
     last = findloc(good, .true., dim=1, back=.true.)
     if (first == 0) return
-    told = .false.
     do i = 1, size(row)
       purpose = ''
       do k = 1, size(aims)
         if (first_below(aims(k)) == i) purpose = trim(aim_names(k))
       end do
       if (purpose == '') cycle
-      told = .true.
-      call put(key//' = '//brief(row(i)%case%values(1))//' is enough for '//purpose//': '// &
-        time_of(row(i)%seconds))
+      text = text//key//' = '//brief(row(i)%case%values(1))//' is enough for '//purpose//': '// &
+        time_of(row(i)%seconds)//nl
     end do
-    if (.not. told) call put('no row has an estimated error below 1 %')
+    if (text == '') text = 'no row has an estimated error below 1 %'//nl
     if (row(first)%estimate > 0 .and. row(last)%estimate > 0) then
       digits = log10(row(first)%estimate/row(last)%estimate)
       if (digits > 0.5_wp .and. row(last)%seconds > row(first)%seconds) &
-        call put('each further digit costs '// &
+        text = text//'each further digit costs '// &
         time_of((row(last)%seconds - row(first)%seconds)/digits)//', a factor of '// &
-        rounded((row(last)%seconds/row(first)%seconds)**(1/digits)))
+        rounded((row(last)%seconds/row(first)%seconds)**(1/digits))//nl
     end if
     do i = 1, last - 1
       if (.not. good(i)) cycle
@@ -107,9 +109,9 @@ contains
         if (index(keys(k), '_h0') > 0 .or. any(ieee_is_nan([row(i)%error(k), row(last)%error(k)])) &
           .or. .not. abs(row(last)%value(k)) > 0) cycle
         off = abs(row(i)%value(k)/row(last)%value(k) - 1)
-        if (off > row(i)%error(k) + row(last)%error(k)) call put('note: '// &
+        if (off > row(i)%error(k) + row(last)%error(k)) text = text//'note: '// &
           trim(names(k))//' at '//brief(row(i)%case%values(1))// &
-          ' differs from the last row by '//two_digits(off)//', more than estimated')
+          ' differs from the last row by '//two_digits(off)//', more than estimated'//nl
       end do
     end do
 
@@ -125,7 +127,8 @@ contains
       end do
       first_below = 0
     end function first_below
-  end subroutine conclude
+
+  end function conclusion_of
 
   !> A time with three digits.
   function time_of(seconds) result(text)
@@ -151,7 +154,8 @@ contains
     text = trim(adjustl(buffer))
   end function two_digits
 
-  subroutine put_cells(cells)
+  !> The line of a row of cells.
+  function line_of(cells) result(line)
     character(len=*), intent(in) :: cells(:)
     character(len=:), allocatable :: line
     integer :: i
@@ -160,16 +164,7 @@ contains
     do i = 2, size(cells)
       line = line//adjustr(cells(i)(:width - 1))//' '
     end do
-    call put(trim(line))
-  end subroutine put_cells
-
-  !> Prints a line at once; a full disk behind a redirection is no reason to end.
-  subroutine put(text)
-    character(len=*), intent(in) :: text
-    integer :: status
-
-    write (output_unit, '(a)', iostat=status) text
-    flush (output_unit, iostat=status)
-  end subroutine put
+    line = trim(line)//nl
+  end function line_of
 
 end module price_table

@@ -136,7 +136,7 @@ contains
       end if
     end subroutine take_up_earlier
 
-    !> Says which numerical choices are hopeless, before time is spent on them.
+    !> Says which numerical choices will fail or take long, before time is spent on them.
     subroutine warn_before()
       type(advice_t), allocatable :: advice(:)
       integer :: i

@@ -169,7 +169,7 @@ contains
     call dismiss(crew)
   end function run_decks
 
-  !> Prints the warnings of hopeless numerical choices.
+  !> Prints the warnings of numerical choices that will fail or take long.
   subroutine print_advice(scene, name)
     type(scene_t), intent(in) :: scene
     character(len=*), intent(in) :: name

@@ -33,9 +33,9 @@ contains
   !> Meshes for H0 from h0_high down to h0_low, accurate to the given number of digits
   !> (`mesh_rule`). shape_only: the kernels are left out, because only their size is needed. store:
   !> earlier meshes, to which these are added. coarser: meshes of fewer digits for the same problem
-  !> and range; keep: their panels are kept where these were laid out for seen gaps. fronts: whether
-  !> meshes may be locked to the front of a step; further: whether meshes may be inserted later;
-  !> both .true. if absent.
+  !> and range; keep: their panels are kept where these were laid out for computed gaps. fronts:
+  !> whether meshes may be locked to the front of a step; further: whether meshes may be inserted
+  !> later; both .true. if absent.
   function new_mesh_family(problem, h0_high, h0_low, digits, shape_only, store, coarser, keep, &
     fronts, further) result(meshes)
     type(problem_t), intent(in) :: problem
@@ -116,8 +116,8 @@ contains
 
   !> Chooses the shape of a mesh from a coarser one with more nodes on its panels: if a new layout
   !> would have fewer nodes than this, as under laws for which numbers of nodes were tried, and so
-  !> would have the same error. Meshes for seen gaps are laid out anew, since their panels may be
-  !> the cause of an error, unless they are to be kept.
+  !> would have the same error. Meshes for computed gaps are laid out anew, since their panels may
+  !> be the cause of an error, unless they are to be kept.
   subroutine follow(self, coarser, mesh, problem, keep)
     class(mesh_family_t), intent(inout) :: self
     type(mesh_family_t), intent(in) :: coarser
@@ -125,14 +125,14 @@ contains
     type(problem_t), intent(in) :: problem
     logical, intent(in) :: keep
     type(mapped_shape_t) :: richer
-    logical :: for_seen
+    logical :: for_computed
 
     if (size(coarser%shape) /= size(self%shape)) return
     if (.not. allocated(coarser%grid(mesh)%kernel)) return
-    for_seen = coarser%inserted(mesh) .or. coarser%has_short_panels(mesh)
-    if (for_seen .and. .not. keep) return
+    for_computed = coarser%inserted(mesh) .or. coarser%has_short_panels(mesh)
+    if (for_computed .and. .not. keep) return
     richer = coarser%shape(mesh)%enriched(self%digits/coarser%digits, self%digits - coarser%digits)
-    if (.not. for_seen) then
+    if (.not. for_computed) then
       self%shape(mesh) = self%shape_for(problem, mesh)
       if (self%has_short_panels(mesh)) return
       if (.not. sum(self%shape(mesh)%order) < sum(richer%order)) return

@@ -12,7 +12,7 @@ module classical_rows
   use layered_contact, only: layered_contact_t, new_layered_contact, has_layers, of_load, &
     of_displacement
   use scene_groups, only: range_t
-  use quality_warnings, only: judge_theories
+  use model_warnings, only: judge_theories
   use results, only: results_t
   use summary, only: summary_t
   use text, only: rounded

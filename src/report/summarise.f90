@@ -23,7 +23,8 @@ module summarise
   use reading_rows, only: summarise_device, summarise_fixed_loads
   use regime_rows, only: summarise_regime
   use rate_entries, only: summarise_timed
-  use quality_warnings, only: judge_law, judge_run
+  use model_warnings, only: judge_law
+  use quality_warnings, only: judge_run
   implicit none
   private
   public :: summary_of

@@ -13,8 +13,7 @@ module files
     read_file, read_standard_input, is_terminal, write_stdout, write_stderr
 
   !> Numbers of the standard streams.
-  integer(c_int), parameter :: standard_input = 0, standard_output = 1, &
-    standard_error = 2
+  integer(c_int), parameter :: standard_input = 0, standard_output = 1, standard_error = 2
 
 contains
 
@@ -138,7 +137,6 @@ contains
   subroutine write_stdout(text, error)
     character(len=*), intent(in) :: text
     type(failure_t), allocatable, intent(out) :: error
-
     character(len=:), allocatable :: reason
     integer(c_int) :: status, sort
 

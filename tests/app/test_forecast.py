@@ -1,4 +1,4 @@
-"""Claims about warnings before a run: hopeless numerical choices are named, good ones are not."""
+"""Claims about warnings before a run: choices that fail or take long are named, others are not."""
 
 import random
 import re
@@ -35,8 +35,9 @@ def test_the_run_warns_before_it_begins(snapin, tmp_path):
     (tmp_path / "d.nml").write_text(
         cycle(8.7, 4.0, 4.0, method="mixing", nodes=50, max_iterations=100))
     done = snapin("d.nml", cwd=tmp_path)
-    assert "warning: in contact mixing needs about" in done.stderr.splitlines()[0] + \
-        done.stderr.splitlines()[1]
+    (first,) = [i for i, line in enumerate(done.stderr.splitlines())
+                if "warning: in contact mixing needs about" in line]
+    assert first < 2
     quiet = snapin("--quiet", "d.nml", cwd=tmp_path)
     assert "mixing needs" not in quiet.stderr
 
@@ -45,12 +46,11 @@ def test_the_run_warns_before_it_begins(snapin, tmp_path):
 def test_uniform_grids_are_judged_by_the_neck(said, seed):
     """0.375/sigma wide, in lateral units; at most a fifth of it between nodes resolves it."""
     rng = random.Random(seed)
-    sigma, reach = 10 ** rng.uniform(0.3, 2), rng.uniform(8.0, 20.0)
+    sigma, reach = 10 ** rng.uniform(0.3, 1.6), rng.uniform(8.0, 20.0)
     enough = reach / (0.2 * 0.375 / sigma)
     for factor, coarse in ((0.8, True), (1.3, False)):
         nodes = round(factor * enough) + 1
-        if not 2 <= nodes <= 20000:
-            continue
+        assert nodes <= 20000
         text = said(cycle(sigma, -1.0, grid="uniform", nodes=nodes, r_max=reach))
         assert ("will be pinned" in text) == coarse
         if coarse:

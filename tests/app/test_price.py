@@ -1,9 +1,11 @@
 """`snapin --price`: the deck at five accuracies, as a table."""
 
 import re
+import subprocess
 
 import pytest
 from conftest import ROOT
+from support.processes import HANG
 from support.scenes import deck, exponential, lennard_jones, loading
 
 CYCLE = {"loading": loading(7, -2, 0.5), "unloading": {"from_": [-2.0], "h0_end": 7.0}}
@@ -138,6 +140,17 @@ def test_several_decks_and_standard_input_each_have_a_table(snapin, tmp_path):
     assert (done.returncode, done.stderr) == (0, "")
     # Two decks of one stem are no mistake where nothing is written.
     assert re.findall(r"^(\S+): processor time", done.stdout, re.M) == ["a.nml", "deck", "a.txt"]
+
+
+def test_a_table_that_standard_output_does_not_take_is_a_failure(snapin_path, tmp_path):
+    """A full disk behind a redirection ended with status 0, and a table that was cut."""
+    (tmp_path / "d.nml").write_text(exponential(1.0, loading=loading(3, 0, 1.0)))
+    with open("/dev/full", "w", encoding="utf-8") as full:
+        done = subprocess.run([snapin_path, "--price", "--quiet", "d.nml"], cwd=tmp_path,
+                              stdout=full, stderr=subprocess.PIPE, text=True, timeout=HANG,
+                              check=False)
+    assert done.returncode == 1
+    assert done.stderr.startswith("d.nml: cannot write to standard output: ")
 
 
 def test_a_pressed_repulsion_has_no_columns_of_jumps(priced):

@@ -32,6 +32,7 @@ def pair(request, run):
 
 def test_what_is_read_is_off_by_no_more_than_estimated(pair):
     found, truth = pair
+    compared = 0
     for key in KEYS:
         values, errors, exact = (
             np.array(several(result.summary[name]), float)
@@ -42,8 +43,13 @@ def test_what_is_read_is_off_by_no_more_than_estimated(pair):
         # Below a digit of the truth's own error nothing is told.
         own = np.array(several(truth.summary[f"{key}_error"]), float)[there]
         assert (off <= errors[there] + 3 * own).all(), key
-        assert (errors[there] <= 100 * found.summary["error_estimate"] * abs(exact[there])
-                + 1e-6 * abs(exact[there]).max()).all() or "energy" in key or "regime" in key
+        if "energy" not in key and "regime" not in key:
+            assert (errors[there] <= 100 * found.summary["error_estimate"] * abs(exact[there])
+                    + 1e-6 * abs(exact[there]).max()).all()
+        compared += there.sum()
+    # One of each but of the errors of theories, which are three; Hertz's has fewer where bodies
+    # adhere strongly.
+    assert compared == (15 if found.summary["sigma"] < 0.1 else 13)
 
 
 def test_rows_under_fixed_loads_have_errors_that_hold(pair):
@@ -59,9 +65,10 @@ def test_the_estimate_of_the_run_covers_what_is_read(pair):
     estimate = found.summary["error_estimate"]
     for key in KEYS[:6]:
         exact = np.array(several(truth.summary[key]), float)
+        assert np.isfinite(exact).tolist() == [True]
         off = abs(np.array(several(found.summary[key]), float) - exact)
         scale = np.maximum(abs(exact), 1.0) if key.endswith("_z") else abs(exact)
-        assert (off <= estimate * scale)[np.isfinite(exact)].all(), key
+        assert (off <= estimate * scale).all(), key
     radius = [result.table("fixed_load.csv")["contact_radius"] for result in pair]
     assert (abs(radius[0] - radius[1]) <= estimate * radius[1]).all()
 

@@ -14,7 +14,7 @@ RIGID = deck(bodies={"radius": 1.0, "rigid": True},
 # Every name that a run may write or remove.
 NAMES = ["curve.csv", "profiles.csv", "approximations.csv", "classical.csv", "device.csv",
          "device_jumps.csv", "fixed_load.csv", "table.csv", "sensitivity.csv",
-         "curve_sensitivity.csv", "fit.csv", "fit.nml", "sweep.csv", "summary.nml"]
+         "curve_sensitivity.csv", "fit.csv", "fit.nml", "sweep.csv", "costs.csv", "summary.nml"]
 MINE = "z,force\n1,2\n"
 
 
