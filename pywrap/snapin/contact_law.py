@@ -2,14 +2,14 @@
 
 `ContactLaw` is the law of `contact_law/snapin_contact.h` with the same coefficients, which
 contact_law.json has; tools/contact_law.py makes both out of a deck. docs/tables.md explains the
-law. Here are SI units and arguments; `contact_path` has the law without units.
+law. Here are SI units and arguments; `_contact_path` has the law without units.
 """
 
 import numpy as np
 
 from .arguments import flags, positive, vector
-from .contact_path import ContactPath
-from .contact_tables import coefficients, tabor_of
+from ._contact_path import ContactPath
+from ._contact_tables import coefficients, tabor_of
 
 
 class ContactLaw:

@@ -28,6 +28,8 @@ def public_callables():
         if inspect.isfunction(getattr(snapin, name)):
             yield name, getattr(snapin, name)
     for module in pkgutil.iter_modules(snapin.__path__, "snapin."):
+        if module.name.startswith("snapin._"):
+            continue
         for name, thing in vars(importlib.import_module(module.name)).items():
             if name.startswith("_") or getattr(thing, "__module__", "") != module.name:
                 continue

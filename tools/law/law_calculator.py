@@ -3,7 +3,7 @@
 import json
 import pathlib
 
-from snapin.contact_tables import DEEP_PANELS
+from snapin._contact_tables import DEEP_PANELS
 
 FOLDER = pathlib.Path(__file__).resolve().parent
 

@@ -3,7 +3,7 @@
 import numpy as np
 from law_states import jkr, jkr_root, path
 from snapin.contact_law import ContactLaw
-from snapin.contact_tables import GAP
+from snapin._contact_tables import GAP
 
 # What is measured, and in what it is told.
 KINDS = {

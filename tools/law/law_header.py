@@ -5,7 +5,7 @@ import textwrap
 
 from law_errors import KINDS
 from law_states import jkr_root
-from snapin.contact_tables import DEEP_PANELS, GAP, SPREAD
+from snapin._contact_tables import DEEP_PANELS, GAP, SPREAD
 
 TEMPLATE = pathlib.Path(__file__).with_name("snapin_contact.h.in")
 LICENSE = pathlib.Path(__file__).resolve().parents[2] / "LICENSE"

@@ -17,7 +17,7 @@ series too.
 
 import numpy as np
 from law_states import Unsuitable, jkr, jkr_root, mu_of, path, sigma_of
-from snapin.contact_tables import GAP, SPREAD
+from snapin._contact_tables import GAP, SPREAD
 
 ORDER = 12           # coefficients of a function of the path on one tile
 UNIT = 1e-7          # what a coefficient is rounded to

@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.polynomial import chebyshev, polynomial
 
-from .polynomials import composed, folded, local, powers, series, solved
+from ._polynomials import composed, folded, local, powers, series, solved
 
 # JKR theory's units of h0 and contact radius, with K = 4 E*/3: (pi^2 w^2 R/K^2)^(1/3) is GAP mu z0,
 # and (pi w R^2/K)^(1/3) is SPREAD sigma^(1/3) sqrt(R z0), sigma = mu^(3/2)/2.

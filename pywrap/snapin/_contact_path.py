@@ -1,7 +1,7 @@
 """The contact at one Tabor parameter without units: the path from far apart to any depth.
 
 Gaps are in z0, contact radii in sqrt(R z0), loads in pi w R, and energies in pi w R z0. The path
-is a list of panels (`contact_tables`); beyond the first the bodies hardly deform, and beyond the
+is a list of panels (`_contact_tables`); beyond the first the bodies hardly deform, and beyond the
 last the contact is that of JKR theory.
 """
 
@@ -10,9 +10,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.polynomial import polynomial
 
-from .contact_tables import (
+from ._contact_tables import (
     JKR_ENERGY, JKR_GAP, JKR_LOAD, ROOT6, deep_panels, jkr_units, near_panels)
-from .polynomials import real_roots, solved
+from ._polynomials import real_roots, solved
 
 
 class _Place(NamedTuple):
