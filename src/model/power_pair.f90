@@ -50,7 +50,7 @@ contains
       law%rest_gap = 1
     end if
     law%group = 'force'
-    law%strength_key = 'surface_energy'
+    law%strength_key = 'work_of_adhesion'
     law%length_key = 'z0'
   end function new_power_pair
 

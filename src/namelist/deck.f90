@@ -121,8 +121,11 @@ contains
       else if (deck%values(row)%status == given) then
         what = 'given twice; the first is on line ' // &
           brief(deck%source%line_at(deck%values(row)%at))
+        if (deck%values(row)%name /= name) what = what // ', as ' // deck%values(row)%name // &
+          ', which means the same'
       else
         deck%values(row)%at = at
+        deck%values(row)%name = name
         deck%values(row)%status = given
         call interpret(deck%source, deck%specs(row), found%items(entry%first_item:entry%first_item &
           + entry%n_items - 1), deck%values(row), at, what)

@@ -5,7 +5,7 @@ module deck_keys
   implicit none
   private
   public :: key_spec, group_row, ignored_group, real_value, real_list, integer_value, &
-    logical_value, word_value, text_value, names_value, allowed, names_of, is_of, keys_text
+    logical_value, word_value, text_value, names_value, allowed, names_of, is_of, is_called, keys_text
 
   !> Kinds of row: a group, a group that is skipped, and seven kinds of key.
   integer, parameter :: group_row = 0, ignored_group = 1
@@ -36,6 +36,8 @@ module deck_keys
     logical :: spaced = .false.
     !> For a group: its defaults hold and are written even if the deck does not name it.
     logical :: always = .false.
+    !> An earlier name of the key, which decks may use instead.
+    character(len=24) :: former = ''
   end type key_spec
 
 contains
@@ -130,11 +132,22 @@ contains
           text = text // '    ' // trim(spec%meaning) // nl
         case default
           text = text // '  ' // spec%key // allowed(spec) // '; ' // default_text(spec) // nl
-          text = text // repeat(' ', 26) // trim(spec%meaning) // nl
+          text = text // repeat(' ', 26) // trim(spec%meaning)
+          if (spec%former /= '') text = text // ' Formerly ' // trim(spec%former) // '.'
+          text = text // nl
         end select
       end associate
     end do
   end function keys_text
+
+  !> Whether a row has the key `name`, by its present or its former name. The row of a group has the
+  !> key ''.
+  elemental logical function is_called(spec, name)
+    type(key_spec), intent(in) :: spec
+    character(len=*), intent(in) :: name
+
+    is_called = spec%key == name .or. (name /= '' .and. spec%former == name)
+  end function is_called
 
   !> Whether each row belongs to the group or key `name`, 'group' or 'group.key'.
   pure function is_of(specs, name) result(rows)
@@ -145,8 +158,8 @@ contains
 
     dot = index(name // '.', '.')
     rows = specs%group == name(:dot - 1)
-    if (dot < len(name)) rows = rows .and. (specs%key == name(dot + 1:) .or. &
-      specs%kind == group_row .and. any(rows .and. specs%key == name(dot + 1:)))
+    if (dot < len(name)) rows = rows .and. (is_called(specs, name(dot + 1:)) .or. &
+      specs%kind == group_row .and. any(rows .and. is_called(specs, name(dot + 1:))))
   end function is_of
 
   !> Blank-separated names of the keys of `group`, or of all groups if `group` is ''.

@@ -9,7 +9,7 @@ module deck_numbers
   use deck_store, only: deck_t
   implicit none
   private
-  public :: find_number, set_number, guess_number, words_of, number_of_word
+  public :: find_number, present_name, set_number, guess_number, words_of, number_of_word
 
   !> Kinds of keys that hold numbers.
   integer, parameter :: numeric(3) = [real_value, real_list, integer_value]
@@ -66,6 +66,20 @@ contains
       return
     end do
   end function guess_number
+
+  !> The key `path` with its present name, if it has a former one.
+  pure function present_name(deck, path) result(name)
+    type(deck_t), intent(in) :: deck
+    character(len=*), intent(in) :: path
+    character(len=:), allocatable :: name
+    integer :: dot, ending, row
+
+    name = path
+    dot = index(path, '.')
+    ending = index(path // '(', '(')
+    row = deck%row_of(path(:dot - 1), path(dot + 1:ending - 1))
+    if (row > 0) name = path(:dot) // trim(deck%specs(row)%key) // path(ending:)
+  end function present_name
 
   !> Removes "(2)" from the end of a name; term = 0 if there is none.
   subroutine take_off_term(name, term)

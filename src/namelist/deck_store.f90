@@ -5,7 +5,7 @@ module deck_store
   use files, only: whole_path
   use text_file, only: plain
   use deck_source, only: source_t
-  use deck_keys, only: key_spec, group_row
+  use deck_keys, only: key_spec, group_row, is_called
   use deck_values, only: value_t, unset, following, given, assignment_text
   implicit none
   private
@@ -44,7 +44,7 @@ module deck_store
     procedure :: resolved
     procedure :: row_of
     procedure, private :: held, silent
-    procedure, private :: place
+    procedure, private :: place, name_in_deck
   end type deck_t
 
 contains
@@ -88,8 +88,22 @@ contains
     class(deck_t), intent(inout) :: self
     character(len=*), intent(in) :: group, key, what
 
-    call self%source%complain(self%place(group, key), what, self%error, group, key)
+    call self%source%complain(self%place(group, key), what, self%error, group, &
+      self%name_in_deck(group, key))
   end subroutine mistake
+
+  !> The name by which the deck gives a key: its present or its former one.
+  pure function name_in_deck(self, group, key) result(name)
+    class(deck_t), intent(in) :: self
+    character(len=*), intent(in) :: group, key
+    character(len=:), allocatable :: name
+    integer :: row
+
+    name = key
+    row = self%row_of(group, key)
+    if (row == 0) return
+    if (allocated(self%values(row)%name)) name = self%values(row)%name
+  end function name_in_deck
 
   pure subroutine get_real(self, group, key, value)
     class(deck_t), intent(in) :: self
@@ -283,13 +297,14 @@ contains
     if (self%values(row)%status == given) row = 0
   end function silent
 
-  !> Row of `group` and `key` in the table, or of the group itself if `key` is ''; 0 if none.
+  !> Row of `group` and `key`, present or former, in the table, or of the group itself if `key` is
+  !> ''; 0 if none.
   pure integer function row_of(self, group, key)
     class(deck_t), intent(in) :: self
     character(len=*), intent(in) :: group, key
 
     do row_of = 1, size(self%specs)
-      if (self%specs(row_of)%group == group .and. self%specs(row_of)%key == key) return
+      if (self%specs(row_of)%group == group .and. is_called(self%specs(row_of), key)) return
     end do
     row_of = 0
   end function row_of

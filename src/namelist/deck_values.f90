@@ -20,6 +20,8 @@ module deck_values
   type :: value_t
     integer :: status = unset
     integer :: at = 0
+    !> The name by which the deck gives the key, if it does.
+    character(len=:), allocatable :: name
     real(wp), allocatable :: reals(:)
     integer :: whole = 0
     logical :: flag = .false.

@@ -63,6 +63,8 @@ contains
     else if (problem%law%coupling_name /= '' .and. .not. problem%rigid) then
       call set(trim(problem%law%coupling_name), problem%coupling)
     end if
+    if (.not. problem%rigid .and. problem%body%is_homogeneous()) &
+      call set('reduced_modulus', 0.5_wp*problem%stiffness)
     select type (body => problem%body)
     type is (layered_body_t)
       ! The top layer has the modulus for short waves, the base that for long waves.

@@ -41,8 +41,8 @@ module curve_groups
       otherwise='h0_end of &loading'), &
     key_spec('device', meaning='Bodies driven through a spring, in and out, from the path; ' // &
       'needs &equilibrium_path.'), &
-    key_spec('device', 'stiffness', real_list, 'Stiffness of each spring; 0: a dead load.', 'N/m', &
-      most=100, low=0.0_wp, otherwise='h0 is prescribed'), &
+    key_spec('device', 'spring_constant', real_list, 'Spring constant of each spring; 0: a dead ' // &
+      'load.', 'N/m', most=100, low=0.0_wp, otherwise='h0 is prescribed', former='stiffness'), &
     key_spec('device', 'z_start', real_value, 'First position of the drive.', 'm', &
       otherwise='where the path starts'), &
     key_spec('device', 'z_end', real_value, 'Position at which the drive turns. ' // &
@@ -158,7 +158,7 @@ contains
         call check_path(scene, 'device')
         allocate (scene%device)
         associate (device => scene%device)
-          call deck%get('device', 'stiffness', device%stiffness)
+          call deck%get('device', 'spring_constant', device%stiffness)
           call deck%get_optional('device', 'z_start', device%z_start)
           call deck%get_optional('device', 'z_end', device%z_end)
           if (allocated(device%z_start) .and. allocated(device%z_end)) call check_order(deck, &

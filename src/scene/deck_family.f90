@@ -6,7 +6,7 @@ module deck_family
   use failure, only: failure_t, fail, bad_input
   use text, only: lower, quoted, brief, clip, listing, word_count, word_of
   use deck, only: deck_t
-  use deck_numbers, only: find_number, set_number, guess_number
+  use deck_numbers, only: find_number, present_name, set_number, guess_number
   use deck_keys, only: key_spec, real_value, real_list, names_value
   use deck_values, only: given
   use dimensionless_problem, only: problem_t
@@ -119,7 +119,7 @@ contains
     integer :: row, term
 
     names = parameters_of(deck)
-    if (index(names // ' ', ' ' // parameter%name // ' ') == 0) then
+    if (index(names // ' ', ' ' // present_name(deck, parameter%name) // ' ') == 0) then
       call fail(error, bad_input, quoted(clip(parameter%name)) // ' is not a number of ' // &
         'bodies, shape or forces that this deck has' // guess_number(parameter%name, names) // &
         '; allowed: ' // listing(names, '', ''))

@@ -4,7 +4,7 @@ module fit_group
   use failure, only: failure_t
   use text, only: lower, quoted, rounded, word_count, word_of
   use deck, only: deck_t
-  use deck_numbers, only: find_number
+  use deck_numbers, only: find_number, present_name
   use deck_keys, only: key_spec, real_value, real_list, names_value
   use fit_request, only: unknown_t, of_contact_point, of_sensitivity, of_spring
   use measured_curve, only: read_measured
@@ -139,7 +139,8 @@ contains
         end if
       end associate
       do k = 1, i - 1
-        if (scene%fit%unknown(k)%name == scene%fit%unknown(i)%name) call scene%deck%mistake('fit', &
+        if (present_name(scene%deck, scene%fit%unknown(k)%name) == &
+          present_name(scene%deck, scene%fit%unknown(i)%name)) call scene%deck%mistake('fit', &
           'parameters', quoted(scene%fit%unknown(i)%name) // ' is there twice')
       end do
       if (allocated(scene%deck%error)) return

@@ -16,17 +16,19 @@ module scene_problem
   private
   public :: keys_of_model, take_model, problem_of
 
-  character(len=*), parameter :: one_way = 'give one of: stiffness; young and poisson; ' // &
-    'rigid = .true.'
+  character(len=*), parameter :: one_way = 'give one of: reduced_modulus; stiffness; young ' // &
+    'and poisson; rigid = .true.'
 
   !> The rows of &bodies.
   type(key_spec), parameter :: bodies_keys(*) = [ &
-    key_spec('bodies', meaning='The two bodies. Exactly one of: stiffness; young and poisson; ' // &
-      'rigid = .true.', required=.true.), &
+    key_spec('bodies', meaning='The two bodies. Exactly one of: reduced_modulus; ' // &
+      'stiffness; young and poisson; rigid = .true.', required=.true.), &
     key_spec('bodies', 'radius', real_value, 'Radius R of the gap h0 + r^2/(2R), or of ' // &
       '&shape; a sphere on a plane has its own radius.', 'm', above=0.0_wp, otherwise='none'), &
-    key_spec('bodies', 'stiffness', real_value, 'E/(1-nu^2) of two identical bodies: the ' // &
-      'compliance (1-nu^2)/E is the mean over the two.', 'Pa', above=0.0_wp), &
+    key_spec('bodies', 'reduced_modulus', real_value, 'Reduced modulus E*: 1/E* is the sum of ' // &
+      '(1-nu^2)/E over the two bodies.', 'Pa', above=0.0_wp), &
+    key_spec('bodies', 'stiffness', real_value, 'E/(1-nu^2) of two identical bodies, twice the ' // &
+      'reduced modulus.', 'Pa', above=0.0_wp), &
     key_spec('bodies', 'young', real_list, 'Young''s moduli of the two bodies; one value: the ' // &
       'same.', 'Pa', most=2, above=0.0_wp), &
     key_spec('bodies', 'poisson', real_list, 'Poisson''s ratios of the two bodies; one value: ' // &
@@ -70,21 +72,23 @@ contains
     real(wp) :: compliance(2)
     character(len=:), allocatable :: key
     integer :: ways
-    logical :: pair
+    logical :: pair, reduced
 
     associate (deck => scene%deck, bodies => scene%bodies)
       call deck%get('bodies', 'rigid', bodies%rigid)
       call deck%get('bodies', 'young', young)
       call deck%get('bodies', 'poisson', poisson)
       pair = size(young) > 0 .or. size(poisson) > 0
-      ways = count([deck%is_set('bodies', 'stiffness'), pair, bodies%rigid])
+      reduced = deck%is_set('bodies', 'reduced_modulus')
+      ways = count([reduced, deck%is_set('bodies', 'stiffness'), pair, bodies%rigid])
       if (ways == 0 .and. layer_bears_all(deck)) then
         bodies%rigid = .true.
       else if (ways == 0) then
         call deck%mistake('bodies', 'stiffness', 'missing; ' // one_way)
       else if (ways > 1) then
         ! The message points at the last of the given ways in the order of the table.
-        key = 'poisson'
+        key = 'stiffness'
+        if (size(poisson) > 0) key = 'poisson'
         if (size(young) > 0) key = 'young'
         if (bodies%rigid) key = 'rigid'
         call deck%mistake('bodies', key, 'more than one way to say how the bodies deform; ' // &
@@ -103,6 +107,9 @@ contains
         compliance = compliance_of(bodies%young, bodies%poisson)
         bodies%stiffness = 2/sum(compliance)
         bodies%share = bodies%stiffness*compliance
+      else if (reduced) then
+        call deck%get('bodies', 'reduced_modulus', bodies%stiffness)
+        bodies%stiffness = 2*bodies%stiffness
       else
         call deck%get('bodies', 'stiffness', bodies%stiffness)
       end if

@@ -24,8 +24,9 @@ module lennard_jones
       above=0.0_wp, otherwise='none; lennard_jones needs it'), &
     key_spec('force', 'z0', real_value, 'lennard_jones: separation of zero force.', 'm', &
       above=0.0_wp, otherwise='none; lennard_jones needs it'), &
-    key_spec('force', 'surface_energy', real_value, 'lennard_jones: energy needed to separate ' // &
-      'unit area, instead of hamaker.', 'J/m^2', above=0.0_wp), &
+    key_spec('force', 'work_of_adhesion', real_value, 'lennard_jones: work of adhesion, the ' // &
+      'energy needed to separate unit area, instead of hamaker.', 'J/m^2', above=0.0_wp, &
+      former='surface_energy'), &
     key_spec('force', 'exponents', real_list, 'lennard_jones: exponents n, m of the pressure: ' // &
       '9, 3 half-spaces; 10, 4 half-space and sheet; 11, 5 sheets.', most=2, above=1.0_wp, &
       high=30.0_wp, otherwise='9, 3'), &
@@ -44,13 +45,13 @@ contains
 
     call refuse_foreign(deck, 'force', 'law', 'lennard_jones', keys)
     if (.not. is_law(deck, 'lennard_jones')) return
-    if (.not. deck%is_set('force', 'surface_energy')) &
+    if (.not. deck%is_set('force', 'work_of_adhesion')) &
       call require(deck, 'force', 'law', 'lennard_jones', 'hamaker')
     call require(deck, 'force', 'law', 'lennard_jones', 'z0')
     if (allocated(deck%error)) return
     call deck%assume('force', 'part', 'full')
-    if (deck%is_set('force', 'surface_energy') .and. deck%is_set('force', 'hamaker')) &
-      call deck%mistake('force', 'surface_energy', 'follows from hamaker; give one of the two')
+    if (deck%is_set('force', 'work_of_adhesion') .and. deck%is_set('force', 'hamaker')) &
+      call deck%mistake('force', 'work_of_adhesion', 'follows from hamaker; give one of the two')
     call deck%get('force', 'z0', z0)
     call deck%get('force', 'part', part)
     call deck%get('force', 'exponents', exponents)
@@ -59,8 +60,8 @@ contains
       if (allocated(deck%error)) return
     end if
     ! gamma = A/(16 pi z0^2), (34).
-    if (deck%is_set('force', 'surface_energy')) then
-      call deck%get('force', 'surface_energy', surface_energy)
+    if (deck%is_set('force', 'work_of_adhesion')) then
+      call deck%get('force', 'work_of_adhesion', surface_energy)
       hamaker = 16*pi*surface_energy*z0**2
     else
       call deck%get('force', 'hamaker', hamaker)
@@ -71,7 +72,7 @@ contains
     allocate (law, source=new_lennard_jones(hamaker, z0, part))
     if (size(exponents) == 0) return
     ! The attraction is A/(6 pi h^3) if the deck gives the Hamaker constant A.
-    if (.not. deck%is_set('force', 'surface_energy')) &
+    if (.not. deck%is_set('force', 'work_of_adhesion')) &
       surface_energy = hamaker/(6*pi*z0**2*pair_factor(exponents))
     deallocate (law)
     allocate (law, source=new_power_pair(surface_energy, z0, exponents, part))
@@ -84,8 +85,8 @@ contains
       else if (exponents(1) <= exponents(2)) then
         call deck%mistake('force', 'exponents', 'the first, of the repulsion, must be the '// &
           'larger')
-      else if (abs(exponents(2) - 3) > 0 .and. .not. deck%is_set('force', 'surface_energy')) then
-        call deck%mistake('force', 'surface_energy', 'missing; a Hamaker constant needs an '// &
+      else if (abs(exponents(2) - 3) > 0 .and. .not. deck%is_set('force', 'work_of_adhesion')) then
+        call deck%mistake('force', 'work_of_adhesion', 'missing; a Hamaker constant needs an '// &
           'attraction of h^-3')
       end if
     end subroutine check_exponents

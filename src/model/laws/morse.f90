@@ -24,8 +24,8 @@ module morse
   type(key_spec), parameter :: keys(*) = [ &
     key_spec('morse', meaning='Morse law: an exponential repulsion within an exponential ' // &
       'attraction of twice its range.'), &
-    key_spec('morse', 'surface_energy', real_value, 'Energy needed to separate unit area.', &
-      'J/m^2', above=0.0_wp, required=.true.), &
+    key_spec('morse', 'work_of_adhesion', real_value, 'Work of adhesion: the energy needed to ' // &
+      'separate unit area.', 'J/m^2', above=0.0_wp, required=.true., former='surface_energy'), &
     key_spec('morse', 'z0', real_value, 'Separation of zero force.', 'm', required=.true.), &
     key_spec('morse', 'decay_length', real_value, 'Length over which the attraction falls by ' // &
       'a factor of e.', 'm', above=0.0_wp, required=.true.)]
@@ -39,7 +39,7 @@ contains
     type(morse_t) :: this
     real(wp) :: surface_energy, z0, decay_length
 
-    call deck%get('morse', 'surface_energy', surface_energy)
+    call deck%get('morse', 'work_of_adhesion', surface_energy)
     call deck%get('morse', 'z0', z0)
     call deck%get('morse', 'decay_length', decay_length)
     this%length = 2*decay_length
@@ -47,7 +47,7 @@ contains
     this%origin = z0 - this%length
     this%repulsion_length = 0.25_wp
     this%closure_length = 0.5_wp
-    call accept_law(deck, 'morse', 'surface_energy', 'decay_length', this, law)
+    call accept_law(deck, 'morse', 'work_of_adhesion', 'decay_length', this, law)
   end subroutine read_law
 
   !> exp(-2 (gap - 1)), finite at any gap and constant where it would underflow.
