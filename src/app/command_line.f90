@@ -18,7 +18,8 @@ module command_line
     character(len=:), allocatable :: out, into
     !> The name of the deck on standard input in messages and results.
     character(len=:), allocatable :: name
-    logical :: check = .false., price = .false., resume = .false., quiet = .false.
+    logical :: check = .false., price = .false., resume = .false., quiet = .false., &
+      verbose = .false.
     logical :: keys = .false., results = .false., version = .false., help = .false.
     type(file_t), allocatable :: decks(:)
   contains
@@ -26,10 +27,11 @@ module command_line
   end type options_t
 
   character(len=*), parameter :: usage = &
-    'snapin [--out DIR | --into DIR] [--name NAME] [--check] [--price] [--resume] [--quiet] ' // &
-    '[--keys] [--results] [--version] [--help] DECK [DECK ...]'
+    'snapin [--out DIR | --into DIR] [--name NAME] [--check] [--price] [--resume] ' // &
+    '[--quiet | --verbose] [--keys] [--results] [--version] [--help] DECK [DECK ...]'
   character(len=*), parameter :: known = &
-    '--out --into --name --check --price --resume --quiet --keys --results --version --help'
+    '--out --into --name --check --price --resume --quiet --verbose --keys --results ' // &
+    '--version --help'
 
 contains
 
@@ -71,6 +73,8 @@ contains
         options%resume = .true.
       case ('--quiet', '-q')
         options%quiet = .true.
+      case ('--verbose', '-v')
+        options%verbose = .true.
       case ('--keys')
         options%keys = .true.
       case ('--results')
@@ -233,7 +237,8 @@ contains
       '  --check     validate the decks, compute nothing', &
       '  --price     the decks at five accuracies: a table of time and errors; no results', &
       '  --resume    continue an interrupted run; leave finished results as they are', &
-      '  --quiet     no progress on the terminal (-q)', &
+      '  --quiet     no progress and no messages on the terminal (-q)', &
+      '  --verbose   also tell which numerics were chosen, and why (-v)', &
       '  --keys      print all groups and keys of decks, with unit, default and meaning, or only', &
       '              those named, as GROUP or GROUP.KEY', &
       '  --results   print every file, column and entry of results: unit, meaning', &

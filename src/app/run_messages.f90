@@ -1,20 +1,23 @@
 !> What a run says on standard error: each line begins with the folder of the results.
 module run_messages
-  use kinds, only: wp
+  use kinds, only: wp, nan
+  use units, only: with_unit
   use text, only: counted, rounded
   use files, only: file_exists, own_path, whole_path, write_stderr
   use scene_groups, only: scene_t
   use equilibrium, only: cost_t
   use summary, only: summary_t
+  use namelist_writer, only: line_t
+  use findings, only: findings_of
   implicit none
   private
   public :: destination_t, tell
 
   !> The folder of a run's results, or the program's name if they go to standard output; whether
-  !> messages are left out, and whether results go to standard output.
+  !> messages are left out or tell the numerics, too; and whether results go to standard output.
   type :: destination_t
     character(len=:), allocatable :: folder
-    logical :: quiet = .false., to_stream = .false.
+    logical :: quiet = .false., verbose = .false., to_stream = .false.
   contains
     procedure :: say
   end type destination_t
@@ -28,13 +31,14 @@ module run_messages
 
 contains
 
-  !> Writes warnings, the numerics, and a line of results to standard error.
+  !> Writes warnings, the main results and, if asked for, the numerics to standard error.
   subroutine tell(scene, destination, summary, cost)
     type(scene_t), intent(in) :: scene
     type(destination_t), intent(in) :: destination
     type(summary_t), intent(in) :: summary
     type(cost_t), intent(in) :: cost
-    character(len=160) :: found, tension
+    type(line_t), allocatable :: lines(:)
+    character(len=40) :: found
     character(len=12) :: seconds
     character(len=:), allocatable :: command
     real(wp) :: took
@@ -46,12 +50,19 @@ contains
     do i = 1, size(summary%notes)
       call destination%say('note: '//summary%notes(i)%text)
     end do
-    if (summary%has('grid')) call destination%say('grid '//summary%text('grid')//', method '// &
-      summary%text('method')//': '//summary%text('chosen_because'))
-    if (summary%has('path_traced_h0')) call destination%say( &
-      'read from the path, traced from h0 ='//in_metres('path_traced_h0'))
-    if (summary%has('path_undeformed_h0')) call destination%say( &
-      'undeformed bodies before it, from h0 ='//in_metres('path_undeformed_h0'))
+    if (destination%verbose .and. summary%has('grid')) call destination%say('grid '// &
+      summary%text('grid')//', method '//summary%text('method')//': '// &
+      summary%text('chosen_because'))
+    if (destination%verbose .and. summary%has('path_traced_h0')) call destination%say( &
+      'the path begins at h0 = '//in_metres('path_traced_h0'))
+    if (destination%verbose .and. summary%has('path_undeformed_h0')) call destination%say( &
+      'before it, from h0 = '//in_metres('path_undeformed_h0')//', bodies are taken as rigid')
+    ! The path of a fit is that of the deck's own values.
+    allocate (lines(0))
+    if (.not. allocated(scene%fit)) lines = findings_of(summary)
+    do i = 1, size(lines)
+      call destination%say(lines(i)%text)
+    end do
     if (summary%has('regime_reason')) &
       call destination%say('regime: '//summary%text('regime_reason'))
     took = summary%number('wall_seconds')
@@ -59,11 +70,7 @@ contains
     found = 'done'
     if (cost%states > 0) write (found, '(i0, a)') cost%states, &
       merge(' state ', ' states', cost%states == 1)
-    tension = ''
-    if (summary%has('max_tension')) write (tension, '(a, es11.4, a, es12.4, a)') &
-      ', largest tension', summary%number('max_tension'), ' N at h0 =', &
-      summary%number('max_tension_h0'), ' m'
-    call destination%say(trim(found)//' in '//trim(seconds)//' s'//trim(tension))
+    call destination%say(trim(found)//' in '//trim(seconds)//' s')
     if (allocated(scene%sweep)) then
       command = ''
       if (.not. destination%to_stream) then
@@ -81,9 +88,9 @@ contains
 
     function in_metres(key) result(text)
       character(len=*), intent(in) :: key
-      character(len=13) :: text
+      character(len=:), allocatable :: text
 
-      write (text, '(es11.4, a)') summary%number(key), ' m'
+      text = with_unit(summary%number(key), nan, 'm')
     end function in_metres
 
   end subroutine tell

@@ -58,10 +58,11 @@ contains
   !> written. resume: an interrupted run in the folder is continued, and finished results are left
   !> as they are. crew: the processes that compute a sweep, for which `job` is the number of the
   !> scene.
-  subroutine run_scene(scene, out_dir, handed_over, quiet, resume, crew, job, converged, error)
+  subroutine run_scene(scene, out_dir, handed_over, quiet, verbose, resume, crew, job, &
+    converged, error)
     type(scene_t), intent(in) :: scene
     character(len=*), intent(in) :: out_dir
-    logical, intent(in) :: handed_over, quiet, resume
+    logical, intent(in) :: handed_over, quiet, verbose, resume
     type(crew_t), intent(in) :: crew
     integer, intent(in) :: job
     logical, intent(out) :: converged
@@ -76,7 +77,7 @@ contains
 
     began = seconds()
     converged = .false.
-    destination = destination_t(out_dir, quiet, out_dir == to_stream)
+    destination = destination_t(out_dir, quiet, verbose, out_dir == to_stream)
     results%folder%handed_over = handed_over
     if (destination%to_stream) then
       destination%folder = 'snapin'

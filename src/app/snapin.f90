@@ -161,7 +161,8 @@ contains
         cycle
       end if
       folder = folder_of(i)
-      call run_scene(scenes(i), folder, options%out == to_stream, options%quiet, options%resume, &
+      call run_scene(scenes(i), folder, options%out == to_stream, options%quiet, &
+        options%verbose, options%resume, &
         crew, i, converged, trouble)
       if (allocated(trouble)) call print_line(error_unit, folder // ': ' // trouble%message)
       if (allocated(trouble) .or. .not. converged) status = 1

@@ -1,9 +1,12 @@
-!> Units of the columns of measured data: metres, newtons and volts with the prefixes milli to pico.
+!> Units of the columns of measured data, metres, newtons and volts with the prefixes milli to pico;
+!> and values with their errors in units, for messages.
 module units
+  use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
   use kinds, only: wp
+  use text, only: rounded, rounded_to
   implicit none
   private
-  public :: find_unit, unit_in
+  public :: find_unit, unit_in, with_unit
 
   character(len=*), parameter :: prefixes = 'munp', bases = 'mNV'
   integer, parameter :: powers(*) = [-3, -6, -9, -12]
@@ -53,5 +56,29 @@ contains
     call find_unit(unit, factor, base)
     if (base == ' ') unit = ''
   end function unit_in
+
+  !> A value and, unless it is NaN, its error in a unit; metres, newtons and pascals have a prefix.
+  pure function with_unit(value, error, unit) result(words)
+    real(wp), intent(in) :: value, error
+    character(len=*), intent(in) :: unit
+    character(len=:), allocatable :: words
+    character(len=*), parameter :: prefixes = 'fpnum kMGT'
+    integer, parameter :: plain = index(prefixes, ' ')
+    integer :: prefix
+    real(wp) :: largest, scale
+
+    prefix = plain
+    largest = max(abs(value), merge(0.0_wp, error, ieee_is_nan(error)))
+    if (any(unit == [character(len=2) :: 'm', 'N', 'Pa']) .and. largest > 0 .and. &
+      largest < huge(largest)) &
+      prefix = max(1, min(len(prefixes), plain + floor(log10(largest)/3)))
+    scale = 10.0_wp**(3*(prefix - plain))
+    if (ieee_is_nan(error)) then
+      words = rounded(value/scale)
+    else
+      words = rounded_to(value/scale, error/scale) // ' +- ' // rounded(error/scale)
+    end if
+    if (len_trim(unit) > 0) words = words // ' ' // trim(adjustl(prefixes(prefix:prefix) // unit))
+  end function with_unit
 
 end module units

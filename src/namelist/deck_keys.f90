@@ -5,7 +5,8 @@ module deck_keys
   implicit none
   private
   public :: key_spec, group_row, ignored_group, real_value, real_list, integer_value, &
-    logical_value, word_value, text_value, names_value, allowed, names_of, is_of, is_called, keys_text
+    logical_value, word_value, text_value, names_value, allowed, names_of, is_of, is_called, &
+    keys_text
 
   !> Kinds of row: a group, a group that is skipped, and seven kinds of key.
   integer, parameter :: group_row = 0, ignored_group = 1

@@ -4,8 +4,8 @@
 module case_columns
   use kinds, only: wp
   use failure, only: failure_t
-  use text, only: brief, listing, lower, word_of
-  use deck_numbers, only: find_number
+  use text, only: brief, listing, lower, word_of, word_count
+  use deck_numbers, only: find_number, present_name
   use result_rows, only: row_t, rows, turning, spring, given_load, layered_regime, &
     of_carpick => carpick, of_troyon => pietrement_troyon
   use classical, only: carpick, pietrement_troyon
@@ -187,7 +187,7 @@ contains
     case (spring)
       ! Without a stiffness h0 is prescribed, which is one way to drive.
       if (allocated(scene%device)) &
-        elements = count_of('stiffness', max(1, size(scene%device%stiffness)))
+        elements = count_of('spring_constant', max(1, size(scene%device%stiffness)))
     case (given_load)
       if (allocated(scene%fixed_loads)) elements = count_of('load', size(scene%fixed_loads))
     end select
@@ -197,10 +197,13 @@ contains
     pure integer function count_of(key, values)
       character(len=*), intent(in) :: key
       integer, intent(in) :: values
+      integer :: k
 
       count_of = values
-      if (index(' ' // lower(scene%sweep%names) // ' ', ' ' // trim(group) // '.' // key // ' ') > &
-        0) count_of = 1
+      do k = 1, word_count(scene%sweep%names)
+        if (present_name(scene%deck, lower(word_of(scene%sweep%names, k))) == &
+          trim(group) // '.' // key) count_of = 1
+      end do
     end function count_of
 
   end function elements

@@ -1,6 +1,7 @@
 !> A fit in words, for the terminal.
 module fit_words
   use kinds, only: wp
+  use units, only: with_unit
   use text, only: brief, rounded, rounded_to, counted
   use namelist_writer, only: line_t
   use fit_errors, only: fitted_t
@@ -87,26 +88,6 @@ contains
       end if
     end select
   end function words_of
-
-  !> A value with its error in a unit, for pascals and metres with a prefix.
-  function with_unit(value, error, unit) result(words)
-    real(wp), intent(in) :: value, error
-    character(len=*), intent(in) :: unit
-    character(len=:), allocatable :: words
-    character(len=*), parameter :: prefixes = 'pnum kMGT'
-    integer, parameter :: plain = index(prefixes, ' ')
-    integer :: prefix
-    real(wp) :: size
-
-    prefix = plain
-    size = max(abs(value), error)
-    if ((unit == 'm' .or. unit == 'Pa') .and. size > 0 .and. size < huge(size)) &
-      prefix = max(1, min(len(prefixes), plain + floor(log10(size)/3)))
-    associate (scale => 10.0_wp**(3*(prefix - plain)))
-      words = rounded_to(value/scale, error/scale) // ' +- ' // rounded(error/scale)
-    end associate
-    if (len_trim(unit) > 0) words = words // ' ' // trim(adjustl(prefixes(prefix:prefix) // unit))
-  end function with_unit
 
   !> Standard deviation of the residuals of a fit, over the noise.
   pure real(wp) function left_of(fitted)

@@ -41,8 +41,9 @@ module curve_groups
       otherwise='h0_end of &loading'), &
     key_spec('device', meaning='Bodies driven through a spring, in and out, from the path; ' // &
       'needs &equilibrium_path.'), &
-    key_spec('device', 'spring_constant', real_list, 'Spring constant of each spring; 0: a dead ' // &
-      'load.', 'N/m', most=100, low=0.0_wp, otherwise='h0 is prescribed', former='stiffness'), &
+    key_spec('device', 'spring_constant', real_list, 'Spring constant of each spring; 0: a ' // &
+      'dead load.', 'N/m', most=100, low=0.0_wp, otherwise='h0 is prescribed', &
+      former='stiffness'), &
     key_spec('device', 'z_start', real_value, 'First position of the drive.', 'm', &
       otherwise='where the path starts'), &
     key_spec('device', 'z_end', real_value, 'Position at which the drive turns. ' // &

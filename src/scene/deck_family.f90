@@ -66,7 +66,8 @@ contains
     names = parameters_of(family%deck)
     do i = 1, word_count(names)
       new = parameter_t(name=word_of(names, i))
-      if (any([(family%parameter(k)%name == new%name, k=1, size(family%parameter))])) cycle
+      if (any([(present_name(family%deck, family%parameter(k)%name) == new%name, &
+        k=1, size(family%parameter))])) cycle
       call take_value(family%deck, new, error)
       if (allocated(error) .or. .not. new%value > 0) cycle
       call find_number(family%deck, new%name, row, term, error)

@@ -34,15 +34,15 @@ module rate_groups
       otherwise='z_start'), &
     key_spec('drive', 'dwell', real_value, 'Waiting time at z_turn.', 's', default='0', &
       low=0.0_wp), &
-    key_spec('drive', 'spring_constant', real_value, 'Spring constant of a spring between drive ' // &
-      'and bodies.', 'N/m', above=0.0_wp, otherwise='none: h0 itself is driven', &
+    key_spec('drive', 'spring_constant', real_value, 'Spring constant of a spring between ' // &
+      'drive and bodies.', 'N/m', above=0.0_wp, otherwise='none: h0 itself is driven', &
       former='stiffness'), &
     key_spec('drive', 'time_step', real_value, 'Length of the steps.', 's', above=0.0_wp, &
       otherwise='from accuracy, 1e-4 unless it is given'), &
     key_spec('viscoelastic', meaning='Bodies that creep; &bodies has the instantaneous ' // &
       'stiffness. Give stiffness_relaxed or compliance. Needs &drive.'), &
     key_spec('viscoelastic', 'stiffness_relaxed', real_value, 'E/(1-nu^2) of relaxed ' // &
-      'bodies, a standard linear solid; at most the instantaneous stiffness.', 'Pa', above=0.0_wp), &
+      'bodies, a standard linear solid; at most the instantaneous one.', 'Pa', above=0.0_wp), &
     key_spec('viscoelastic', 'compliance', real_list, 'Final contribution of each term to the ' // &
       'compliance (1-nu^2)/E.', '1/Pa', most=most_terms, above=0.0_wp), &
     key_spec('viscoelastic', 'retardation_time', real_list, 'Retardation time of each term, ' // &

@@ -16,19 +16,19 @@ module scene_problem
   private
   public :: keys_of_model, take_model, problem_of
 
-  character(len=*), parameter :: one_way = 'give one of: reduced_modulus; stiffness; young ' // &
+  character(len=*), parameter :: one_way = 'give one of: stiffness; reduced_modulus; young ' // &
     'and poisson; rigid = .true.'
 
   !> The rows of &bodies.
   type(key_spec), parameter :: bodies_keys(*) = [ &
-    key_spec('bodies', meaning='The two bodies. Exactly one of: reduced_modulus; ' // &
-      'stiffness; young and poisson; rigid = .true.', required=.true.), &
+    key_spec('bodies', meaning='The two bodies. Exactly one of: stiffness; ' // &
+      'reduced_modulus; young and poisson; rigid = .true.', required=.true.), &
     key_spec('bodies', 'radius', real_value, 'Radius R of the gap h0 + r^2/(2R), or of ' // &
       '&shape; a sphere on a plane has its own radius.', 'm', above=0.0_wp, otherwise='none'), &
+    key_spec('bodies', 'stiffness', real_value, 'E/(1-nu^2) of two identical bodies, twice ' // &
+      'the reduced modulus.', 'Pa', above=0.0_wp), &
     key_spec('bodies', 'reduced_modulus', real_value, 'Reduced modulus E*: 1/E* is the sum of ' // &
       '(1-nu^2)/E over the two bodies.', 'Pa', above=0.0_wp), &
-    key_spec('bodies', 'stiffness', real_value, 'E/(1-nu^2) of two identical bodies, twice the ' // &
-      'reduced modulus.', 'Pa', above=0.0_wp), &
     key_spec('bodies', 'young', real_list, 'Young''s moduli of the two bodies; one value: the ' // &
       'same.', 'Pa', most=2, above=0.0_wp), &
     key_spec('bodies', 'poisson', real_list, 'Poisson''s ratios of the two bodies; one value: ' // &

@@ -95,8 +95,8 @@ def test_keys_that_are_named_are_those_of_the_list(snapin):
 
 def test_help_names_every_option(snapin):
     text = snapin("--help").stdout
-    for option in ["--out", "--check", "--price", "--resume", "--quiet", "--keys", "--results",
-                   "--version", "--help"]:
+    for option in ["--out", "--check", "--price", "--resume", "--quiet", "--verbose", "--keys",
+                   "--results", "--version", "--help"]:
         assert f"\n  {option} " in text
 
 

@@ -18,7 +18,7 @@ def test_the_example_gives_what_its_page_says(example):
     fit = result.fitted["fit"]
     found = dict(zip(fit["parameters"], fit["estimate"]))
     assert found["measurement.sensitivity"] == pytest.approx(1.64, abs=0.01)
-    assert found["force.surface_energy"] == pytest.approx(0.26, abs=0.01)
+    assert found["force.work_of_adhesion"] == pytest.approx(0.26, abs=0.01)
     assert fit["noise"][0] == pytest.approx(10e-12, rel=0.05)
     # Pull-off and jump into contact, less what the signal was before.
     assert abs(fit["jump_in_change"][0]) == pytest.approx(2.6e-9, rel=0.02)

@@ -1,0 +1,80 @@
+!> The main results of a run in words: pull-off force, snap-in and snap-off with errors and units,
+!> and the nearest theory.
+module findings
+  use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
+  use kinds, only: wp
+  use text, only: rounded
+  use units, only: with_unit
+  use namelist_writer, only: line_t
+  use result_rows, only: row_of
+  use summary, only: summary_t
+  implicit none
+  private
+  public :: findings_of
+
+  !> Theories of the pull-off force: their keys of the summary and their names.
+  character(len=*), parameter :: keys(*) = [character(len=16) :: 'jkr_pull_off', 'dmt_pull_off', &
+    'maugis_pull_off'], names(*) = [character(len=15) :: 'JKR', 'DMT', 'Maugis-Dugdale']
+
+contains
+
+  !> One line for each finding; none if the summary has neither a tension nor a jump.
+  function findings_of(summary) result(lines)
+    type(summary_t), intent(in) :: summary
+    type(line_t), allocatable :: lines(:)
+    character(len=:), allocatable :: snaps
+
+    allocate (lines(0))
+    if (summary%has('max_tension')) then
+      if (summary%number('max_tension_at_end') > 0) then
+        call add('largest tension ' // of('max_tension', 'N') // ', in the first or last row: ' // &
+          'no pull-off force')
+      else
+        call add('pull-off force ' // of('max_tension', 'N') // ' at h0 = ' // &
+          of('max_tension_h0', 'm'))
+        call compare()
+      end if
+    end if
+    snaps = ''
+    if (summary%has('jump_in_h0')) snaps = 'snap-in at h0 = ' // of('jump_in_h0', 'm')
+    if (summary%has('jump_out_h0')) then
+      if (snaps /= '') snaps = snaps // ', '
+      snaps = snaps // 'snap-off at h0 = ' // of('jump_out_h0', 'm')
+    end if
+    if (snaps /= '') call add(snaps)
+
+  contains
+
+    subroutine add(text)
+      character(len=*), intent(in) :: text
+      type(line_t) :: line
+
+      ! Not by a structure constructor: compiler note 1.
+      line%text = text
+      lines = [lines, line]
+    end subroutine add
+
+    !> The first value of a key with its error, if that is known.
+    function of(key, unit) result(words)
+      character(len=*), intent(in) :: key, unit
+      character(len=:), allocatable :: words
+
+      words = with_unit(summary%number(key), summary%error_of(row_of(key), 1), unit)
+    end function of
+
+    !> How far the nearest theory is off.
+    subroutine compare()
+      real(wp) :: off(size(keys))
+      integer :: i
+
+      off = [(summary%number(trim(keys(i)))/summary%number('max_tension') - 1, i=1, size(keys))]
+      ! The theories are for bodies without memory, and without a fluid.
+      if (summary%has('time_steps') .or. all(ieee_is_nan(off))) return
+      i = minloc(abs(off), 1, mask=.not. ieee_is_nan(off))
+      call add('the nearest theory, ' // trim(names(i)) // ', has a pull-off force ' // &
+        rounded(100*abs(off(i))) // ' % ' // trim(merge('larger ', 'smaller', off(i) > 0)))
+    end subroutine compare
+
+  end function findings_of
+
+end module findings

@@ -1,0 +1,68 @@
+"""Claims about what a run says at its end: the main results, with the numbers of the summary."""
+
+import re
+
+import pytest
+from support.scenes import deck, loading, read_groups
+
+PREFIX = {"f": 1e-15, "p": 1e-12, "n": 1e-9, "u": 1e-6, "m": 1e-3, "": 1.0, "k": 1e3}
+VALUE = r"(-?[\d.e+-]+?)(?: \+- ([\d.e+-]+))? ([fpnumk]?)"
+SCENE = {"bodies": {"radius": 1.5e-2, "stiffness": 1e10},
+         "force": {"law": "lennard_jones", "hamaker": 1e-20, "z0": 0.5e-9}}
+CYCLE = {"loading": loading(4e-9, -2e-9, 1e-10), "unloading": {"from": -2e-9, "h0_end": 4e-9}}
+
+
+def said(snapin, tmp_path, groups, *options):
+    (tmp_path / "d.nml").write_text(deck(**groups))
+    done = snapin("--out", ".", *options, "d.nml", cwd=tmp_path)
+    assert done.returncode == 0
+    return done.stderr, read_groups(tmp_path / "d/summary.nml")["summary"]
+
+
+def check(text, name, unit, summary, key):
+    """The text has the value of a key, and its error to three digits."""
+    value, error, prefix = re.search(f"{name}{VALUE}{unit}\\b", text).groups()
+    stated = summary[f"{key}_error"]
+    assert float(value)*PREFIX[prefix] == pytest.approx(summary[key], abs=max(
+        stated, 1e-15*abs(summary[key])))
+    assert float(error)*PREFIX[prefix] == pytest.approx(stated, rel=5e-3)
+
+
+def test_a_cycle_says_pull_off_and_jumps_with_their_errors(snapin, tmp_path):
+    text, summary = said(snapin, tmp_path, {**SCENE, **CYCLE})
+    check(text, "pull-off force ", "N", summary, "max_tension")
+    check(text, " at h0 = ", "m", summary, "max_tension_h0")
+    check(text, "snap-in at h0 = ", "m", summary, "jump_in_h0")
+    check(text, "snap-off at h0 = ", "m", summary, "jump_out_h0")
+    off = 100*(summary["jkr_pull_off"]/summary["max_tension"] - 1)
+    assert -10 < off < 0
+    assert f"nearest theory, JKR, has a pull-off force {-off:.3g} % smaller" in text
+    assert "grid edge_locked" not in text
+
+
+def test_a_tension_in_the_last_row_is_no_pull_off(snapin, tmp_path):
+    text, _ = said(snapin, tmp_path, {**SCENE, "loading": loading(4e-9, 1.6e-9, 1e-10)})
+    assert re.search("largest tension .*N, in the first or last row: no pull-off force", text)
+    assert "pull-off force " not in text.replace("no pull-off force", "").replace(
+        "max_tension is no pull-off", "") and "nearest theory" not in text
+
+
+def test_numerics_are_told_if_asked_for(snapin, tmp_path):
+    text, summary = said(snapin, tmp_path, {**SCENE, **CYCLE}, "--verbose")
+    assert f"grid {summary['grid']}, method {summary['method']}: " in text
+
+
+def test_a_repulsive_force_has_no_pull_off(snapin, tmp_path):
+    text, _ = said(snapin, tmp_path, {
+        "bodies": SCENE["bodies"], "loading": loading(4e-9, -2e-9, 1e-10),
+        "force": {"law": "exponential", "p0": 2.5e8, "decay_length": 2e-10}})
+    assert "pull-off" not in text and "snap" not in text and "states in" in text
+
+
+def test_theories_are_not_compared_with_a_drive(snapin, tmp_path):
+    drive = {"velocity": 1.0, "z_start": 5.0, "z_turn": 0.0}
+    text, _ = said(snapin, tmp_path, {
+        "bodies": {"radius": 1.0, "stiffness": 1.0}, "drive": drive,
+        "force": {"law": "lennard_jones", "work_of_adhesion": 0.1, "z0": 1.0},
+        "viscoelastic": {"stiffness_relaxed": 0.5, "retardation_time": 1.0}})
+    assert "pull-off force" in text and "nearest theory" not in text
