@@ -12,6 +12,7 @@ module simulation
   use scene_problem, only: problem_of
   use h0_schedule, only: states_planned
   use drive_rates, only: rate_drive
+  use number_rates, only: rate_numbers
   use sweeps, only: run_sweep
   use case_columns, only: left_out
   use sweep_case, only: sweep_tally_t
@@ -219,8 +220,10 @@ contains
       end if
       if (allocated(outcome%readings)) &
         call write_path_tables(problem, outcome%readings, outcome%places, results)
-      if (allocated(scene%varied) .and. allocated(outcome%timed)) &
-        call rate_drive(scene, keeper, results, outcome%timed)
+      if (allocated(scene%varied)) then
+        if (allocated(outcome%timed)) call rate_drive(scene, keeper, results, outcome%timed)
+        if (.not. allocated(outcome%timed)) call rate_numbers(scene, results, outcome)
+      end if
       summary = summary_of(scene, problem, outcome)
       call recorder%warn(summary)
       if (allocated(scene%varied)) &

@@ -3,10 +3,11 @@
 !> of a number is its difference from that of another run; if it is larger than the accuracy of the
 !> deck, the finer run becomes the result. Effects that are not requested are not set up.
 module experiment
-  use kinds, only: wp
+  use kinds, only: wp, long
   use dimensionless_problem, only: problem_t
   use experiment_request, only: request_t
-  use numerics_choice, only: choose, more_digits, with_fewer_nodes, with_less_extent
+  use numerics_choice, only: choice_t, choose, more_digits, with_fewer_nodes, with_less_extent
+  use equilibrium, only: cost_t
   use mesh_digits, only: most_digits
   use mesh_store, only: mesh_store_t
   use stepper, only: keeping_stepper_t
@@ -17,14 +18,14 @@ module experiment
   use experiment_result, only: experiment_result_t
   use one_run, only: begin_run, run_once
   use reported_numbers, only: run_numbers_t, largest_error, chance, chance_on_grids
-  use place_rates, only: rate_places
+  use path_sensitivity, only: rates_along
   use timed_run, only: run_timed
   use journal, only: journal_t
   use records, only: observer_t
   use clock, only: seconds
   implicit none
   private
-  public :: run_experiment
+  public :: run_experiment, run_again
 
   !> The coupling for rigid bodies: it is so small that the bodies do not deform noticeably, even
   !> under the pressure of a fluid, which may be much larger than that of the law.
@@ -130,11 +131,46 @@ contains
     outcome%nodes = outcome%nodes + sum(steps%meshes%grid%nodes)
     select type (steps)
     class is (path_stepper_t)
-      if (allocated(request%varied)) &
-        call rate_places(request%varied, steps, observer, outcome)
+      if (allocated(request%varied) .and. allocated(outcome%readings)) then
+        call observer%hear('differentiating')
+        if (outcome%readings%solved) call rates_along(steps%equations_t, steps%known%path, &
+          request%varied, outcome%readings%rate, outcome%differentiated)
+      end if
     end select
     outcome%cost = steps%cost
   end subroutine run_locked
+
+  !> Runs the experiments of a similar problem once, with the numerics that were chosen for another
+  !> one. The numbers of the outcome have no errors.
+  subroutine run_again(request, problem, chosen, cost, outcome)
+    class(request_t), intent(in) :: request
+    type(problem_t), intent(in) :: problem
+    type(choice_t), intent(in) :: chosen
+    type(cost_t), intent(inout) :: cost
+    type(experiment_result_t), intent(out) :: outcome
+    ! Not allocatable steppers: compiler note 3.
+    type(path_stepper_t), target :: along_path
+    type(fixed_stepper_t), target :: at_nodes
+    type(observer_t) :: silent
+    integer(long) :: states
+
+    states = cost%states
+    outcome%chosen = choose(request, problem)
+    outcome%chosen%digits = chosen%digits
+    outcome%chosen%accuracy = chosen%accuracy
+    outcome%chosen%options = chosen%options
+    along_path%cost = cost
+    call begin_run(along_path, request, problem, outcome%chosen, silent)
+    call run_once(along_path, request, .not. outcome%chosen%is_fixed(), .false., silent, outcome)
+    cost = along_path%cost
+    if (allocated(request%loading) .and. outcome%chosen%is_fixed()) then
+      at_nodes%cost = cost
+      call begin_run(at_nodes, request, problem, outcome%chosen, silent)
+      call run_once(at_nodes, request, .true., .true., silent, outcome)
+      cost = at_nodes%cost
+    end if
+    cost%states = states
+  end subroutine run_again
 
   !> Runs a scene with more and more digits until the numbers of two successive runs agree within
   !> the accuracy: the coarser of these, outcome, is the result, and ahead is the other. steps: the

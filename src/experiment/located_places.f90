@@ -6,7 +6,6 @@ module located_places
   use contact_state, only: state_t, gap_at, contact_radius_of, far_gap
   use equilibrium, only: residual_floor
   use solver, only: solver_t
-  use path_coordinate, only: coordinate_of
   use path_tangent, only: h0_alone => of_h0, load_alone => of_load
   use potential_energy, only: energy_of
   use curve_states, only: path_state_t, path_place_t, state_of
@@ -109,7 +108,6 @@ contains
           place%turn_of = place%drive
         end associate
       else if (place%has_state() .and. place%mesh /= nowhere .and. place%mesh /= no_mesh) then
-        place%s = coordinate_of(steps%problem, steps%meshes, place%mesh, place%state)
         call energy_of(steps%equations_t, place%mesh, place%state, place%at(of_energy), &
           place%left(of_energy))
       end if

@@ -5,9 +5,9 @@ module places
   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
   use kinds, only: wp, nan
   use dimensionless_problem, only: problem_t
-  use reported_place, only: place_t, point_of_path, values_of, units_of, rates_of, least, &
+  use reported_place, only: place_t, point_of_path, values_of, units_of, least, &
     rounding, quantities, of_h0, of_load, of_radius, of_profile
-  use reported_numbers, only: number_t, run_numbers_t, judge, of_table, of_turns, name_length
+  use reported_numbers, only: number_t, run_numbers_t, judge, name_length
   use result_rows, only: rows
   implicit none
   private
@@ -40,10 +40,10 @@ module places
     procedure :: read_numbers
   end type places_t
 
-  !> The values of a number, element by element, SI units; NaN if it does not exist. rate:
-  !> (parameters, elements).
+  !> The values of a number, element by element, SI units; NaN if it does not exist. rate,
+  !> rate_error: derivatives by the parameters of &sensitivity, (parameters, elements).
   type :: readings_t
-    real(wp), allocatable :: value(:), error(:), rate(:, :)
+    real(wp), allocatable :: value(:), error(:), rate(:, :), rate_error(:, :)
   end type readings_t
 
   !> Differences of energies, whose relative errors do not tell how accurate a run is.
@@ -54,9 +54,6 @@ module places
   character(len=*), parameter :: of_profiles(*) = pack(rows%place, rows%quantity == of_profile)
   character(len=*), parameter :: with_radius(*) = [character(len=name_length) :: 'fixed_load', &
     pack(rows%place, rows%quantity == of_radius)]
-  !> Numbers without derivatives.
-  character(len=*), parameter :: not_differentiated(*) = [character(len=8) :: 'profiles', &
-    'samples', of_table, of_turns]
 
 contains
 
@@ -103,24 +100,11 @@ contains
     entry%element = element
     if (present(place)) then
       call self%keep(place, entry%place)
-      call mark(entry%place)
-      call mark(self%place(entry%place)%after)
+      if (any(of_profiles == name)) self%place(entry%place)%with_profile = .true.
     end if
     if (.not. present(place)) entry%factor = nan
     if (present(factor)) entry%factor = factor
     self%entry = [self%entry, entry]
-
-  contains
-
-    subroutine mark(i)
-      integer, intent(in) :: i
-
-      if (i == 0) return
-      if (any(of_profiles == name)) self%place(i)%with_profile = .true.
-      self%place(i)%differentiated = self%place(i)%differentiated .or. &
-        all(not_differentiated /= name)
-    end subroutine mark
-
   end subroutine enter
 
   !> Adds an element at a place to a number.
@@ -191,9 +175,11 @@ contains
       self%place(self%entry(findloc(self%entry%name == name, .true., 1))%place)
   end function place_of
 
-  !> All elements of all numbers, with the errors that iteration and rounding leave.
-  pure function numbers(self) result(all)
+  !> All elements of all numbers, with the errors that iteration and rounding leave. problem: the
+  !> values are in SI units.
+  pure function numbers(self, problem) result(all)
     class(places_t), intent(in) :: self
+    type(problem_t), intent(in), optional :: problem
     type(number_t), allocatable :: all(:)
     type(number_t) :: new
     integer :: i, k, n
@@ -214,24 +200,28 @@ contains
           all(k)%name = entry%name
           all(k)%element = entry%element
         end if
-        call add_term(self, entry, all(k))
+        call add_term(self, entry, all(k), problem)
       end associate
     end do
     all = all(:n)
   end function numbers
 
   !> Adds a term to an element of a number.
-  pure subroutine add_term(self, entry, number)
+  pure subroutine add_term(self, entry, number, problem)
     class(places_t), intent(in) :: self
     type(entry_t), intent(in) :: entry
     type(number_t), intent(inout) :: number
+    type(problem_t), intent(in), optional :: problem
+    real(wp) :: values(quantities)
 
     if (entry%place == 0) then
       number%value = number%value + entry%factor
       return
     end if
     associate (place => self%place(entry%place))
-      number%value = number%value + entry%factor*place%measures()
+      values = place%measures()
+      if (present(problem)) values = values_of(problem, place)
+      number%value = number%value + entry%factor*values
       number%error = number%error + abs(entry%factor)*place%leftovers()
       if (place%searched) number%error(of_h0) = nan
       if (all(of_energies /= entry%name)) &
@@ -277,34 +267,25 @@ contains
     integer, intent(in) :: quantity
     real(wp), dimension(quantities) :: units, values
     real(wp) :: none
-    integer :: i, n, parameters
+    integer :: i, n
 
     n = self%elements(name)
     none = nan
     units = units_of(problem)
     allocate (found%value(n), source=0.0_wp)
     allocate (found%error(n), source=none)
-    parameters = 0
-    if (allocated(self%place)) then
-      do i = 1, size(self%place)
-        if (allocated(self%place(i)%rate)) parameters = size(self%place(i)%rate, 2)
-      end do
-    end if
-    allocate (found%rate(parameters, n), source=0.0_wp)
+    allocate (found%rate(parameters_of(self), n), source=none)
+    found%rate_error = found%rate
     do i = 1, merge(size(self%entry), 0, n > 0)
       associate (entry => self%entry(i), k => self%entry(i)%element)
         if (entry%name /= name) cycle
         if (entry%place == 0) then
           found%value(k) = found%value(k) + entry%factor
-          found%rate(:, k) = found%rate(:, k) + entry%factor
           cycle
         end if
         associate (place => self%place(entry%place))
           values = values_of(problem, place)
           found%value(k) = found%value(k) + entry%factor*values(quantity)
-          if (allocated(place%rate)) found%rate(:, k) = found%rate(:, k) + &
-            entry%factor*rates_of(problem, place, quantity)
-          if (.not. allocated(place%rate)) found%rate(:, k) = none
         end associate
       end associate
     end do
@@ -316,9 +297,25 @@ contains
         if (.not. number%known) found%error(k) = max(found%error(k), abs(found%value(k)), &
           least(quantity)*units(quantity))
         if (ieee_is_nan(found%value(k))) found%error(k) = none
+        if (allocated(number%rate)) then
+          found%rate(:, k) = number%rate(quantity, :)
+          found%rate_error(:, k) = number%rate_error(quantity, :)
+        end if
         if (quantity == of_profile) found%value(k) = found%error(k)
       end associate
     end do
   end function read_numbers
+
+  !> Number of parameters by which the numbers are differentiated.
+  pure integer function parameters_of(self) result(parameters)
+    class(places_t), intent(in) :: self
+    integer :: i
+
+    parameters = 0
+    if (.not. allocated(self%number)) return
+    do i = 1, size(self%number)
+      if (allocated(self%number(i)%rate)) parameters = size(self%number(i)%rate, 2)
+    end do
+  end function parameters_of
 
 end module places

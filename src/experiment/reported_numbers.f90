@@ -3,12 +3,12 @@
 !> number that another run does not have, or has more often, is not known.
 module reported_numbers
   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
-  use kinds, only: wp
+  use kinds, only: wp, nan
   use order_statistics, only: ranked
   use reported_place, only: quantities, of_load, of_profile, least, rounding
   implicit none
   private
-  public :: number_t, run_numbers_t, judge, chance, chance_on_grids, largest_error, &
+  public :: number_t, run_numbers_t, judge, differentiate, chance, chance_on_grids, largest_error, &
     largest_of, of_table, of_turns, name_length
 
   integer, parameter :: name_length = 24
@@ -26,6 +26,9 @@ module reported_numbers
     logical :: judged = .false.
     !> A profile: gaps and pressures at the radii of the first run.
     real(wp), allocatable, dimension(:) :: gap, pressure
+    !> Derivatives by the parameters of &sensitivity and their errors, (quantities, parameters), SI
+    !> units.
+    real(wp), allocatable, dimension(:, :) :: rate, rate_error
   end type number_t
 
   !> The numbers of another run.
@@ -47,6 +50,9 @@ module reported_numbers
   !> The loads of a table, whose errors are relative to the largest of them; and turns of the path,
   !> which count only if other runs do not have them.
   character(len=*), parameter :: of_table = 'table', of_turns = 'turns'
+  !> Numbers without derivatives.
+  character(len=*), parameter :: not_differentiated(*) = [character(len=8) :: 'profiles', &
+    'samples', of_table, of_turns]
 
 contains
 
@@ -91,9 +97,7 @@ contains
     integer :: k
 
     if (count(theirs%name == number%name) /= held) number%known = .false.
-    do k = size(theirs), 1, -1
-      if (theirs(k)%name == number%name .and. theirs(k)%element == number%element) exit
-    end do
+    k = place_among(theirs, number)
     if (k == 0) then
       number%known = .false.
       return
@@ -107,6 +111,56 @@ contains
     if (number%compared(of_profile)) number%error(of_profile) = number%error(of_profile) + &
       margin*profile_difference(number, theirs(k))
   end subroutine compare
+
+  !> The index of the same number, by name and element, of another run; 0: it has none.
+  pure integer function place_among(theirs, number) result(k)
+    type(number_t), intent(in) :: theirs(:), number
+
+    do k = size(theirs), 1, -1
+      if (theirs(k)%name == number%name .and. theirs(k)%element == number%element) return
+    end do
+  end function place_among
+
+  !> Sets derivative j of `parameters` from the numbers, in SI units, of runs with other values of
+  !> the parameter: the sums over the runs with `weight` are the derivatives, those with `coarser`
+  !> have a larger error. A number that some run does not have, or has more often, has no
+  !> derivative, and found = .false.
+  pure subroutine differentiate(number, runs, weight, coarser, j, parameters, found)
+    type(number_t), intent(inout) :: number(:)
+    type(run_numbers_t), intent(in) :: runs(:)
+    real(wp), intent(in) :: weight(:), coarser(:)
+    integer, intent(in) :: j, parameters
+    logical, intent(out) :: found
+    real(wp) :: coarse(quantities)
+    integer :: i, k, r
+
+    found = .true.
+    do i = 1, size(number)
+      if (any(not_differentiated == number(i)%name)) cycle
+      if (.not. allocated(number(i)%rate)) then
+        allocate (number(i)%rate(quantities, parameters), source=nan)
+        allocate (number(i)%rate_error(quantities, parameters), source=nan)
+      end if
+      if (ieee_is_nan(number(i)%value(of_load))) cycle
+      associate (rate => number(i)%rate(:, j), error => number(i)%rate_error(:, j))
+        rate = 0
+        coarse = 0
+        do r = 1, size(runs)
+          associate (theirs => runs(r)%number)
+            k = place_among(theirs, number(i))
+            if (k > 0) then
+              rate = rate + weight(r)*theirs(k)%value
+              coarse = coarse + coarser(r)*theirs(k)%value
+            end if
+            if (k == 0 .or. count(theirs%name == number(i)%name) /= &
+              count(number%name == number(i)%name)) rate = nan
+          end associate
+        end do
+        error = abs(rate - coarse)
+        found = found .and. .not. ieee_is_nan(rate(of_load))
+      end associate
+    end do
+  end subroutine differentiate
 
   !> The largest difference of gaps, and of pressures over the largest pressure, between two
   !> profiles. Differences of gaps above the law's length are relative: at large gaps rounding is

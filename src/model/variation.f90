@@ -9,7 +9,7 @@ module variation
   use interpolation, only: polynomial_slope
   implicit none
   private
-  public :: problem_family_t, parameter_t, variation_t, vary, along_path, to_report, to_search
+  public :: problem_family_t, parameter_t, variation_t, vary, find_rule, to_report, to_search
 
   !> A parameter: its value in the present problem, SI units, and its scale, which is the value
   !> unless the value is zero. follows: the value is a factor of the parameter's default, which may
@@ -56,8 +56,6 @@ module variation
     real(wp), allocatable, dimension(:) :: weight, coarser
     !> Allocatable: compiler note 11.
     type(problem_t), allocatable :: problem(:)
-    !> Difference of the coordinate on the path (`continuation`), if the coordinate is varied.
-    real(wp), allocatable :: shift(:)
   end type variation_t
 
 contains
@@ -82,8 +80,7 @@ contains
     do
       call pose_beside(i)
       if (allocated(error)) return
-      varied%shift = 0*varied%offset
-      call find_rule(varied)
+      call find_rule(varied%offset, varied%weight, varied%coarser)
       if (aside < to_report .or. apart < least_step) return
       if (is_smooth()) return
       apart = 0.25_wp*apart
@@ -154,33 +151,22 @@ contains
 
   end subroutine vary
 
-  !> Varies the path's coordinate, with the same problem. apart: a distance over which the path is
-  !> smooth, however steep the law.
-  type(variation_t) function along_path(problem, apart) result(varied)
-    type(problem_t), intent(in) :: problem
-    real(wp), intent(in) :: apart
+  !> The rule for the slope at 0 of values at `offset`: sum(weight*value), and the same without the
+  !> outermost two.
+  pure subroutine find_rule(offset, weight, coarser)
+    real(wp), intent(in) :: offset(:)
+    real(wp), allocatable, dimension(:), intent(out) :: weight, coarser
+    real(wp) :: one(size(offset))
     integer :: k
 
-    varied%parameter%name = 'coordinate'
-    varied%offset = min(step(to_report), 0.25_wp*apart)*[(k, k=-to_report, to_report)]
-    varied%shift = varied%offset
-    varied%problem = [(problem, k=1, size(varied%offset))]
-    call find_rule(varied)
-  end function along_path
-
-  subroutine find_rule(varied)
-    type(variation_t), intent(inout) :: varied
-    real(wp) :: one(size(varied%offset))
-    integer :: k
-
-    varied%weight = 0*varied%offset
-    varied%coarser = 0*varied%offset
+    weight = 0*offset
+    coarser = 0*offset
     do k = 1, size(one)
       one = 0
       one(k) = 1
-      varied%weight(k) = polynomial_slope(varied%offset, one, 0.0_wp)
-      if (size(one) > 3 .and. k > 1 .and. k < size(one)) varied%coarser(k) = &
-        polynomial_slope(varied%offset(2:size(one) - 1), one(2:size(one) - 1), 0.0_wp)
+      weight(k) = polynomial_slope(offset, one, 0.0_wp)
+      if (size(one) > 3 .and. k > 1 .and. k < size(one)) coarser(k) = &
+        polynomial_slope(offset(2:size(one) - 1), one(2:size(one) - 1), 0.0_wp)
     end do
   end subroutine find_rule
 

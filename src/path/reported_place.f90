@@ -1,7 +1,6 @@
 !> Places at which numbers are reported, and the quantities there. A place is an equilibrium and its
 !> definition: D = drive(1) h0 + drive(2) load turns there along the path, or has a given value. The
-!> module that finds the place sets its definition, `located_places` the values, and `place_rates`
-!> the derivatives.
+!> module that finds the place sets its definition, and `located_places` the values.
 module reported_place
   use kinds, only: wp, nan
   use dimensionless_problem, only: problem_t
@@ -10,7 +9,7 @@ module reported_place
   implicit none
   private
   public :: place_t, place_of_state, place_without_state, point_of_path, place_on_curve
-  public :: drive_weights, values_of, units_of, rates_of
+  public :: values_of, units_of
   public :: of_h0, of_load, of_displacement, of_energy, of_radius, of_edge, of_position, &
     of_tension, of_profile
   public :: read_of_states, quantities, nowhere, least, rounding
@@ -31,9 +30,8 @@ module reported_place
     !> there is none.
     integer :: point = 0
     logical :: landing = .false.
-    !> The equilibrium, its mesh and its coordinate on this mesh; mesh 0: undeformed bodies.
+    !> The equilibrium and its mesh; mesh 0: undeformed bodies.
     integer :: mesh = nowhere
-    real(wp) :: s = 0
     type(state_t) :: state
     !> The weights of h0 and load in D; turn_of: the weights in the combination that turns here
     !> along the path, which is D or h0, or zeros; after: the place in the table at which the jump
@@ -48,12 +46,10 @@ module reported_place
     real(wp), dimension(read_of_states) :: at = 0, left = 0
     !> Magnitude below which the relative error of a load does not matter.
     real(wp) :: negligible = 0
-    !> Whether derivatives are read at the place, and whether a profile.
-    logical :: differentiated = .false., with_profile = .false.
+    !> Whether a profile is read at the place.
+    logical :: with_profile = .false.
     !> The profile: radii, gaps and pressures; NaN where the mesh has none.
     real(wp), allocatable, dimension(:) :: r, gap, pressure
-    !> Derivatives of the quantities by each parameter of &sensitivity, SI units.
-    real(wp), allocatable :: rate(:, :)
   contains
     procedure :: take
     procedure :: has_state
@@ -118,7 +114,6 @@ contains
     type(path_state_t), intent(in) :: state
 
     self%mesh = state%mesh
-    self%s = state%x
     self%state = state%state
     self%at = [state%h0, state%load, state%axis_gap - state%h0, state%energy, state%radius, &
       state%state%scale]
@@ -216,40 +211,5 @@ contains
     units([of_radius, of_edge]) = problem%lateral
     units(of_profile) = 1
   end function units_of
-
-  !> The weights of h0 and load in D, SI units.
-  pure function drive_weights(problem, drive) result(weights)
-    type(problem_t), intent(in) :: problem
-    real(wp), intent(in) :: drive(2)
-    real(wp) :: weights(2)
-
-    weights = drive
-    if (drive(1) > 0) weights(2) = drive(2)*problem%length/problem%load
-  end function drive_weights
-
-  !> Derivatives of a quantity of a place by each parameter [SI].
-  pure function rates_of(problem, place, quantity) result(rate)
-    type(problem_t), intent(in) :: problem
-    type(place_t), intent(in) :: place
-    integer, intent(in) :: quantity
-    real(wp) :: rate(size(place%rate, 2))
-
-    associate (weights => drive_weights(problem, place%drive), own => place%rate, &
-      values => values_of(problem, place))
-      select case (quantity)
-      case (of_position)
-        rate = matmul(weights, own(:2, :))
-        if (.not. weights(1) > 0) rate = nan
-      case (of_tension)
-        rate = -own(of_load, :)
-      case (of_energy)
-        rate = own(of_energy, :) - weights(2)*values(of_load)*own(of_load, :)
-        if (.not. weights(1) > 0) rate = own(of_energy, :) + &
-          values(of_load)*own(of_h0, :) + values(of_h0)*own(of_load, :)
-      case default
-        rate = own(quantity, :)
-      end select
-    end associate
-  end function rates_of
 
 end module reported_place

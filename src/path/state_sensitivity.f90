@@ -1,6 +1,6 @@
 !> Derivatives of an equilibrium by a parameter of the problem, in SI units, at a fixed place on the
 !> path: at a fixed separation on the axis before contact, at a fixed contact radius in contact,
-!> where the separation at the edge is kept too. The place itself can be the varied parameter.
+!> where the separation at the edge is kept too.
 !>
 !> The equations of the varied problems are evaluated at states that change linearly with the
 !> parameter; positions and separations are in SI units. Along the correct line the derivative of
@@ -20,7 +20,7 @@ module state_sensitivity
   use variation, only: variation_t
   implicit none
   private
-  public :: change_t, place_on_path_t, differentiate, move
+  public :: change_t, place_on_path_t, differentiate
 
   !> An equilibrium of the path, its mesh and its coordinate on this mesh (`continuation`).
   type :: place_on_path_t
@@ -155,7 +155,7 @@ contains
     n = size(place%state%gap)
     call equations%become_those_of(varied%problem(k))
     associate (problem => varied%problem(k), law => varied%problem(k)%law)
-      control = control_of(own, problem, equations%meshes, place%mesh, place%s + varied%shift(k))
+      control = control_of(own, problem, equations%meshes, place%mesh, place%s)
       call residual(equations, control, law%gap_of(own%law%separation_of([place%state%gap, &
         place%state%h0]) + varied%offset(k)*line%separation), left, moved)
       if (control%kind == at_edge_radius) then

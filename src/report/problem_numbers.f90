@@ -24,23 +24,26 @@ contains
     type(summary_t), intent(inout) :: summary
     type(variation_t), intent(in), optional :: varied(:)
     real(wp) :: own(size(rows)), other(size(rows))
-    real(wp), allocatable :: rate(:, :)
+    real(wp), allocatable, dimension(:, :) :: rate, error
     integer :: i, j, k
 
     own = numbers_of(problem)
     j = 0
     if (present(varied)) j = size(varied)
     allocate (rate(j, size(rows)), source=0.0_wp)
+    error = rate
     do j = 1, size(rate, 1)
       do k = 1, size(varied(j)%problem)
         other = numbers_of(varied(j)%problem(k))
         ! Differences, so that a number that does not depend on a parameter has a derivative of 0.
         rate(j, :) = rate(j, :) + varied(j)%weight(k)*(other - own)
+        error(j, :) = error(j, :) + (varied(j)%weight(k) - varied(j)%coarser(k))*(other - own)
       end do
     end do
     do i = 1, size(rows)
       if (.not. ieee_is_nan(own(i))) &
-        call summary%set(trim(rows(i)%key), own(i:i), rate=rate(:, i:i))
+        call summary%set(trim(rows(i)%key), own(i:i), rate=rate(:, i:i), &
+          rate_error=abs(error(:, i:i)))
     end do
   end subroutine describe_problem
 

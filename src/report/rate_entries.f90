@@ -109,7 +109,7 @@ contains
       end associate
       allocate (rate(0, 1))
       if (allocated(timed%rate)) rate = timed%rate(:, which:which)
-      call summary%set(key, number, error, rate)
+      call summary%set(key, number, error, rate, 0*rate)
     end subroutine take
 
   end subroutine summarise_timed

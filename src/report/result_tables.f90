@@ -110,6 +110,7 @@ module result_tables
     'value [] of the quantity, in its unit', &
     'derivative [] by the parameter, SI units', &
     'logarithmic [] derivative of the logarithm of the quantity by that of the parameter', &
+    'derivative_error [] of the derivative: its change with a formula of lower order', &
     '= curve_sensitivity.csv | with &sensitivity | One row for each equilibrium, parameter ' // &
       'and stiffness.', &
     'parameter [] key of the deck', &

@@ -83,7 +83,7 @@ contains
         associate (value => number%value(k), rate => number%rate(j, k), &
           parameter => varied(j)%parameter)
           call results%row(quantity // ',' // parameter%name, &
-            [value, rate, rate*parameter%value/value])
+            [value, rate, rate*parameter%value/value, number%rate_error(j, k)])
         end associate
       end do
     end subroutine write_lines

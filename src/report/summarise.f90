@@ -97,7 +97,8 @@ contains
         if (rows(i)%error == '') then
           call summary%set(trim(rows(i)%key), found%value)
         else
-          call summary%set(trim(rows(i)%key), found%value, found%error, found%rate)
+          call summary%set(trim(rows(i)%key), found%value, found%error, found%rate, &
+            found%rate_error)
         end if
       end do
       if (.not. places%has('end')) return

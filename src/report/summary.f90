@@ -20,9 +20,9 @@ module summary
     integer(long), allocatable :: count(:)
     logical, allocatable :: truth
     character(len=:), allocatable :: text
-    !> Errors of the numbers, and derivatives by each parameter of &sensitivity, (parameters,
-    !> numbers).
-    real(wp), allocatable :: error(:), rate(:, :)
+    !> Errors of the numbers; derivatives by each parameter of &sensitivity, (parameters, numbers),
+    !> and their errors.
+    real(wp), allocatable :: error(:), rate(:, :), rate_error(:, :)
   end type value_t
 
   !> A row without a value is absent from the file. If one of several values of an array does not
@@ -69,9 +69,11 @@ contains
     class(summary_t), intent(in) :: self
     integer, intent(in) :: i
 
-    allocate (found%value(0), found%rate(0, 0))
+    allocate (found%value(0), found%rate(0, 0), found%rate_error(0, 0))
     if (allocated(self%value(i)%number)) found%value = self%value(i)%number
-    if (allocated(self%value(i)%rate)) found%rate = self%value(i)%rate
+    if (.not. allocated(self%value(i)%rate)) return
+    found%rate = self%value(i)%rate
+    found%rate_error = self%value(i)%rate_error
   end function numbers_of_row
 
   subroutine set_number(self, key, value, error)
@@ -89,11 +91,11 @@ contains
 
   !> Sets numbers with their errors and derivatives. Numbers of which none exists are left out, and
   !> so are errors of which none is known; without parameters there are no derivatives.
-  subroutine set_numbers(self, key, values, error, rate)
+  subroutine set_numbers(self, key, values, error, rate, rate_error)
     class(summary_t), intent(inout) :: self
     character(len=*), intent(in) :: key
     real(wp), intent(in) :: values(:)
-    real(wp), intent(in), optional :: error(:), rate(:, :)
+    real(wp), intent(in), optional :: error(:), rate(:, :), rate_error(:, :)
     integer :: i
 
     call self%find(key, i)
@@ -102,8 +104,10 @@ contains
     if (present(error)) then
       if (.not. all(ieee_is_nan(error))) self%value(i)%error = error
     end if
-    if (.not. present(rate)) return
-    if (size(rate, 1) > 0) self%value(i)%rate = rate
+    if (.not. (present(rate) .and. present(rate_error))) return
+    if (size(rate, 1) == 0) return
+    self%value(i)%rate = rate
+    self%value(i)%rate_error = rate_error
   end subroutine set_numbers
 
   subroutine set_count(self, key, value)

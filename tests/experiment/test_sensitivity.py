@@ -34,10 +34,12 @@ def value_of(found, quantity):
 @pytest.mark.parametrize("sigma", [0.01, 0.87, 8.7, 1000.0])
 def test_derivatives_obey_the_dimensions_of_the_problem(run, sigma):
     """Loads are (A/z0^2) R times a function of sigma ~ A R^(1/2) / (E z0^(7/2)), lengths z0 times
-    one: one derivative says the other three."""
+    one: one derivative says the other three, within the errors of sensitivity.csv."""
     names = ["force.hamaker", "bodies.radius", "force.z0", "bodies.stiffness"]
-    found = derivatives(run(lennard_jones(
-        sigma, equilibrium_path={"h0_end": -2.0}, sensitivity={"parameters": names})))
+    run_of = run(lennard_jones(
+        sigma, equilibrium_path={"h0_end": -2.0}, sensitivity={"parameters": names}))
+    found, derivative, error = (derivatives(run_of, kind) for kind in (
+        "logarithmic", "derivative", "derivative_error"))
     powers = {"_load": (1, 1, -2), "_h0": (0, 0, 1), "tension": (1, 1, -2), "lost": (1, 1, -1)}
     tried = 0
     for quantity, rate in found.items():
@@ -52,6 +54,12 @@ def test_derivatives_obey_the_dimensions_of_the_problem(run, sigma):
         bound = 5e-6 if kind == "_load" or quantity == "max_tension_h0" else 1e-7
         np.testing.assert_allclose([rate[name] for name in names[:3]], expected, rtol=bound,
                                    atol=bound, err_msg=quantity)
+        # The errors, logarithmic too; 1e-9: rounding in the runs.
+        each = {name: abs(rate[name] * error[quantity][name] / derivative[quantity][name])
+                for name in names}
+        allowed = [each[name] + power * each["bodies.stiffness"] + 1e-9
+                   for name, power in zip(names, (1, 0.5, 3.5))]
+        assert (abs(np.subtract([rate[name] for name in names[:3]], expected)) <= allowed).all()
         tried += 1
     assert tried >= (2 if sigma < 0.1 else 11)
 
@@ -293,6 +301,27 @@ def test_a_power_of_a_force_that_falls_slowly_has_few_digits_and_a_warning(run):
                  shape={"kind": "power", "exponent": 1.0, "coefficient": 0.17},
                  sensitivity={"parameters": "shape.exponent"})
     assert any("shape.exponent changes the power" in text for text in run(power).warnings)
+
+
+def test_a_jump_that_is_about_to_vanish_has_no_derivative_and_this_is_said(run):
+    """Of a path with its first two folds a little weaker adhesion has none; the largest tension has
+    a derivative all the same."""
+    def path(sigma, status=0, **groups):
+        return run(lennard_jones(sigma, equilibrium_path={"h0_end": -2.0}, **groups),
+                   status=status)
+
+    smooth, jumps = 0.05, 0.87
+    while jumps / smooth > 1.002:
+        middle = math.sqrt(smooth * jumps)
+        if "jump_in_h0" in path(middle).summary:
+            jumps = middle
+        else:
+            smooth = middle
+    found = path(jumps, status=1, sensitivity={"parameters": "force.hamaker"})
+    rate = derivatives(found, "derivative")
+    assert math.isnan(rate["jump_in_h0"]["force.hamaker"])
+    assert math.isfinite(rate["max_tension"]["force.hamaker"])
+    assert "sensitivity: not all derivatives were found" in found.warnings
 
 
 def test_a_path_without_states_has_no_derivatives(run):
