@@ -30,9 +30,10 @@ def draw_fit(folder, whole=False):
     summary, table = files.summary(), files.table("fit.csv")
     force = table["measured"] - table["baseline"]
     lengths = scale(np.ptp(table["z"]), "m")
-    unit = _unit_of(files)
-    signals = scale(force, unit)
-    lefts = scale(table["residual"][table["used"] == 1], unit)
+    fit = f90nml.reads(files.text("fit.nml"))["fit"]
+    unit = fit.get("signal_unit")
+    signals = _scale_of_signal(force, unit)
+    lefts = _scale_of_signal(table["residual"][table["used"] == 1], unit)
     z = (table["z"] - table["z"].min()) / lengths[0]
 
     outlier = table["outlier"] == 1
@@ -62,18 +63,17 @@ def draw_fit(folder, whole=False):
     dress(below, f"position of the base, from its least [{lengths[1]}]",
           f"residual [{lefts[1]}]")
     if not whole:
-        _show_contact(panel, z, table, force)
+        _show_contact(panel, z, table, np.where(outlier, 0, force))
     # As entries of the legend the numbers lie where no curve is.
-    for line in _numbers_of(files):
+    for line in _numbers_of(fit):
         panel.plot([], [], " ", label=line)
     panel.legend(frameon=False, markerscale=3, fontsize="small")
     entitle(figure, title_of(folder, summary))
     return figure
 
 
-def _numbers_of(files):
-    """Return lines with the fitted values and with what follows from them, from fit.nml."""
-    fit = f90nml.reads(files.text("fit.nml"))["fit"]
+def _numbers_of(fit):
+    """Return lines with the fitted values and with what follows from them, of a group of fit.nml."""
     names, values, errors, units = (np.atleast_1d(fit[key]) for key in (
         "parameters", "estimate", "standard_error", "units"))
     rows = [(name.split(".", 1)[1].replace("_", " "), *row)
@@ -94,22 +94,20 @@ def _with_error(value, error, unit):
     return f"{value:.{digits}f} \u00b1 {error:.{digits}f} {unit}".replace("^2", "²")
 
 
-def _unit_of(files):
-    """Return the unit of the signal, from the deck in the summary."""
-    measurement = f90nml.reads(files.text("summary.nml"))["measurement"]
-    units, columns = (np.atleast_1d(measurement.get(key, [])) for key in ("units", "columns"))
-    if len(units) > 1:
-        return units[1][-1]
-    named_force = len(columns) > 1 and "force" in str(columns[1]).lower()
-    return "V" if "sensitivity" in measurement and not named_force else "N"
+def _scale_of_signal(values, unit):
+    """Return the factor and the name of the unit; a prefix needs a unit that is known."""
+    return scale(values, unit) if unit else (1.0, "V or m")
 
 
 def _show_contact(panel, z, table, force):
-    """Show the samples with a force, and little of the baseline."""
+    """Show the samples with a force and the largest tension, and little of the baseline."""
     level = _STANDS_OUT * np.median(np.abs(table["residual"]))
-    stands = z[np.abs(force) > level]
-    if stands.size == 0:
+    stands = np.abs(force) > level
+    if not stands.any():
         return
+    # What a wrong model leaves may exceed the tension.
+    stands[np.argmin(force)] = True
+    stands = z[stands]
     margin = _BEYOND * np.ptp(stands)
     panel.set_xlim(max(z.min(), stands.min() - margin), min(z.max(), stands.max() + margin))
 

@@ -62,7 +62,8 @@ contains
         fitted = other
         curve = trial%curve
       end if
-      if (fitted%lack%is_noise()) exit
+      ! A correlation of the residuals may be a misfit.
+      if (fitted%lack%is_noise() .and. .not. curve%data%noise%of_residuals) exit
       ! Other searches with the same minimum are left out.
       where (left < (1 + apart)*left(k)) left = huge(left)
     end do

@@ -17,7 +17,8 @@ module curve_rows
 
   !> z [m], signal [N, or V] of the complete rows in the order of the file, or first those of the
   !> approach; code: the index of each row's label in `label`, if the file has a column of segments;
-  !> kind: of each row's segment, once it is known. unit: of position and signal in the file.
+  !> kind: of each row's segment, once it is known. unit: of position and signal in the file;
+  !> signal_in: as in `measurement_t`.
   !> incomplete: number of rows that are left out. columns_read: a description for the user.
   type :: curve_rows_t
     character(len=:), allocatable :: file, columns_read
@@ -25,6 +26,7 @@ module curve_rows
     integer, allocatable :: code(:), kind(:)
     character(len=64), allocatable :: label(:)
     real(wp) :: unit(2) = 1
+    character :: signal_in = ' '
     integer :: incomplete = 0
   end type curve_rows_t
 
@@ -53,7 +55,7 @@ contains
       call fail(error, bad_input, rows%file // ': no row of numbers')
       return
     end if
-    call scale_columns(measurement, table, rows%unit, what)
+    call scale_columns(measurement, table, rows%unit, rows%signal_in, what)
     if (allocated(what)) then
       call fail(error, bad_input, rows%file // ': ' // what)
       return
@@ -98,10 +100,11 @@ contains
       if (abs(rows%unit(i) - 1) > 0) text = text // rounded(rows%unit(i)) // ' '
       if (i == 1) then
         text = text // 'm'
-      else if (allocated(measurement%sensitivity)) then
+      else if (rows%signal_in == ' ') then
         text = text // 'V or m, times sensitivity'
       else
-        text = text // 'N'
+        text = text // rows%signal_in
+        if (allocated(measurement%sensitivity)) text = text // ', times sensitivity'
       end if
     end function column_text
 
@@ -130,16 +133,20 @@ contains
   end subroutine put_in_order
 
   !> Scales positions and signals to SI by the deck's units, by those in the file, or not at all.
-  !> unit: those of the first position and signal. what: why a unit cannot be right.
-  subroutine scale_columns(measurement, table, unit, what)
+  !> unit: those of the first position and signal. signal_in: as in `measurement_t`. what: why a unit
+  !> cannot be right.
+  subroutine scale_columns(measurement, table, unit, signal_in, what)
     type(measurement_t), intent(in) :: measurement
     type(data_table_t), intent(inout) :: table
     real(wp), intent(out) :: unit(2)
+    character, intent(out) :: signal_in
     character(len=:), allocatable, intent(out) :: what
     real(wp) :: factor
     character :: base
     integer :: i, k
 
+    signal_in = measurement%signal_in
+    if (.not. allocated(measurement%sensitivity)) signal_in = 'N'
     do i = 1, size(measurement%columns)
       if (i == 3 .and. size(measurement%columns) == 3) exit
       k = 1 + mod(i - 1, 2)
@@ -156,6 +163,7 @@ contains
           'the deflection of the spring for one volt, or 1 for a deflection'
         return
       end if
+      if (k == 2 .and. signal_in == ' ') signal_in = base
       table%value(:, i) = table%value(:, i)*factor
       if (i <= 2) unit(i) = factor
     end do

@@ -33,6 +33,8 @@ module fit_errors
     !> Sum of the squared residuals in standard deviations, and its expected value.
     real(wp) :: chi_squared = 0
     integer :: freedom = 0
+    !> Standard deviation of a whitened residual, in the unit of the signal.
+    real(wp) :: scale = 1
     type(lack_t) :: lack = lack_t()
     !> At all samples: the model with its baseline, the residual, the baseline.
     real(wp), allocatable :: model(:), residual(:), baseline(:)
@@ -47,15 +49,26 @@ module fit_errors
 
 contains
 
-  !> Whether a fit has errors and smaller residuals than another, and every unknown an effect.
+  !> Whether a fit has errors, and every unknown an effect, and is more likely than another, each
+  !> with its own noise.
   pure logical function is_better_than(self, other)
     class(fitted_t), intent(in) :: self
     type(fitted_t), intent(in) :: other
 
     is_better_than = allocated(self%effect)
     if (is_better_than) is_better_than = all(self%effect > least_effect)
-    if (is_better_than .and. allocated(other%effect)) is_better_than = &
-      self%chi_squared/self%freedom < other%chi_squared/other%freedom
+    if (is_better_than .and. allocated(other%effect)) is_better_than = surprise(self) < &
+      surprise(other)
+
+  contains
+
+    !> Minus twice the logarithm of the likelihood of a sample.
+    pure real(wp) function surprise(fitted)
+      class(fitted_t), intent(in) :: fitted
+
+      surprise = fitted%chi_squared/fitted%freedom + 2*log(fitted%scale)
+    end function surprise
+
   end function is_better_than
 
   !> Finds errors and correlations of the values, and the residuals of the curve.
@@ -76,6 +89,7 @@ contains
     fitted%chi_squared = sum(residual**2)
     fitted%freedom = size(residual) - n - residuals%curve%data%baseline_numbers()
     associate (data => residuals%curve%data)
+      fitted%scale = data%noise%left(data%noise%order)
       fitted%lack = lack_in(residual(:size(data%sample)), 3*data%way(data%sample) + &
         data%side(data%sample), size(data%sample) - n - data%baseline_numbers(), data%noise)
     end associate

@@ -77,6 +77,7 @@ contains
         (.false., i=1, count(wanted .and. kind == of_retreat))]
     end associate
     measured%unit = rows%unit
+    measured%signal_in = rows%signal_in
     measured%skipped = [(any(measured%z(i) >= measured%skip(1::2) .and. &
       measured%z(i) <= measured%skip(2::2)), i=1, size(measured%z))]
     measured%usable = .not. measured%skipped

@@ -11,10 +11,12 @@
 module measured_jumps
   use kinds, only: wp
   use measured_curve, only: measured_t
-  use noise, only: noise_t, noise_of, white_noise, rough_deviation, stand_apart
+  use noise, only: noise_t, noise_of, white_noise, rough_deviation
+  use outliers, only: stand_apart
   implicit none
   private
-  public :: measured_jump_t, find_jump, likely_jump, find_far, off_baseline
+  public :: measured_jump_t, find_jump, likely_jump, find_far, off_baseline, &
+    fewest_far
 
   !> A jump between the samples `before` and `after`; 0 if there is none. Position of the base with
   !> its uncertainty, and the change of the signal.

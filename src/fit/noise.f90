@@ -1,16 +1,15 @@
 !> The noise of a signal, from samples that would lie on a straight line without it. An instrument's
 !> filter correlates neighbours: a linear prediction from some previous samples then leaves white
 !> noise (autoregression; Levinson, 1947, and Durbin, 1960).
-!>
-!> Outliers are samples that differ from their neighbours on both sides. A jump, a bend or a lasting
-!> change is not an outlier.
+!> Residuals of a fit show the correlation too: with it the next fit is one by generalised least
+!> squares (Aitken, 1935; Cochrane and Orcutt, 1949).
 module noise
   use kinds, only: wp
   use order_statistics, only: median_of
   implicit none
   private
-  public :: noise_t, white_noise, noise_of, noise_of_steps, rough_deviation, rounding_of, &
-    normal_median, whiten, stand_apart
+  public :: noise_t, white_noise, noise_of, noise_of_steps, noise_of_residuals, contradicts, &
+    rough_deviation, rounding_of, normal_median, whiten
 
   !> Deviation over that of second differences above which residuals are no noise. A filter with
   !> this ratio would average over 60 samples.
@@ -25,9 +24,6 @@ module noise
   !> The median of the magnitude of a standard normal number.
   real(wp), parameter :: normal_median = 0.6745_wp
 
-  !> Number of neighbours on each side, whose median is compared: one of three may be an outlier.
-  integer, parameter :: neighbours = 3
-
   !> deviation: standard deviation. correlation(k): of samples k apart. order: previous samples that
   !> predict one. weight(:k, k): weights of the prediction from k samples, the nearest first.
   !> left(k): standard deviation that this prediction leaves.
@@ -35,9 +31,10 @@ module noise
     real(wp) :: deviation = 0, correlation(0:longest) = 0
     integer :: order = 0
     !> Number of independent samples that give the deviation, whether the steps between samples give
-    !> it, and whether residuals were no noise, so that second differences do.
+    !> it, whether residuals were no noise, so that second differences do, and whether a model's
+    !> residuals give deviation and correlation.
     real(wp) :: known_by = huge(1.0_wp)
-    logical :: of_steps = .false., of_differences = .false.
+    logical :: of_steps = .false., of_differences = .false., of_residuals = .false.
     real(wp) :: weight(longest, longest) = 0, left(0:longest) = 1
   contains
     procedure :: long_deviation
@@ -69,15 +66,30 @@ contains
   pure type(noise_t) function noise_of(z, signal, run) result(noise)
     real(wp), intent(in) :: z(:), signal(:)
     integer, intent(in) :: run(:)
-    real(wp) :: r(size(z)), covariance(0:longest), rough
-    integer :: k, i, n, unknowns
+    real(wp) :: r(size(z))
+    integer :: unknowns
 
-    unknowns = 0
-    do i = minval(run), maxval(run)
-      k = merge(2, 1, count(run == i) >= many)
-      where (run == i) r = off_line(z, signal, run == i, k)
-      unknowns = unknowns + k + 1
-    end do
+    call remove_lines(z, signal, run, r, unknowns)
+    noise = noise_in(r, run, unknowns, rounding_of(signal))
+  end function noise_of
+
+  !> The noise of the residuals of a model with so many unknowns.
+  pure type(noise_t) function noise_of_residuals(left, run, unknowns) result(noise)
+    real(wp), intent(in) :: left(:)
+    integer, intent(in) :: run(:), unknowns
+
+    noise = noise_in(left, run, unknowns, 0.0_wp)
+    noise%of_residuals = .true.
+  end function noise_of_residuals
+
+  !> The noise of residuals r with so many unknowns, if they are noise. least: smallest deviation of
+  !> second differences.
+  pure type(noise_t) function noise_in(r, run, unknowns, least) result(noise)
+    real(wp), intent(in) :: r(:), least
+    integer, intent(in) :: run(:), unknowns
+    real(wp) :: covariance(0:longest), rough
+    integer :: k, n
+
     n = size(r)
     do k = 0, longest
       covariance(k) = sum(r(1 + k:)*r(:n - k), run(1 + k:) == run(:n - k))/n
@@ -85,7 +97,7 @@ contains
     noise = white_noise(sqrt(covariance(0)*n/max(1, n - unknowns)))
     noise%known_by = n
     if (.not. covariance(0) > 0) return
-    rough = max(rough_deviation(r), rounding_of(signal))
+    rough = max(rough_deviation(r), least)
     if (noise%deviation > smooth*rough) then
       noise = white_noise(rough)
       noise%known_by = n
@@ -94,7 +106,52 @@ contains
     end if
     noise%correlation = covariance/covariance(0)
     call find_weights(noise, n)
-  end function noise_of
+  end function noise_in
+
+  !> The samples minus the line, or parabola, of their run. unknowns: of all these.
+  pure subroutine remove_lines(z, signal, run, r, unknowns)
+    real(wp), intent(in) :: z(:), signal(:)
+    integer, intent(in) :: run(:)
+    real(wp), intent(out) :: r(:)
+    integer, intent(out) :: unknowns
+    integer :: i, k
+
+    unknowns = 0
+    do i = minval(run), maxval(run)
+      k = merge(2, 1, count(run == i) >= many)
+      where (run == i) r = off_line(z, signal, run == i, k)
+      unknowns = unknowns + k + 1
+    end do
+  end subroutine remove_lines
+
+  !> Whether samples, which would lie on straight lines or parabolas without noise, contradict a
+  !> noise: white noise of their own deviation is so much more likely that chance does not explain
+  !> it (the test of likelihood ratios; Neyman and Pearson, 1933).
+  pure logical function contradicts(z, signal, run, noise)
+    real(wp), intent(in) :: z(:), signal(:)
+    integer, intent(in) :: run(:)
+    type(noise_t), intent(in) :: noise
+    real(wp) :: r(size(z))
+    integer :: unknowns
+
+    call remove_lines(z, signal, run, r, unknowns)
+    associate (own => white_noise(sqrt(sum(r**2)/max(1, size(r) - unknowns))))
+      contradicts = surprise(noise) - surprise(own) > by_chance
+    end associate
+
+  contains
+
+    !> Minus twice the logarithm of the likelihood of r.
+    pure real(wp) function surprise(noise)
+      type(noise_t), intent(in) :: noise
+      real(wp) :: column(size(r), 1)
+
+      column(:, 1) = r
+      call whiten(noise, run, column)
+      surprise = sum(column**2) + 2*sum(log(noise%left(predicting(noise, run))))
+    end function surprise
+
+  end function contradicts
 
   !> White noise from the steps between neighbours of a run in a smooth signal. steps: their number
   !> (von Neumann, 1941).
@@ -198,74 +255,30 @@ contains
     integer, intent(in) :: run(:)
     real(wp), intent(inout) :: column(:, :)
     real(wp) :: raw(size(column, 2), 0:longest)
-    logical :: begins(size(run))
-    integer :: i, known
+    integer :: known(size(run)), i
 
-    begins = .true.
-    if (size(run) > 1) begins(2:) = run(2:) /= run(:size(run) - 1)
-    known = 0
+    known = predicting(noise, run)
     raw = 0
     do i = 1, size(run)
-      known = merge(0, min(known + 1, noise%order), begins(i))
       raw(:, 1:) = raw(:, :longest - 1)
       raw(:, 0) = column(i, :)
       column(i, :) = raw(:, 0)
-      if (known > 0) column(i, :) = column(i, :) - &
-        matmul(raw(:, 1:known), noise%weight(:known, known))
-      column(i, :) = column(i, :)/noise%left(known)
+      if (known(i) > 0) column(i, :) = column(i, :) - &
+        matmul(raw(:, 1:known(i)), noise%weight(:known(i), known(i)))
+      column(i, :) = column(i, :)/noise%left(known(i))
     end do
   end subroutine whiten
 
-  !> Marks samples that are outside the range between the medians of their neighbours in the run by
-  !> more than their `tolerance`. Samples that are not `usable` are ignored.
-  pure function stand_apart(signal, run, usable, tolerance) result(apart)
-    real(wp), intent(in) :: signal(:), tolerance(:)
+  !> The number of previous samples of its run that predict each sample.
+  pure function predicting(noise, run) result(known)
+    type(noise_t), intent(in) :: noise
     integer, intent(in) :: run(:)
-    logical, intent(in) :: usable(:)
-    logical :: apart(size(signal)), good(size(signal))
-    real(wp) :: middle(2)
-    logical :: known(2)
-    integer :: i, pass
+    integer :: known(size(run)), i
 
-    good = usable
-    ! The second pass leaves out the outliers of the first, which may have hidden others.
-    do pass = 1, 2
-      apart = .false.
-      do i = 1, size(signal)
-        call beside(signal, run, good, i, -1, middle(1), known(1))
-        call beside(signal, run, good, i, 1, middle(2), known(2))
-        if (.not. any(known)) cycle
-        apart(i) = usable(i) .and. (signal(i) < minval(middle, known) - tolerance(i) .or. &
-          signal(i) > maxval(middle, known) + tolerance(i))
-      end do
-      good = usable .and. .not. apart
+    known = 0
+    do i = 2, size(run)
+      if (run(i) == run(i - 1)) known(i) = min(known(i - 1) + 1, noise%order)
     end do
-  end function stand_apart
-
-  !> The median of the nearest good samples of the run on one side of sample i.
-  pure subroutine beside(signal, run, good, i, step, middle, known)
-    real(wp), intent(in) :: signal(:)
-    integer, intent(in) :: run(:), i, step
-    logical, intent(in) :: good(:)
-    real(wp), intent(out) :: middle
-    logical, intent(out) :: known
-    real(wp) :: near(neighbours)
-    integer :: k, n
-
-    n = 0
-    k = i + step
-    do while (n < neighbours .and. k >= 1 .and. k <= size(signal))
-      if (run(k) /= run(i)) exit
-      if (good(k)) then
-        n = n + 1
-        near(n) = signal(k)
-      end if
-      k = k + step
-    end do
-    known = n > 0
-    middle = 0
-    if (n == 3) middle = sum(near) - maxval(near) - minval(near)
-    if (n == 1 .or. n == 2) middle = sum(near(:n))/n
-  end subroutine beside
+  end function predicting
 
 end module noise

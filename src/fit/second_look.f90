@@ -3,9 +3,11 @@
 !> jumps, which they show better than the curve itself.
 module second_look
   use kinds, only: wp
-  use noise, only: noise_t, noise_of, white_noise, noise_of_steps, normal_median, stand_apart
+  use noise, only: noise_t, noise_of, white_noise, noise_of_steps, noise_of_residuals, contradicts, &
+    normal_median, whiten
+  use outliers, only: stand_apart
   use order_statistics, only: median_of
-  use measured_jumps, only: measured_jump_t, likely_jump
+  use measured_jumps, only: measured_jump_t, likely_jump, fewest_far
   use modelled_curve, only: modelled_curve_t
   implicit none
   private
@@ -162,12 +164,14 @@ contains
     call curve%data%take(1)
   end subroutine look_again
 
-  !> Finds the noise of the residuals, of all samples if possible. The samples far from contact show
-  !> their noise without a model. What a model adds to it there is the model's misfit.
+  !> Finds the noise of the residuals. The samples far from contact show their noise without a
+  !> model: what a model adds to it there is the model's misfit. Where they are too few to show a
+  !> correlation, the residuals of all samples do, if this correlation explains them and the far
+  !> samples do not contradict it.
   subroutine renew_noise(curve, left)
     type(modelled_curve_t), intent(inout) :: curve
     real(wp), intent(in) :: left(:)
-    type(noise_t) :: far_noise, all_noise, bare
+    type(noise_t) :: far_noise, all_noise, bare, correlated
     logical :: far(size(left))
     integer :: steps
 
@@ -186,9 +190,33 @@ contains
         if (far_noise%order > 0 .or. abs(log(all_noise%deviation/far_noise%deviation)) > &
           differs*sqrt(0.5_wp/count(far) + 0.75_wp/steps)) all_noise = far_noise
       end if
+      correlated = noise_of_residuals(left(data%sample), data%run(data%sample), &
+        size(curve%unknown) + data%baseline_numbers())
+      if (explains(correlated)) all_noise = correlated
       if (all_noise%deviation > 0) data%noise = all_noise
       if (data%noise%deviation < data%least_noise) data%noise = white_noise(data%least_noise)
     end associate
+
+  contains
+
+    !> Whether a correlated noise explains all residuals, and the far samples alone.
+    logical function explains(noise)
+      type(noise_t), intent(in) :: noise
+      real(wp) :: white(size(curve%data%sample), 1)
+      type(lack_t) :: lack
+
+      explains = noise%order > 0 .and. count(far) >= fewest_far
+      if (.not. explains) return
+      associate (data => curve%data)
+        white(:, 1) = left(data%sample)
+        call whiten(noise, data%run(data%sample), white)
+        lack = lack_in(white(:, 1), 3*data%way(data%sample) + data%side(data%sample), &
+          size(white) - size(curve%unknown) - data%baseline_numbers(), noise)
+        explains = lack%is_noise() .and. .not. contradicts(pack(data%measured%z, far), &
+          pack(data%measured%signal, far), pack(data%way, far), noise)
+      end associate
+    end function explains
+
   end subroutine renew_noise
 
   !> The jump of the curve from one branch of the model to the other.

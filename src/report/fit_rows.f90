@@ -45,7 +45,7 @@ contains
   function fit_text(outcome, title) result(text)
     type(fit_outcome_t), intent(in) :: outcome
     character(len=:), allocatable, intent(in) :: title
-    character(len=:), allocatable :: text
+    character(len=:), allocatable :: text, signal_unit
     type(line_t), allocatable :: doubts(:)
     integer :: i
 
@@ -58,6 +58,8 @@ contains
         text = text // numbers('sigma', [adhesion_strength(outcome%problem)])
         text = text // numbers('tabor', [tabor_parameter(outcome%problem)])
       end if
+      signal_unit = trim(curve%data%measured%signal_in)
+      text = text // assignment_of('signal_unit', signal_unit)
       text = text // numbers('noise', [curve%data%noise%deviation])
       text = text // numbers('noise_correlation', curve%data%noise%correlation(1:))
       text = text // numbers('rested', [real(count(curve%data%measured%rested), wp)])

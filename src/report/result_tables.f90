@@ -123,7 +123,7 @@ module result_tables
     '= fit.csv | with &fit | One row for each sample of the measured curve.', &
     'direction [] approach or retreat', &
     'z [m] position of the base, as measured', &
-    'measured [] the signal: N, or V if the deck has a sensitivity', &
+    'measured [] the signal: N, or V or m if the deck has a sensitivity', &
     'model [] the signal of the model, with its baseline', &
     'baseline [] the signal without force', &
     'residual [] measured less model', &

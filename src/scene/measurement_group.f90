@@ -110,7 +110,7 @@ contains
         call deck%mistake('measurement', 'skip', 'the first of each pair must be the smaller')
       end if
       call take_baseline(deck, measurement%baseline)
-      call take_units(deck, measurement%unit)
+      call take_units(deck, measurement%unit, measurement%signal_in)
       call deck%get_optional('fit', 'noise', scene%fit%noise)
     end associate
   end subroutine take_measurement
@@ -150,15 +150,17 @@ contains
   end subroutine take_baseline
 
   !> Reads the units of the file's columns: metres, newtons and volts, with SI prefixes.
-  subroutine take_units(deck, unit)
+  subroutine take_units(deck, unit, signal_in)
     type(deck_t), intent(inout) :: deck
     real(wp), intent(out) :: unit(2)
+    character, intent(out) :: signal_in
     character(len=*), parameter :: bases(2) = ['m  ', 'NVm']
     character(len=:), allocatable :: names, name
     character :: base
     integer :: i
 
     unit = 0
+    signal_in = ' '
     call deck%get('measurement', 'units', names)
     do i = 1, min(2, word_count(names))
       name = word_of(names, i)
@@ -168,7 +170,9 @@ contains
         trim(merge('position', 'signal  ', i == 1)) // ' such as ' // &
         trim(merge('nm', 'nN', i == 1)))
     end do
-    if (word_count(names) < 2 .or. deck%is_set('measurement', 'sensitivity')) return
+    if (word_count(names) < 2) return
+    signal_in = base
+    if (deck%is_set('measurement', 'sensitivity')) return
     if (scan(base, 'Vm') > 0) call deck%mistake('measurement', 'units', 'a signal in ' &
       // 'volts needs sensitivity, the deflection of the spring for one volt, and a ' // &
       'deflection sensitivity = 1')

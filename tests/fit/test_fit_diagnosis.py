@@ -162,6 +162,15 @@ def test_fits_find_the_truth_in_several_kinds_of_noise(kind, number):
     assert not finding.warned
 
 
+@pytest.mark.parametrize("number", [5044, 6009, 6051])
+def test_noise_of_a_filter_is_found_without_many_far_samples(number):
+    """These curves have few samples beyond both jumps. Their correlated noise was taken for white:
+    errors were up to three times too small, and the right model was called wrong."""
+    [finding] = study_fits.examine(study_fits.Job("filtered", number))
+    assert max(abs(distance) for distance in finding.off) < 3.5
+    assert not any("does not describe" in text for text in finding.warned)
+
+
 BASELINES = {"bow": "baseline = 'quadratic'", "drift": "slope_each_way = .true.",
              "interference": "ripple = .true."}
 

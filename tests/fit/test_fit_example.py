@@ -1,8 +1,11 @@
 """Claims about the measured curve that comes with the program, and its picture."""
 
+import importlib
+
 import pytest
 from conftest import ROOT
-from snapin import read_results
+from snapin import read_results, run
+
 
 @pytest.fixture(scope="module")
 def example(snapin, tmp_path_factory):
@@ -37,3 +40,33 @@ def test_the_fit_is_drawn(example, called):
     done = called(ROOT / "pywrap/plots/fit.py", folder)
     assert (done.returncode, done.stderr) == (0, "")
     assert (folder / "fit.png").stat().st_size > 2e4
+
+
+@pytest.mark.filterwarnings("ignore::snapin.SnapinWarning")
+@pytest.mark.parametrize(("head", "unit"), [("Deflection (nm)", "nm"), ("Signal (mV)", "mV"),
+                                            ("signal", "V or m")])
+def test_the_picture_has_the_unit_of_the_signal_and_all_of_the_tension(tmp_path, monkeypatch, head, unit):
+    """A deflection in metres was labelled as volts. Where the residuals of a wrong model are as large
+    as the tension, the axis ended before it."""
+    pytest.importorskip("matplotlib")
+    table = ROOT / "inputs/tutorial/probe.txt"
+    rows = [line.split("\t") for line in table.read_text(encoding="utf-8").splitlines()[6:]]
+    lines = [f"Z (um),{head},Segment"] + [f"{z},{float(force) / 42},{way}" for z, force, way in rows]
+    (tmp_path / "curve.csv").write_text("\n".join(lines))
+    # Softer bodies than any that describe the data: the residuals are large.
+    run({
+        "bodies": {"radius": 5e-6, "stiffness": 1e6},
+        "force": {"law": "lennard_jones", "surface_energy": 0.04, "z0": 5e-10},
+        "measurement": {"file": str(tmp_path / "curve.csv"), "columns": ["Z", head, "Segment"],
+                        "spring_constant": 42.0,
+                        "sensitivity": {"nm": 1.0, "mV": 1e-6, "V or m": 1e-9}[unit]},
+        "fit": {"parameters": ["bodies.stiffness", "measurement.contact_point"],
+                "upper": [2e6, 1.0], "lower": [1e3, -1.0]}}, tmp_path / "out")
+    monkeypatch.syspath_prepend(ROOT / "pywrap/plots")
+    fit = importlib.import_module("fit")
+    panel, below = fit.draw_fit(tmp_path / "out").axes
+    assert panel.get_ylabel() == f"signal less baseline [{unit}]"
+    left, right = panel.get_xlim()
+    drawn = [line.get_xydata() for line in panel.lines if line.get_marker() == "."]
+    lowest = min((points[points[:, 1].argmin()] for points in drawn), key=lambda point: point[1])
+    assert left <= lowest[0] <= right
