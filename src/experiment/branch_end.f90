@@ -21,11 +21,12 @@ module branch_end
   !> How `follow` ends: at h0; at a fold before it; or neither is known.
   integer, parameter :: lost = 0, arrived = 1, at_fold = 2
 
-  !> The end of `follow`. state: the state at h0, or the last stable state before the fold; h0 and
-  !> load of the fold, and the uncertainty of its h0.
+  !> The end of `follow`. state: the state at h0, or the last stable state before the fold; fold:
+  !> the state nearest to the fold, on either side of it; h0 and load of the fold, and the
+  !> uncertainty of its h0.
   type :: found_t
     integer :: outcome = lost
-    type(state_t) :: state
+    type(state_t) :: state, fold
     real(wp) :: fold_h0 = 0, fold_load = 0, uncertainty = 0
   end type found_t
 
@@ -80,7 +81,8 @@ contains
     sense = sign(1.0_wp, h0 - here%state%h0)
     if (.not. here%tangent%stable) then
       ! The state is at the end of its branch, to the tolerance.
-      found = found_t(at_fold, here%state, here%state%h0, here%state%load, options%tolerance)
+      found = found_t(at_fold, here%state, here%state, here%state%h0, here%state%load, &
+        options%tolerance)
       return
     end if
     step = first_step*abs(h0 - here%state%h0)/here%tangent%h0
@@ -238,6 +240,7 @@ contains
     end if
     found%outcome = at_fold
     found%state = low%state
+    found%fold = trial%state
     found%fold_h0 = trial%state%h0 + 0.5_wp*sense*trial%tangent%h0*way
     found%fold_load = trial%state%load + sense*trial%tangent%load*way
     found%uncertainty = max(exact, 0.5_wp*abs(trial%tangent%h0*way)) + trial%state%residual

@@ -6,7 +6,8 @@
 !> Q has no fold there: the curve can be followed past the fold, which is a zero of dh0/dQ.
 module branch_tangent
   use kinds, only: wp, pi
-  use contact_state, only: state_t
+  use beyond_mesh, only: load_slope_beyond
+  use contact_state, only: state_t, gap_at_end, load_reach
   use controls, only: control_t
   use control_derivatives, only: control_derivative
   use frozen_jacobian, only: frozen_jacobian_t, freeze
@@ -51,7 +52,7 @@ contains
     type(state_t), intent(in) :: state
     type(tangent_t), intent(out) :: tangent
     type(pressure_slope_t) :: slope
-    real(wp) :: weight(size(state%gap)), unit(size(state%gap))
+    real(wp) :: weight(size(state%gap)), unit(size(state%gap)), of_end(2)
 
     if (allocated(solver%along) .or. .not. has_factors_at(solver%frozen, control, state)) &
       call freeze(solver%equations_t, control, state, solver%frozen)
@@ -60,7 +61,7 @@ contains
     if (.not. tangent%regular) return
     tangent%gap = -control_derivative(solver%equations_t, control, state)
     call solve(solver%frozen%factors, tangent%gap)
-    associate (grid => solver%meshes%grid(1))
+    associate (grid => solver%meshes%grid(1), n => size(state%gap))
       tangent%along = 0*grid%weight
       if (allocated(solver%along)) tangent%along = solver%along
       weight = 2*pi*state%scale**2*grid%weight
@@ -68,6 +69,13 @@ contains
       unit = 1
       tangent%load_by_gap = weight*slope%times(unit)
       tangent%load = dot_product(weight, slope%times(tangent%gap))
+      if (grid%is_bounded()) then
+        ! The load beyond the mesh depends on the gap at its end, which follows the last node.
+        of_end = 2*pi*load_slope_beyond(solver%problem, &
+          gap_at_end(solver%problem%shape, grid, state), load_reach(grid, state))
+        tangent%load_by_gap(n) = tangent%load_by_gap(n) + of_end(1)
+        tangent%load = tangent%load + of_end(1)*tangent%gap(n)
+      end if
       tangent%scale = dot_product(weight, abs(state%pressure))
       ! The ratio of the determinants at prescribed h0 and at prescribed Q.
       tangent%h0 = 1 + dot_product(tangent%along, tangent%gap)

@@ -2,7 +2,7 @@
 !> branch, from its end by a relaxation to another branch, and so on. The steps, of the experiment
 !> and of the iteration, do not decide where a branch ends (`branch_end`).
 module fixed_motion
-  use kinds, only: wp
+  use kinds, only: wp, nan
   use dimensionless_problem, only: over_neck => spacing_over_neck
   use contact_state, only: state_t, radius_of_gap
   use contact_scales, only: largest_radius, lost_in_rounding
@@ -11,6 +11,7 @@ module fixed_motion
   use branch_tangent, only: tangent_t, tangent_at, has_factors_at, joins
   use branch_end, only: follow, found_t, arrived, at_fold
   use ending, only: beyond_rounding, no_equilibrium
+  use potential_energy, only: energy_of
   use relaxation, only: relax
   use solver_options, only: solver_options_t
   use stepper, only: stepper_t, branch_point_t, step_result_t, extreme_t, remember, move_to
@@ -90,6 +91,7 @@ contains
         if (event%converged) stayed = stays(self, position%state, state)
         if (stayed) then
           event%jagged = .true.
+          position%lost = nan
           call remember(position, state, 1, .false.)
           return
         end if
@@ -107,6 +109,7 @@ contains
     case default
       event%unsure = .true.
       event%unsure_from = position%state%h0
+      position%lost = nan
       call relax_at(self, options, h0, position%state, state, event%converged)
       call land(self, state, event%converged, position, event)
       ! If the iteration does not reach the state, the row is none of its equilibria.
@@ -155,9 +158,38 @@ contains
       event%jump_load = found%fold_load
       event%jump_uncertainty = found%uncertainty
     end if
+    call lose_energy(self, options, found, landed, position)
     call land(self, landed, event%converged, position, event)
     resting = event%converged .and. abs(beyond - h0) > 0
   end subroutine leave
+
+  !> Adds the energy that bodies lose in a jump from a fold: the difference between the energies of
+  !> both states at the h0 of the fold. It is not known if the branch on which they land does not
+  !> lead back there.
+  subroutine lose_energy(self, options, found, landed, position)
+    class(stepper_t), intent(inout) :: self
+    type(solver_options_t), intent(in) :: options
+    type(found_t), intent(in) :: found
+    type(state_t), intent(in) :: landed
+    type(branch_point_t), intent(inout) :: position
+    type(state_t) :: after
+    real(wp) :: energy(2), error(2)
+    logical :: good
+
+    after = landed
+    call self%correct(control_t(value=found%fold_h0), after, good, options)
+    if (good) good = change(landed, after) <= 2*unnoticed
+    call self%frozen%forget()
+    if (.not. good) then
+      position%lost = nan
+      return
+    end if
+    call energy_of(self%equations_t, 1, found%fold, energy(1), error(1))
+    call energy_of(self%equations_t, 1, after, energy(2), error(2))
+    position%lost = position%lost + energy(1) - energy(2)
+    position%lost_error = position%lost_error + sum(error) + &
+      found%uncertainty*abs(found%fold_load - after%load)
+  end subroutine lose_energy
 
   !> Makes the result of a relaxation the state of the position.
   subroutine land(self, landed, converged, position, event)

@@ -5,7 +5,7 @@
 !> The deck's iteration solves the rows. A jump is a fold between two rows that converged
 !> (`fixed_motion`); rows that did not converge are no jump and no end of a branch.
 module fixed_stepper
-  use kinds, only: wp
+  use kinds, only: wp, nan
   use dimensionless_problem, only: calm_gap
   use contact_state, only: state_t, undeformed_state
   use controls, only: control_t
@@ -34,6 +34,9 @@ module fixed_stepper
   !> With the paper's stopping rule states are not accurate enough for a search for folds; a change
   !> of deformation above a law's length and this many times the change of h0 then counts as a jump.
   real(wp), parameter :: paper_jump = 5
+  !> Difference between a landing by mixing and one by relaxation up to which they are the same
+  !> state, in the law's lengths: far more than iterations leave.
+  real(wp), parameter :: same_landing = 1.0e-3_wp
   !> Largest residual of states between which folds are looked for, in the law's lengths.
   real(wp), parameter :: accurate = 1.0e-8_wp
 
@@ -59,6 +62,8 @@ contains
       if (event%ending%early() .or. lost > most_lost) exit
       lost = merge(0, lost + 1, event%converged)
     end do
+    ! An experiment that begins in contact has lost energy before.
+    if (abs(position%lost) > 0) position%lost = nan
     event%jumped = .false.
     event%unsure = .false.
   end subroutine approach_to
@@ -101,6 +106,7 @@ contains
       event%jump_load = before%load
       event%jump_uncertainty = 0.5_wp*abs(h0 - before%h0)
       if (event%jumped) event%before = extreme_t(event%jump_load, event%jump_h0)
+      position%lost = nan
     end associate
     call remember(position, state, 1, event%jumped)
   end subroutine paper_step
@@ -127,6 +133,7 @@ contains
     if (position%held == 0 .or. .not. (event%converged .or. has_fallen(self, state))) then
       event%unsure = event%converged
       event%unsure_from = position%state%h0
+      if (event%unsure) position%lost = nan
       call take(position, state, event%converged)
       return
     end if
@@ -141,6 +148,9 @@ contains
       if (event%ending%early()) return
       ! Where the branch continues the state is on it; where it ends, mixing says where bodies land.
       joined = .not. event%jumped .and. .not. event%unsure
+      position%lost = moved%lost
+      position%lost_error = moved%lost_error
+      if (change(state, moved%state) > same_landing) position%lost = nan
       if (joined .or. .not. (self%options%is_plain_mixing() .or. event%unsure)) state = moved%state
       event%converged = .true.
     end if
@@ -174,6 +184,7 @@ contains
     event%unsure_from = state%h0
     call self%solve(control_t(value=h0), state, event%converged)
     event%unsure = event%converged
+    if (event%unsure) position%lost = nan
     call take(position, state, event%converged)
   end subroutine move
 

@@ -12,7 +12,6 @@ module located_places
   use known_path, only: landing_t, landing_over
   use traced_path, only: no_mesh
   use path_stepper, only: path_stepper_t
-  use tension_search, only: load_tolerance
   use reported_place, only: place_t, of_h0, of_load, of_displacement, of_energy, of_radius, &
     of_edge, nowhere, rounding
   use places, only: places_t
@@ -122,11 +121,10 @@ contains
   subroutine add_leftovers(steps, place)
     class(solver_t), intent(in) :: steps
     type(place_t), intent(inout) :: place
-    real(wp) :: moved
+    real(wp) :: moved, found
 
+    found = place%left(of_h0)
     place%left = place%left + rounding*abs(place%at)
-    if (place%searched) place%left(of_load) = place%left(of_load) + &
-      load_tolerance*abs(place%at(of_load))
     if (.not. (place%has_state() .and. place%mesh > 0)) return
     associate (state => place%state, at => place%at, left => place%left)
       at(of_radius) = contact_radius_of(steps%problem, steps%meshes%grid(place%mesh), state)
@@ -140,8 +138,9 @@ contains
       ! A given value is exact. The contact radius is not stationary where D turns.
       if (place%turns()) left(of_radius) = left(of_radius) + &
         steps%options%place_error*at(of_radius)
-      left(of_h0) = 0
-      if (place%turns() .or. abs(place%drive(2)) > 0 .or. place%after > 0) left(of_h0) = moved
+      left(of_h0) = found
+      if (place%turns() .or. abs(place%drive(2)) > 0 .or. place%after > 0) left(of_h0) = &
+        found + moved
     end associate
   end subroutine add_leftovers
 

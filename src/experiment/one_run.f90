@@ -11,23 +11,29 @@ module one_run
   use edge_locked, only: mesh_family_t, new_mesh_family
   use mesh_store, only: mesh_store_t
   use ending, only: turn_not_reached, path_lost
-  use stepper, only: stepper_t, keeping_stepper_t, branch_point_t
+  use stepper, only: stepper_t, keeping_stepper_t, branch_point_t, step_result_t
+  use fixed_branch, only: change
   use locked_stepper, only: locked_stepper_t, unique_stepper_t
   use path_stepper, only: path_stepper_t
   use path_demand, only: path_start, demand_of
   use path_end, only: demand_t
   use path, only: follow_path
   use path_readings, only: read_path
-  use stepped_branch, only: h0_schedule_t, run_branch
+  use stepped_branch, only: h0_schedule_t, branch_t, run_branch
   use h0_schedule, only: path_plan, loading_plan, unloading_plan, thinned
   use experiment_result, only: experiment_result_t, enter_readings, enter_energy, enter_table, &
     enter_turns
+  use reported_place, only: place_t, place_without_state, of_energy
   use places, only: places_t
   use located_places, only: locate_places
   use records, only: observer_t
   implicit none
   private
   public :: prepare, begin_run, run_once
+
+  !> Largest difference between the states at both ends of a closed cycle, in the law's lengths: far
+  !> more than iterations leave, and less than a jump.
+  real(wp), parameter :: closed = 1.0e-3_wp
 
 contains
 
@@ -201,6 +207,7 @@ contains
     type(branch_point_t) :: position
     type(branch_point_t), allocatable :: turning(:)
     real(wp), allocatable :: from(:)
+    real(wp) :: start
     integer :: k
 
     steps => solving
@@ -210,14 +217,16 @@ contains
     end if
     allocate (from(0))
     if (allocated(request%unloading)) from = steps%problem%law%gap_of(request%unloading%from)
-    allocate (turning(size(from)))
+    ! The last one is the state at which loading begins.
+    allocate (turning(size(from) + 1))
     if (allocated(outcome%loading)) deallocate (outcome%loading)
     if (allocated(outcome%unloading)) deallocate (outcome%unloading)
     allocate (outcome%loading)
     plan = loading_plan(request, steps%problem%law, from)
     if (.not. rows) plan = thinned(plan, from)
+    start = plan%h0(1)
     call run_branch(steps, plan, .true., position, observer, outcome%loading, outcome%places, &
-      from, turning)
+      [from, start], turning)
     ! If the path has the jumps, they are exact.
     if (allocated(outcome%loading%jump) .and. .not. outcome%places%has('jump_in')) &
       call outcome%places%enter('jump_in', 1, outcome%loading%jump)
@@ -229,6 +238,7 @@ contains
           plan = unloading_plan(request, steps%problem%law, k)
           if (.not. rows) plan = thinned(plan, plan%h0(:0))
           call run_branch(steps, plan, .false., position, observer, branch, places)
+          if (k == 1) call enter_energy_of(steps, turning(size(turning)), position, branch, places)
         else
           branch%ending%cause = turn_not_reached
         end if
@@ -243,5 +253,30 @@ contains
     solving%cost%states = solving%cost%states + keeper%cost%states
     solving%cost%solve_seconds = solving%cost%solve_seconds + keeper%earlier_seconds
   end subroutine run_cycle
+
+  !> Enters the energy that was lost in jumps between the start of a loading and the position at the
+  !> end of an unloading on a mesh fixed in space, if the branch leads from there back to the start.
+  subroutine enter_energy_of(steps, start, position, unloading, places)
+    class(stepper_t), intent(inout) :: steps
+    type(branch_point_t), intent(in) :: start
+    type(branch_point_t), intent(inout) :: position
+    type(branch_t), intent(in) :: unloading
+    type(places_t), intent(inout) :: places
+    type(step_result_t) :: event
+    type(place_t) :: place
+
+    ! A path has its own energy. Without a jump no energy is lost, and NaN is not known.
+    if (places%has('energy_lost') .or. .not. abs(position%lost) > 0) return
+    if (unloading%ending%early() .or. .not. allocated(start%state%gap)) return
+    if (abs(position%state%h0 - start%state%h0) > 0) then
+      call steps%step_to(start%state%h0, position, event)
+      if (event%jumped .or. .not. event%converged) return
+    end if
+    if (.not. change(start%state, position%state) <= closed) return
+    place = place_without_state(0.0_wp, 0.0_wp)
+    place%at(of_energy) = position%lost
+    place%left(of_energy) = position%lost_error
+    call places%enter('energy_lost', 1, place)
+  end subroutine enter_energy_of
 
 end module one_run

@@ -81,8 +81,8 @@ contains
 
     is_same = one%point == other%point .and. (one%landing .eqv. other%landing)
     if (is_same .and. one%point == 0) is_same = one%mesh == other%mesh .and. one%after == &
-      other%after .and. (one%searched .eqv. other%searched) .and. all(abs([one%at(:of_load), &
-      one%drive, one%turn_of] - [other%at(:of_load), other%drive, other%turn_of]) <= 0)
+      other%after .and. all(abs([one%at(:of_load), one%drive, one%turn_of] - &
+      [other%at(:of_load), other%drive, other%turn_of]) <= 0)
   end function is_same
 
   !> Adds a term to an element of a number: `factor` times the quantity at a place. Without a place
@@ -223,7 +223,6 @@ contains
       if (present(problem)) values = values_of(problem, place)
       number%value = number%value + entry%factor*values
       number%error = number%error + abs(entry%factor)*place%leftovers()
-      if (place%searched) number%error(of_h0) = nan
       if (all(of_energies /= entry%name)) &
         number%compared = place%compared(any(with_radius == entry%name))
       if (all(of_profiles /= entry%name)) then

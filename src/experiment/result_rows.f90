@@ -86,8 +86,8 @@ module result_rows
       place='max_tension', quantity=of_tension, error=judged), &
     row_t('max_tension_h0', 'm', 'h0 at the largest tension', always, &
       place='max_tension', quantity=of_h0, error=judged), &
-    row_t('max_tension_at_end', '', 'whether max_tension is that of the first or last row of ' // &
-      'a branch, and no pull-off (sweep.csv: 1 or 0)', always), &
+    row_t('max_tension_at_end', '', 'whether max_tension is at an end of a branch or of its ' // &
+      'solved rows, and no pull-off (sweep.csv: 1 or 0)', always), &
     row_t('jump_in_h0', 'm', 'h0 at which the approaching bodies jump into contact', always, &
       place='jump_in', quantity=of_h0, error=judged), &
     row_t('jump_in_load', 'N', 'load just before the jump into contact', always, &

@@ -26,6 +26,8 @@ contains
     call record%pass(position%mesh)
     call record%pass(position%piece)
     call record%pass(position%held)
+    call record%pass(position%lost)
+    call record%pass(position%lost_error)
     position%held = min(max(position%held, 0), memory)
     if (position%held > 0 .and. .not. allocated(position%past)) allocate (position%past(memory))
     do k = 1, position%held

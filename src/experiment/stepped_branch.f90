@@ -31,6 +31,8 @@ module stepped_branch
     !> beyond which the tension may grow.
     type(place_t), allocatable :: lowest
     logical :: lowest_first = .false., lowest_last = .false.
+    !> Whether it stands beside states that did not converge, towards which the tension grows.
+    logical :: lowest_beside_lost = .false.
     !> The first jump: h0 and the load just before it; and the uncertainty of h0 if the path is not
     !> known.
     type(place_t), allocatable :: jump
@@ -125,7 +127,7 @@ contains
     call search%finish(steps, last_h0)
     if (.not. allocated(branch%lowest) .and. allocated(search%lowest)) then
       branch%lowest = search%lowest
-      branch%lowest%searched = .true.
+      branch%lowest_beside_lost = search%beside_lost
     end if
     call compare_ends(branch, ends(1), ends(2))
     call enter_ends(branch, fresh, places)

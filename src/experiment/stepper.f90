@@ -1,9 +1,12 @@
 !> The interface between a quasi-static experiment at controlled h0 and its solver: an approach from
 !> large separation to the start, steps from one h0 to the next, and the jumps in a step.
 module stepper
-  use kinds, only: wp
+  use kinds, only: wp, nan
   use discretisation, only: discretisation_t
   use contact_state, only: state_t
+  use controls, only: control_t
+  use frozen_jacobian, only: frozen_jacobian_t
+  use branch_tangent, only: tangent_t, tangent_at
   use solver, only: solver_t
   use ending, only: ending_t
   use journal, only: journal_t
@@ -28,6 +31,9 @@ module stepper
     type(state_t), allocatable :: past(:)
     !> The states of an experiment are numbered in order; the numbers of `state` and `past`.
     integer :: number = 0, past_number(memory) = 0
+    !> On a mesh fixed in space: the energy lost in the jumps since the experiment began, with its
+    !> error; NaN if it is not known.
+    real(wp) :: lost = 0, lost_error = 0
   end type branch_point_t
 
   !> The largest tension in a step: the load, its h0, and the point of the path with this load, or
@@ -64,6 +70,7 @@ module stepper
   contains
     procedure(begin_at), deferred :: approach_to
     procedure(go_to), deferred :: step_to
+    procedure :: find_load_slope
     procedure :: grid
   end type stepper_t
 
@@ -110,6 +117,23 @@ contains
     self%problem = steps%problem
     self%options = steps%options
   end subroutine keep_steps_of
+
+  !> The derivative of the load by h0 along the branch, at an equilibrium on a mesh fixed in space;
+  !> NaN where the Jacobian is singular. The solver keeps its factors.
+  subroutine find_load_slope(self, state, slope)
+    class(stepper_t), intent(inout) :: self
+    type(state_t), intent(in) :: state
+    real(wp), intent(out) :: slope
+    type(frozen_jacobian_t) :: own
+    type(tangent_t) :: tangent
+
+    own = self%frozen
+    call self%frozen%forget()
+    call tangent_at(self, control_t(value=state%h0), state, tangent)
+    self%frozen = own
+    slope = nan
+    if (tangent%regular) slope = tangent%load
+  end subroutine find_load_slope
 
   !> The mesh of a position's state.
   function grid(self, position)

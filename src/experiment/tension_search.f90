@@ -2,12 +2,13 @@
 !> its steps are solved. (On edge-locked meshes the traced path has the largest tension.)
 module tension_search
   use kinds, only: wp
-  use interpolation, only: interpolated_maximum
+  use path_tangent, only: load_alone => of_load
+  use root_finding, only: root_search_t, new_root_search
   use stepper, only: stepper_t, branch_point_t, step_result_t
-  use reported_place, only: place_t, place_of_state, place_without_state, of_load
+  use reported_place, only: place_t, place_of_state, place_without_state, of_h0, of_load
   implicit none
   private
-  public :: tension_search_t, load_tolerance
+  public :: tension_search_t
 
   !> A part of a branch without a jump: its state of largest tension so far, the state before it,
   !> and the values of h0 between which the tension is largest (the neighbours of that state, or a
@@ -18,12 +19,18 @@ module tension_search
     logical :: open = .false.
     !> Whether the contact edge jumped from node to node, or may have jumped.
     logical :: jagged = .false.
+    !> Whether the states on the other side of `before` or `after` did not converge.
+    logical :: lost_before = .false., lost_after = .false.
   end type stretch_t
 
   type :: tension_search_t
     !> The largest tension so far; not allocated if there is no attraction.
     type(place_t), allocatable :: lowest
+    !> Whether tension grows from there towards states that did not converge.
+    logical :: beside_lost = .false.
     type(stretch_t), private :: stretch, deferred
+    !> Whether the last state did not converge.
+    logical, private :: lost = .false.
     integer, private :: ended = 0
   contains
     procedure :: note_jump
@@ -32,6 +39,8 @@ module tension_search
     procedure, private :: lower
     procedure, private :: end_stretch
     procedure, private :: refine
+    procedure, private :: descend
+    procedure, private :: find_root
     procedure, private :: search_jump_by_jump
   end type tension_search_t
 
@@ -40,11 +49,12 @@ module tension_search
   !> tension is searched at the end.
   integer, parameter :: searched_at_once = 3
 
-  !> Rounds of refinement of the largest tension, and the relative change of load that ends them. An
-  !> extremum at an end of the stretch is approached to this fraction of the bracket, since the end
-  !> is a jump, whose load is known, or an end of the experiment.
-  integer, parameter :: most_rounds = 15
-  real(wp), parameter :: load_tolerance = 1.0e-10_wp, enough = 1.0e-3_wp
+  !> Halvings of a stretch before the slope of the load has both signs, and the part of the stretch
+  !> that ends them: the tension is then largest at an end of the stretch, which is a jump, whose
+  !> load is known, or an end of the experiment. States of the search for the root, and the error of
+  !> h0 that ends it unless the tolerance is larger.
+  integer, parameter :: most_halvings = 12, most_rounds = 12
+  real(wp), parameter :: enough = 1.0e-3_wp, exact = 1.0e-9_wp
   !> Smallest bracket of a search, relative or in the law's lengths.
   real(wp), parameter :: closest = 1.0e-9_wp
   !> Steps short enough for every jump of the contact edge to be located, in the law's lengths.
@@ -52,24 +62,31 @@ module tension_search
 
 contains
 
-  !> Replaces the place of largest tension by another if its tension is larger.
-  subroutine lower(self, place)
+  !> Replaces the place of largest tension by another if its tension is larger. lost: whether the
+  !> tension grows from there towards states that did not converge.
+  subroutine lower(self, place, lost)
     class(tension_search_t), intent(inout) :: self
     type(place_t), intent(in) :: place
+    logical, intent(in), optional :: lost
 
     if (.not. place%at(of_load) < 0) return
     if (allocated(self%lowest)) then
       if (place%at(of_load) >= self%lowest%at(of_load)) return
     end if
     self%lowest = place
+    self%beside_lost = .false.
+    if (present(lost)) self%beside_lost = lost
   end subroutine lower
 
   !> Considers the last state before a jump or slip, which may have the largest tension.
   subroutine note_jump(self, event)
     class(tension_search_t), intent(inout) :: self
     type(step_result_t), intent(in) :: event
+    type(place_t) :: place
 
-    call self%lower(place_without_state(event%before%h0, event%before%load))
+    place = place_without_state(event%before%h0, event%before%load)
+    place%left(of_h0) = event%jump_uncertainty
+    call self%lower(place)
   end subroutine note_jump
 
   !> Considers the step from `previous` at last_h0 to `position` at h0.
@@ -84,6 +101,7 @@ contains
     associate (stretch => self%stretch)
       if (.not. event%converged) then
         ! The state has no reliable tension, and no search can start from it.
+        stretch%lost_after = .true.
         call self%end_stretch(steps, last_h0)
       else if (leaps(event) .or. .not. stretch%open) then
         began = last_h0
@@ -94,7 +112,7 @@ contains
             stretch%open = event%before%load >= stretch%lowest%state%load
         end if
         call self%end_stretch(steps, began)
-        stretch = stretch_t(position, previous, began, h0, .true.)
+        stretch = stretch_t(position, previous, began, h0, .true., lost_before=self%lost)
       else if (position%state%load < stretch%lowest%state%load) then
         stretch = stretch_t(position, previous, last_h0, h0, .true., stretch%jagged)
       else if (abs(stretch%after - stretch%lowest%state%h0) <= 0.0_wp) then
@@ -102,6 +120,7 @@ contains
       end if
       stretch%jagged = stretch%jagged .or. event%jagged
     end associate
+    self%lost = .not. event%converged
   end subroutine note_state
 
   !> Ends the branch at last_h0.
@@ -125,12 +144,12 @@ contains
     if (.not. self%stretch%open) return
     self%stretch%open = .false.
     stretch = self%stretch
-    if (stretch%lowest%state%load < 0) then
-      call self%lower(place_of_state(stretch%lowest%mesh, stretch%lowest%state))
-    else if (.not. steps%problem%law%adhesion > 0) then
-      return
+    if (.not. (stretch%lowest%state%load < 0 .or. steps%problem%law%adhesion > 0)) return
+    if (abs(stretch%after - stretch%lowest%state%h0) <= 0.0_wp) then
+      stretch%after = finish
+    else
+      stretch%lost_after = .false.
     end if
-    if (abs(stretch%after - stretch%lowest%state%h0) <= 0.0_wp) stretch%after = finish
     self%ended = self%ended + 1
     if (self%ended <= searched_at_once) then
       call self%refine(steps, stretch)
@@ -143,66 +162,131 @@ contains
     self%deferred%open = .true.
   end subroutine end_stretch
 
-  !> Searches for the largest tension between stretch%before and stretch%after. The extremum of the
-  !> polynomial through the states nearest to the lowest one is solved and added, repeatedly. If
-  !> this does not help, the larger side is halved, since on a coarse path the extremum may lie on
-  !> either side.
+  !> Searches for the largest tension between stretch%before and stretch%after: where the slope
+  !> dF/dh0 is zero. (The load is flat there, and tells the place only to the root of its error.)
   subroutine refine(self, steps, stretch)
     class(tension_search_t), intent(inout) :: self
     class(stepper_t), intent(inout) :: steps
     type(stretch_t), intent(in) :: stretch
-    type(branch_point_t) :: best, trial
-    type(step_result_t) :: event
-    real(wp), allocatable :: h0(:), load(:)
-    real(wp) :: low, high, left, right, next, width, gained
-    integer :: round
+    type(branch_point_t) :: best
+    type(place_t) :: place
+    real(wp) :: slope, bound
+    logical :: lost
 
     best = stretch%lowest
-    h0 = [best%state%h0]
-    load = [best%state%load]
-    low = min(stretch%before, stretch%after)
-    high = max(stretch%before, stretch%after)
-    width = high - low
-    ! Between such close steps rounding hides any extremum.
-    if (.not. width > closest*max(1.0_wp, abs(low), abs(high))) return
-    ! The paper's rule stops the iteration at an uncertain point, so a further state would be of no
-    ! use.
-    if (steps%options%stop_on_change) return
-    if (stretch%jagged) then
-      call self%search_jump_by_jump(steps, stretch)
-      return
-    end if
-    do round = 1, most_rounds
-      left = max(low, maxval([low, pack(h0, h0 < best%state%h0)]))
-      right = min(high, minval([high, pack(h0, h0 > best%state%h0)]))
-      next = interpolated_maximum(h0, -load, left, right)
-      if (size(h0) < 3 .or. minval(abs(h0 - next)) <= 1.0e-3_wp*(right - left)) then
-        ! The polynomial gives no new place: either the extremum is here, or one side was not
-        ! sampled.
-        if (any(h0 < best%state%h0) .and. any(h0 > best%state%h0) .and. &
-          right - left < enough*width) exit
-        next = merge(0.5_wp*(left + best%state%h0), 0.5_wp*(right + best%state%h0), &
-          best%state%h0 - left > right - best%state%h0)
+    associate (h0 => best%state%h0, before => stretch%before, after => stretch%after)
+      ! The paper's rule stops the iteration at an uncertain point, so a further state would be of
+      ! no use.
+      if (steps%options%stop_on_change) then
+        place = place_of_state(best%mesh, best%state)
+        place%left(of_h0) = max(abs(before - h0), abs(after - h0))
+        call self%lower(place)
+        return
       end if
+      if (stretch%jagged) then
+        call self%search_jump_by_jump(steps, stretch)
+        return
+      end if
+      call steps%find_load_slope(best%state, slope)
+      bound = merge(min(before, after), max(before, after), slope > 0)
+      lost = stretch%lost_after .and. abs(bound - after) <= 0 .or. &
+        stretch%lost_before .and. abs(bound - before) <= 0
+      call self%descend(steps, sign(1.0_wp, after - before), bound, slope, lost, best)
+    end associate
+  end subroutine refine
+
+  !> Goes from a state down the slope of the load towards `bound`, by halves, until the slope has
+  !> the other sign: then it has a root between. lost: whether there are states beyond the bound
+  !> that did not converge; onward: the sense of the branch.
+  subroutine descend(self, steps, onward, bound, slope, lost, best)
+    class(tension_search_t), intent(inout) :: self
+    class(stepper_t), intent(inout) :: steps
+    real(wp), intent(in) :: onward
+    real(wp), intent(inout) :: bound, slope
+    logical, intent(inout) :: lost
+    type(branch_point_t), intent(inout) :: best
+    type(branch_point_t) :: trial
+    type(step_result_t) :: event
+    type(place_t) :: place
+    real(wp) :: ahead, width
+    integer :: round
+
+    width = abs(bound - best%state%h0)
+    ahead = slope
+    do round = 1, most_halvings
+      if (.not. abs(slope) > 0) exit
+      ! Between such close steps rounding hides any extremum.
+      if (.not. abs(bound - best%state%h0) > max(enough*width, closest*max(1.0_wp, abs(bound)))) &
+        exit
       trial = best
-      call steps%step_to(next, trial, event)
+      call steps%step_to(0.5_wp*(best%state%h0 + bound), trial, event)
       if (leaps(event) .or. .not. event%converged) then
         ! The stretch ends at the jump, before which its tension may be largest.
-        if (leaps(event)) next = event%before%h0
-        if (next < best%state%h0) low = next
-        if (next > best%state%h0) high = next
-        if ((next - best%state%h0)*(stretch%after - stretch%before) > 0) call self%note_jump(event)
+        lost = .not. leaps(event)
+        bound = merge(event%before%h0, 0.5_wp*(best%state%h0 + bound), leaps(event))
+        if ((bound - best%state%h0)*onward > 0) call self%note_jump(event)
         cycle
       end if
-      h0 = [h0, next]
-      load = [load, trial%state%load]
-      gained = best%state%load - trial%state%load
-      if (gained > 0) best = trial
-      if (size(h0) > 3 .and. abs(gained) <= load_tolerance*abs(best%state%load)) exit
-      call keep_nearest(h0, load)
+      call steps%find_load_slope(trial%state, ahead)
+      if (ahead*slope < 0) then
+        call self%find_root(steps, best, slope, trial, ahead)
+        return
+      else if (trial%state%load > best%state%load) then
+        bound = trial%state%h0
+        lost = .false.
+      else
+        best = trial
+        slope = ahead
+      end if
     end do
-    call self%lower(place_of_state(best%mesh, best%state))
-  end subroutine refine
+    place = place_of_state(best%mesh, best%state)
+    place%left(of_h0) = abs(bound - best%state%h0)
+    call self%lower(place, lost)
+  end subroutine descend
+
+  !> Finds the root of the slope between two states of a stretch without jumps.
+  subroutine find_root(self, steps, low, low_slope, high, high_slope)
+    class(tension_search_t), intent(inout) :: self
+    class(stepper_t), intent(inout) :: steps
+    type(branch_point_t), intent(in) :: low, high
+    real(wp), intent(in) :: low_slope, high_slope
+    type(branch_point_t) :: trial
+    type(step_result_t) :: event
+    type(root_search_t) :: search
+    type(place_t) :: place
+    real(wp) :: slope, last_slope, last, bend
+    integer :: round
+
+    search = new_root_search(low%state%h0, low_slope, high%state%h0, high_slope)
+    last = low%state%h0
+    last_slope = low_slope
+    bend = (high_slope - low_slope)/(high%state%h0 - low%state%h0)
+    trial = low
+    slope = low_slope
+    do round = 1, most_rounds
+      if (.not. search%is_open()) exit
+      call steps%step_to(search%place(), trial, event)
+      ! A jump between two states of one branch is the work of an iteration that failed.
+      if (leaps(event) .or. .not. event%converged) exit
+      call steps%find_load_slope(trial%state, slope)
+      if (abs(trial%state%h0 - last) > 0) bend = (slope - last_slope)/(trial%state%h0 - last)
+      if (abs(slope) <= max(exact, steps%options%tolerance)*abs(bend)) exit
+      call search%note(trial%state%h0, slope)
+      last = trial%state%h0
+      last_slope = slope
+    end do
+    if (leaps(event) .or. .not. event%converged) then
+      trial = low
+      if (high%state%load < low%state%load) trial = high
+      place = place_of_state(trial%mesh, trial%state)
+      place%left(of_h0) = abs(high%state%h0 - low%state%h0)
+    else
+      place = place_of_state(trial%mesh, trial%state)
+      place%turn_of = load_alone
+      place%left(of_h0) = min(abs(slope/bend), abs(high%state%h0 - low%state%h0))
+    end if
+    call self%lower(place)
+  end subroutine find_root
 
   !> Steps again from stretch%before to stretch%after, or from the lowest state if a jump came
   !> before it, and locates every jump of the contact edge: the tension is largest just before one
@@ -214,6 +298,8 @@ contains
     type(branch_point_t) :: position, best
     type(step_result_t) :: event
     real(wp) :: start
+    type(place_t) :: place
+    logical :: lost
     integer :: i, count
 
     best = stretch%lowest
@@ -229,7 +315,10 @@ contains
       call self%note_jump(event)
       if (position%state%load < best%state%load) best = position
     end do
-    call self%lower(place_of_state(best%mesh, best%state))
+    place = place_of_state(best%mesh, best%state)
+    lost = abs(best%state%h0 - stretch%after) <= 0 .and. stretch%lost_after
+    if (.not. lost) place%left(of_h0) = short_step
+    call self%lower(place, lost)
   end subroutine search_jump_by_jump
 
   !> Whether the bodies jumped in a step, or the contact edge slipped.
@@ -238,17 +327,5 @@ contains
 
     leaps = event%jumped .or. event%slipped
   end function leaps
-
-  !> Removes values until the five nearest to the lowest load remain.
-  pure subroutine keep_nearest(h0, load)
-    real(wp), allocatable, intent(inout) :: h0(:), load(:)
-    integer :: farthest
-
-    do while (size(h0) > 5)
-      farthest = maxloc(abs(h0 - h0(minloc(load, 1))), 1)
-      h0 = [h0(:farthest - 1), h0(farthest + 1:)]
-      load = [load(:farthest - 1), load(farthest + 1:)]
-    end do
-  end subroutine keep_nearest
 
 end module tension_search

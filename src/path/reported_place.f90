@@ -38,8 +38,6 @@ module reported_place
     !> started that ended here at the same D.
     real(wp) :: drive(2) = [1.0_wp, 0.0_wp], turn_of(2) = 0
     integer :: after = 0
-    !> searched: h0 was found by a search between steps.
-    logical :: searched = .false.
     !> Values at the place, and what the iteration and rounding leave of them as an error; both are
     !> set by `located_places`, except h0 and load; located: they are set.
     logical :: located = .false.
@@ -179,7 +177,7 @@ contains
       .not. abs(self%at(of_load)) < self%negligible
     compared(of_radius) = with_radius .and. self%at(of_radius) > 0
     if (self%after > 0) return
-    if (.not. self%searched) compared(merge(of_position, of_h0, product(self%drive) < 0)) = .true.
+    compared(merge(of_position, of_h0, product(self%drive) < 0)) = .true.
     ! At an extremum h0 or the load is stationary and the displacement is not: the position on the
     ! flat top does not change the curve, and no displacement is reported there.
     if (.not. self%turns()) compared(of_displacement) = self%has_state()

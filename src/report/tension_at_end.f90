@@ -1,5 +1,6 @@
 !> Whether the largest tension is a pull-off. If it is that of the first or last row of a branch,
-!> tension may grow beyond this row, and the number depends on where the branch ends.
+!> tension may grow beyond this row, and the number depends on where the branch ends; beside states
+!> that did not converge tension may grow among them.
 module tension_at_end
   use kinds, only: wp, nan
   use text, only: brief, rounded
@@ -60,10 +61,16 @@ contains
       character(len=*), intent(in) :: name, at_first, at_last
       type(branch_t), intent(in) :: branch
 
-      if (.not. (branch%lowest_first .or. branch%lowest_last)) return
+      if (.not. at_one(branch)) return
       ! The same state is solved twice at a turn.
       if (abs(branch%lowest%at(of_h0) - largest%at(of_h0)) > 0) return
-      if (branch%lowest_first) then
+      if (branch%lowest_beside_lost) then
+        if (.not. at_end) call summary%warn(name // ': the tension is largest beside states ' // &
+          'that did not converge, at h0 = ' // rounded(problem%law%separation_of( &
+          largest%at(of_h0))) // ' m, and grows towards them: max_tension may be no pull-off; ' // &
+          'raise max_iterations, or use method = ''auto''')
+        at_end = .true.
+      else if (branch%lowest_first) then
         call tell(name, .true., at_first, branch%ending%early())
       else
         call tell(name, .false., at_last, branch%ending%early())
@@ -84,12 +91,20 @@ contains
 
   end subroutine judge_tension
 
+  !> Whether the largest tension of a branch is at one of its ends, or beside states that did not
+  !> converge.
+  pure logical function at_one(branch)
+    type(branch_t), intent(in) :: branch
+
+    at_one = branch%lowest_first .or. branch%lowest_last .or. branch%lowest_beside_lost
+  end function at_one
+
   !> 1 or 0; NaN for an unloading without tension.
   pure real(wp) function of_unloading(branch) result(at_end)
     type(branch_t), intent(in) :: branch
 
     at_end = nan
-    if (allocated(branch%lowest)) at_end = merge(1, 0, branch%lowest_first .or. branch%lowest_last)
+    if (allocated(branch%lowest)) at_end = merge(1, 0, at_one(branch))
   end function of_unloading
 
 end module tension_at_end

@@ -30,6 +30,7 @@ module resumable_stepper
   contains
     procedure :: approach_to
     procedure :: step_to
+    procedure :: find_load_slope
     procedure :: grid
     procedure, private :: recall
     procedure, private :: catch_up
@@ -152,6 +153,14 @@ contains
     call pass_cost(self%record, cost)
     call self%journal%append(self%record)
   end subroutine keep
+
+  subroutine find_load_slope(self, state, slope)
+    class(resumable_stepper_t), intent(inout) :: self
+    type(state_t), intent(in) :: state
+    real(wp), intent(out) :: slope
+
+    call self%steps%find_load_slope(state, slope)
+  end subroutine find_load_slope
 
   function grid(self, position)
     class(resumable_stepper_t), intent(in), target :: self

@@ -140,3 +140,16 @@ def test_numbers_of_a_branch_with_unsolved_states_are_said_to_be_those_of_the_ot
     told = [text for text in limited.warnings if "did not converge" in text]
     assert any("largest tensions" in text and "are those of the states that did" in text
                for text in told)
+
+
+def test_a_largest_tension_beside_states_that_did_not_converge_is_said_to_be_no_pull_off(run):
+    """It was said to be none of an end, and nothing named the place."""
+    groups = {"loading": loading(4.0, -3.0, 0.5), "unloading": {}}
+    limited = run(lennard_jones(1.2, **groups, numerics={
+        **GRID, "r_max": 9.0, "method": "mixing", "max_iterations": 400}), status=1)
+    lost = limited.curve["converged"] == 0
+    beside = limited.curve["h0"][lost].max()
+    assert beside < limited.summary["max_tension_h0"] < beside + 0.5
+    assert limited.summary["max_tension_at_end"]
+    assert any("the tension is largest beside states that did not converge, at h0 =" in text
+               for text in limited.warnings)
