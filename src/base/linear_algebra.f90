@@ -9,9 +9,8 @@ module linear_algebra
     add_by_transposed, factorisation_t, factorise, solve, determinant_sign, &
     claim_buffers, eigenvalues, solve_tridiagonal, singular_values
 
-  !> LU factors of a square matrix, from `factorise`. Columns of the unit matrix need no factors: lu
-  !> is then the block of the other columns, the kept ones, and of their rows. If the factors are
-  !> rough, lu is still the matrix.
+  !> LU factors of a square matrix, from `factorise`. If the factors are rough, lu is still the
+  !> matrix.
   type :: factorisation_t
     real(wp), allocatable :: lu(:, :)
     integer, allocatable :: pivot(:)
@@ -19,12 +18,6 @@ module linear_algebra
     logical :: is_rough = .false.
     !> .false. if there are no factors, or the matrix was singular.
     logical :: valid = .false.
-    !> The kept columns in the order of lu, the columns of the unit matrix, and the rows of these,
-    !> (row, kept column); not allocated if all columns are in lu.
-    integer, allocatable :: kept(:), unit(:)
-    real(wp), allocatable :: rows(:, :)
-  contains
-    procedure :: unknowns
   end type factorisation_t
 
 contains
@@ -100,14 +93,6 @@ contains
     factors%valid = info == 0
   end subroutine factorise
 
-  !> Number of unknowns of a factorised system.
-  pure integer function unknowns(self)
-    class(factorisation_t), intent(in) :: self
-
-    unknowns = size(self%lu, 1)
-    if (allocated(self%unit)) unknowns = unknowns + size(self%unit)
-  end function unknowns
-
   !> Adds matmul(a, transpose(b)) to the first rows of c.
   subroutine add_by_transposed(a, b, c)
     real(wp), intent(in), contiguous :: a(:, :), b(:, :)
@@ -121,26 +106,6 @@ contains
   subroutine solve(factors, b)
     type(factorisation_t), intent(in) :: factors
     real(wp), intent(inout) :: b(:)
-    real(wp), allocatable :: part(:)
-
-    if (.not. allocated(factors%kept)) then
-      call substitute(factors, b)
-      return
-    end if
-    allocate (part(size(b)))
-    associate (n => size(factors%kept))
-      part(:n) = b(factors%kept)
-      call substitute(factors, part(:n))
-      b(factors%kept) = part(:n)
-      call multiply(factors%rows, n, part(:n), part(n + 1:))
-      b(factors%unit) = b(factors%unit) - part(n + 1:)
-    end associate
-  end subroutine solve
-
-  !> Overwrites b with the solution of the system of lu.
-  subroutine substitute(factors, b)
-    type(factorisation_t), intent(in) :: factors
-    real(wp), intent(inout) :: b(:)
     integer :: info, n
 
     n = size(b)
@@ -149,7 +114,7 @@ contains
     else
       call dgetrs('n', n, 1, factors%lu, n, factors%pivot, b, n, info)
     end if
-  end subroutine substitute
+  end subroutine solve
 
   !> Overwrites b with the solution of a regular tridiagonal system; destroys the three diagonals.
   subroutine solve_tridiagonal(below, middle, above, b)

@@ -27,9 +27,6 @@ module frozen_jacobian
     procedure :: forget
   end type frozen_jacobian_t
 
-  !> Changes of gaps that the factors may neglect, over the change of the gap that causes them.
-  real(wp), parameter :: negligible = 1.0e-4_wp
-
 contains
 
   !> Whether the factors have the same number of unknowns, kind of control and mesh.
@@ -40,7 +37,7 @@ contains
 
     serves = self%factors%valid .and. self%control%kind == control%kind .and. &
       self%control%mesh == control%mesh
-    if (serves) serves = self%factors%unknowns() == unknowns
+    if (serves) serves = size(self%factors%lu, 1) == unknowns
   end function serves
 
   !> Invalidates the factors, so that the next state makes new ones: the old ones are too far from
@@ -65,11 +62,7 @@ contains
 
     rough = .not. (equations%meshes%is_fixed() .or. allocated(equations%drainage))
     if (present(exact)) rough = rough .and. .not. exact
-    if (rough) then
-      call factorise_jacobian(equations, control, state, frozen%factors, neglected=negligible)
-    else
-      call factorise_jacobian(equations, control, state, frozen%factors)
-    end if
+    call factorise_jacobian(equations, control, state, frozen%factors, rough=rough)
     frozen%control = control
     frozen%state%gap = state%gap
     frozen%state%h0 = state%h0

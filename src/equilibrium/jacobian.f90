@@ -2,7 +2,7 @@
 !> unknowns.
 module jacobian
   use kinds, only: wp, pi
-  use dimensionless_problem, only: problem_t, coupling_over
+  use dimensionless_problem, only: problem_t
   use discretisation, only: discretisation_t, axis_row, centre_row, first_node
   use linear_algebra, only: factorisation_t, factorise
   use elastic_operator, only: elastic_operator_t
@@ -20,25 +20,18 @@ contains
 
   !> Factors of the Jacobian of `residual` at a state: I - A(c) diag(P'), bordered by the
   !> derivatives by H0 or c if the control has one of these as an unknown. `shift` is added to the
-  !> diagonal of the nodes' block. neglected: if present, the factors are rough, and this is the
-  !> part of a change of a node's gap that may be neglected in all other gaps. Where pressures
-  !> hardly change with the gap, as outside the range of the force or within a constant tension, the
-  !> columns of A(c) diag(P') are then left out, and iterations with the factors need to solve for
-  !> the other gaps only.
-  subroutine factorise_jacobian(equations, control, state, factors, shift, neglected)
+  !> diagonal of the nodes' block. rough: see `factorise`.
+  subroutine factorise_jacobian(equations, control, state, factors, shift, rough)
     type(equations_t), intent(inout) :: equations
     type(control_t), intent(in) :: control
     type(state_t), intent(in) :: state
     type(factorisation_t), intent(inout) :: factors
-    real(wp), intent(in), optional :: shift, neglected
-    real(wp) :: least
+    real(wp), intent(in), optional :: shift
+    logical, intent(in), optional :: rough
 
-    least = 0
-    if (present(neglected) .and. .not. (allocated(equations%besides) .or. &
-      control%compliance > 0 .or. allocated(equations%along))) least = neglected
     associate (grid => equations%meshes%grid(control%mesh), problem => equations%problem)
       call fill(problem, grid, equations%operator, equations%meshes%locked_gap( &
-        control%mesh), control, state, least, factors, equations%cost, shift)
+        control%mesh), control, state, factors, equations%cost, shift)
       if (allocated(equations%besides)) call add_besides(equations%besides, control, state, &
         factors%lu)
       if (h0_is_prescribed(control) .and. control%compliance > 0) &
@@ -47,7 +40,7 @@ contains
         spread(equations%along, 1, size(equations%along))
     end associate
     if (allocated(equations%drainage)) call add_drainage(equations, control, state, factors%lu)
-    call factorise(factors, present(neglected))
+    call factorise(factors, rough)
     equations%cost%factorisations = equations%cost%factorisations + 1
   end subroutine factorise_jacobian
 
@@ -134,18 +127,17 @@ contains
     type(cost_t), intent(inout) :: cost
     real(wp), intent(in), optional :: shift
 
-    call fill(problem, grid, operator, locked_gap, control, state, 0.0_wp, factors, cost, shift)
+    call fill(problem, grid, operator, locked_gap, control, state, factors, cost, shift)
     call factorise(factors)
     cost%factorisations = cost%factorisations + 1
   end subroutine factorise_on
 
-  !> Assembles the matrix to be factorised. neglected: see `factorise_jacobian`.
-  subroutine fill(problem, grid, operator, locked_gap, control, state, neglected, factors, cost, &
-    shift)
+  !> Assembles the matrix to be factorised.
+  subroutine fill(problem, grid, operator, locked_gap, control, state, factors, cost, shift)
     type(problem_t), intent(in) :: problem
     type(discretisation_t), intent(in) :: grid
     type(elastic_operator_t), intent(inout) :: operator
-    real(wp), intent(in) :: locked_gap, neglected
+    real(wp), intent(in) :: locked_gap
     type(control_t), intent(in) :: control
     type(state_t), intent(in) :: state
     type(factorisation_t), intent(inout) :: factors
@@ -153,68 +145,35 @@ contains
     real(wp), intent(in), optional :: shift
     type(pressure_slope_t) :: slope
     real(wp) :: factor(size(state%gap)), column(size(state%gap) + 1), diagonal
-    logical :: matters(size(state%gap))
-    integer, allocatable :: node(:), calm(:)
-    integer :: n, k, m, j
+    integer :: node(size(state%gap)), n, m, j
 
     n = size(state%gap)
+    node = [(j, j=1, n)]
     slope = slope_on(problem%law, grid, state%gap)
     factor = -slope%factor()
     cost%pressure_evaluations = cost%pressure_evaluations + n*problem%law%terms
-    matters = .true.
-    ! The largest rise of a gap under a unit pressure, approximately for layered bodies.
-    if (neglected > 0) matters = abs(factor)*grid%largest* &
-      (2*max(problem%coupling, coupling_over(problem, state%scale))*state%scale) > neglected
-    do j = 1, size(slope%mixed)
-      matters(slope%mixed(j)%first:slope%mixed(j)%last) = .true.
-    end do
-    node = pack([(j, j=1, n)], matters)
-    calm = pack([(j, j=1, n)], .not. matters)
-    k = size(node)
-    m = k
-    if (control%kind /= at_h0) m = k + 1
-    call make_room(factors, node, calm, n, m)
-    diagonal = 1
-    if (present(shift)) diagonal = 1 + shift
-    associate (lu => factors%lu)
-      call operator%matrix(problem, grid, state%scale, factor(node), first_node - 1 + node, node, &
-        lu(:k, :k))
-      if (m > k) call operator%matrix(problem, grid, state%scale, -factor(node), &
-        [bordered_row(control)], node, lu(m:, :k))
-      call slope%mix(node, lu(:, :k))
-      do j = 1, k
-        lu(j, j) = lu(j, j) + diagonal
-      end do
-      if (m > k) then
-        call border(problem, grid, operator, locked_gap, control, state, column)
-        lu(:k, m) = column(node)
-        lu(m, m) = column(n + 1)
-      end if
-      if (k == n) return
-      call operator%matrix(problem, grid, state%scale, factor(node), first_node - 1 + calm, node, &
-        factors%rows(:, :k))
-      call slope%mix(node, factors%rows(:, :k))
-      if (m > k) factors%rows(:, m) = column(calm)
-    end associate
-  end subroutine fill
-
-  !> Makes room for the factors of a system with n nodes of which some are calm: their columns are
-  !> those of the unit matrix. m: the number of all other columns.
-  pure subroutine make_room(factors, node, calm, n, m)
-    type(factorisation_t), intent(inout) :: factors
-    integer, intent(in) :: node(:), calm(:), n, m
-
+    m = n
+    if (control%kind /= at_h0) m = n + 1
     if (allocated(factors%lu)) then
       if (size(factors%lu, 1) /= m) deallocate (factors%lu)
     end if
     if (.not. allocated(factors%lu)) allocate (factors%lu(m, m))
-    if (allocated(factors%kept)) deallocate (factors%kept, factors%unit, factors%rows)
-    if (size(calm) == 0) return
-    allocate (factors%kept(m), factors%rows(size(calm), m))
-    factors%kept(:size(node)) = node
-    factors%kept(size(node) + 1:) = n + 1
-    factors%unit = calm
-  end subroutine make_room
+    diagonal = 1
+    if (present(shift)) diagonal = 1 + shift
+    associate (lu => factors%lu)
+      call operator%matrix(problem, grid, state%scale, factor, first_node - 1 + node, node, &
+        lu(:n, :n))
+      if (m > n) call operator%matrix(problem, grid, state%scale, -factor, &
+        [bordered_row(control)], node, lu(m:, :n))
+      call slope%mix(node, lu(:, :n))
+      do j = 1, n
+        lu(j, j) = lu(j, j) + diagonal
+      end do
+      if (m == n) return
+      call border(problem, grid, operator, locked_gap, control, state, column)
+      lu(:, m) = column
+    end associate
+  end subroutine fill
 
   !> The Jacobian of `residual` at a state times a change of the unknowns. slope: that of the law at
   !> the state's gaps.
