@@ -27,11 +27,20 @@ _RESTING = 0.1
 # A base moves in every part of the approach; what moves in less than half of it, where the force
 # changes, is the position of the tip.
 _PARTS = 20
+# Smallest number of rows of an approach or a retreat, which is that of &measurement.
+_FEWEST = 20
+# An approach of so many rows has ended at once: what follows is the retreat, and not the approach
+# after a pause.
+_AT_ONCE = 4
 _MARK = "# snapin-convert: "
 
 
 class ConvertError(ValueError):
     """What is missing in a file, in one line."""
+
+
+def _rows(count):
+    return f"{count} row" + ("" if count == 1 else "s")
 
 
 def moves_throughout(height):
@@ -44,10 +53,14 @@ def segments_of(height, labels):
     """Return for each row 0 (approach), 1 (retreat) or -1 (pause), by what the base does.
 
     `labels` divide the rows into segments. If all are equal, the base turns where it is farthest
-    from where it began. Raises ConvertError for a curve that goes to and fro more than once.
+    from where it began. A base that moves one way only approaches, but in a segment that
+    follows an approach that ended at once. Raises ConvertError for too few rows, and
+    for a curve that goes to and fro more than once.
     """
     height, labels = np.asarray(height, float), np.asarray(labels)
-    if len(height) == 0 or np.ptp(height) == 0:
+    if len(height) < _FEWEST:
+        raise ConvertError(f"{_rows(len(height))}: too few for a curve")
+    if np.ptp(height) == 0:
         raise ConvertError("the base does not move")
     if (labels == labels[0]).all():
         labels = np.arange(len(height)) > np.argmax(np.abs(height - height[0]))
@@ -68,6 +81,8 @@ def segments_of(height, labels):
     if found not in ([0], [0, 1]):
         raise ConvertError(f"the base goes to and fro in {len(found)} segments; a curve has one "
                            "approach and one retreat")
+    if found == [0] and 0 < np.argmax(kind == 0) <= _AT_ONCE:
+        kind[kind == 0] = 1
     return kind
 
 
@@ -83,8 +98,8 @@ def base_of(columns, spring_constant):
                            + ", ".join(columns))
     for name in heights:
         height = np.asarray(columns[name], float)
-        approach = segments_of(height, columns["segment"]) == 0
-        if moves_throughout(height[approach]):
+        kind = segments_of(height, columns["segment"])
+        if moves_throughout(height[kind == kind[kind >= 0].min()]):
             return height, name
     tip = np.asarray(columns[heights[0]], float)
     if not spring_constant:
@@ -115,11 +130,11 @@ def table_of(columns, name="curve", spring_constant=None, sensitivity=None):
     base, origin = base_of(rows, spring_constant)
     kind = segments_of(base, rows["segment"])
     counts = [np.count_nonzero(kind == way) for way in (0, 1, -1)]
-    told = f"{counts[0]} rows of the approach, {counts[1]} of the retreat; position: {origin}"
+    told = f"{_rows(counts[0])} of the approach, {counts[1]} of the retreat; position: {origin}"
     if counts[2]:
-        told += f"; {counts[2]} rows of pauses left out"
+        told += f"; {_rows(counts[2])} of pauses left out"
     if not whole.all():
-        told += f"; {np.count_nonzero(~whole)} rows without a value left out"
+        told += f"; {_rows(np.count_nonzero(~whole))} without a value left out"
     lines = [f"{_MARK}{name}; position of the base: {origin}",
              f"# spring_constant = {f'{spring_constant:.8g}' if spring_constant else 'unknown'}"]
     if sensitivity:
@@ -160,13 +175,13 @@ def load_curves(path, spring_constant=None, sensitivity=None):
 
 
 def _members(path, afmformats, override):
-    """The curves of text files in an archive that afmformats does not know as such."""
+    """The curves of files in an archive that afmformats does not know as such."""
     if not zipfile.is_zipfile(path):
         return []
     found = []
     with tempfile.TemporaryDirectory() as folder, zipfile.ZipFile(path) as archive:
         for name in sorted(archive.namelist()):
-            if not name.endswith(".txt"):
+            if name.endswith("/"):
                 continue
             place = pathlib.Path(folder) / pathlib.PurePosixPath(name).name
             place.write_bytes(archive.read(name))
@@ -195,6 +210,8 @@ def _quiet():
 def _reason(problem):
     """An error of afmformats in words."""
     text = " ".join(str(problem).split()) or type(problem).__name__
+    if isinstance(problem, UnicodeError):
+        return "afmformats cannot read it: it is no text"
     missing = [f"--{word.replace(' ', '-')}" for word in ("spring constant", "sensitivity")
                if "pecify" in text + "pecify" * ("Missing meta" in text) and word in text]
     if missing:

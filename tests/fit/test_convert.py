@@ -70,6 +70,13 @@ def test_an_approach_alone_is_an_approach():
     assert (segments_of(IN[::-1], np.ones(31)) == 0).all()
 
 
+def test_a_retreat_after_an_approach_that_ended_at_once_is_a_retreat():
+    """It was called an approach."""
+    labels = np.r_[0, np.ones(31)]
+    kind = segments_of(np.r_[IN[-1], IN[::-1]], labels)
+    assert (kind == np.r_[-1, np.ones(31)]).all()
+
+
 @pytest.mark.parametrize("facing", [1, -1])
 def test_a_height_of_the_tip_is_not_the_position_of_the_base(facing):
     """Of two heights the one that moves before contact counts; to one the deflection is added."""
