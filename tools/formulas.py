@@ -68,10 +68,10 @@ def formulas():
                   for name in ("hertz", "dmt", "jkr", "maugis", "pietrement")
                   if load or name != "hertz"]
     found += [
-        Formula("h0 at the jump into contact", "Attard and Parker's (37)", _jump("(37)"), JUMPING),
-        Formula("h0 at the jump into contact", f"{_wu():.4f} μ^(3/7) z0", _jump("power"), JUMPING),
-        Formula("tension at the jump into contact", "(37)", _jump("tension"), JUMPING),
-        Formula("tension at the jump apart", "JKR, 5/6 πwR",
+        Formula("h0 at snap-in", "Attard and Parker's (37)", _jump("(37)"), JUMPING),
+        Formula("h0 at snap-in", f"{_wu():.4f} μ^(3/7) z0", _jump("power"), JUMPING),
+        Formula("tension at snap-in", "(37)", _jump("tension"), JUMPING),
+        Formula("tension at snap-off", "JKR, 5/6 πwR",
                 lambda tabor: 5 / 6 / spheres.sphere(tabor).jump_out[1] - 1, JUMPING),
         Formula("energy lost in a cycle", "JKR, 7.0922 (R⁴w⁵/E\\*²)^(1/3)",
                 _loss(lambda _: ciavarella_2017.jkr()), JUMPING[2:]),

@@ -88,15 +88,15 @@ module result_rows
       place='max_tension', quantity=of_h0, error=judged), &
     row_t('max_tension_at_end', '', 'whether max_tension is at an end of a branch or of its ' // &
       'solved rows, and no pull-off (sweep.csv: 1 or 0)', always), &
-    row_t('jump_in_h0', 'm', 'h0 at which the approaching bodies jump into contact', always, &
+    row_t('jump_in_h0', 'm', 'h0 of snap-in, the turning point at which approaching bodies jump into contact', always, &
       place='jump_in', quantity=of_h0, error=judged), &
-    row_t('jump_in_load', 'N', 'load just before the jump into contact', always, &
+    row_t('jump_in_load', 'N', 'load just before snap-in', always, &
       place='jump_in', quantity=of_load, error=judged), &
     row_t('jump_in_uncertainty', 'm', &
       'on a fixed grid: uncertainty of jump_in_h0, plus or minus'), &
-    row_t('jump_out_h0', 'm', 'h0 at which the retreating bodies jump apart, in the first ' // &
+    row_t('jump_out_h0', 'm', 'h0 of snap-off, at which retracting bodies separate, in the first ' // &
       'unloading with a jump', always, place='jump_out', quantity=of_h0, error=judged), &
-    row_t('jump_out_load', 'N', 'load just before the bodies jump apart', always, &
+    row_t('jump_out_load', 'N', 'load just before snap-off', always, &
       place='jump_out', quantity=of_load, error=judged), &
     row_t('jump_out_uncertainty', 'm', &
       'on a fixed grid: uncertainty of jump_out_h0, plus or minus'), &
@@ -107,7 +107,7 @@ module result_rows
       list=.true., place='unload_max_tension', quantity=of_h0, error=judged), &
     row_t('unload_max_tension_at_end', '', 'the same for each unloading, 1 or 0', turning, &
       list=.true.), &
-    row_t('unload_jump_out_h0', 'm', 'h0 at which the bodies jump apart in each unloading', &
+    row_t('unload_jump_out_h0', 'm', 'h0 of snap-off in each unloading', &
       turning, list=.true., place='unload_jump_out', quantity=of_h0, error=judged), &
     row_t('folds_h0', 'm', 'h0 of all folds of the path, in order', list=.true., &
       place='folds', quantity=of_h0, error=judged), &
