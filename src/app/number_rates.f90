@@ -8,6 +8,7 @@ module number_rates
   use scene, only: swept_scene
   use scene_problem, only: problem_of
   use variation, only: find_rule
+  use equilibrium, only: cost_t
   use experiment, only: run_again
   use experiment_result, only: experiment_result_t
   use reported_numbers, only: run_numbers_t, differentiate
@@ -21,6 +22,9 @@ module number_rates
   real(wp), parameter :: places(5, 3) = reshape([-2, -1, 1, 2, 0,  0, 1, 2, 3, 4,  &
     0, -1, -2, -3, -4]*1.0_wp, [5, 3])
   integer, parameter :: runs(3) = [4, 5, 5]
+  !> Distance of the runs of a drive in time, over the parameter: its steps follow the motion, and
+  !> the error of numbers is not that of a similar drive.
+  real(wp), parameter :: of_drive = 0.05_wp
 
 contains
 
@@ -34,11 +38,13 @@ contains
     type(problem_t) :: problem
     type(run_numbers_t), allocatable :: numbers(:)
     real(wp), allocatable, dimension(:) :: offset, weight, coarser
+    type(cost_t) :: cost
     logical :: found
     integer :: j, k
 
     if (.not. allocated(outcome%places%number)) return
     do j = 1, size(scene%varied)
+      cost = outcome%cost
       call listener%hear('differentiating by ' // scene%varied(j)%parameter%name)
       call pose_variants(scene, j, offset, variant)
       outcome%differentiated = outcome%differentiated .and. allocated(variant)
@@ -47,9 +53,10 @@ contains
       allocate (numbers(size(variant)))
       do k = 1, size(variant)
         problem = problem_of(variant(k))
-        call run_again(variant(k), problem, outcome%chosen, outcome%cost, other)
+        call run_again(variant(k), problem, outcome, cost, other)
         numbers(k)%number = other%places%numbers(problem)
       end do
+      outcome%cost = cost
       call find_rule(offset, weight, coarser)
       call differentiate(outcome%places%number, numbers, weight, coarser, j, &
         size(scene%varied), found)
@@ -65,12 +72,15 @@ contains
     real(wp), allocatable, intent(out) :: offset(:)
     type(scene_t), allocatable, intent(out) :: variant(:)
     type(failure_t), allocatable :: error
+    real(wp) :: apart
     integer :: side, k
 
     associate (varied => scene%varied(j))
+      apart = of_drive*abs(varied%parameter%value)
+      ! The problem is smooth over the range of the varied problems.
+      if (allocated(varied%offset)) apart = (maxval(varied%offset) - minval(varied%offset))/4
       do side = 1, size(runs)
-        ! The range of the varied problems, over which the problem is smooth.
-        offset = places(:runs(side), side)*(maxval(varied%offset) - minval(varied%offset))/4
+        offset = apart*places(:runs(side), side)
         allocate (variant(size(offset)))
         do k = 1, size(offset)
           call swept_scene(scene, varied%parameter%name, [varied%parameter%value + offset(k)], &

@@ -11,7 +11,6 @@ module simulation
   use resumable_stepper, only: resumable_stepper_t
   use scene_problem, only: problem_of
   use h0_schedule, only: states_planned
-  use drive_rates, only: rate_drive
   use number_rates, only: rate_numbers
   use sweeps, only: run_sweep
   use case_columns, only: left_out
@@ -220,10 +219,7 @@ contains
       end if
       if (allocated(outcome%readings)) &
         call write_path_tables(problem, outcome%readings, outcome%places, results)
-      if (allocated(scene%varied)) then
-        if (allocated(outcome%timed)) call rate_drive(scene, keeper, results, outcome%timed)
-        if (.not. allocated(outcome%timed)) call rate_numbers(scene, results, outcome)
-      end if
+      if (allocated(scene%varied)) call rate_numbers(scene, results, outcome)
       summary = summary_of(scene, problem, outcome)
       call recorder%warn(summary)
       if (allocated(scene%varied)) &

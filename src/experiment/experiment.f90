@@ -6,11 +6,11 @@ module experiment
   use kinds, only: wp, long
   use dimensionless_problem, only: problem_t
   use experiment_request, only: request_t
-  use numerics_choice, only: choice_t, choose, more_digits, with_fewer_nodes, with_less_extent
+  use numerics_choice, only: choose, more_digits, with_fewer_nodes, with_less_extent
   use equilibrium, only: cost_t
   use mesh_digits, only: most_digits
   use mesh_store, only: mesh_store_t
-  use stepper, only: keeping_stepper_t
+  use stepper, only: stepper_t, keeping_stepper_t
   use locked_stepper, only: locked_stepper_t, unique_stepper_t
   use path_stepper, only: path_stepper_t
   use fixed_stepper, only: fixed_stepper_t
@@ -81,14 +81,15 @@ contains
       call run_fixed(at_nodes, request, problem, observer, outcome, keeper)
   end subroutine run_experiment
 
-  !> Runs the drive in time. Rigid bodies are replaced by bodies that are too stiff for a noticeable
-  !> deformation.
-  subroutine run_driven(request, problem, observer, outcome, keeper)
+  !> Runs the drive in time; passes: see `run_timed`. Rigid bodies are replaced by bodies that are
+  !> too stiff for a noticeable deformation.
+  subroutine run_driven(request, problem, observer, outcome, keeper, passes)
     class(request_t), intent(in) :: request
     type(problem_t), intent(in) :: problem
     class(observer_t), intent(inout) :: observer
     type(experiment_result_t), intent(inout) :: outcome
     class(keeping_stepper_t), intent(in), optional :: keeper
+    integer, intent(in), optional :: passes
     type(problem_t) :: driven
     type(journal_t), pointer :: journal
 
@@ -100,8 +101,7 @@ contains
     if (present(keeper)) journal => keeper%journal
     allocate (outcome%timed)
     call run_timed(request, driven, outcome%chosen, journal, observer, outcome%timed, &
-      outcome%cost, outcome%nodes)
-    if (outcome%timed%begun) outcome%error_estimate = outcome%timed%estimate
+      outcome%places, outcome%error_estimate, outcome%cost, outcome%nodes, passes)
   end subroutine run_driven
 
   !> Runs the experiments on meshes locked to the contact edge, as accurately as the deck asks for.
@@ -140,36 +140,53 @@ contains
     outcome%cost = steps%cost
   end subroutine run_locked
 
-  !> Runs the experiments of a similar problem once, with the numerics that were chosen for another
-  !> one. The numbers of the outcome have no errors.
-  subroutine run_again(request, problem, chosen, cost, outcome)
+  !> Runs the experiments of a similar scene once, with the numerics of another run, like. The
+  !> numbers of the outcome have no errors of other runs. cost: that of this run is added.
+  subroutine run_again(request, problem, like, cost, outcome)
     class(request_t), intent(in) :: request
     type(problem_t), intent(in) :: problem
-    type(choice_t), intent(in) :: chosen
+    type(experiment_result_t), intent(in) :: like
     type(cost_t), intent(inout) :: cost
     type(experiment_result_t), intent(out) :: outcome
     ! Not allocatable steppers: compiler note 3.
-    type(path_stepper_t), target :: along_path
-    type(fixed_stepper_t), target :: at_nodes
+    type(path_stepper_t) :: along_path
+    type(unique_stepper_t) :: one_by_one
+    type(fixed_stepper_t) :: at_nodes
     type(observer_t) :: silent
     integer(long) :: states
+    logical :: fixed
 
     states = cost%states
-    outcome%chosen = choose(request, problem)
-    outcome%chosen%digits = chosen%digits
-    outcome%chosen%accuracy = chosen%accuracy
-    outcome%chosen%options = chosen%options
-    along_path%cost = cost
-    call begin_run(along_path, request, problem, outcome%chosen, silent)
-    call run_once(along_path, request, .not. outcome%chosen%is_fixed(), .false., silent, outcome)
-    cost = along_path%cost
-    if (allocated(request%loading) .and. outcome%chosen%is_fixed()) then
-      at_nodes%cost = cost
-      call begin_run(at_nodes, request, problem, outcome%chosen, silent)
-      call run_once(at_nodes, request, .true., .true., silent, outcome)
-      cost = at_nodes%cost
+    outcome%cost = cost
+    if (allocated(request%drive)) then
+      call run_driven(request, problem, silent, outcome, passes=like%timed%passes)
+    else if (problem%rigid) then
+      call run_rigid(request, problem, silent, outcome)
+    else
+      outcome%chosen = choose(request, problem)
+      outcome%chosen%digits = like%chosen%digits
+      outcome%chosen%accuracy = like%chosen%accuracy
+      outcome%chosen%options = like%chosen%options
+      fixed = outcome%chosen%is_fixed()
+      if (problem%law%adhesion > 0) call run_with(along_path, .not. fixed, rows=.false.)
+      if (.not. problem%law%adhesion > 0) call run_with(one_by_one, .not. fixed, rows=.false.)
+      if (allocated(request%loading) .and. fixed) call run_with(at_nodes, .true., rows=.true.)
     end if
+    cost = outcome%cost
     cost%states = states
+
+  contains
+
+    subroutine run_with(steps, with_cycle, rows)
+      class(stepper_t), intent(inout) :: steps
+      logical, intent(in) :: with_cycle, rows
+
+      steps%cost = outcome%cost
+      call begin_run(steps, request, problem, outcome%chosen, silent)
+      call run_once(steps, request, with_cycle, rows, silent, outcome)
+      outcome%cost = steps%cost
+    end subroutine run_with
+
   end subroutine run_again
 
   !> Runs a scene with more and more digits until the numbers of two successive runs agree within

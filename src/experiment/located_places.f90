@@ -110,7 +110,7 @@ contains
         call energy_of(steps%equations_t, place%mesh, place%state, place%at(of_energy), &
           place%left(of_energy))
       end if
-      if (place%mesh == no_mesh) place%negligible = rounding*steps%problem%law%adhesion
+      if (place%mesh == no_mesh) place%scale(of_load) = rounding*steps%problem%law%adhesion
       if (place%mesh <= no_mesh) return
       if (steps%meshes%is_about_axis(place%mesh)) place%at(of_edge) = 0
     end associate

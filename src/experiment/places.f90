@@ -222,6 +222,7 @@ contains
       values = place%measures()
       if (present(problem)) values = values_of(problem, place)
       number%value = number%value + entry%factor*values
+      number%scale = max(number%scale, place%scale)
       number%error = number%error + abs(entry%factor)*place%leftovers()
       if (all(of_energies /= entry%name)) &
         number%compared = place%compared(any(with_radius == entry%name))

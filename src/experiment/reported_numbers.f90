@@ -18,8 +18,10 @@ module reported_numbers
     character(len=name_length) :: name = ''
     integer :: element = 1
     real(wp), dimension(quantities) :: value = 0, error = 0
-    !> The quantities whose relative errors count.
+    !> The quantities whose relative errors count, and magnitudes to which errors are relative where
+    !> quantities are smaller.
     logical :: compared(quantities) = .false.
+    real(wp) :: scale(quantities) = least
     !> Whether all other runs have this number.
     logical :: known = .true.
     !> Whether the errors are final, from other runs.
@@ -31,9 +33,12 @@ module reported_numbers
     real(wp), allocatable, dimension(:, :) :: rate, rate_error
   end type number_t
 
-  !> The numbers of another run.
+  !> The numbers of another run. part: the error of a number over its difference from this run, if
+  !> errors are as regular as they should be: 1 for a run that is much finer, or one of which this
+  !> cannot be said.
   type :: run_numbers_t
     type(number_t), allocatable :: number(:)
+    real(wp) :: part = 1
   end type run_numbers_t
 
   !> Factor of the differences. It accounts for the error of the other run, which is a tenth or less
@@ -71,7 +76,7 @@ contains
     do i = 1, size(number)
       if (number(i)%judged) cycle
       do k = 1, size(others)
-        call compare(number(i), count(number%name == number(i)%name), others(k)%number)
+        call compare(number(i), count(number%name == number(i)%name), others(k))
       end do
       if (number(i)%known .and. number(i)%name /= of_table) &
         relative = [relative, pack(parts_of(number(i)), number(i)%compared)]
@@ -84,32 +89,32 @@ contains
       if (number(i)%judged) cycle
       number(i)%judged = .true.
       associate (error => number(i)%error, value => number(i)%value)
-        where (error > 0) error = max(error, lowest*max(abs(value), least))
+        where (error > 0) error = max(error, lowest*max(abs(value), number(i)%scale))
       end associate
     end do
   end subroutine judge
 
   !> Adds to the errors of a number the difference from another run; held: its number of elements.
-  pure subroutine compare(number, held, theirs)
+  pure subroutine compare(number, held, other)
     type(number_t), intent(inout) :: number
     integer, intent(in) :: held
-    type(number_t), intent(in) :: theirs(:)
+    type(run_numbers_t), intent(in) :: other
     integer :: k
 
-    if (count(theirs%name == number%name) /= held) number%known = .false.
-    k = place_among(theirs, number)
+    if (count(other%number%name == number%name) /= held) number%known = .false.
+    k = place_among(other%number, number)
     if (k == 0) then
       number%known = .false.
       return
     end if
-    associate (a => number%value, b => theirs(k)%value)
+    associate (a => number%value, b => other%number(k)%value)
       ! A load exists at every place.
       if (ieee_is_nan(a(of_load)) .neqv. ieee_is_nan(b(of_load))) number%known = .false.
       where (.not. (ieee_is_nan(a) .and. ieee_is_nan(b))) number%error = number%error + &
-        margin*abs(a - b)
+        margin*other%part*abs(a - b)
     end associate
     if (number%compared(of_profile)) number%error(of_profile) = number%error(of_profile) + &
-      margin*profile_difference(number, theirs(k))
+      margin*profile_difference(number, other%number(k))
   end subroutine compare
 
   !> The index of the same number, by name and element, of another run; 0: it has none.
@@ -233,7 +238,7 @@ contains
 
     part = 0
     where (number%error > 0) part = &
-      min(number%error/max(abs(number%value), least, tiny(1.0_wp)), most)
+      min(number%error/max(abs(number%value), number%scale, tiny(1.0_wp)), most)
     part(of_profile) = number%error(of_profile)
   end function parts_of
 

@@ -3,8 +3,8 @@
 !> place and the quantity; it is then in the summary with its error and derivatives. A place is
 !> entered where it is found. Any other number has a row here, and a `set` where it is computed.
 module result_rows
-  use reported_place, only: of_h0, of_load, of_displacement, of_energy, of_position, of_tension, &
-    of_profile
+  use reported_place, only: of_h0, of_load, of_displacement, of_energy, of_suction, of_position, &
+    of_tension, of_work, of_profile
   implicit none
   private
   public :: row_t, rows, row_of, in_summary, in_cost
@@ -123,10 +123,11 @@ module result_rows
     row_t('energy_lost', 'J', 'energy lost in the jumps of a cycle', always, &
       place='energy_lost', quantity=of_energy, error='_uncertainty'), &
     row_t('energy_dissipated', 'J', 'work of a drive in time less the final energy of the bodies', &
-      drive, error=judged), &
-    row_t('effective_work_of_adhesion', 'J/m^2', &
-      'largest tension of a drive in time over 1.5 pi R', drive, error=judged), &
-    row_t('max_suction', 'Pa', 'largest suction of the draining fluid', fluid, error=judged), &
+      drive, place='energy_dissipated', quantity=of_energy, error=judged), &
+    row_t('effective_work_of_adhesion', 'J/m^2', 'largest tension of a drive in time over ' // &
+      '1.5 pi R', drive, place='effective_work', quantity=of_work, error=judged), &
+    row_t('max_suction', 'Pa', 'largest suction of the draining fluid', fluid, &
+      place='max_suction', quantity=of_suction, error=judged), &
     row_t('sigma_relaxed', '', 'strength of adhesion of viscoelastic bodies at rest', &
       viscoelastic), &
     row_t('time_steps', '', 'number of steps of a drive in time', drive), &

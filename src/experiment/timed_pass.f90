@@ -14,7 +14,7 @@ module timed_pass
   use journal, only: journal_t
   use timed_journal, only: keep, recall
   use timed_record, only: pass_t, accept, take_row, note, lose, most_steps, &
-    of_tension, of_work, of_end_h0, of_end_load, of_end_displacement, of_dissipation
+    of_tension, of_end_h0, of_end_load, of_end_displacement, of_dissipation
   implicit none
   private
   public :: go_through
@@ -89,7 +89,7 @@ contains
       end do
     end do
     associate (result => now%result, at => now%at)
-      result%number(of_work) = result%number(of_tension)/(1.5_wp*pi)
+      result%passes = now%number
       result%still_held = -at%state%load >= result%number(of_tension)
       result%number(of_end_h0) = at%state%h0
       result%number(of_end_load) = at%state%load

@@ -1,8 +1,11 @@
 !> The readings of a drive: its rows, the reported numbers, and their quality.
 module timed_record
-  use kinds, only: wp
+  use kinds, only: wp, nan
   use equilibrium, only: holds
   use mesh_plan, only: approach
+  use reported_place, only: place_t, measured_load => of_load, of_h0, of_displacement, of_energy, &
+    measured_suction => of_suction
+  use places, only: places_t
   use records, only: record_t, quality_t, record_of, stable_unasked
   use motion, only: motion_t, names_of_ways
   use time_instant, only: instant_t
@@ -10,12 +13,12 @@ module timed_record
   implicit none
   private
   public :: timed_result_t, tally_t, pass_t, accept, take_row, note, make_room, lose, most_steps, &
-    numbers, of_tension, of_tension_h0, of_end_h0, of_end_load, of_end_displacement, &
-    of_dissipation, of_suction, of_work
+    of_tension, of_tension_h0, of_end_h0, of_end_load, of_end_displacement, of_dissipation, &
+    of_suction, enter_numbers
 
-  !> The reported numbers. of_work: the effective work of adhesion, the largest tension over 1.5 pi.
+  !> The numbers of a pass.
   integer, parameter :: of_tension = 1, of_tension_h0 = 2, of_end_h0 = 3, of_end_load = 4, &
-    of_end_displacement = 5, of_dissipation = 6, of_suction = 7, of_work = 8, numbers = 8
+    of_end_displacement = 5, of_dissipation = 6, of_suction = 7, numbers = 7
 
   !> Largest number of steps of a pass.
   integer, parameter :: most_steps = 40000
@@ -23,17 +26,10 @@ module timed_record
   !> The results of a pass. Numbers are in units of the problem; balance: the dissipated energy by
   !> the work of the drive, minus that in dashpots and jumps.
   type :: timed_result_t
-    real(wp) :: number(numbers) = 0, error(numbers) = huge(1.0_wp)
-    !> Derivatives by each parameter of &sensitivity, (parameters, numbers), SI units; not_rated:
-    !> the parameter with a varied value for which a run failed.
-    real(wp), allocatable :: rate(:, :)
-    character(len=:), allocatable :: not_rated
-    real(wp) :: balance = 0
-    !> The difference between the largest tension and the largest one of the rows beside it.
-    real(wp) :: lifted = 0
-    !> The largest error of a load over the largest load.
-    real(wp) :: estimate = 0
+    real(wp) :: number(numbers) = 0, balance = 0
     integer :: steps = 0, jumps = 0
+    !> The number of the pass, each with half the steps of the one before.
+    integer :: passes = 0
     !> Where the suction of a fluid is largest: the time [s], h0 and the distance from the axis.
     real(wp) :: suction_at(3) = 0
     type(quality_t) :: quality
@@ -152,7 +148,6 @@ contains
       end if
     end associate
     if (-least <= now%result%number(of_tension)) return
-    now%result%lifted = minval(now%recent(2, 4 - now%recently:)) - least
     now%result%number(of_tension) = -least
     now%result%number(of_tension_h0) = h0
   end subroutine take_row
@@ -198,5 +193,45 @@ contains
     longer(:now%held) = now%row(:now%held)
     call move_alloc(longer, now%row)
   end subroutine make_room
+
+  !> Enters the numbers of a pass. The errors of loads are relative to the largest load, those of
+  !> the energy to the largest load times the law's length if that is larger, and those of the
+  !> suction to the part of the law's pressure that is the accuracy: smaller suctions are not felt.
+  subroutine enter_numbers(result, accuracy, with_work, with_suction, places)
+    type(timed_result_t), intent(in) :: result
+    real(wp), intent(in) :: accuracy
+    logical, intent(in) :: with_work, with_suction
+    type(places_t), intent(out) :: places
+    type(place_t) :: place
+
+    place%in_time = .true.
+    place%scale([measured_load, of_energy]) = result%largest_load
+    place%scale(measured_suction) = accuracy
+    place%at = nan
+    associate (number => result%number)
+      place%at([of_h0, measured_load, of_displacement]) = &
+        number([of_end_h0, of_end_load, of_end_displacement])
+      call places%enter('end', 1, place)
+      place%at = nan
+      if (number(of_tension) > 0) then
+        ! The load turns there, which the last place does not know.
+        place%turn_of = [0.0_wp, 1.0_wp]
+        place%at([of_h0, measured_load]) = [number(of_tension_h0), -number(of_tension)]
+        call places%enter('max_tension', 1, place)
+        if (with_work) call places%enter('effective_work', 1, place)
+        place%turn_of = 0
+      end if
+      ! Without a load.
+      place%at([of_h0, measured_load]) = [nan, 0.0_wp]
+      if (with_suction) then
+        place%at(measured_suction) = number(of_suction)
+        call places%enter('max_suction', 1, place)
+        place%at(measured_suction) = nan
+      end if
+      place%at(of_energy) = number(of_dissipation)
+      place%left(of_energy) = abs(result%balance)
+      call places%enter('energy_dissipated', 1, place)
+    end associate
+  end subroutine enter_numbers
 
 end module timed_record

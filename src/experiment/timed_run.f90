@@ -1,8 +1,7 @@
-!> A drive that moves in time, and its results. The motion is simulated in several passes, each with
-!> all steps halved and more nodes for the memory; the error is the difference between the last two
-!> passes, times a margin.
+!> A drive that moves in time, and its results. The motion is run in several passes, each with all
+!> steps halved and more nodes for the memory, until the numbers of two passes agree.
 module timed_run
-  use kinds, only: wp, pi
+  use kinds, only: wp
   use clock, only: seconds
   use dimensionless_problem, only: problem_t
   use discretisation, only: discretisation_t
@@ -24,17 +23,17 @@ module timed_run
   use drainage, only: farthest_pole
   use frozen_start, only: effect_of_start
   use timed_pass, only: go_through
-  use timed_record, only: timed_result_t, pass_t, most_steps, of_tension, of_end_load, &
-    of_dissipation, of_suction, of_work
+  use timed_record, only: timed_result_t, pass_t, most_steps, enter_numbers
+  use places, only: places_t
+  use reported_place, only: of_suction
+  use reported_numbers, only: run_numbers_t, largest_error, chance
   implicit none
   private
   public :: run_timed
 
-  !> Factor of the differences between passes: halved steps reduce errors by a factor of four, finer
-  !> meshes perhaps by less.
-  real(wp), parameter :: margin = 2
-  !> Error of the meshes, which are often the same in two passes, over the accuracy.
-  real(wp), parameter :: of_meshes = 0.05_wp
+  !> The error of a pass over its difference from the pass before and from the one before that: half
+  !> the steps have a quarter of the error.
+  real(wp), parameter :: of_halves = 1/3.0_wp, of_quarters = 1/15.0_wp
   !> Largest number of passes, and the largest change of the path's coordinate in a step of the
   !> first pass: a larger change is a jump, or needs shorter steps.
   integer, parameter :: most_passes = 9
@@ -55,22 +54,30 @@ module timed_run
 contains
 
   !> Simulates the motion of request%drive, and shows the rows of the last pass. The journal, if
-  !> there is one, stores the passes.
-  subroutine run_timed(request, problem, chosen, journal, observer, result, cost, nodes)
+  !> there is one, stores the passes. places: the numbers, with their errors; passes: the number of
+  !> passes, if the numbers are to have no errors; error: the largest relative one, huge if the
+  !> motion was lost.
+  subroutine run_timed(request, problem, chosen, journal, observer, result, places, error, cost, &
+    nodes, passes)
     class(request_t), intent(in) :: request
     type(problem_t), intent(in) :: problem
     type(choice_t), intent(in) :: chosen
     type(journal_t), pointer, intent(in) :: journal
     class(observer_t), intent(inout) :: observer
     type(timed_result_t), intent(out) :: result
+    type(places_t), intent(out) :: places
+    real(wp), allocatable, intent(out) :: error
     type(cost_t), intent(inout) :: cost
     integer, intent(out) :: nodes
+    integer, intent(in), optional :: passes
     type(time_stepper_t) :: steps
+    type(places_t) :: nothing
+    type(run_numbers_t) :: others(2)
     type(pass_t) :: now, before, blank
     real(wp) :: began, low
     integer :: pass, whole, i
-    logical :: enough
 
+    others%part = [of_halves, of_quarters]
     call prepare()
     if (allocated(request%drive%time_step)) blank%time_step = request%drive%time_step
     began = seconds()
@@ -90,22 +97,34 @@ contains
       if (now%result%lost) then
         ! Finer meshes may resolve the loss; otherwise the previous passes have their error
         ! estimates.
-        if (whole > 1) now = before
+        if (whole > 1 .and. .not. present(passes)) now = before
         if (whole > 1 .or. pass == most_tries .or. .not. now%result%begun .or. &
           now%held > most_steps) exit
         whole = 0
         cycle
       end if
       whole = whole + 1
+      if (whole > 1 .and. .not. present(passes)) call keep_passes()
+      call enter_numbers(now%result, request%numerics%accuracy, problem%shape%parabolic, &
+        allocated(request%fluid), places)
+      if (present(passes)) then
+        if (pass >= passes) exit
+        cycle
+      end if
       if (whole == 1) cycle
-      call compare(request%numerics%accuracy, before%result, now%result)
+      call places%judge_by(others(:min(2, whole - 1)), chance)
+      call ignore_unknown_suction()
+      error = largest_error(places%number)
       ! The first two passes may agree by chance.
-      enough = (relative_error(now%result, request%numerics%accuracy) <= &
-        request%numerics%accuracy .and. whole > 2) .or. allocated(request%drive%time_step)
-      if (enough .or. 2*now%held > most_steps) exit
+      if (error <= request%numerics%accuracy .and. whole > 2 .or. &
+        allocated(request%drive%time_step) .or. 2*now%held > most_steps) exit
     end do
     result = now%result
-    result%estimate = relative_error(result, request%numerics%accuracy)
+    if (result%lost) then
+      places = nothing
+      error = huge(1.0_wp)
+      if (.not. result%begun) deallocate (error)
+    end if
     nodes = sum(steps%meshes%grid%nodes)
     do i = 1, now%held
       now%row(i)%time = now%row(i)%time + &
@@ -120,6 +139,34 @@ contains
       result%of_start = effect_of_start(steps, blank%drive%position(0), now%row(:now%held))
 
   contains
+
+    !> Makes the two passes before the present one the other runs. A suction that the last one did
+    !> not determine, at an unresolved jump of the one before, says nothing about later ones.
+    subroutine keep_passes()
+      integer :: i
+
+      if (whole > 2) others(2)%number = others(1)%number
+      others(1)%number = places%numbers()
+      if (whole == 2) return
+      do i = 1, size(places%number)
+        if (places%number(i)%compared(of_suction)) cycle
+        where (others(2)%number%name == places%number(i)%name) &
+          others(2)%number%value(of_suction) = places%number(i)%value(of_suction)
+      end do
+    end subroutine keep_passes
+
+    !> A suction whose error exceeds it is not determined, and does not count: more passes rarely
+    !> help, and the summary has a warning.
+    subroutine ignore_unknown_suction()
+      integer :: i
+
+      do i = 1, size(places%number)
+        associate (number => places%number(i))
+          if (number%error(of_suction) > number%value(of_suction)) &
+            number%compared(of_suction) = .false.
+        end associate
+      end do
+    end subroutine ignore_unknown_suction
 
     !> Sets the stepper of the problem, and the motion.
     subroutine prepare()
@@ -233,46 +280,5 @@ contains
     end subroutine fit_to_path
 
   end subroutine run_timed
-
-  !> Sets the errors of a pass from its differences to the previous pass.
-  subroutine compare(accuracy, before, now)
-    real(wp), intent(in) :: accuracy
-    type(timed_result_t), intent(in) :: before
-    type(timed_result_t), intent(inout) :: now
-    logical :: known(size(now%error))
-
-    known = before%error < huge(1.0_wp)
-    ! An undetermined suction, at an unresolved jump of an early pass, says nothing about later
-    ! passes.
-    if (before%error(of_suction) > before%number(of_suction)) known(of_suction) = .false.
-    now%error = margin*abs(now%number - before%number)
-    where (known) now%error = max(now%error, before%error/4)
-    now%error(of_tension) = now%error(of_tension) + now%lifted + &
-      of_meshes*accuracy*now%number(of_tension)
-    now%error(of_work) = now%error(of_tension)/(1.5_wp*pi)
-    now%error(of_end_load) = now%error(of_end_load) + &
-      of_meshes*accuracy*abs(now%number(of_end_load))
-    now%error(of_dissipation) = max(now%error(of_dissipation), abs(now%balance))
-  end subroutine compare
-
-  !> The largest relative error: of loads over the largest load, and of the dissipated energy over
-  !> itself or, if larger, over the largest load times the law's length; of a suction over itself
-  !> or, if larger, over the part of the law's pressure that is the accuracy: smaller suctions are
-  !> not felt. A suction with an error larger than itself is not determined, and does not count:
-  !> more passes rarely help, and the summary has a warning.
-  pure real(wp) function relative_error(now, accuracy) result(largest)
-    type(timed_result_t), intent(in) :: now
-    real(wp), intent(in) :: accuracy
-
-    ! Of a pass that was compared with no other the errors are unknown.
-    largest = huge(1.0_wp)
-    if (.not. now%error(of_tension) < huge(1.0_wp)) return
-    largest = max(max(now%error(of_tension), now%error(of_end_load))/ &
-      max(now%largest_load, tiny(1.0_wp)), now%error(of_dissipation)/ &
-      max(abs(now%number(of_dissipation)), now%largest_load, tiny(1.0_wp)))
-    associate (suction => now%number(of_suction), error => now%error(of_suction))
-      if (error <= suction) largest = max(largest, error/max(suction, accuracy))
-    end associate
-  end function relative_error
 
 end module timed_run

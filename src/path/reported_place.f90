@@ -2,7 +2,7 @@
 !> definition: D = drive(1) h0 + drive(2) load turns there along the path, or has a given value. The
 !> module that finds the place sets its definition, and `located_places` the values.
 module reported_place
-  use kinds, only: wp, nan
+  use kinds, only: wp, pi, nan
   use dimensionless_problem, only: problem_t
   use contact_state, only: state_t
   use curve_states, only: path_state_t
@@ -10,17 +10,18 @@ module reported_place
   private
   public :: place_t, place_of_state, place_without_state, point_of_path, place_on_curve
   public :: values_of, units_of
-  public :: of_h0, of_load, of_displacement, of_energy, of_radius, of_edge, of_position, &
-    of_tension, of_profile
+  public :: of_h0, of_load, of_displacement, of_energy, of_radius, of_edge, of_suction, &
+    of_position, of_tension, of_work, of_profile
   public :: read_of_states, quantities, nowhere, least, rounding
 
   !> Quantities that are read at a state: h0, load, displacement, energy of the bodies, contact
-  !> radius, radius to which the mesh is locked (0: about the axis); and quantities that follow from
-  !> these: position of the drive, tension, error of the profile. At a place, `of_energy` is the
-  !> energy of bodies and drive.
-  integer, parameter :: read_of_states = 6, of_h0 = 1, of_load = 2, of_displacement = 3, &
-    of_energy = 4, of_radius = 5, of_edge = 6, of_position = 7, of_tension = 8, of_profile = 9, &
-    quantities = 9
+  !> radius, radius to which the mesh is locked (0: about the axis), suction of a fluid; and
+  !> quantities that follow from these: position of the drive, tension, effective work of adhesion
+  !> (tension over 1.5 pi R), error of the profile. At a place, `of_energy` is the energy of bodies
+  !> and drive.
+  integer, parameter :: read_of_states = 7, of_h0 = 1, of_load = 2, of_displacement = 3, &
+    of_energy = 4, of_radius = 5, of_edge = 6, of_suction = 7, of_position = 8, of_tension = 9, &
+    of_work = 10, of_profile = 11, quantities = 11
   !> The value of `mesh` at a place without a mesh.
   integer, parameter :: nowhere = -1
 
@@ -42,8 +43,11 @@ module reported_place
     !> set by `located_places`, except h0 and load; located: they are set.
     logical :: located = .false.
     real(wp), dimension(read_of_states) :: at = 0, left = 0
-    !> Magnitude below which the relative error of a load does not matter.
-    real(wp) :: negligible = 0
+    !> Magnitudes to which errors are relative where quantities are smaller.
+    real(wp) :: scale(quantities) = 0
+    !> in_time: of a drive in time, whose accuracy is that of loads, energies and suctions, since
+    !> positions are those at given times.
+    logical :: in_time = .false.
     !> Whether a profile is read at the place.
     logical :: with_profile = .false.
     !> The profile: radii, gaps and pressures; NaN where the mesh has none.
@@ -60,8 +64,7 @@ module reported_place
   !> Rounding error of a whole calculation; no smaller error is reported.
   real(wp), parameter :: rounding = 1.0e-13_wp
   !> Errors are relative to the larger of a quantity's magnitude and this value.
-  real(wp), parameter :: least(quantities) = [1.0_wp, 0.0_wp, 1.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, &
-    1.0_wp, 0.0_wp, 0.0_wp]
+  real(wp), parameter :: least(quantities) = [1, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0]
 
 contains
 
@@ -114,7 +117,7 @@ contains
     self%mesh = state%mesh
     self%state = state%state
     self%at = [state%h0, state%load, state%axis_gap - state%h0, state%energy, state%radius, &
-      state%state%scale]
+      state%state%scale, 0.0_wp]
     self%left(of_energy) = state%uncertainty
   end subroutine take
 
@@ -148,6 +151,7 @@ contains
       end if
       all(of_position) = dot_product(self%drive, value(:2))
       all(of_tension) = -value(of_load)
+      all(of_work) = -value(of_load)/(1.5_wp*pi)
       all(of_profile) = 0
     end associate
   end function measures
@@ -160,6 +164,7 @@ contains
     all(:read_of_states) = self%left
     all(of_position) = dot_product(abs(self%drive), self%left(:2))
     all(of_tension) = self%left(of_load)
+    all(of_work) = self%left(of_load)/(1.5_wp*pi)
     all(of_profile) = 0
   end function leftovers
 
@@ -171,10 +176,13 @@ contains
     logical :: compared(quantities)
 
     compared = .false.
+    if (self%in_time) then
+      compared([of_load, of_energy, of_suction]) = .true.
+      return
+    end if
     compared(of_profile) = self%with_profile
     ! A given load is exact, and may be 0.
-    compared(of_load) = (self%drive(1) > 0 .or. self%turns() .or. self%after > 0) .and. &
-      .not. abs(self%at(of_load)) < self%negligible
+    compared(of_load) = self%drive(1) > 0 .or. self%turns() .or. self%after > 0
     compared(of_radius) = with_radius .and. self%at(of_radius) > 0
     if (self%after > 0) return
     compared(merge(of_position, of_h0, product(self%drive) < 0)) = .true.
@@ -189,11 +197,9 @@ contains
     type(place_t), intent(in) :: place
     real(wp) :: values(quantities)
 
-    values = place%measures()
-    values([of_h0, of_position]) = problem%law%separation_of(values([of_h0, of_position]))
-    associate (others => [of_load, of_displacement, of_energy, of_radius, of_edge, of_tension, &
-      of_profile], units => units_of(problem))
-      values(others) = values(others)*units(others)
+    associate (measures => place%measures())
+      values = measures*units_of(problem)
+      values([of_h0, of_position]) = problem%law%separation_of(measures([of_h0, of_position]))
     end associate
     if (.not. place%drive(1) > 0) values(of_position) = nan
   end function values_of
@@ -207,6 +213,8 @@ contains
     units([of_load, of_tension]) = problem%load
     units(of_energy) = problem%load*problem%length
     units([of_radius, of_edge]) = problem%lateral
+    units(of_suction) = problem%pressure
+    units(of_work) = problem%load/problem%radius
     units(of_profile) = 1
   end function units_of
 

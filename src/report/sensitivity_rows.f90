@@ -35,7 +35,7 @@ contains
     type(summary_t), intent(in) :: summary
     type(results_t), intent(inout) :: results
 
-    if (.not. (allocated(outcome%readings) .or. allocated(outcome%timed))) return
+    if (.not. allocated(outcome%places%number)) return
     call write_numbers()
     if (.not. allocated(outcome%readings)) return
     if (allocated(outcome%readings%rate)) call write_curve(outcome%readings)

@@ -54,7 +54,7 @@ contains
     call take_places(outcome%places)
     call tell_branches()
     call judge_tension(problem, outcome, summary)
-    if (allocated(outcome%timed)) call summarise_timed(scene, problem, outcome%timed, summary)
+    if (allocated(outcome%timed)) call summarise_timed(scene, problem, outcome, summary)
     if (allocated(outcome%path)) call tell_path(outcome%path)
     if (allocated(outcome%readings)) call take_readings(outcome%readings, outcome%places)
     if (scene%regime) call summarise_regime(problem, outcome%places, summary)

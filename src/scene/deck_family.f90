@@ -13,7 +13,6 @@ module deck_family
   use variation, only: problem_family_t, parameter_t, vary, to_report
   use scene_groups, only: scene_t
   use scene_problem, only: keys_of_model, take_model, problem_of
-  use curve_groups, only: check_path
   implicit none
   private
   public :: deck_family_t, new_deck_family, widened, sensitivity_keys, take_sensitivity
@@ -173,7 +172,8 @@ contains
     driven = scene%deck%has_group('drive')
     why = ''
     if (.not. driven) then
-      call check_path(scene, 'sensitivity')
+      if (.not. allocated(scene%path)) call scene%deck%mistake('sensitivity', '', &
+        'needs &equilibrium_path or &drive')
       why = ', whose cases show no curve'
     end if
     if (scene%deck%has_group('sweep')) call scene%deck%mistake('sensitivity', '', &

@@ -303,6 +303,24 @@ def test_a_power_of_a_force_that_falls_slowly_has_few_digits_and_a_warning(run):
     assert any("shape.exponent changes the power" in text for text in run(power).warnings)
 
 
+def test_rigid_bodies_and_laws_without_attraction_have_derivatives_too(run):
+    names = ["force.hamaker", "bodies.radius", "force.z0"]
+    found = derivatives(run(deck(
+        bodies={"radius": 1e-6, "rigid": True}, force=LAW, equilibrium_path={"h0_end": 0.3e-9},
+        sensitivity={"parameters": names})))
+    # 2 pi w R at z0.
+    assert [found["max_tension"][name] for name in names] == pytest.approx([1, 1, -2], abs=1e-9)
+    assert [found["max_tension_h0"][name] for name in names] == pytest.approx([0, 0, 1], abs=1e-8)
+    pressures = ["force.p0", "bodies.stiffness"]
+    found = derivatives(run(deck(
+        bodies={"radius": 1e-6, "stiffness": 1e9},
+        force={"law": "exponential", "p0": 1e7, "decay_length": 1e-9},
+        equilibrium_path={"h0_end": -1e-9}, sensitivity={"parameters": pressures})))
+    for key, power in (("end_load", 1), ("end_displacement", 0)):
+        assert abs(found[key]["force.p0"]) > 0.01
+        assert sum(found[key].values()) == pytest.approx(power, abs=1e-8)
+
+
 def test_a_jump_that_is_about_to_vanish_has_no_derivative_and_this_is_said(run):
     """Of a path with its first two folds a little weaker adhesion has none; the largest tension has
     a derivative all the same."""
