@@ -74,17 +74,18 @@ contains
   !> weights(j, i): integral of k(r, t) L_j(t) t dt over the panel of offsets [left, right] from the
   !> centre, r = centre + target(i), L_j the Lagrange polynomials on the nodes `node` of [0, 1].
   subroutine panel_integrals(node, centre, target, left, right, weights, order, n)
-    use product_integration, only: panel_rule_t, new_panel_rule, panel_weights
+    use local_nodes, only: given_nodes
+    use panel_kernel, only: add_panel
+    use panel_map, only: panel_map_t, linear_map
     integer(c_int), intent(in) :: order, n
     real(c_double), intent(in) :: node(order), centre, target(n), left, right
     real(c_double), intent(out) :: weights(order, n)
-    type(panel_rule_t) :: rule
-    integer :: i
+    real(c_double), parameter :: all_digits = 14
+    real(c_double) :: matrix(n, order)
 
-    rule = new_panel_rule(node)
-    do i = 1, n
-      call panel_weights(rule, centre, target(i), left, right, weights(:, i))
-    end do
+    call add_panel(panel_map_t(linear_map, left, right), given_nodes(node), all_digits, centre, &
+      target, 0, matrix)
+    weights = transpose(matrix)
   end subroutine panel_integrals
 
   !> Nodes of a mesh, the weights of integral f x dx, and the distance between nodes.
@@ -211,7 +212,8 @@ contains
   !> The mesh with this description.
   function mesh_of(kind, centre, lengths, orders, map, elastic) result(mesh)
     use discretisation, only: discretisation_t
-    use mapped_mesh, only: mapped_shape_t, new_mapped_mesh
+    use mapped_mesh, only: new_mapped_mesh
+    use mapped_shape, only: mapped_shape_t
     use linear_mesh, only: new_panel_grid, new_uniform_grid
     character(len=*), intent(in) :: kind
     real(c_double), intent(in) :: centre, lengths(:), map(5)

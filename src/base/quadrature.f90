@@ -1,5 +1,5 @@
 !> Gauss-Legendre rules, the companion rule for a logarithm at the left end, and barycentric
-!> Lagrange interpolation. Rules for integrals over wave numbers k of a smooth function times
+!> weights. Rules for integrals over wave numbers k of a smooth function times
 !> products of waves, cos(k x) or J0(k x), at several abscissas x, each with a largest wave number
 !> that matters.
 module quadrature
@@ -7,7 +7,7 @@ module quadrature
   implicit none
   private
   public :: gauss_legendre, legendre_values, logarithm_weights, barycentric_weights, &
-    lagrange_basis, wave_rule
+    wave_rule
 
   !> Ratio of the ends of panels that are short against the wavelengths.
   real(wp), parameter :: ratio = 3
@@ -96,23 +96,6 @@ contains
     end do
     b = b/maxval(abs(b))
   end function barycentric_weights
-
-  !> Values at t of the Lagrange polynomials through the nodes x with barycentric weights b.
-  pure function lagrange_basis(x, b, t) result(l)
-    real(wp), intent(in) :: x(:), b(:), t
-    real(wp) :: l(size(x))
-    integer :: j
-
-    do j = 1, size(x)
-      if (abs(t - x(j)) <= tiny(t)) then
-        l = 0
-        l(j) = 1
-        return
-      end if
-    end do
-    l = b/(t - x)
-    l = l/sum(l)
-  end function lagrange_basis
 
   !> The Legendre polynomial of degree n on [-1, 1] and its slope.
   pure subroutine legendre(n, z, value, slope)

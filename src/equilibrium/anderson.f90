@@ -31,7 +31,9 @@ module anderson
   !> Iterations that every state needs. The factorisation is renewed once the further iterations
   !> have cost as much as a new one: one iteration for each `unknowns_an_iteration` unknowns.
   integer, parameter :: few_iterations = 2, unknowns_an_iteration = 20
-  !> Largest number of rejected steps; after more, the iteration stops.
+  !> A step that is so many times longer than the last one is rejected. Largest number of rejected
+  !> steps; after more, the iteration stops.
+  real(wp), parameter :: too_long = 10
   integer, parameter :: most_rejections = 4
   !> With a fluid: a plain step of the length `last_step`, over the tolerance, is the last step; so
   !> is one of the length `few_roundings` that is hardly shorter than the one before it. The
@@ -141,7 +143,7 @@ contains
     now%f = now%g
     call solve(frozen%factors, now%f)
     length = step_length(now%z, now%f)
-    if (0.1_wp*length > now%length .and. now%since_renewal > 0) then
+    if (length > too_long*now%length .and. now%since_renewal > 0) then
       equations%cost%rejected_steps = equations%cost%rejected_steps + 1
       now%rejections = now%rejections + 1
       if (now%rejections > most_rejections) return

@@ -30,6 +30,10 @@ module equilibrium
   !> Upper limit of all lengths of an equilibrium, in the law's or in lateral units; its cube does
   !> not overflow.
   real(wp), parameter :: largest_unknown = 1.0e80_wp
+  !> Largest part of itself by which the contact radius changes in an iteration.
+  real(wp), parameter :: largest_change = 0.3_wp
+  !> Pressures below this part of rounding have no effect.
+  real(wp), parameter :: unfelt = 1.0e-3_wp
 
   !> The fraction of a gap's excess over `far_gap` by which the gap may decrease in one step.
   real(wp), parameter :: harmless = 0.3_wp
@@ -221,7 +225,7 @@ contains
       fraction = limit(z(:n - 1), dz(:n - 1))
     end if
     if (control%kind == at_h0_with_edge) &
-      fraction = min(fraction, 0.3_wp*z(n)/max(abs(dz(n)), tiny(1.0_wp)))
+      fraction = min(fraction, largest_change*z(n)/max(abs(dz(n)), tiny(1.0_wp)))
 
   contains
 
@@ -278,7 +282,7 @@ contains
       columns = size(pressure)
       return
     end if
-    least = 1.0e-3_wp*epsilon(1.0_wp)*least
+    least = unfelt*epsilon(1.0_wp)*least
     do columns = size(pressure), 1, -1
       if (abs(pressure(columns)) > least) exit
     end do

@@ -18,11 +18,11 @@ module relaxation
   !> ones, in cubes of the matrix's order (about ten seconds).
   integer, parameter :: most_steps = 2000, few_factorisations = 500
   real(wp), parameter :: most_cubes = 1.0e11_wp
-  !> First step of pseudo-time (the stiffest modes relax in less than one unit), its largest growth
-  !> and its limits. A growing residual, as while bodies part, does not shorten a step below the
-  !> usual one; an unstable mode does. Size of the nudge off an unstable equilibrium, in the law's
-  !> lengths.
-  real(wp), parameter :: first_step = 1, growth = 3, usual_step = 0.3_wp, &
+  !> First step of pseudo-time (the stiffest modes relax in less than one unit), its largest growth,
+  !> its shortening, and its limits. A growing residual, as while bodies part, does not shorten a
+  !> step below the usual one; an unstable mode does. Size of the nudge off an unstable equilibrium,
+  !> in the law's lengths.
+  real(wp), parameter :: first_step = 1, growth = 3, shortening = 0.1_wp, usual_step = 0.3_wp, &
     shortest_step = 1.0e-3_wp, longest_step = 1.0e12_wp, nudge = 1.0e-4_wp
   !> The residual before the first step is unknown.
   real(wp), parameter :: unknown = 1.0e100_wp
@@ -80,7 +80,7 @@ contains
         if (.not. factors%valid) return
         ! A longer step would climb an unstable mode instead of leaving it.
         if (determinant_sign(factors) > 0 .or. dtau <= shortest_step) exit
-        dtau = 0.1_wp*dtau
+        dtau = shortening*dtau
       end do
       dz = -g
       call solve(factors, dz)

@@ -1,17 +1,19 @@
 !> The discretised half-space: nodes, quadrature weights and the matrix of the elastic kernel.
-!> Solvers, cycle and path do not depend on the way a mesh is made (`linear_mesh`, `mapped_mesh`).
+!> Solvers, cycle and path do not depend on the way its panels are laid out (`linear_mesh`,
+!> `mapped_mesh`).
 !>
 !> All lengths are lateral and relative to a scale c. The kernel is homogeneous, so one matrix is
 !> valid for every scale (see `elastic_operator`).
 module discretisation
   use kinds, only: wp, long
   use lapack, only: idamax
-  use panel_map, only: panel_map_t, algebraic_map
+  use panel_map, only: panel_map_t, power_map, algebraic_map
+  use panel_kernel, only: add_panel
   use interpolation, only: polynomial_weights
   use local_nodes, only: local_nodes_t
   implicit none
   private
-  public :: discretisation_t, axis_row, centre_row, first_node
+  public :: discretisation_t, mesh_of_panels, axis_row, centre_row, first_node
 
   !> Number of nodes from which the value on the axis is interpolated.
   integer, parameter :: nodes_at_axis = 6
@@ -52,8 +54,6 @@ module discretisation
     procedure :: interpolate_all
     procedure :: on_one_panel
     procedure :: crossing
-    procedure :: note_axis
-    procedure :: note_kernel
     procedure :: is_bounded
     procedure :: in_tail
     procedure :: panel_tails
@@ -62,6 +62,91 @@ module discretisation
   end type discretisation_t
 
 contains
+
+  !> The mesh of panels from the axis outward; panel k has the nodes local(which(k)). A node at a
+  !> panel's end, 1, is the next panel's node at 0. even: whether functions are even in the distance
+  !> from the axis; such a function is a polynomial of the squared distance, and through the nodes
+  !> nearest to the axis this polynomial converges faster than the panel's. digits: of the kernel;
+  !> elastic = .false.: without the kernel.
+  function mesh_of_panels(centre, panel, local, which, even, digits, elastic) result(grid)
+    real(wp), intent(in) :: centre, digits
+    type(panel_map_t), intent(in) :: panel(:)
+    type(local_nodes_t), intent(in) :: local(:)
+    integer, intent(in) :: which(:)
+    logical, intent(in) :: even, elastic
+    type(discretisation_t) :: grid
+    real(wp), allocatable :: offset(:)
+    integer :: k, shared
+
+    grid%centre = centre
+    grid%digits = digits
+    grid%panel = panel
+    grid%local = local
+    grid%which = which
+    associate (outermost => panel(size(panel)))
+      grid%end = merge(huge(1.0_wp), centre + outermost%right, outermost%kind == algebraic_map)
+    end associate
+    shared = merge(1, 0, .not. local(1)%node(size(local(1)%node)) < 1)
+    allocate (grid%first(size(panel)))
+    grid%first(1) = 1
+    do k = 1, size(panel)
+      grid%nodes = grid%first(k) + size(local(which(k))%node) - 1
+      if (k < size(panel)) grid%first(k + 1) = grid%nodes + 1 - shared
+    end do
+    allocate (offset(grid%nodes), grid%weight(grid%nodes), source=0.0_wp)
+    grid%spacing = huge(1.0_wp)
+    do k = 1, size(panel)
+      associate (nodes => local(which(k)), first => grid%first(k))
+        associate (last => first + size(nodes%node) - 1)
+          offset(first:last) = panel(k)%offset(nodes%node)
+          grid%weight(first:last) = grid%weight(first:last) + &
+            nodes%weight*panel(k)%speed(nodes%node)*(centre + offset(first:last))
+          ! The integral of a hat function times x: end values a, b have the weights (2a + b)/6.
+          if (shared > 0) grid%weight([first, last]) = grid%weight([first, last]) + &
+            (panel(k)%right - panel(k)%left)**2/6*[1, -1]
+        end associate
+        ! Nodes of a power panel crowd at the axis, which resolves no edge.
+        if (panel(k)%kind /= power_map) grid%spacing = min(grid%spacing, &
+          minval(panel(k)%speed(nodes%node))/(size(nodes%node) - shared))
+      end associate
+    end do
+    grid%x = centre + offset
+    allocate (grid%at_axis(grid%nodes), source=0.0_wp)
+    associate (n => min(nodes_at_axis, grid%nodes))
+      grid%at_axis(:n) = polynomial_weights(grid%x(:n)**merge(2, 1, even), 0.0_wp)
+    end associate
+    if (elastic) call add_kernel(grid, shared > 0, [-centre, 0.0_wp, offset])
+  end function mesh_of_panels
+
+  !> Adds the kernel, for targets at these offsets. Panels that share a node add to the same column,
+  !> so threads make first every other panel, then those between.
+  subroutine add_kernel(grid, shared, target)
+    type(discretisation_t), intent(inout) :: grid
+    logical, intent(in) :: shared
+    real(wp), intent(in) :: target(:)
+    real(wp), allocatable :: block(:, :)
+    integer :: j, k, begin, last
+
+    allocate (grid%kernel(size(target), grid%nodes), source=0.0_wp)
+    do begin = 1, 2
+      !$omp parallel do schedule(dynamic) private(block, last) if (shared)
+      do k = begin, size(grid%panel), 2
+        associate (local => grid%local(grid%which(k)), first => grid%first(k))
+          last = first + size(local%node) - 1
+          allocate (block(size(target), size(local%node)))
+          call add_panel(grid%panel(k), local, grid%digits, grid%centre, target, &
+            first_node - 1 + first, block)
+          grid%kernel(:, first:last) = grid%kernel(:, first:last) + block
+          deallocate (block)
+        end associate
+      end do
+      !$omp end parallel do
+    end do
+    allocate (grid%largest(grid%nodes))
+    do j = 1, grid%nodes
+      grid%largest(j) = abs(grid%kernel(idamax(size(target), grid%kernel(1, j), 1), j))
+    end do
+  end subroutine add_kernel
 
   !> The tail of a pressure on each panel, over the largest pressure or the unit of pressure (about
   !> the law's largest tension) if that is larger; 0 on a panel to infinity.
@@ -176,30 +261,6 @@ contains
 
     in_tail = self%panel(self%panel_at(x))%kind == algebraic_map
   end function in_tail
-
-  !> Sets at_axis, once the nodes are known. A function that is even in the distance from the axis
-  !> is a polynomial of the squared distance; through the nearest nodes this polynomial converges
-  !> faster than the panel's.
-  pure subroutine note_axis(self, even)
-    class(discretisation_t), intent(inout) :: self
-    logical, intent(in) :: even
-
-    allocate (self%at_axis(self%nodes), source=0.0_wp)
-    associate (n => min(nodes_at_axis, self%nodes))
-      self%at_axis(:n) = polynomial_weights(self%x(:n)**merge(2, 1, even), 0.0_wp)
-    end associate
-  end subroutine note_axis
-
-  !> Sets what follows from the kernel, once it is known.
-  subroutine note_kernel(self)
-    class(discretisation_t), intent(inout) :: self
-    integer :: j
-
-    allocate (self%largest(self%nodes))
-    do j = 1, self%nodes
-      self%largest(j) = abs(self%kernel(idamax(size(self%kernel, 1), self%kernel(1, j), 1), j))
-    end do
-  end subroutine note_kernel
 
   !> Whether the mesh has a finite end.
   elemental logical function is_bounded(self)

@@ -4,7 +4,8 @@ module edge_locked
   use kinds, only: wp
   use dimensionless_problem, only: problem_t, calm_gap
   use discretisation, only: discretisation_t
-  use mapped_mesh, only: mapped_shape_t, new_mapped_mesh
+  use mapped_mesh, only: new_mapped_mesh
+  use mapped_shape, only: mapped_shape_t
   use mesh_store, only: mesh_store_t
   use mesh_rule, only: approach_shape, contact_shape
   use mesh_plan, only: mesh_plan_t, new_mesh_plan, approach, contact

@@ -10,7 +10,7 @@ module law_panels
   use dimensionless_problem, only: problem_t
   use force_law, only: force_law_t, whole_step
   use local_nodes, only: local_nodes_t, gauss_nodes
-  use mapped_mesh, only: mapped_shape_t
+  use mapped_shape, only: mapped_shape_t
   use predicted_gaps, only: axis_gaps, between, predicted_gap
   use seen_gaps, only: seen_gaps_t
   use represented_pressure, only: panel_pressure

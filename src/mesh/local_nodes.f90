@@ -1,12 +1,12 @@
-!> The nodes of a panel, in its local coordinate: roots of a Legendre polynomial on [0, 1], and the
-!> polynomials through values at these nodes.
+!> The nodes of a panel, in its local coordinate: roots of a Legendre polynomial on [0, 1], or any
+!> others, and the polynomials through values at these nodes.
 module local_nodes
   use kinds, only: wp
   use root_finding, only: root_search_t, new_root_search
-  use quadrature, only: gauss_legendre
+  use quadrature, only: gauss_legendre, barycentric_weights
   implicit none
   private
-  public :: local_nodes_t, gauss_nodes
+  public :: local_nodes_t, gauss_nodes, given_nodes
 
   !> Stands for a distance 0 from a node; added to another distance, it changes nothing.
   real(wp), parameter :: at_node = 1.0e-100_wp
@@ -19,6 +19,7 @@ module local_nodes
     procedure :: values => values_at
     procedure :: reaching
     procedure :: tail
+    procedure :: bases
   end type local_nodes_t
 
 contains
@@ -35,6 +36,18 @@ contains
     local%barycentric = [((-1)**k*sqrt(local%node(k)*(1 - local%node(k))*local%weight(k)), &
       k=1, order)]
   end function gauss_nodes
+
+  !> Given nodes on [0, 1], with the weights of the integral of the polynomial through them.
+  pure function given_nodes(node) result(local)
+    real(wp), intent(in) :: node(:)
+    type(local_nodes_t) :: local
+    real(wp), dimension(size(node)) :: x, weight
+
+    local%node = node
+    local%barycentric = barycentric_weights(node)
+    call gauss_legendre(x, weight)
+    local%weight = matmul(local%bases(x), weight)
+  end function given_nodes
 
   !> The polynomial through values at the nodes, evaluated at s by the barycentric formula.
   pure real(wp) function value_at(self, values, s)
@@ -105,5 +118,25 @@ contains
         (2*n - 3.0_wp)/max(n - 1, 1)*abs(sum((2*self%node - 1)*weighted)))
     end associate
   end function tail
+
+  !> The Lagrange polynomials of a panel at points, (nodes, points).
+  pure function bases(self, s) result(basis)
+    class(local_nodes_t), intent(in) :: self
+    real(wp), intent(in) :: s(:)
+    real(wp) :: basis(size(self%node), size(s))
+    real(wp) :: share(size(s), size(self%node)), shares(size(s)), apart(size(s))
+    integer :: j
+
+    shares = 0
+    do j = 1, size(self%node)
+      apart = s - self%node(j)
+      ! At a node its own polynomial is 1 and the others are negligible.
+      share(:, j) = self%barycentric(j)/merge(apart, tiny(1.0_wp), abs(apart) > tiny(1.0_wp))
+      shares = shares + share(:, j)
+    end do
+    do j = 1, size(self%node)
+      basis(j, :) = share(:, j)/shares
+    end do
+  end function bases
 
 end module local_nodes

@@ -9,7 +9,7 @@ module mesh_rule
   use seen_gaps, only: seen_gaps_t
   use shape_panels, only: panels_for, has_flat_face
   use step_front, only: front_leads, first_front, front_width
-  use mapped_mesh, only: mapped_shape_t
+  use mapped_shape, only: mapped_shape_t
   use mesh_tail, only: give_tail, end_matters, beyond_poles
   implicit none
   private

@@ -4,7 +4,8 @@
 module mesh_store
   use kinds, only: long
   use discretisation, only: discretisation_t
-  use mapped_mesh, only: mapped_shape_t, same_shape, new_mapped_mesh
+  use mapped_mesh, only: new_mapped_mesh
+  use mapped_shape, only: mapped_shape_t, same_shape
   implicit none
   private
   public :: mesh_store_t

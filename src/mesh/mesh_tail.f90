@@ -3,7 +3,7 @@ module mesh_tail
   use kinds, only: wp
   use root_finding, only: bracket_t
   use dimensionless_problem, only: problem_t
-  use mapped_mesh, only: mapped_shape_t
+  use mapped_shape, only: mapped_shape_t
   implicit none
   private
   public :: give_tail, end_matters, beyond_poles

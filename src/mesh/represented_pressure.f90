@@ -99,7 +99,7 @@ contains
     if (allocated(law%kinks)) call split(law, local, gap, s, weight, share)
     if (share < 1) pressure = law%pressure(gap)
     if (.not. share > 0) return
-    basis = bases(local, s)
+    basis = local%bases(s)
     allocate (between(size(s)))
     call multiply_left(gap, basis, between)
     call multiply(basis, size(s), weight*law%pressure(between), projected)
@@ -129,7 +129,7 @@ contains
         panel%last = panel%first + size(local%node) - 1
         call split(law, local, gap(panel%first:panel%last), s, weight, share)
         if (.not. share > 0) cycle
-        basis = bases(local, s)
+        basis = local%bases(s)
         between = s
         call multiply_left(gap(panel%first:panel%last), basis, between)
         between = share*weight*law%slope(between)
@@ -271,25 +271,5 @@ contains
       place = [place, local%reaching(h, level, x)]
     end do
   end function kinks_between
-
-  !> The Lagrange polynomials of a panel at points, (nodes, points).
-  pure function bases(local, s) result(basis)
-    type(local_nodes_t), intent(in) :: local
-    real(wp), intent(in) :: s(:)
-    real(wp) :: basis(size(local%node), size(s))
-    real(wp) :: share(size(s), size(local%node)), shares(size(s)), apart(size(s))
-    integer :: j
-
-    shares = 0
-    do j = 1, size(local%node)
-      apart = s - local%node(j)
-      ! At a node its own polynomial is 1 and the others are negligible.
-      share(:, j) = local%barycentric(j)/merge(apart, tiny(1.0_wp), abs(apart) > tiny(1.0_wp))
-      shares = shares + share(:, j)
-    end do
-    do j = 1, size(local%node)
-      basis(j, :) = share(:, j)/shares
-    end do
-  end function bases
 
 end module represented_pressure

@@ -9,7 +9,7 @@ module running_integrals
   use local_nodes, only: local_nodes_t
   use linear_algebra, only: add_by_transposed
   use panel_map, only: algebraic_map
-  use quadrature, only: gauss_legendre, lagrange_basis
+  use quadrature, only: gauss_legendre
   implicit none
   private
   public :: running_integral_t, running_integrals_t, new_running_integrals
@@ -122,15 +122,11 @@ contains
     type(local_nodes_t), intent(in) :: local
     real(wp) :: up(size(local%node), size(local%node))
     real(wp), dimension(size(local%node)) :: at, weight
-    integer :: i, q
+    integer :: i
 
     call gauss_legendre(at, weight)
-    up = 0
     do i = 1, size(local%node)
-      do q = 1, size(at)
-        up(:, i) = up(:, i) + local%node(i)*weight(q)* &
-          lagrange_basis(local%node, local%barycentric, local%node(i)*at(q))
-      end do
+      up(:, i) = local%node(i)*matmul(local%bases(local%node(i)*at), weight)
     end do
   end function cumulative
 
@@ -140,18 +136,14 @@ contains
     type(local_nodes_t), intent(in) :: local
     real(wp), intent(in) :: begin
     real(wp) :: up(size(local%node), size(local%node))
-    real(wp) :: at(points), weight(points), length, y
-    integer :: i, q
+    real(wp) :: at(points), weight(points), y(points), length
+    integer :: i
 
     call gauss_legendre(at, weight)
-    up = 0
     do i = 1, size(local%node)
       length = -log(1 - local%node(i))
-      do q = 1, points
-        y = length*at(q)
-        up(:, i) = up(:, i) + length*weight(q)*begin**2*exp(2*y)* &
-          lagrange_basis(local%node, local%barycentric, 1 - exp(-y))
-      end do
+      y = length*at
+      up(:, i) = length*begin**2*matmul(local%bases(1 - exp(-y)), weight*exp(2*y))
     end do
   end function to_infinity
 
@@ -175,14 +167,9 @@ contains
     pure function from_zero(u) result(part)
       real(wp), intent(in) :: u
       real(wp) :: part(size(x)), at(size(x)), weight(size(x))
-      integer :: q
 
       call gauss_legendre(at, weight)
-      part = 0
-      do q = 1, size(x)
-        part = part + u*weight(q)*(u*at(q))**(power - 3)* &
-          lagrange_basis(local%node, local%barycentric, 1 - u*at(q))
-      end do
+      part = u*matmul(local%bases(1 - u*at), weight*(u*at)**(power - 3))
     end function from_zero
 
   end subroutine from_infinity

@@ -5,7 +5,7 @@ module shape_panels
   use shape, only: shape_t
   use dimensionless_problem, only: problem_t
   use contact_scales, only: cohesive_width, smallest_feature
-  use mapped_mesh, only: mapped_shape_t
+  use mapped_shape, only: mapped_shape_t
   implicit none
   private
   public :: panels_for, kinks_at_ends, has_flat_face, rim_passed_at

@@ -6,7 +6,6 @@
 !> `mesh_waves` uses both for displacements, with other limits.
 module wave_transforms
   use kinds, only: wp
-  use quadrature, only: lagrange_basis
   use linear_algebra, only: add_by_transposed
   use special_functions, only: bessel_t
   use panel_map, only: algebraic_map
@@ -30,7 +29,8 @@ module wave_transforms
   real(wp), parameter :: steep = 6
   !> A panel of n nodes integrates polynomials of degree 2 n - 1. A wave whose phase changes by an
   !> angle over the panel is a polynomial of degree `degrees` times the angle, plus `more_degrees`.
-  real(wp), parameter :: degrees = 0.55_wp, more_degrees = 8
+  !> On a panel to infinity the end is taken at the local coordinate `nearly_all`.
+  real(wp), parameter :: nearly_all = 0.95_wp, degrees = 0.55_wp, more_degrees = 8
   !> Number of nodes of a hat function; ratio of the numbers of nodes for successive groups of
   !> shorter waves.
   integer, parameter :: hat = 2
@@ -93,10 +93,11 @@ contains
         x = grid%centre + panel%offset(fine%node)
         weight = (ends(2) - ends(1))*fine%weight*panel%speed(fine%node)*x
         last_of = last_on(grid, p, fine%node, passing_pressure)
-        allocate (basis(size(local%node), n), rows(now - before, n))
+        basis = local%bases(fine%node)
+        allocate (rows(now - before, n))
         allocate (part(size(local%node), now - before), source=0.0_wp)
         do i = 1, n
-          basis(:, i) = weight(i)*lagrange_basis(local%node, local%barycentric, fine%node(i))
+          basis(:, i) = weight(i)*basis(:, i)
           if (panel%kind == algebraic_map) basis(:, i) = basis(:, i)* &
             ((1 - fine%node(i))/(1 - local%node))**panel%decay
           call find_wave(bessel, x(i), last_of(i), from_of_pressure, k(before + 1:now), rows(:, i))
@@ -124,7 +125,7 @@ contains
       ! Polynomials oscillate fastest at an end of the panel.
       of_pressure = min(1.0_wp*size(local%node), sqrt(length)*size(local%node) + more_degrees)
       ! On a panel to infinity the phase of the last included wave changes equally at all places.
-      associate (places => merge(min(ends, 0.95_wp), ends, panel%kind == algebraic_map))
+      associate (places => merge(min(ends, nearly_all), ends, panel%kind == algebraic_map))
         last = last_on(grid, p, places, passing_pressure)
         speed = panel%speed(places)
       end associate

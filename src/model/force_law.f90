@@ -9,6 +9,7 @@ module force_law
   implicit none
   private
   public :: force_law_t, whole_step, of_pressure, of_slope, of_energy
+  public :: usual_closure, closure_of_power, length_of_power, nearest_power
 
   !> The quantities of a law: the pressure, its derivative by the gap, and its integral from the gap
   !> to infinity.
@@ -17,6 +18,12 @@ module force_law
   !> Distance from a step of the pressure, in its widths, beyond which nothing of the step is left:
   !> there erfc is below rounding.
   real(wp), parameter :: whole_step = 6
+  !> For a repulsion with the power -n of the gap: n times closure_fraction and repulsion_length.
+  !> The repulsion may grow by a factor of 25 in an iteration, and a gap never reaches zero; for
+  !> n = 9 the length is a tenth of a gap that is below 1 in contact.
+  real(wp), parameter :: closure_of_power = 2.7_wp, length_of_power = 0.9_wp
+  !> closure_fraction of laws that do not grow so fast, as for n = 9; and their smallest_gap.
+  real(wp), parameter :: usual_closure = closure_of_power/9, nearest_power = 1.0e-12_wp
   !> Bodies have fallen onto each other at this fraction of the gap from which they fell.
   real(wp), parameter :: fallen = 0.3_wp
 

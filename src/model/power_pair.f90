@@ -3,7 +3,7 @@
 !> n, m = 9, 3 it is the Lennard-Jones law between half-spaces.
 module power_pair
   use kinds, only: wp
-  use force_law, only: force_law_t, of_pressure, of_slope
+  use force_law, only: force_law_t, of_pressure, of_slope, closure_of_power, length_of_power
   implicit none
   private
   public :: power_pair_t, new_power_pair, pair_factor
@@ -61,10 +61,8 @@ contains
     self%has_z0 = .true.
     ! The slope at this gap is 1e121, whose square does not overflow.
     self%smallest_gap = 10.0_wp**(-120/(self%n + 1))
-    ! For n = 9 a tenth of a gap that is below 1 in contact.
-    if (self%repulsive > 0) self%repulsion_length = 0.9_wp/self%n
-    ! The repulsion may grow by a factor of 25 in an iteration, and a gap never reaches zero.
-    self%closure_fraction = 2.7_wp/self%n
+    if (self%repulsive > 0) self%repulsion_length = length_of_power/self%n
+    self%closure_fraction = closure_of_power/self%n
   end subroutine set_scales
 
   pure subroutine evaluate(self, quantity, gap, value)

@@ -6,6 +6,7 @@ module deck_values
     held_blank, spelled, replaced
   use deck_number, only: parse_real, parse_integer, parse_logical
   use deck_source, only: source_t
+  use namelist_writer, only: add_item
   use deck_scan, only: span_t
   use deck_keys, only: key_spec, real_value, real_list, integer_value, logical_value, word_value, &
                        text_value, names_value
@@ -151,31 +152,27 @@ contains
     type(key_spec), intent(in) :: spec
     type(value_t), intent(in) :: value
     character(len=:), allocatable :: text
-    integer :: i
+    integer :: column, i
 
-    text = '  ' // trim(spec%key) // ' = '
+    text = ''
     select case (spec%kind)
     case (real_value, real_list)
       do i = 1, size(value%reals)
-        if (i > 1) text = text // ','
-        if (mod(i, 4) == 1 .and. i > 1) text = text // new_line('a') // '   '
-        if (i > 1) text = text // ' '
-        text = text // full(value%reals(i))
+        call add_item(trim(spec%key), full(value%reals(i)), text, column)
       end do
     case (integer_value)
-      text = text // brief(value%whole)
+      call add_item(trim(spec%key), brief(value%whole), text, column)
     case (logical_value)
-      text = text // trim(merge('.true. ', '.false.', value%flag))
+      call add_item(trim(spec%key), trim(merge('.true. ', '.false.', value%flag)), text, column)
     case (names_value)
       do i = 1, word_count(value%text)
-        if (i > 1) text = text // ', '
-        text = text // quoted(spelled(word_of(value%text, i)))
+        call add_item(trim(spec%key), quoted(spelled(word_of(value%text, i))), text, column)
       end do
     case default
-      text = text // quoted(value%text)
+      call add_item(trim(spec%key), quoted(value%text), text, column)
     end select
-    if (allocated(value%remark)) text = text // ' ! ' // value%remark
-    text = text // new_line('a')
+    if (allocated(value%remark)) text = text(:len(text) - 1) // ' ! ' // value%remark // &
+      new_line('a')
   end function assignment_text
 
 end module deck_values

@@ -5,7 +5,7 @@ module namelist_writer
   use text_file, only: plain
   implicit none
   private
-  public :: line_t, assignment_of
+  public :: line_t, assignment_of, add_item
 
   !> One line of text.
   type :: line_t
@@ -97,8 +97,8 @@ contains
     literal = quoted(trim(clean))
   end function literal
 
-  !> Adds an item to the assignment to the key, on a new line if the line is full; `column` is the
-  !> last column of the line.
+  !> Adds an item to the assignment to the key, `text`, which is '' before the first item; on a new
+  !> line if the line is full. column: the last column of the line.
   pure subroutine add_item(key, item, text, column)
     character(len=*), intent(in) :: key, item
     character(len=:), allocatable, intent(inout) :: text

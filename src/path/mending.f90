@@ -9,7 +9,8 @@ module mending
   use dimensionless_problem, only: problem_t
   use discretisation, only: discretisation_t
   use panel_map, only: algebraic_map
-  use mapped_mesh, only: mapped_shape_t, new_mapped_mesh
+  use mapped_mesh, only: new_mapped_mesh
+  use mapped_shape, only: mapped_shape_t
   use represented_pressure, only: pressure_on
   use law_panels, only: left_out
   use seen_gaps, only: seen_gaps_t

@@ -5,7 +5,7 @@ module next_mesh
   use contact_scales, only: smallest_feature
   use contact_state, only: state_t, radius_of_gap, radius_of_step, felt_load
   use equilibrium, only: equations_t
-  use mapped_mesh, only: mapped_shape_t
+  use mapped_shape, only: mapped_shape_t
   use seen_gaps, only: seen_gaps_t
   use arc, only: arc_t
   implicit none

@@ -7,7 +7,6 @@ module material
   use kinds, only: wp
   use discretisation, only: discretisation_t
   use local_nodes, only: local_nodes_t, gauss_nodes
-  use quadrature, only: lagrange_basis
   use linear_algebra, only: multiply
   implicit none
   private
@@ -56,13 +55,9 @@ contains
     material%length = together*(grid%panel(1)%right - grid%panel(1)%left)
     material%own = gauss_nodes(order + more_nodes)
     n = order + more_nodes
-    allocate (material%spread(material%inside, n))
     allocate (material%smooth_kernel(size(grid%kernel, 1), n*material%long))
+    material%spread = transpose(material%own%bases(grid%x(:material%inside)/material%length))
     if (material%long == 0) return
-    do k = 1, material%inside
-      material%spread(k, :) = lagrange_basis(material%own%node, material%own%barycentric, &
-        grid%x(k)/material%length)
-    end do
     do k = 1, material%long
       material%smooth_kernel(:, (k - 1)*n + 1:k*n) = matmul( &
         grid%kernel(:, (k - 1)*material%inside + 1:k*material%inside), material%spread)

@@ -11,8 +11,8 @@ program base_values
   use decimal, only: put_real, longest_real
   use linear_algebra, only: solve_tridiagonal, singular_values
   use order_statistics, only: ranked, median_of
-  use quadrature, only: gauss_legendre, legendre_values, logarithm_weights, barycentric_weights, &
-    lagrange_basis, wave_rule
+  use local_nodes, only: local_nodes_t, given_nodes
+  use quadrature, only: gauss_legendre, legendre_values, logarithm_weights, wave_rule
   use root_finding, only: bracket_t, root_search_t, new_root_search
   use text, only: lower, quoted, unquoted, brief
   implicit none
@@ -22,6 +22,7 @@ program base_values
   character(len=200) :: name
   real(wp), allocatable :: x(:), y(:), z(:), c(:, :)
   type(hermite_t) :: hermite
+  type(local_nodes_t) :: nodes
   integer :: n, ended, length, i
 
   do
@@ -49,8 +50,8 @@ program base_values
     case ('quadrature')
       call gauss_legendre(x, y)
       z = logarithm_weights(x, y)
-      print numbers, x, y, z, lagrange_basis(x, barycentric_weights(x), 0.3_wp), &
-        legendre_values([0.3_wp], n)
+      nodes = given_nodes(x)
+      print numbers, x, y, z, nodes%bases([0.3_wp]), legendre_values([0.3_wp], n)
     case ('wave')
       deallocate (y, z)
       read (*, *) x

@@ -12,7 +12,7 @@ module double_layer
   use kinds, only: wp
   use deck, only: deck_t
   use deck_keys, only: key_spec, real_value, real_list, integer_value, word_value
-  use force_law, only: force_law_t, of_slope
+  use force_law, only: force_law_t, of_slope, usual_closure
   use group_reading, only: check_decades
   use poisson_boltzmann, only: surface_t
   use layer_table, only: layer_table_t, new_layer_table, nearest_gap
@@ -97,7 +97,7 @@ contains
     else
       ! A third of the gap; at small gaps the repulsion may be as large as gap^-2.
       this%smallest_gap = nearest_gap
-      this%closure_fraction = 0.3_wp
+      this%closure_fraction = usual_closure
       this%repulsion_length = 0.5_wp
     end if
     if (this%model == nonlinear) then

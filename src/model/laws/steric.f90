@@ -5,7 +5,7 @@ module steric
   use kinds, only: wp
   use deck, only: deck_t
   use deck_keys, only: key_spec, real_value, integer_value, word_value
-  use force_law, only: force_law_t, of_pressure, of_slope
+  use force_law, only: force_law_t, of_pressure, of_slope, usual_closure, nearest_power
   use group_reading, only: accept_law
   implicit none
   private
@@ -57,8 +57,8 @@ contains
     this%pressure_unit = boltzmann*temperature*density**1.5_wp
     this%breaks = [1.0_wp]
     this%kinks = this%breaks
-    this%smallest_gap = 1.0e-12_wp
-    this%closure_fraction = 0.3_wp
+    this%smallest_gap = nearest_power
+    this%closure_fraction = usual_closure
     call accept_law(deck, 'steric', 'grafting_density', 'brush_thickness', this, law)
   end subroutine read_law
 

@@ -5,7 +5,7 @@ module tabulated
   use deck, only: deck_t
   use deck_keys, only: key_spec, real_value, word_value, text_value
   use data_table, only: data_table_t, read_columns
-  use force_law, only: force_law_t, of_pressure, of_energy
+  use force_law, only: force_law_t, of_pressure, of_energy, closure_of_power, length_of_power
   use force_table, only: force_table_t, new_force_table, largest_step
   use table_noise, only: noise_of, noise_of_integral
   use group_reading, only: check_decades
@@ -233,8 +233,8 @@ contains
       end if
       ! For the ninth power these are the numbers of the Lennard-Jones law.
       this%smallest_gap = 10.0_wp**(-min(12.0_wp, 110/(this%fine%power + 1)))
-      this%repulsion_length = 0.9_wp/max(this%fine%power, 1.0_wp)
-      this%closure_fraction = 2.7_wp/max(this%fine%power, 9.0_wp)
+      this%repulsion_length = length_of_power/max(this%fine%power, 1.0_wp)
+      this%closure_fraction = closure_of_power/max(this%fine%power, 9.0_wp)
       this%group = 'tabulated'
       this%strength_key = 'file'
       this%length_key = 'file'

@@ -5,7 +5,7 @@ module van_der_waals
   use kinds, only: wp, pi
   use deck, only: deck_t
   use deck_keys, only: key_spec, real_value
-  use force_law, only: force_law_t, of_pressure, of_slope
+  use force_law, only: force_law_t, of_pressure, of_slope, usual_closure, nearest_power
   use group_reading, only: accept_law
   implicit none
   private
@@ -49,8 +49,8 @@ contains
       this%retardation = gregory*this%length/wavelength
       this%tail_power = 4
     end if
-    this%smallest_gap = 1.0e-12_wp
-    this%closure_fraction = 0.3_wp
+    this%smallest_gap = nearest_power
+    this%closure_fraction = usual_closure
     call accept_law(deck, 'van_der_waals', 'hamaker', 'hamaker', this, law)
   end subroutine read_law
 

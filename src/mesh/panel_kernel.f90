@@ -4,15 +4,16 @@
 !> own rule with its defect for a logarithm (`logarithm_defect`) then integrates kernel times
 !> pressure as accurately as the nodes resolve the pressure. At the axis this coefficient is
 !> singular, and in a tail the map is; there the quadrature points are graded towards the target
-!> (`graded_rule`).
-module mapped_kernel
+!> (`graded_kernel`). On linear panels these points serve all targets, so that polynomials of any
+!> degree below the number of nodes are integrated to the last digit.
+module panel_kernel
   use kinds, only: wp, pi
   use elastic_kernel, only: kernel, kernel_log_coefficient
   use linear_algebra, only: multiply_transposed
   use logarithm_defect, only: logarithm_defects, feels_logarithm
   use quadrature, only: gauss_legendre, legendre_values
-  use panel_map, only: panel_map_t, sinh_map, power_map
-  use graded_rule, only: new_graded_rule
+  use local_nodes, only: local_nodes_t
+  use panel_map, only: panel_map_t, sinh_map, algebraic_map
   use graded_kernel, only: add_graded
   implicit none
   private
@@ -21,49 +22,46 @@ module mapped_kernel
   !> Distance from the axis, in z, up to which points are graded; and fraction of a panel above
   !> which the whole panel gets graded points.
   real(wp), parameter :: about_axis = 1.8_wp, nearly_all = 0.8_wp
-  !> Length in z of a sinh panel that needs as many graded points as a power panel.
-  real(wp), parameter :: length_of_power = 8
 
 contains
 
   !> The sum of matrix(i, j) f(j) over j is the integral of k(r, t) f(t) t dt over the panel, for r
   !> = centre + target(i) and f a polynomial of the panel's local coordinate (times the tail, if the
-  !> panel has one) that the nodes resolve. node, weight: the Gauss rule on [0, 1]. own: the index
-  !> of the panel's first node among the targets.
-  subroutine add_panel(panel, node, weight, digits, centre, target, own, matrix)
+  !> panel has one) that the nodes resolve, on a linear panel any polynomial through the nodes. own:
+  !> the index of the panel's first node among the targets; 0: none is a node.
+  subroutine add_panel(panel, local, digits, centre, target, own, matrix)
     type(panel_map_t), intent(in) :: panel
-    real(wp), intent(in) :: node(:), weight(:), digits, centre, target(:)
+    type(local_nodes_t), intent(in) :: local
+    real(wp), intent(in) :: digits, centre, target(:)
     integer, intent(in) :: own
     real(wp), intent(out) :: matrix(:, :)
     ! Integrals against Legendre polynomials, (order, targets); local coordinates of the targets.
-    real(wp) :: moments(size(node), size(target)), place(size(target)), part, z_length
+    real(wp) :: moments(size(local%node), size(target)), place(size(target)), part
     integer :: k
 
-    part = 1
-    place = 0
-    z_length = panel%z_length
-    if (panel%kind == power_map) then
-      place = panel%locals(target)
-      z_length = length_of_power
-    end if
-    if (panel%kind == sinh_map) then
-      place = panel%locals(target)
-      place(own:own + size(node) - 1) = node
-      part = part_about_axis(panel, centre, size(node), digits)
-      if (.not. part > 0) then
-        matrix = transpose(values_on(panel, node, weight, 0.0_wp, digits, centre, target, place))
-        return
+    associate (node => local%node)
+      ! A target outside a panel to infinity is left of it.
+      place = -1
+      if (panel%kind /= algebraic_map) place = panel%locals(target)
+      if (own > 0) place(own:own + size(node) - 1) = node
+      part = 1
+      if (panel%kind == sinh_map) then
+        part = part_about_axis(panel, centre, size(node), digits)
+        if (.not. part > 0) then
+          matrix = transpose(values_on(panel, node, local%weight, 0.0_wp, digits, centre, target, &
+            place))
+          return
+        end if
       end if
-    end if
-    moments = 0
-    call add_graded(panel, node, new_graded_rule(size(node), part, part*z_length, digits), &
-      centre, target, place, own, moments)
-    if (part < 1) call add_rest(panel, part, digits, centre, target, place, moments)
-    call multiply_transposed(moments, lagrange(node, weight), matrix)
-    if (.not. panel%decay > 0) return
-    do k = 1, size(node)
-      matrix(:, k) = matrix(:, k)/(1 - node(k))**panel%decay
-    end do
+      moments = 0
+      call add_graded(panel, part, digits, centre, target, place, moments)
+      if (part < 1) call add_rest(panel, part, digits, centre, target, place, moments)
+      call multiply_transposed(moments, lagrange(local), matrix)
+      if (.not. panel%decay > 0) return
+      do k = 1, size(node)
+        matrix(:, k) = matrix(:, k)/(1 - node(k))**panel%decay
+      end do
+    end associate
   end subroutine add_panel
 
   !> The part of a panel, from its left end, that needs graded points because of the axis, where the
@@ -139,16 +137,23 @@ contains
   end subroutine add_rest
 
   !> The element (m, j): coefficient of the Legendre polynomial of degree m - 1 in the Lagrange
-  !> polynomial of node j. The nodes' rule is exact for the product of two such polynomials.
-  pure function lagrange(node, weight)
-    real(wp), intent(in) :: node(:), weight(:)
-    real(wp) :: lagrange(size(node), size(node))
-    integer :: m
+  !> polynomial of node j. The rule of as many Gauss points is exact for the product of the two.
+  pure function lagrange(local) result(coefficient)
+    type(local_nodes_t), intent(in) :: local
+    real(wp) :: coefficient(size(local%node), size(local%node))
+    real(wp), dimension(size(local%node)) :: x, weight
+    integer :: m, k
 
-    lagrange = transpose(legendre_values(node, size(node)))
-    do m = 1, size(node)
-      lagrange(m, :) = (2*m - 1)*weight*lagrange(m, :)
+    call gauss_legendre(x, weight)
+    coefficient = transpose(legendre_values(x, size(x)))
+    do k = 1, size(x)
+      coefficient(:, k) = weight(k)*coefficient(:, k)
+    end do
+    if (maxval(abs(local%node - x)) > 0) &
+      coefficient = matmul(coefficient, transpose(local%bases(x)))
+    do m = 1, size(x)
+      coefficient(m, :) = (2*m - 1)*coefficient(m, :)
     end do
   end function lagrange
 
-end module mapped_kernel
+end module panel_kernel

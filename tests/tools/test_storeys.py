@@ -1,0 +1,81 @@
+"""Claims about what the program of the paper needs: elastic half-spaces under surface forces, their
+path, stepping, decks and results are read and built without bodies in time, layers, fits, the
+theories of others, resumed sweeps and processes. Those join at the places listed here and nowhere
+else."""
+
+import house
+
+# What is beyond the paper: whole rooms, and modules of other rooms.
+ROOMS = {"rates", "theory", "fit", "resume"}
+MODULES = {
+    # layers
+    "layered_body", "layered_surface", "mesh_waves", "wave_transforms",
+    # bodies in time, and a fluid between them
+    "running_integrals", "carried_values", "drainage", "drained_way", "frozen_start",
+    "timed_journal", "timed_pass", "timed_record", "timed_run", "rate_groups", "rate_entries",
+    "drive_rates",
+    # theories of others, and fits
+    "theory_groups", "classical_rows", "regime_rows", "approximation_tables", "fit_group",
+    "measurement_group", "fit_rows", "fit_words",
+    # processes
+    "ranks",
+}
+# Hertz's theory and (11) of the paper, which give meshes their lengths.
+OF_THE_PAPER = {"convex_contact"}
+
+# Where it joins: a module of the paper, and the modules beyond that it may use.
+SEAMS = {
+    # the deck: one group more
+    "scene": {"rate_groups", "theory_groups", "fit_group", "measurement_group"},
+    "scene_groups": {"classical", "fit_request", "layered_surface", "measured_curve"},
+    "scene_problem": {"layered_body", "layered_surface"},
+    # the body: its deformation besides that of a half-space, and a film on it
+    "elastic_operator": {"mesh_waves"},
+    "equilibrium": {"drainage"},
+    # one kind of experiment more
+    "experiment": {"timed_run"},
+    "experiment_request": {"creep"},
+    "experiment_result": {"timed_record"},
+    # one kind of output more
+    "summarise": {"approximation_tables", "classical_rows", "rate_entries", "regime_rows"},
+    "reading_rows": {"maugis"},
+    "case_columns": {"classical"},
+    "problem_numbers": {"classical", "layered_body"},
+    "model_warnings": {"layered_body", "layered_surface"},
+    "result_folder": {"run_identity"},
+    # one kind of run more
+    "simulation": {
+        "approximation_tables", "classical_rows", "drive_rates", "fit_doubts", "fit_group",
+        "fit_rows", "fit_run", "fit_words", "ranks", "resumable_stepper", "run_identity"},
+    "sweeps": {"ranks"},
+    "dispatch": {"ranks"},
+    "snapin": {"ranks"},
+}
+
+# The longest chain of `use`, in modules: what a reader must know who begins at its end.
+LONGEST_CHAIN = 39
+
+
+def is_beyond(name):
+    return name not in OF_THE_PAPER and (house.room_of(name) in ROOMS or name in MODULES)
+
+
+def test_the_paper_uses_what_is_beyond_it_only_at_named_seams():
+    crossings = {(name, other) for name, used in house.uses().items() if not is_beyond(name)
+                 for other in used if is_beyond(other)}
+    seams = {(name, other) for name, others in SEAMS.items() for other in others}
+    assert crossings <= seams, crossings - seams
+
+
+def test_no_seam_is_listed_that_is_none():
+    """A seam that a change has closed leaves the list, so that it stays closed."""
+    listed = MODULES | OF_THE_PAPER | set(SEAMS)
+    assert listed <= set(house.sources()), listed - set(house.sources())
+    idle = {(name, other) for name, others in SEAMS.items() for other in others
+            if other not in house.uses()[name]}
+    assert not idle
+
+
+def test_the_longest_chain_of_uses_does_not_grow():
+    chain = max(map(house.longest_chain, house.sources()), key=len)
+    assert len(chain) <= LONGEST_CHAIN, " -> ".join(chain)
