@@ -221,7 +221,8 @@ contains
       if (allocated(scene%varied) .and. allocated(outcome%timed)) &
         call rate_drive(scene, keeper, results, outcome%timed)
       summary = summary_of(scene, problem, outcome)
-      call recorder%warn(summary)
+      ! An error that is not allocated counts as absent.
+      call recorder%warn(summary, outcome%error_estimate)
       if (allocated(scene%varied)) &
         call write_sensitivities(scene%varied, problem, outcome, summary, results)
       cost = outcome%cost
