@@ -221,7 +221,8 @@ contains
         call write_path_tables(problem, outcome%readings, outcome%places, results)
       if (allocated(scene%varied)) call rate_numbers(scene, results, outcome)
       summary = summary_of(scene, problem, outcome)
-      call recorder%warn(summary)
+      ! An error that is not allocated counts as absent.
+      call recorder%warn(summary, outcome%error_estimate)
       if (allocated(scene%varied)) &
         call write_sensitivities(scene%varied, problem, outcome, summary, results)
       cost = outcome%cost

@@ -1,13 +1,11 @@
-!> The polynomial through a few scattered values: weights, value, slope, maximum; and Hermite's
-!> polynomial, which has given slopes there too. Piecewise cubic polynomials through many points. A
-!> smooth transition.
+!> The polynomial through a few scattered values: weights and slope; and Hermite's polynomial, which
+!> has given slopes there too. Piecewise cubic polynomials through many points. A smooth transition.
 module interpolation
   use kinds, only: wp
-  use root_finding, only: bracket_t
   use linear_algebra, only: solve_tridiagonal
   implicit none
   private
-  public :: polynomial_weights, polynomial_slope, interpolated_maximum, interval_of, hermite_t, &
+  public :: polynomial_weights, polynomial_slope, interval_of, hermite_t, &
     hermite_through, hermite_weights, most_hermite_nodes, find_nodes_about, spline, monotone, fading
 
   integer, parameter :: most_hermite_nodes = 4
@@ -65,14 +63,7 @@ contains
     end do
   end function interval_of
 
-  !> The polynomial through (at, value) at x.
-  pure real(wp) function polynomial_value(at, value, x)
-    real(wp), intent(in) :: at(:), value(:), x
-
-    polynomial_value = dot_product(polynomial_weights(at, x), value)
-  end function polynomial_value
-
-  !> Its derivative at x.
+  !> The derivative at x of the polynomial through (at, value).
   pure real(wp) function polynomial_slope(at, value, x) result(slope)
     real(wp), intent(in) :: at(:), value(:), x
     real(wp) :: term
@@ -90,23 +81,6 @@ contains
       end do
     end do
   end function polynomial_slope
-
-  !> The abscissa in [low, high] at which the polynomial through (at, value) is largest, by golden
-  !> section.
-  pure real(wp) function interpolated_maximum(at, value, low, high) result(x)
-    real(wp), intent(in) :: at(:), value(:), low, high
-    type(bracket_t) :: bracket
-    integer :: step
-
-    bracket = bracket_t(low, high)
-    do step = 1, 60
-      associate (points => bracket%golden_points())
-        call bracket%keep_larger([polynomial_value(at, value, points(1)), &
-          polynomial_value(at, value, points(2))])
-      end associate
-    end do
-    x = bracket%middle()
-  end function interpolated_maximum
 
   !> Weights of values v and slopes s at `at` (all different) in Hermite's polynomial at x. It is
   !> the sum of [v (1 - 2 l'(x_j) (x - x_j)) + s (x - x_j)] l(x)^2 with Lagrange's polynomials l.

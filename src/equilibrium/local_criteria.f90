@@ -19,6 +19,8 @@ module local_criteria
   integer, parameter :: few = 4
   !> The relative increase that the search has to gain over a point: less is rounding.
   real(wp), parameter :: gained = 1.0e-9_wp
+  !> The relative change of the gap for a derivative.
+  real(wp), parameter :: little = 1.0e-5_wp
 
 contains
 
@@ -26,19 +28,21 @@ contains
   !> criterion. The criterion is derived for surfaces that attract each other, with p < 0 and p' >
   !> 0, and only these places count: inside the contact edge p passes zero, and the ratio is
   !> unbounded. Adhesive contacts always violate the criterion just outside the edge. NaN if there
-  !> is no attraction. error: what the interpolation between nodes leaves.
-  pure subroutine local_criterion(problem, grid, state, value, error)
+  !> is no attraction. error: what the interpolation between nodes leaves; by_gap: the magnitude of
+  !> the derivative by the gap at this place.
+  pure subroutine local_criterion(problem, grid, state, value, error, by_gap)
     type(problem_t), intent(in) :: problem
     type(discretisation_t), intent(in) :: grid
     type(state_t), intent(in) :: state
-    real(wp), intent(out) :: value, error
+    real(wp), intent(out) :: value, error, by_gap
     real(wp) :: x(2 + (points + 1)*size(state%gap)), at(size(x)), raised(size(state%gap))
-    real(wp) :: front, best, two(2)
+    real(wp) :: front, best, gap, two(2)
     type(bracket_t) :: bracket
     integer :: j, k, n, held, largest
 
     value = unknown()
     error = 0
+    by_gap = 0
     if (problem%rigid) then
       if (problem%law%adhesion > 0) value = 0
       return
@@ -81,13 +85,17 @@ contains
     end do
     best = bracket%middle()
     two(1) = ratio(problem, state, best, gap_near(problem, grid, state, raised, best, 0))
-    if (.not. two(1) > (1 + gained)*value) then
-      if (largest == 1) return
-      best = x(largest)
-    end if
+    if (.not. two(1) > (1 + gained)*value) best = x(largest)
     value = max(value, two(1))
-    error = abs(value - &
-      ratio(problem, state, best, gap_near(problem, grid, state, raised, best, 1)))
+    if (best > 0) then
+      error = abs(value - &
+        ratio(problem, state, best, gap_near(problem, grid, state, raised, best, 1)))
+      gap = gap_near(problem, grid, state, raised, best, 0)
+    else
+      gap = state%axis_gap
+    end if
+    by_gap = abs(ratio(problem, state, best, (1 + little)*gap) - &
+      ratio(problem, state, best, (1 - little)*gap))/(2*little*gap)
   end subroutine local_criterion
 
   !> |2 u p'/p| at a position with a gap; 0 where surfaces do not attract each other.

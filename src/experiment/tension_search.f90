@@ -19,7 +19,7 @@ module tension_search
     logical :: open = .false.
     !> Whether the contact edge jumped from node to node, or may have jumped.
     logical :: jagged = .false.
-    !> Whether the states on the other side of `before` or `after` did not converge.
+    !> Whether states beyond `before` or `after` did not converge.
     logical :: lost_before = .false., lost_after = .false.
   end type stretch_t
 
@@ -102,7 +102,7 @@ contains
       if (.not. event%converged) then
         ! The state has no reliable tension, and no search can start from it.
         stretch%lost_after = .true.
-        call self%end_stretch(steps, last_h0)
+        call self%end_stretch(steps, h0)
       else if (leaps(event) .or. .not. stretch%open) then
         began = last_h0
         if (leaps(event)) then
@@ -175,8 +175,7 @@ contains
 
     best = stretch%lowest
     associate (h0 => best%state%h0, before => stretch%before, after => stretch%after)
-      ! The paper's rule stops the iteration at an uncertain point, so a further state would be of
-      ! no use.
+      ! The paper's rule stops at an uncertain point, so a further state would be of no use.
       if (steps%options%stop_on_change) then
         place = place_of_state(best%mesh, best%state)
         place%left(of_h0) = max(abs(before - h0), abs(after - h0))
@@ -196,8 +195,8 @@ contains
   end subroutine refine
 
   !> Goes from a state down the slope of the load towards `bound`, by halves, until the slope has
-  !> the other sign: then it has a root between. lost: whether there are states beyond the bound
-  !> that did not converge; onward: the sense of the branch.
+  !> the other sign. lost: whether states beyond the bound did not converge; onward: the sense of
+  !> the branch.
   subroutine descend(self, steps, onward, bound, slope, lost, best)
     class(tension_search_t), intent(inout) :: self
     class(stepper_t), intent(inout) :: steps
@@ -275,29 +274,27 @@ contains
       last = trial%state%h0
       last_slope = slope
     end do
+    place = place_of_state(trial%mesh, trial%state)
     if (leaps(event) .or. .not. event%converged) then
-      trial = low
-      if (high%state%load < low%state%load) trial = high
-      place = place_of_state(trial%mesh, trial%state)
+      place = place_of_state(low%mesh, low%state)
+      if (high%state%load < low%state%load) place = place_of_state(high%mesh, high%state)
       place%left(of_h0) = abs(high%state%h0 - low%state%h0)
     else
-      place = place_of_state(trial%mesh, trial%state)
       place%turn_of = load_alone
       place%left(of_h0) = min(abs(slope/bend), abs(high%state%h0 - low%state%h0))
     end if
     call self%lower(place)
   end subroutine find_root
 
-  !> Steps again from stretch%before to stretch%after, or from the lowest state if a jump came
-  !> before it, and locates every jump of the contact edge: the tension is largest just before one
-  !> of them.
+  !> Steps again from stretch%before, or from the lowest state if a jump came before it, to
+  !> stretch%after and locates every jump of the contact edge: the tension is largest before one.
   subroutine search_jump_by_jump(self, steps, stretch)
     class(tension_search_t), intent(inout) :: self
     class(stepper_t), intent(inout) :: steps
     type(stretch_t), intent(in) :: stretch
     type(branch_point_t) :: position, best
     type(step_result_t) :: event
-    real(wp) :: start
+    real(wp) :: start, reached
     type(place_t) :: place
     logical :: lost
     integer :: i, count
@@ -308,15 +305,17 @@ contains
       if (abs(stretch%previous%state%h0 - stretch%before) <= 0.0_wp) position = stretch%previous
     end if
     start = position%state%h0
+    reached = start
     count = ceiling(abs(stretch%after - start)/short_step)
     do i = 1, count
       call steps%step_to(start + (stretch%after - start)*i/count, position, event)
       if (.not. event%converged .or. event%ending%early()) exit
       call self%note_jump(event)
       if (position%state%load < best%state%load) best = position
+      reached = position%state%h0
     end do
     place = place_of_state(best%mesh, best%state)
-    lost = abs(best%state%h0 - stretch%after) <= 0 .and. stretch%lost_after
+    lost = abs(best%state%h0 - reached) <= 0 .and. stretch%lost_after
     if (.not. lost) place%left(of_h0) = short_step
     call self%lower(place, lost)
   end subroutine search_jump_by_jump

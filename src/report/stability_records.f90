@@ -27,8 +27,9 @@ module stability_records
     type(cost_t) :: cost
     !> Number of states with an uncertain eigenvalue, and with one that contradicts the record.
     integer :: uncertain = 0, contradicted = 0
-    !> The largest error of the criterion (28); negative: there is none.
-    real(wp) :: criterion_error = -1
+    !> The largest error of the criterion (28) by interpolation; negative: there is none. Its
+    !> largest derivative by the gap, and by h0.
+    real(wp) :: criterion_error = -1, by_gap = 0, by_h0 = 0
     !> Relative accuracy that the scene asks for.
     real(wp) :: accuracy = 0
     !> The journal that keeps the eigenvalues.
@@ -43,6 +44,8 @@ module stability_records
   !> Largest magnitude, over the accuracy, of an eigenvalue that contradicts no count: at a fold it
   !> is zero except for the error of the mesh, at most 7e-6 for an accuracy of 1e-4.
   real(wp), parameter :: zero = 100
+  !> Eigenvalue below which a state is at a fold.
+  real(wp), parameter :: least = 1.0e-12_wp
   !> Factor of errors.
   real(wp), parameter :: margin = 3
 
@@ -64,7 +67,7 @@ contains
     logical, intent(in) :: profile
     type(record_t) :: completed
     logical :: certain
-    real(wp) :: error
+    real(wp) :: error, by_gap
 
     completed = record
     completed%eigenvalue = unknown()
@@ -73,8 +76,16 @@ contains
     ! A state that is not an equilibrium is neither stable nor unstable.
     if (record%converged) then
       call self%find_eigenvalue(problem, grid, state, completed%eigenvalue, certain)
-      call local_criterion(problem, grid, state, completed%local_criterion, error)
-      if (completed%local_criterion > 0) self%criterion_error = max(self%criterion_error, error)
+      call local_criterion(problem, grid, state, completed%local_criterion, error, by_gap)
+      if (completed%local_criterion > 0) then
+        self%criterion_error = max(self%criterion_error, error)
+        self%by_gap = max(self%by_gap, by_gap)
+        if (certain) then
+          self%by_h0 = max(self%by_h0, by_gap/max(least, min(1.0_wp, abs(completed%eigenvalue))))
+        else
+          self%by_h0 = huge(self%by_h0)
+        end if
+      end if
       completed%axis_criterion = axis_criterion(problem, state)
       if (.not. certain) then
         self%uncertain = self%uncertain + 1
@@ -88,13 +99,19 @@ contains
     call self%next%take(completed, problem, grid, state, profile)
   end subroutine take
 
-  !> Adds the error of the criterion (28), and warnings about states with doubtful eigenvalues.
-  subroutine warn(self, summary)
+  !> Adds the error of the criterion (28), and warnings about states with doubtful eigenvalues. An
+  !> error of h0 changes gaps in proportion to the inverse eigenvalue, but beside a fold by no more
+  !> than its root. off: the error of h0 in the law's lengths; absent for rigid bodies.
+  subroutine warn(self, summary, off)
     class(stability_recorder_t), intent(in) :: self
     type(summary_t), intent(inout) :: summary
+    real(wp), intent(in), optional :: off
+    real(wp) :: of_states
 
+    of_states = 0
+    if (present(off)) of_states = min(off*self%by_h0, sqrt(off)*self%by_gap)
     if (self%criterion_error >= 0) &
-      call summary%set('criterion_28_error', margin*self%criterion_error)
+      call summary%set('criterion_28_error', margin*self%criterion_error + of_states)
     if (self%uncertain > 0) call summary%warn('the smallest eigenvalue of '// &
       counted(self%uncertain, 'state')//' could not be verified and is NaN')
     if (self%contradicted > 0) call summary%warn('the eigenvalue of '// &

@@ -258,3 +258,14 @@ def test_eigenvalues_of_blunt_bodies_are_verified(run):
     values = found.curve["smallest_eigenvalue"]
     assert ((values > 0) == (found.curve["stable"] == 1)).all()
     assert values.min() < 0.95
+
+
+@pytest.mark.parametrize("nodes", [120, 240])
+def test_the_error_of_criterion_28_is_that_of_a_uniform_grid_too(run, nodes):
+    """It was that of the interpolation alone, twenty times too small."""
+    groups = {"loading": loading(4, -1, 0.5), "stability": {}}
+    exact = run(lennard_jones(0.6, **groups, numerics={"accuracy": 1e-9})).curve
+    found = run(lennard_jones(0.6, **groups, numerics={
+        "grid": "uniform", "nodes": nodes, "r_max": 6.0}))
+    off = abs(found.curve["criterion_28"] - exact["criterion_28"]).max()
+    assert off < found.summary["criterion_28_error"] < 3

@@ -7,7 +7,7 @@ program base_values
   use chebyshev, only: chebyshev_points, chebyshev_series, series_value, series_slope, &
     series_integral
   use interpolation, only: spline, monotone, polynomial_weights, polynomial_slope, &
-    interpolated_maximum, hermite_t, hermite_through
+    hermite_t, hermite_through
   use decimal, only: put_real, longest_real
   use linear_algebra, only: solve_tridiagonal, singular_values
   use order_statistics, only: ranked, median_of
@@ -71,7 +71,7 @@ program base_values
       read (*, *) x, y, z
       hermite = hermite_through(x, y, z)
       print numbers, sum(polynomial_weights(x, 0.3_wp)*y), polynomial_slope(x, y, 0.3_wp), &
-        interpolated_maximum(x, y, x(1), x(n)), hermite%value(0.3_wp), hermite%slope(0.3_wp)
+        hermite%value(0.3_wp), hermite%slope(0.3_wp)
     case ('ranks')
       read (*, *) x
       print numbers, (ranked(x, i), i=1, n), median_of(x)
