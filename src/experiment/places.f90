@@ -175,8 +175,8 @@ contains
       self%place(self%entry(findloc(self%entry%name == name, .true., 1))%place)
   end function place_of
 
-  !> All elements of all numbers, with the errors that iteration and rounding leave. problem: the
-  !> values are in SI units.
+  !> All elements of all numbers, with the errors that iteration and rounding leave. problem: they
+  !> are in SI units.
   pure function numbers(self, problem) result(all)
     class(places_t), intent(in) :: self
     type(problem_t), intent(in), optional :: problem
@@ -212,7 +212,7 @@ contains
     type(entry_t), intent(in) :: entry
     type(number_t), intent(inout) :: number
     type(problem_t), intent(in), optional :: problem
-    real(wp) :: values(quantities)
+    real(wp), dimension(quantities) :: values, left
 
     if (entry%place == 0) then
       number%value = number%value + entry%factor
@@ -220,10 +220,14 @@ contains
     end if
     associate (place => self%place(entry%place))
       values = place%measures()
-      if (present(problem)) values = values_of(problem, place)
+      left = place%leftovers()
+      if (present(problem)) then
+        values = values_of(problem, place)
+        left = left*units_of(problem)
+      end if
       number%value = number%value + entry%factor*values
       number%scale = max(number%scale, place%scale)
-      number%error = number%error + abs(entry%factor)*place%leftovers()
+      number%error = number%error + abs(entry%factor)*left
       if (all(of_energies /= entry%name)) &
         number%compared = place%compared(any(with_radius == entry%name))
       if (all(of_profiles /= entry%name)) then

@@ -128,8 +128,8 @@ contains
 
   !> Sets derivative j of `parameters` from the numbers, in SI units, of runs with other values of
   !> the parameter: the sums over the runs with `weight` are the derivatives, those with `coarser`
-  !> have a larger error. A number that some run does not have, or has more often, has no
-  !> derivative, and found = .false.
+  !> have a larger error; what iteration and rounding leave in the runs is added. A number that some
+  !> run does not have, or has more often, has no derivative, and found = .false.
   pure subroutine differentiate(number, runs, weight, coarser, j, parameters, found)
     type(number_t), intent(inout) :: number(:)
     type(run_numbers_t), intent(in) :: runs(:)
@@ -150,18 +150,20 @@ contains
       associate (rate => number(i)%rate(:, j), error => number(i)%rate_error(:, j))
         rate = 0
         coarse = 0
+        error = 0
         do r = 1, size(runs)
           associate (theirs => runs(r)%number)
             k = place_among(theirs, number(i))
             if (k > 0) then
               rate = rate + weight(r)*theirs(k)%value
               coarse = coarse + coarser(r)*theirs(k)%value
+              error = error + abs(weight(r))*theirs(k)%error
             end if
             if (k == 0 .or. count(theirs%name == number(i)%name) /= &
               count(number%name == number(i)%name)) rate = nan
           end associate
         end do
-        error = abs(rate - coarse)
+        error = error + abs(rate - coarse)
         found = found .and. .not. ieee_is_nan(rate(of_load))
       end associate
     end do
