@@ -3,6 +3,7 @@
 !> module that finds the place sets its definition, `located_places` the values, and `place_rates`
 !> the derivatives.
 module reported_place
+  use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
   use kinds, only: wp, nan
   use dimensionless_problem, only: problem_t
   use contact_state, only: state_t
@@ -178,9 +179,11 @@ contains
     compared = .false.
     compared(of_profile) = self%with_profile
     ! A given load is exact, and may be 0.
-    compared(of_load) = (self%drive(1) > 0 .or. self%turns() .or. self%after > 0) .and. &
+    compared(of_load) = self%drive(1) > 0 .or. self%turns() .or. self%after > 0
+    if (.not. ieee_is_nan(self%at(of_load))) compared(of_load) = compared(of_load) .and. &
       .not. abs(self%at(of_load)) < self%negligible
-    compared(of_radius) = with_radius .and. self%at(of_radius) > 0
+    if (.not. ieee_is_nan(self%at(of_radius))) &
+      compared(of_radius) = with_radius .and. self%at(of_radius) > 0
     if (self%after > 0) return
     compared(merge(of_position, of_h0, product(self%drive) < 0)) = .true.
     ! At an extremum h0 or the load is stationary and the displacement is not: the position on the
