@@ -2,6 +2,7 @@
 !> path at points and landings, and of the states that an experiment has stored; and what iteration
 !> and rounding leave of them as errors. A residual acts like an equal error of h0.
 module located_places
+  use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
   use kinds, only: wp, nan
   use contact_state, only: state_t, gap_at, contact_radius_of, far_gap
   use equilibrium, only: residual_floor
@@ -124,7 +125,7 @@ contains
     real(wp) :: moved, found
 
     found = place%left(of_h0)
-    place%left = place%left + rounding*abs(place%at)
+    where (.not. ieee_is_nan(place%at)) place%left = place%left + rounding*abs(place%at)
     if (.not. (place%has_state() .and. place%mesh > 0)) return
     associate (state => place%state, at => place%at, left => place%left)
       at(of_radius) = contact_radius_of(steps%problem, steps%meshes%grid(place%mesh), state)

@@ -2,6 +2,7 @@
 !> definition: D = drive(1) h0 + drive(2) load turns there along the path, or has a given value. The
 !> module that finds the place sets its definition, and `located_places` the values.
 module reported_place
+  use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
   use kinds, only: wp, pi, nan
   use dimensionless_problem, only: problem_t
   use contact_state, only: state_t
@@ -183,7 +184,8 @@ contains
     compared(of_profile) = self%with_profile
     ! A given load is exact, and may be 0.
     compared(of_load) = self%drive(1) > 0 .or. self%turns() .or. self%after > 0
-    compared(of_radius) = with_radius .and. self%at(of_radius) > 0
+    if (.not. ieee_is_nan(self%at(of_radius))) &
+      compared(of_radius) = with_radius .and. self%at(of_radius) > 0
     if (self%after > 0) return
     compared(merge(of_position, of_h0, product(self%drive) < 0)) = .true.
     ! At an extremum h0 or the load is stationary and the displacement is not: the position on the

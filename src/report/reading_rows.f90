@@ -1,6 +1,7 @@
 !> Tables that are read from the path, and their numbers in the summary: bodies driven through
 !> springs, or at prescribed h0, with their jumps; equilibria at given loads.
 module reading_rows
+  use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
   use kinds, only: wp, nan
   use dimensionless_problem, only: problem_t, surface_energy
   use maugis, only: maugis_units_t, maugis_units
@@ -160,10 +161,10 @@ contains
       call summary%set('device_stiffness', device%stiffness)
       call summary%set('device_cycle_energy', device%cycle_energy*unit, &
         lost%error + uncertainty(device)*unit)
-      call summary%set('device_energy_uncertainty', max(uncertainty(device)*unit, lost%error))
+      call summary%set('device_energy_uncertainty', larger(uncertainty(device)*unit, lost%error))
       if (.not. all(device%caught)) call summary%warn('device: no stable state is known ' // &
         'that catches the bodies after a jump; its load_after is NaN')
-      if (any(uncertainty(device) > known_energy*abs(device%energy_lost))) &
+      if (any(is_doubtful(device))) &
         call summary%warn('device: the energy lost in jumps is not the area of the cycle; ' // &
         'a smaller accuracy may help')
     end associate
@@ -176,6 +177,25 @@ contains
 
     uncertainty = abs(driven%energy_lost - driven%cycle_energy) + driven%uncertainty
   end function uncertainty
+
+  !> Whether the two ways differ. Under a dead load bodies may part for good, with no energy at all.
+  elemental logical function is_doubtful(driven)
+    type(driven_t), intent(in) :: driven
+
+    is_doubtful = .false.
+    if (ieee_is_nan(driven%energy_lost) .or. ieee_is_nan(driven%cycle_energy)) return
+    is_doubtful = uncertainty(driven) > known_energy*abs(driven%energy_lost)
+  end function is_doubtful
+
+  !> The larger of two numbers; NaN if one of them is.
+  elemental real(wp) function larger(one, other)
+    real(wp), intent(in) :: one, other
+
+    larger = one
+    if (ieee_is_nan(one)) return
+    larger = other
+    if (.not. ieee_is_nan(other)) larger = max(one, other)
+  end function larger
 
   !> Adds, for each load, the number of equilibria and of stable ones, and the stable one with the
   !> smallest h0: the contact, if there is one.

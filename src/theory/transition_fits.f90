@@ -10,6 +10,7 @@
 !> Both take alpha from lambda = -0.924 ln(1 - 1.02 alpha). Units and conventions are those of
 !> module classical.
 module transition_fits
+  use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
   use kinds, only: wp, nan
   use maugis, only: maugis_t
   use root_finding, only: bracket_t
@@ -66,14 +67,15 @@ contains
       theory%unit%displacement, theory%unit%load)
   end function new_fit
 
-  !> z at a load [N].
+  !> z at a load [N]; NaN below the pull-off, and for a load that does not exist.
   elemental real(wp) function state_at_load(self, load) result(z)
     class(fit_t), intent(in) :: self
     real(wp), intent(in) :: load
     real(wp) :: room
 
-    room = 1 - load/self%pull_off
     z = nan
+    if (ieee_is_nan(load)) return
+    room = 1 - load/self%pull_off
     if (room >= 0) z = (self%alpha + sqrt(room))/(1 + self%alpha)
   end function state_at_load
 

@@ -271,3 +271,17 @@ def test_nodes_that_have_no_effect_are_noted(run, numerics, noted):
     """Without a note a study over the number of nodes looks converged at once."""
     found = run(lennard_jones(0.1, loading=loading(4, 2, 1), numerics=numerics))
     assert ("no effect" in str(found.summary.get("notes", ""))) == noted
+
+
+@pytest.mark.parametrize("groups", [
+    {"equilibrium_path": {"h0_end": -1e-9}, "device": {"stiffness": 0.0}},
+    {"equilibrium_path": {"h0_end": -1e-9}, "classical": {"theories": "pietrement_troyon"}},
+    {"loading": {"h0_start": 4e-9, "h0_end": 0.6e-9, "h0_step": 2e-10}, "unloading": {},
+     "numerics": {"grid": "uniform", "nodes": 120, "r_max": 1e-7}}])
+def test_numbers_that_do_not_exist_are_not_compared(run, groups):
+    """The claim is that of a build with -Dtraps=true, where a comparison with NaN ends the program:
+    energies of bodies that part for good, loads below a pull-off, the rest of a jump's state."""
+    numerics = {"accuracy": 1e-3, **groups.get("numerics", {})}
+    run(deck(bodies={"radius": 1e-6, "stiffness": 1e10},
+             force={"law": "lennard_jones", "hamaker": 1e-19, "z0": 3e-10},
+             **{**groups, "numerics": numerics}))
