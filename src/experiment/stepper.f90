@@ -6,6 +6,7 @@ module stepper
   use contact_state, only: state_t
   use solver, only: solver_t
   use ending, only: ending_t
+  use reported_place, only: place_t
   use journal, only: journal_t
   implicit none
   private
@@ -30,12 +31,9 @@ module stepper
     integer :: number = 0, past_number(memory) = 0
   end type branch_point_t
 
-  !> The largest tension in a step: the load, its h0, and the point of the path with this load, or
-  !> from which the jump starts that lands there; 0: the state at the end of the step.
+  !> A state of large tension: its load and h0.
   type :: extreme_t
     real(wp) :: load = 0, h0 = 0
-    integer :: point = 0
-    logical :: landing = .false.
   end type extreme_t
 
   !> The result of a step; `state_records` packs it.
@@ -54,8 +52,6 @@ module stepper
     real(wp) :: unsure_from = 0
     !> The fold from which the first jump starts, as a point of the path; 0 if it is not known.
     integer :: fold = 0
-    !> The largest tension in the step, if the path is known.
-    type(extreme_t), allocatable :: lowest
     !> Early if there is no state.
     type(ending_t) :: ending
   end type step_result_t
@@ -64,6 +60,7 @@ module stepper
   contains
     procedure(begin_at), deferred :: approach_to
     procedure(go_to), deferred :: step_to
+    procedure :: find_lowest
     procedure :: grid
   end type stepper_t
 
@@ -76,6 +73,7 @@ module stepper
     real(wp) :: earlier_seconds = 0
   contains
     procedure :: keep_steps_of
+    procedure :: find_lowest => find_lowest_of_steps
   end type keeping_stepper_t
 
   abstract interface
@@ -110,6 +108,25 @@ contains
     self%problem = steps%problem
     self%options = steps%options
   end subroutine keep_steps_of
+
+  !> Makes `lowest` the place of the lowest load on the way from h0 = from, on a stable piece of the
+  !> path, to another h0 if that load is lower; does nothing if the path is not known. The states at
+  !> both ends are not considered.
+  subroutine find_lowest(self, piece, from, to, lowest)
+    class(stepper_t), intent(in) :: self
+    integer, intent(in) :: piece
+    real(wp), intent(in) :: from, to
+    type(place_t), allocatable, intent(inout) :: lowest
+  end subroutine find_lowest
+
+  subroutine find_lowest_of_steps(self, piece, from, to, lowest)
+    class(keeping_stepper_t), intent(in) :: self
+    integer, intent(in) :: piece
+    real(wp), intent(in) :: from, to
+    type(place_t), allocatable, intent(inout) :: lowest
+
+    call self%steps%find_lowest(piece, from, to, lowest)
+  end subroutine find_lowest_of_steps
 
   !> The mesh of a position's state.
   function grid(self, position)

@@ -4,7 +4,8 @@ module tension_search
   use kinds, only: wp
   use interpolation, only: interpolated_maximum
   use stepper, only: stepper_t, branch_point_t, step_result_t
-  use reported_place, only: place_t, place_of_state, place_without_state, of_load
+  use reported_place, only: place_t, place_of_state, place_without_state
+  use largest_tension, only: lower
   implicit none
   private
   public :: tension_search_t, load_tolerance
@@ -29,7 +30,6 @@ module tension_search
     procedure :: note_jump
     procedure :: note_state
     procedure :: finish
-    procedure, private :: lower
     procedure, private :: end_stretch
     procedure, private :: refine
     procedure, private :: search_jump_by_jump
@@ -52,24 +52,12 @@ module tension_search
 
 contains
 
-  !> Replaces the place of largest tension by another if its tension is larger.
-  subroutine lower(self, place)
-    class(tension_search_t), intent(inout) :: self
-    type(place_t), intent(in) :: place
-
-    if (.not. place%at(of_load) < 0) return
-    if (allocated(self%lowest)) then
-      if (place%at(of_load) >= self%lowest%at(of_load)) return
-    end if
-    self%lowest = place
-  end subroutine lower
-
   !> Considers the last state before a jump or slip, which may have the largest tension.
   subroutine note_jump(self, event)
     class(tension_search_t), intent(inout) :: self
     type(step_result_t), intent(in) :: event
 
-    call self%lower(place_without_state(event%before%h0, event%before%load))
+    call lower(self%lowest, place_without_state(event%before%h0, event%before%load))
   end subroutine note_jump
 
   !> Considers the step from `previous` at last_h0 to `position` at h0.
@@ -126,7 +114,7 @@ contains
     self%stretch%open = .false.
     stretch = self%stretch
     if (stretch%lowest%state%load < 0) then
-      call self%lower(place_of_state(stretch%lowest%mesh, stretch%lowest%state))
+      call lower(self%lowest, place_of_state(stretch%lowest%mesh, stretch%lowest%state))
     else if (.not. steps%problem%law%adhesion > 0) then
       return
     end if
@@ -201,7 +189,7 @@ contains
       if (size(h0) > 3 .and. abs(gained) <= load_tolerance*abs(best%state%load)) exit
       call keep_nearest(h0, load)
     end do
-    call self%lower(place_of_state(best%mesh, best%state))
+    call lower(self%lowest, place_of_state(best%mesh, best%state))
   end subroutine refine
 
   !> Steps again from stretch%before to stretch%after, or from the lowest state if a jump came
@@ -229,7 +217,7 @@ contains
       call self%note_jump(event)
       if (position%state%load < best%state%load) best = position
     end do
-    call self%lower(place_of_state(best%mesh, best%state))
+    call lower(self%lowest, place_of_state(best%mesh, best%state))
   end subroutine search_jump_by_jump
 
   !> Whether the bodies jumped in a step, or the contact edge slipped.

@@ -12,7 +12,8 @@ module path_model
   use path_tangent, only: of_h0, of_load
   use traced_path, only: traced_path_t
   use path_sensitivity, only: rate_t, rates_along
-  use driven_pieces, only: driven_piece_t, through_spring
+  use drives, only: through_spring
+  use driven_pieces, only: driven_piece_t
   use device, only: driven_t, drive_bodies
   use experiment_request, only: request_t, numerics_t
   use one_run, only: prepare
@@ -216,12 +217,12 @@ contains
     end do
     ! The jumps of a way start from its legs, in order, except the last leg.
     largest = 0
-    do i = 1, size(driven%jump)
-      k = merge(inward, outward, driven%jump(i)%inward)
-      associate (change => abs(driven%jump(i)%after%load - driven%jump(i)%before%load))
+    do i = 1, size(driven%jumped)
+      k = merge(inward, outward, driven%jumped(i)%inward)
+      associate (change => abs(driven%jumped(i)%after%load - driven%jumped(i)%before%load))
         if (.not. change > largest(k)) cycle
         largest(k) = change
-        response%way(k)%main = count(driven%jump(:i)%inward .eqv. driven%jump(i)%inward)
+        response%way(k)%main = count(driven%jumped(:i)%inward .eqv. driven%jumped(i)%inward)
       end associate
     end do
   end subroutine find_ways
