@@ -39,8 +39,8 @@ module driven_pieces
   end type jump_t
 
   !> All stable pieces under a drive, from large separations inward; whole = .false.: a state was
-  !> not solved, and its piece is missing. jump(k, 1), jump(k, 2): from the inner and from the outer end
-  !> of piece k, if D turns there.
+  !> not solved, and its piece is missing. jump(k, 1), jump(k, 2): from the inner and from the
+  !> outer end of piece k, if D turns there.
   type :: driven_pieces_t
     type(drive_t) :: drive
     type(driven_piece_t), allocatable :: piece(:)
