@@ -10,7 +10,7 @@ module path
   use path_end, only: outer_end
   use largest_tension, only: lower, lower_along
   use path_stepper, only: path_stepper_t, known_path_t
-  use path_rows, only: row_t, row_of_point, row_at_h0, rows_between
+  use path_rows, only: path_row_t, row_of_point, row_at_h0, rows_between
   use reported_place, only: place_t, place_of_state, of_load
   use places, only: places_t
   use records, only: observer_t, record_t, quality_t, record_of, stable_yes, stable_no
@@ -52,8 +52,8 @@ contains
     type(path_t), intent(out) :: path
     type(places_t), intent(inout) :: places
     real(wp), intent(in), optional :: h0_start
-    type(row_t) :: row
-    type(row_t), allocatable :: between(:)
+    type(path_row_t) :: row
+    type(path_row_t), allocatable :: between(:)
     type(place_t) :: reported
     real(wp) :: until, widest
     integer :: i, k, first, last
@@ -149,7 +149,7 @@ contains
 
     !> Gives a row to the observer and stores its reported places. Folds are exact.
     subroutine take(row)
-      type(row_t), intent(in) :: row
+      type(path_row_t), intent(in) :: row
       type(place_t) :: reported
       type(record_t) :: record
 
@@ -222,7 +222,7 @@ contains
 
   type(place_t) function place_of_row(steps, row) result(reported)
     type(path_stepper_t), intent(in) :: steps
-    type(row_t), intent(in) :: row
+    type(path_row_t), intent(in) :: row
 
     reported = place_of_state(row%mesh, row%state)
     if (row%point == 0) return
