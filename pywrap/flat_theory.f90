@@ -23,14 +23,14 @@ contains
       jkr_radius_at_displacement, jkr_radius_at_load
     use failure, only: bad_input
     use maugis, only: maugis_t, new_maugis
-    use transition_fits, only: fit_t, carpick_fit, pietrement_fit
+    use transition_fits, only: transition_fit_t, carpick_fit, pietrement_fit
     character(len=*), intent(in) :: theory, quantity
     integer(c_int), intent(in) :: n
     real(c_double), intent(in) :: x(n), a, radius, stiffness, surface_energy, strength
     real(c_double), intent(out) :: y(n)
     integer(c_int), intent(out) :: stat
     type(maugis_t) :: cohesive
-    type(fit_t) :: fit
+    type(transition_fit_t) :: fit
 
     stat = 0
     if (surface_energy > 0) cohesive = new_maugis(radius, stiffness, surface_energy, strength)

@@ -18,6 +18,7 @@ module interpolation
   contains
     procedure :: value => hermite_value
     procedure :: slope => hermite_slope
+    procedure :: curvature => hermite_curvature
     procedure :: evaluate => hermite_evaluate
   end type hermite_t
 
@@ -202,6 +203,23 @@ contains
 
     call self%evaluate(x, y, slope)
   end function hermite_slope
+
+  !> The second derivative at x.
+  pure real(wp) function hermite_curvature(self, x) result(curvature)
+    class(hermite_t), intent(in) :: self
+    real(wp), intent(in) :: x
+    real(wp) :: y, slope
+    integer :: k
+
+    y = 0
+    slope = 0
+    curvature = 0
+    do k = self%terms, 1, -1
+      curvature = 2*slope + (x - self%node(k))*curvature
+      slope = y + (x - self%node(k))*slope
+      y = self%difference(k) + (x - self%node(k))*y
+    end do
+  end function hermite_curvature
 
   !> The spline with continuous curvature through (x, y), x ascending, at least four points. Each
   !> column holds the coefficients of 1, t, t^2, t^3 in one piece, where t is the distance from its

@@ -11,12 +11,12 @@ module branch_end
   use contact_state, only: state_t
   use controls, only: control_t
   use fixed_branch, only: expected_at, is_expected, is_pinned, change
-  use branch_tangent, only: tangent_t, tangent_at, joins, passing
+  use branch_tangent, only: branch_tangent_t, tangent_at, joins, passing
   use solver_options, only: solver_options_t
   use stepper, only: stepper_t, branch_point_t, remember
   implicit none
   private
-  public :: follow, found_t, arrived, at_fold, lost
+  public :: follow, branch_end_t, arrived, at_fold, lost
 
   !> How `follow` ends: at h0; at a fold before it; or neither is known.
   integer, parameter :: lost = 0, arrived = 1, at_fold = 2
@@ -24,16 +24,16 @@ module branch_end
   !> The end of `follow`. state: the state at h0, or the last stable state before the fold; fold:
   !> the state nearest to the fold, on either side of it; h0 and load of the fold, and the
   !> uncertainty of its h0.
-  type :: found_t
+  type :: branch_end_t
     integer :: outcome = lost
     type(state_t) :: state, fold
     real(wp) :: fold_h0 = 0, fold_load = 0, uncertainty = 0
-  end type found_t
+  end type branch_end_t
 
   !> A state of the curve, its tangent, and its Q.
   type :: point_t
     type(state_t) :: state
-    type(tangent_t) :: tangent
+    type(branch_tangent_t) :: tangent
     real(wp) :: q = 0
   end type point_t
 
@@ -67,7 +67,7 @@ contains
     type(solver_options_t), intent(in) :: options
     real(wp), intent(in) :: h0
     type(branch_point_t), intent(in) :: position
-    type(found_t), intent(out) :: found
+    type(branch_end_t), intent(out) :: found
     type(branch_point_t) :: memory
     type(point_t) :: here, there
     real(wp) :: sense, step, dip
@@ -81,7 +81,7 @@ contains
     sense = sign(1.0_wp, h0 - here%state%h0)
     if (.not. here%tangent%stable) then
       ! The state is at the end of its branch, to the tolerance.
-      found = found_t(at_fold, here%state, here%state, here%state%h0, here%state%load, &
+      found = branch_end_t(at_fold, here%state, here%state, here%state%h0, here%state%load, &
         options%tolerance)
       return
     end if
@@ -213,7 +213,7 @@ contains
     type(solver_options_t), intent(in) :: options
     real(wp), intent(in) :: h0, sense
     type(point_t), intent(in) :: first, second
-    type(found_t), intent(inout) :: found
+    type(branch_end_t), intent(inout) :: found
     type(point_t) :: low, high, trial
     real(wp) :: slope(3), part, bend, way
     logical :: good
@@ -268,7 +268,7 @@ contains
     type(solver_options_t), intent(in) :: options
     real(wp), intent(in) :: h0, sense
     type(point_t), intent(in) :: first, second
-    type(found_t), intent(inout) :: found
+    type(branch_end_t), intent(inout) :: found
     type(hermite_t) :: h0_of
     type(bracket_t) :: bracket
     type(point_t) :: guess

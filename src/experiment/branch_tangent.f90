@@ -16,10 +16,10 @@ module branch_tangent
   use solver, only: solver_t
   implicit none
   private
-  public :: tangent_t, tangent_at, has_factors_at, joins, passing
+  public :: branch_tangent_t, tangent_at, has_factors_at, joins, passing
 
   !> Derivatives by Q of h0, of the displacement on the axis, of the load and of the gaps.
-  type :: tangent_t
+  type :: branch_tangent_t
     !> Whether the Jacobian is regular, and whether the state is stable at prescribed h0.
     logical :: regular = .false., stable = .false.
     !> The weights in Q; zeros if Q is h0.
@@ -32,7 +32,7 @@ module branch_tangent
     real(wp), allocatable :: load_by_gap(:)
   contains
     procedure :: turn
-  end type tangent_t
+  end type branch_tangent_t
 
   !> Two states are joined by the curve if at both of them the tangent's change, over the whole
   !> distance in Q, differs from their difference by at most these parts of the difference and of
@@ -50,7 +50,7 @@ contains
     class(solver_t), intent(inout) :: solver
     type(control_t), intent(in) :: control
     type(state_t), intent(in) :: state
-    type(tangent_t), intent(out) :: tangent
+    type(branch_tangent_t), intent(out) :: tangent
     type(pressure_slope_t) :: slope
     real(wp) :: weight(size(state%gap)), unit(size(state%gap)), of_end(2)
 
@@ -99,7 +99,7 @@ contains
   !> decreases with h0 no fold is near, and Q is h0. Where the edge is pinned between nodes, a fold
   !> concerns a few nodes and hardly the load: the weights are then the changes of the gaps.
   pure function passing(tangent, pinned) result(along)
-    type(tangent_t), intent(in) :: tangent
+    type(branch_tangent_t), intent(in) :: tangent
     logical, intent(in) :: pinned
     real(wp) :: along(size(tangent%gap))
 
@@ -114,7 +114,7 @@ contains
 
   !> Changes the coordinate.
   pure subroutine turn(self, along)
-    class(tangent_t), intent(inout) :: self
+    class(branch_tangent_t), intent(inout) :: self
     real(wp), intent(in) :: along(:)
     real(wp) :: length
 
@@ -130,7 +130,7 @@ contains
   !> change of load and displacement from one to the other.
   pure logical function joins(from, at_from, to, at_to)
     type(state_t), intent(in) :: from, to
-    type(tangent_t), intent(in) :: at_from, at_to
+    type(branch_tangent_t), intent(in) :: at_from, at_to
     real(wp) :: distance, change(2), off(2)
 
     distance = (to%h0 - from%h0) - dot_product(at_from%along, to%gap - from%gap)

@@ -7,31 +7,27 @@ module device
   use path_tangent, only: of_h0
   use traced_path, only: traced_path_t
   use curve_states, only: path_state_t
-  use driven_pieces, only: drive_t, driven_piece_t, jump_t, find_pieces, find_jump, piece_with, &
-    state_driven
+  use drives, only: drive_t
+  use driven_pieces, only: driven_pieces_t, jump_t, find_pieces, find_jumps, state_driven
+  use walk, only: leg_t, walk_t, way_along
   implicit none
   private
-  public :: driven_t, leg_t, states_on, drive_bodies
+  public :: driven_t, driven_leg_t, states_on, drive_bodies
 
-  !> The motion along one stable piece; piece: its index in `driven_t`; jumps: a jump follows.
-  type :: leg_t
-    logical :: inward = .true.
-    integer :: piece = 0
+  !> The motion along one stable piece, and the states at its ends.
+  type, extends(leg_t) :: driven_leg_t
     type(path_state_t) :: from, to
-    logical :: jumps = .false.
-  end type leg_t
+  end type driven_leg_t
 
-  !> The motion of bodies under a drive. energy_lost: dissipated in all jumps; cycle_energy: the
-  !> area between loading and unloading, computed independently; NaN if the bodies do not return to
-  !> their start.
-  type :: driven_t
-    type(drive_t) :: drive
+  !> The motion of bodies under a drive, and the stable pieces. energy_lost: dissipated in all
+  !> jumps; cycle_energy: the area between loading and unloading, computed independently; NaN if the
+  !> bodies do not return to their start.
+  type, extends(driven_pieces_t) :: driven_t
     !> The stiffness in the deck [N/m]; infinite if h0 is prescribed.
     real(wp) :: stiffness = 0
-    !> All stable pieces, from large separations inward.
-    type(driven_piece_t), allocatable :: piece(:)
-    type(leg_t), allocatable :: leg(:)
-    type(jump_t), allocatable :: jump(:)
+    type(driven_leg_t), allocatable :: leg(:)
+    !> The jumps from the ends of legs, in order.
+    type(jump_t), allocatable :: jumped(:)
     real(wp) :: energy_lost = 0, cycle_energy = 0, uncertainty = 0
     !> Whether every state was solved, and whether every jump landed.
     logical :: solved = .true., caught = .true.
@@ -51,117 +47,101 @@ contains
     real(wp), intent(in) :: h0_end
     real(wp), allocatable, intent(in) :: start, finish
     type(driven_t), intent(out) :: driven
-    !> The present piece of the bodies, and their state.
-    integer :: here, outermost
+    integer :: outermost, here
     type(path_state_t) :: state
+    real(wp) :: last
 
-    allocate (driven%leg(0), driven%jump(0))
-    driven%drive = drive
+    allocate (driven%leg(0), driven%jumped(0))
     driven%energy_lost = nan
     driven%cycle_energy = driven%energy_lost
-    call find_pieces(solver, path, drive, driven%piece, driven%solved)
+    call find_pieces(solver, path, drive, driven)
+    driven%solved = driven%whole
     if (size(driven%piece) == 0) return
+    call find_jumps(solver, path, driven)
     outermost = 0
-    if (allocated(start)) outermost = piece_with(driven%piece, drive, start, 0, .true.)
-    here = max(outermost, 1)
-    state = driven%piece(here)%first
-    if (outermost > 0) call move_to(start)
-    outermost = here
-    call go(.true.)
-    call go(.false.)
-    driven%energy_lost = sum(driven%jump%energy)
-    driven%uncertainty = sum(driven%jump%uncertainty)
-    driven%caught = all(driven%jump%landed)
+    if (allocated(start)) outermost = driven%piece_with(start, 0, .true.)
+    state = driven%piece(max(outermost, 1))%first
+    if (outermost > 0) call move_to(outermost, start)
+    outermost = max(outermost, 1)
+    if (allocated(finish)) then
+      call go(way_along(driven, outermost, .true., finish), finish)
+    else
+      call find_innermost(last)
+      call go(way_along(driven, outermost, .true., last, size(driven%piece)), last)
+    end if
+    last = huge(last)
+    if (allocated(start)) last = start
+    call go(way_along(driven, here, .false., last), last)
+    driven%energy_lost = sum(driven%jumped%energy)
+    driven%uncertainty = sum(driven%jumped%uncertainty)
+    driven%caught = all(driven%jumped%landed)
     if (here == outermost .and. driven%caught .and. driven%solved) &
       driven%cycle_energy = driven%area(path)
 
   contains
 
-    !> Moves inward or outward, with all jumps.
-    subroutine go(inward)
-      logical, intent(in) :: inward
-      type(jump_t) :: jump
-      type(leg_t) :: leg
-      real(wp) :: stop_at
-      logical :: stops
+    !> Moves along a way to the position `at`, if the way arrives there.
+    subroutine go(walk, at)
+      type(walk_t), intent(in) :: walk
+      real(wp), intent(in) :: at
+      type(driven_leg_t) :: leg
+      integer :: i
 
-      do
-        leg = leg_t(inward, here, state, state)
-        call find_limit(inward, stop_at, stops)
-        associate (piece => driven%piece(here))
-          leg%jumps = .not. stops .and. merge(piece%last_turns, piece%first_turns, inward)
-          if (stops) then
-            call move_to(stop_at)
-          else if (inward) then
-            state = piece%last
-          else
-            state = piece%first
-          end if
-        end associate
+      do i = 1, size(walk%leg)
+        leg%leg_t = walk%leg(i)
+        leg%from = state
+        here = leg%piece
+        if (walk%arrives .and. i == size(walk%leg)) then
+          ! Positions that are already passed mean the present one.
+          call move_to(here, merge(min(at, drive%position(state)), at, leg%inward))
+        else
+          state = driven%piece(here)%end_of(leg%inward)
+        end if
         driven%solved = driven%solved .and. state%converged
         leg%to = state
         leg%jumps = leg%jumps .and. driven%solved
         driven%leg = [driven%leg, leg]
         if (.not. leg%jumps) return
-        call find_jump(solver, path, drive, driven%piece, here, inward, jump)
-        driven%solved = driven%solved .and. (jump%landed .or. jump%piece == 0)
-        driven%jump = [driven%jump, jump]
-        if (.not. jump%landed) return
-        here = jump%piece
-        state = jump%after
+        driven%jumped = [driven%jumped, driven%jump_from(here, leg%inward)]
+        associate (jump => driven%jumped(size(driven%jumped)))
+          driven%solved = driven%solved .and. (jump%landed .or. jump%piece == 0)
+          if (.not. jump%landed) return
+          here = jump%piece
+          state = jump%after
+        end associate
       end do
     end subroutine go
 
-    !> Moves to the state at a position on the present piece.
-    subroutine move_to(position)
+    !> Moves to the state of a piece at a position.
+    subroutine move_to(piece, position)
+      integer, intent(in) :: piece
       real(wp), intent(in) :: position
 
-      call state_driven(solver, path, drive, driven%piece(here), position, state)
+      call state_driven(solver, path, drive, driven%piece(piece), position, state)
       driven%solved = driven%solved .and. state%converged
     end subroutine move_to
 
-    !> The position at which the motion on the present piece stops; stops = .false.: it continues to
-    !> the end of the piece.
-    subroutine find_limit(inward, at, stops)
-      logical, intent(in) :: inward
+    !> The position at which the motion inward ends on the innermost piece: at h0_end or at the end
+    !> of the known path, whichever is farther out; -huge if the drive turns before.
+    subroutine find_innermost(at)
       real(wp), intent(out) :: at
-      logical, intent(out) :: stops
       type(path_state_t) :: there
 
-      at = 0
-      associate (piece => driven%piece(here))
-        if (.not. inward) then
-          stops = allocated(start)
-          if (stops) at = start
-          if (stops) stops = at <= drive%position(piece%first)
-          return
-        end if
-        if (allocated(finish)) then
-          at = finish
-          stops = at >= drive%position(piece%last)
-        else
-          stops = here == size(driven%piece)
-          if (.not. stops) return
-          ! It stops at h0_end or at the end of the known path, whichever is farther out.
-          at = drive%position(piece%last)
-          stops = .not. piece%last_turns
-          if (h0_end <= piece%first%h0 .and. h0_end >= piece%last%h0) then
-            call state_driven(solver, path, drive_t(of_h0), piece, h0_end, there)
-            stops = stops .or. there%converged
-            if (there%converged) at = max(at, drive%position(there))
-          end if
-        end if
-        ! Positions that are already passed mean the present one.
-        if (stops) at = min(at, drive%position(state))
+      associate (piece => driven%piece(size(driven%piece)))
+        at = -huge(at)
+        if (.not. piece%last_turns) at = drive%position(piece%last)
+        if (.not. (h0_end <= piece%first%h0 .and. h0_end >= piece%last%h0)) return
+        call state_driven(solver, path, drive_t(of_h0), piece, h0_end, there)
+        if (there%converged) at = max(drive%position(piece%last), drive%position(there))
       end associate
-    end subroutine find_limit
+    end subroutine find_innermost
 
   end subroutine drive_bodies
 
   !> The states of a leg in order: its ends, and the points of the path between them.
   pure function states_on(all_nodes, leg) result(states)
     type(path_state_t), intent(in) :: all_nodes(:)
-    type(leg_t), intent(in) :: leg
+    type(driven_leg_t), intent(in) :: leg
     type(path_state_t), allocatable :: nodes(:), states(:)
 
     associate (first => min(leg%from%interval, leg%to%interval) + 1, &

@@ -14,11 +14,11 @@ module experiment_result
   use path_readings, only: path_readings_t
   use timed_record, only: timed_result_t
   use path_tangent, only: h0_alone => of_h0, load_alone => of_load
-  use known_path, only: known_path_t, folds_of_cycle
+  use walk, only: leg_t, walk_t, way_along
   use curve_states, only: path_state_t
-  use driven_pieces, only: state_driven
-  use device, only: driven_t, leg_t, states_on
-  use path_stepper, only: path_stepper_t
+  use driven_pieces, only: jump_t, state_driven
+  use device, only: driven_t, driven_leg_t, states_on
+  use path_stepper, only: path_stepper_t, known_path_t
   use reported_place, only: place_t, point_of_path, place_on_curve, of_h0
   implicit none
   private
@@ -95,8 +95,8 @@ contains
     integer :: k
 
     call places%enter('device_energy', i, factor=0.0_wp)
-    do k = 1, size(driven%jump)
-      associate (jump => driven%jump(k), drive => driven%drive%weights)
+    do k = 1, size(driven%jumped)
+      associate (jump => driven%jumped(k), drive => driven%drive%weights)
         before = place_on_curve(jump%before, drive)
         ! The turn of the drive, or the fold of h0 before it.
         before%turn_of = merge(drive, h0_alone, abs(dot_product(drive, jump%before%slopes)) <= &
@@ -130,8 +130,11 @@ contains
   subroutine enter_energy(known, outcome)
     type(known_path_t), intent(in) :: known
     type(experiment_result_t), intent(inout) :: outcome
-    integer, allocatable :: fold(:)
+    type(walk_t) :: inward, outward
+    type(leg_t) :: leg
+    type(jump_t) :: jump
     real(wp) :: lowest
+    integer, allocatable :: fold(:)
     integer :: turned, i
 
     turned = 0
@@ -147,7 +150,19 @@ contains
       end associate
     end if
     if (turned < 2) return
-    fold = folds_of_cycle(known, turned, lowest)
+    ! A jump that ends beyond the piece in which the bodies turn belongs to another cycle.
+    inward = way_along(known%stable, 1, .true., until=turned)
+    outward = way_along(known%stable, turned, .false., until=1)
+    if (.not. (inward%arrives .and. outward%arrives)) return
+    allocate (fold(0))
+    do i = 1, size(inward%leg) + size(outward%leg)
+      if (i <= size(inward%leg)) leg = inward%leg(i)
+      if (i > size(inward%leg)) leg = outward%leg(i - size(inward%leg))
+      if (.not. leg%jumps) cycle
+      jump = known%stable%jump_from(leg%piece, leg%inward)
+      if (.not. jump%landed .or. jump%before%h0 < lowest) return
+      fold = [fold, jump%fold()]
+    end do
     do i = 1, size(fold)
       call outcome%places%enter('energy_lost', 1, point_of_path(fold(i)))
       call outcome%places%enter('energy_lost', 1, point_of_path(fold(i), landing=.true.), -1.0_wp)
@@ -218,7 +233,7 @@ contains
 
     !> Compares the interpolation with the state in the middle between a row and the next.
     subroutine hold(leg, row, next)
-      type(leg_t), intent(in) :: leg
+      type(driven_leg_t), intent(in) :: leg
       type(path_state_t), intent(in) :: row, next
       type(path_state_t) :: state
 

@@ -8,8 +8,8 @@ module fixed_motion
   use contact_scales, only: largest_radius, lost_in_rounding
   use controls, only: control_t
   use fixed_branch, only: expected_at, is_expected, is_pinned, change
-  use branch_tangent, only: tangent_t, tangent_at, has_factors_at, joins
-  use branch_end, only: follow, found_t, arrived, at_fold
+  use branch_tangent, only: branch_tangent_t, tangent_at, has_factors_at, joins
+  use branch_end, only: follow, branch_end_t, arrived, at_fold
   use ending, only: beyond_rounding, no_equilibrium
   use potential_energy, only: energy_of
   use relaxation, only: relax
@@ -56,9 +56,9 @@ contains
     type(branch_point_t), intent(inout) :: position
     type(step_result_t), intent(inout) :: event
     logical, intent(out) :: resting
-    type(tangent_t) :: tangent
+    type(branch_tangent_t) :: tangent
     type(state_t) :: expected, state
-    type(found_t) :: found
+    type(branch_end_t) :: found
     logical :: solved, stayed
 
     resting = .false.
@@ -133,7 +133,7 @@ contains
     class(stepper_t), intent(inout) :: self
     type(solver_options_t), intent(in) :: options
     real(wp), intent(in) :: h0
-    type(found_t), intent(in) :: found
+    type(branch_end_t), intent(in) :: found
     type(branch_point_t), intent(inout) :: position
     type(step_result_t), intent(inout) :: event
     logical, intent(out) :: resting
@@ -169,7 +169,7 @@ contains
   subroutine lose_energy(self, options, found, landed, position)
     class(stepper_t), intent(inout) :: self
     type(solver_options_t), intent(in) :: options
-    type(found_t), intent(in) :: found
+    type(branch_end_t), intent(in) :: found
     type(state_t), intent(in) :: landed
     type(branch_point_t), intent(inout) :: position
     type(state_t) :: after
@@ -213,7 +213,7 @@ contains
   subroutine known_tangent(self, state, tangent)
     class(stepper_t), intent(inout) :: self
     type(state_t), intent(in) :: state
-    type(tangent_t), intent(out) :: tangent
+    type(branch_tangent_t), intent(out) :: tangent
 
     if (has_factors_at(self%frozen, control_t(value=state%h0), state)) &
       call tangent_at(self, control_t(value=state%h0), state, tangent)
@@ -223,9 +223,9 @@ contains
   !> before, or not regular.
   logical function is_joined(self, tangent, before, state) result(joined)
     class(stepper_t), intent(inout) :: self
-    type(tangent_t), intent(inout) :: tangent
+    type(branch_tangent_t), intent(inout) :: tangent
     type(state_t), intent(in) :: before, state
-    type(tangent_t) :: ahead
+    type(branch_tangent_t) :: ahead
 
     joined = change(before, state) <= unnoticed
     if (joined) return

@@ -12,7 +12,7 @@ module fixed_stepper
   use fixed_branch, only: change, expected_at
   use h0_step, only: step_h0
   use fixed_motion, only: advance, has_fallen, known_tangent, is_joined
-  use branch_tangent, only: tangent_t
+  use branch_tangent, only: branch_tangent_t
   use stepper, only: stepper_t, branch_point_t, step_result_t, extreme_t, remember, move_to
   use solver_options, only: solver_options_t
   implicit none
@@ -120,7 +120,7 @@ contains
     type(branch_point_t), intent(inout) :: position
     type(step_result_t), intent(inout) :: event
     type(branch_point_t) :: moved
-    type(tangent_t) :: tangent
+    type(branch_tangent_t) :: tangent
     type(state_t) :: state
     logical :: joined
 

@@ -10,7 +10,7 @@ module located_places
   use path_tangent, only: h0_alone => of_h0, load_alone => of_load
   use potential_energy, only: energy_of
   use curve_states, only: path_state_t, path_place_t, state_of
-  use known_path, only: landing_t, landing_over
+  use driven_pieces, only: jump_t
   use traced_path, only: no_mesh
   use path_stepper, only: path_stepper_t
   use reported_place, only: place_t, of_h0, of_load, of_displacement, of_energy, of_radius, &
@@ -88,14 +88,14 @@ contains
   subroutine find_on_path(steps, place)
     class(path_stepper_t), intent(inout) :: steps
     type(place_t), intent(inout) :: place
-    type(landing_t) :: landing
+    type(jump_t) :: jump
     type(path_state_t) :: state
 
     associate (known => steps%known)
       if (place%landing) then
-        landing = landing_over(known, place%point)
-        if (landing%landed) then
-          call place%take(landing%after)
+        jump = known%stable%jump_over(place%point)
+        if (jump%landed) then
+          call place%take(jump%after)
         else
           place%at = nan
         end if

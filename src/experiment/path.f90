@@ -7,12 +7,10 @@ module path
   use contact_state, only: state_t
   use traced_path, only: traced_path_t
   use ending, only: ending_t, state_lost
-  use path_tangent, only: of_h0
   use path_end, only: outer_end
-  use driven_pieces, only: drive_t, piece_with
-  use known_path, only: known_path_t, interval_at
-  use path_stepper, only: path_stepper_t
-  use path_rows, only: row_t, row_of_point, row_at_h0, rows_between
+  use largest_tension, only: lower, lower_along
+  use path_stepper, only: path_stepper_t, known_path_t
+  use path_rows, only: path_row_t, row_of_point, row_at_h0, rows_between
   use reported_place, only: place_t, place_of_state, of_load
   use places, only: places_t
   use records, only: observer_t, record_t, quality_t, record_of, stable_yes, stable_no
@@ -54,8 +52,8 @@ contains
     type(path_t), intent(out) :: path
     type(places_t), intent(inout) :: places
     real(wp), intent(in), optional :: h0_start
-    type(row_t) :: row
-    type(row_t), allocatable :: between(:)
+    type(path_row_t) :: row
+    type(path_row_t), allocatable :: between(:)
     type(place_t) :: reported
     real(wp) :: until, widest
     integer :: i, k, first, last
@@ -95,7 +93,8 @@ contains
     ! mesh do not count: their errors would decide.
     if (row%converged) then
       reported = place_of_row(steps, row)
-      call lower(path, reported)
+      call lower_along(steps%known%path, first, last, path%lowest)
+      call lower(path%lowest, reported)
       if (row%modes == 0) path%finish = reported
     end if
     call enter_ends()
@@ -141,14 +140,16 @@ contains
       type(known_path_t), intent(in) :: known
       integer, intent(in) :: i
 
-      do k = size(known%piece), 1, -1
-        if (i >= known%piece(k)%first%interval .and. i <= known%piece(k)%last%interval + 1) return
+      do k = size(known%stable%piece), 1, -1
+        associate (piece => known%stable%piece(k))
+          if (i >= piece%first%interval .and. i <= piece%last%interval + 1) return
+        end associate
       end do
     end function piece_of
 
     !> Gives a row to the observer and stores its reported places. Folds are exact.
     subroutine take(row)
-      type(row_t), intent(in) :: row
+      type(path_row_t), intent(in) :: row
       type(place_t) :: reported
       type(record_t) :: record
 
@@ -174,10 +175,7 @@ contains
       end if
       if (row%point == 0) return
       associate (point => steps%known%path%point(row%point))
-        if (point%load_extremum) then
-          call places%add('load_folds', reported)
-          call lower(path, reported)
-        end if
+        if (point%load_extremum) call places%add('load_folds', reported)
         if (.not. point%fold) return
         ! A part of the path may begin with another fold.
         if (path%first_piece == 1 .and. .not. places%has('folds')) &
@@ -216,15 +214,15 @@ contains
       ends_between = last > 0
       if (ends_between) return
       last = known%path%held
-      k = piece_with(known%piece, drive_t(of_h0), h0_end, size(known%piece) + 1, .false.)
+      k = known%stable%piece_with(h0_end, size(known%stable%piece) + 1, .false.)
       ends_between = k > 0 .and. .not. known%ending%early()
-      if (ends_between) last = interval_at(known, k, h0_end)
+      if (ends_between) last = known%interval_at(k, h0_end)
     end associate
   end subroutine find_end
 
   type(place_t) function place_of_row(steps, row) result(reported)
     type(path_stepper_t), intent(in) :: steps
-    type(row_t), intent(in) :: row
+    type(path_row_t), intent(in) :: row
 
     reported = place_of_state(row%mesh, row%state)
     if (row%point == 0) return
@@ -232,17 +230,5 @@ contains
       if (point%fold .or. point%load_extremum) reported%point = row%point
     end associate
   end function place_of_row
-
-  !> Makes a place that of the largest tension if its tension is larger.
-  pure subroutine lower(path, place)
-    type(path_t), intent(inout) :: path
-    type(place_t), intent(in) :: place
-
-    if (.not. allocated(path%lowest)) then
-      path%lowest = place
-    else if (place%at(of_load) < path%lowest%at(of_load)) then
-      path%lowest = place
-    end if
-  end subroutine lower
 
 end module path

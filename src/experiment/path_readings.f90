@@ -6,7 +6,7 @@ module path_readings
   use listener, only: listener_t
   use experiment_request, only: request_t
   use path_sensitivity, only: rate_t
-  use driven_pieces, only: drive_t, through_spring
+  use drives, only: drive_t, through_spring
   use path_tangent, only: of_load
   use curve_states, only: path_state_t, states_of_points, states_where
   use dimensionless_problem, only: problem_t

@@ -12,16 +12,16 @@ module path_rows
   use path_stepper, only: path_stepper_t
   implicit none
   private
-  public :: row_t, row_of_point, row_at_h0, rows_between
+  public :: path_row_t, row_of_point, row_at_h0, rows_between
 
   !> One row: its state and mesh, the point of the path (0: it is none), its unstable modes, and
   !> whether it is solved. profile: its profile is requested; for_curve: the row serves only for the
   !> curve.
-  type :: row_t
+  type :: path_row_t
     type(state_t) :: state
     integer :: mesh = 1, point = 0, modes = 0
     logical :: converged = .true., profile = .false., for_curve = .false.
-  end type row_t
+  end type path_row_t
 
   !> Largest distance of the curve from a line, in fractions of h0 and load at the ends of the span
   !> (which are small at large separations) and of the widest contact.
@@ -32,7 +32,7 @@ module path_rows
 contains
 
   !> The row of point i.
-  type(row_t) function row_of_point(steps, i) result(row)
+  type(path_row_t) function row_of_point(steps, i) result(row)
     type(path_stepper_t), intent(in) :: steps
     integer, intent(in) :: i
 
@@ -43,7 +43,7 @@ contains
   end function row_of_point
 
   !> The row at h0 between point i and the next.
-  type(row_t) function row_at_h0(steps, i, h0) result(row)
+  type(path_row_t) function row_at_h0(steps, i, h0) result(row)
     class(path_stepper_t), intent(inout) :: steps
     integer, intent(in) :: i
     real(wp), intent(in) :: h0
@@ -62,7 +62,7 @@ contains
     class(path_stepper_t), intent(inout) :: steps
     integer, intent(in) :: i
     real(wp), intent(in) :: from, until, widest, profiles(:)
-    type(row_t), allocatable, intent(out) :: rows(:)
+    type(path_row_t), allocatable, intent(out) :: rows(:)
     type(path_span_t) :: span
     real(wp), allocatable :: stops(:), stop_at(:), places(:)
     real(wp) :: begin, end
@@ -98,7 +98,7 @@ contains
 
   !> The row at the coordinate s of the span after point i: the predicted state, corrected if it is
   !> not an equilibrium to the tolerance.
-  type(row_t) function row_for_curve(steps, i, span, s) result(row)
+  type(path_row_t) function row_for_curve(steps, i, span, s) result(row)
     class(path_stepper_t), intent(inout) :: steps
     integer, intent(in) :: i
     type(path_span_t), intent(in) :: span

@@ -1,6 +1,6 @@
 !> A quasi-static experiment under a law that attracts. All equilibria lie on one path, which is
-!> traced before the experiment. The path gives the stable piece on which an experiment is, the ends
-!> of this piece, the landings of jumps, and the largest tension.
+!> traced before the experiment. The path gives the way of the bodies along its stable pieces
+!> (`walk`) and the largest tension.
 !>
 !> The iteration solves the states; its result is accepted if it is the state on the path. Usually
 !> one correction of the predicted state and a check are enough, with one factorisation for many
@@ -16,12 +16,25 @@ module path_stepper
   use prediction, only: missed_t, expect
   use path_end, only: demand_t
   use numerics_choice, only: choice_t
-  use tracing, only: trace
-  use known_path, only: known_path_t, landing_t, know_pieces, interval_at
-  use stepper, only: branch_point_t, step_result_t, extreme_t, remember
+  use path_tangent, only: of_h0
+  use tracing, only: tracing_t, trace
+  use drives, only: drive_t
+  use driven_pieces, only: driven_pieces_t, jump_t, find_pieces, find_jumps, interval_with
+  use walk, only: walk_t, way_along
+  use reported_place, only: place_t, point_of_path, of_load
+  use largest_tension, only: lower, lower_along
+  use stepper, only: branch_point_t, step_result_t, remember
   implicit none
   private
-  public :: path_stepper_t
+  public :: path_stepper_t, known_path_t
+
+  !> The traced path, and its pieces that are stable at prescribed h0.
+  type, extends(tracing_t) :: known_path_t
+    type(driven_pieces_t) :: stable
+  contains
+    procedure :: way_to
+    procedure :: interval_at
+  end type known_path_t
 
   type, extends(locked_stepper_t) :: path_stepper_t
     !> The path, after `know_path` has traced it.
@@ -33,7 +46,8 @@ module path_stepper
     procedure :: approach_to
     procedure :: step_to
     procedure :: know_path
-    procedure, private :: step_over
+    procedure :: find_lowest
+    procedure, private :: jump_with
     procedure, private :: solve_on_piece
   end type path_stepper_t
 
@@ -68,10 +82,15 @@ contains
     if (.not. event%ending%early()) then
       call trace(self%solver_t, position%state, chosen%low, into_contact, accuracy, listener, &
         self%known, demand, chosen%ends_at)
-      call know_pieces(self%solver_t, self%known)
+      associate (path => self%known%path, stable => self%known%stable)
+        call find_pieces(self%solver_t, path, drive_t(of_h0), stable)
+        ! The part beyond the last stable piece was traced only to find the end of this piece.
+        if (size(stable%piece) > 0) path%last = stable%piece(size(stable%piece))%last%interval + 1
+        call find_jumps(self%solver_t, path, stable)
+      end associate
     else
       self%known%ending = event%ending
-      allocate (self%known%piece(0))
+      allocate (self%known%stable%piece(0), self%known%stable%jump(0, 2))
     end if
     call self%frozen%forget()
     self%span%point = 0
@@ -89,95 +108,99 @@ contains
     ! Jumps during the approach, before the experiment begins, are not part of the experiment.
     event%jumped = .false.
     event%fold = 0
-    if (allocated(event%lowest)) event%lowest = extreme_t(position%state%load, h0)
   end subroutine approach_to
 
-  !> Moves to h0 along the stable pieces of the path, with all jumps, and records the first jump and
-  !> the largest tension.
+  !> Moves to h0 along the stable pieces of the path, with all jumps, and records the first jump.
   subroutine step_to(self, h0, position, event)
     class(path_stepper_t), intent(inout) :: self
     real(wp), intent(in) :: h0
     type(branch_point_t), intent(inout) :: position
     type(step_result_t), intent(out) :: event
-    type(extreme_t) :: lowest
-    real(wp) :: from
-
-    lowest%load = huge(1.0_wp)
-    if (size(self%known%piece) == 0) event%ending = self%known%ending
-    if (event%ending%early()) return
-    from = h0
-    if (position%number > 0) from = position%state%h0
-    do while (h0 > self%known%piece(position%piece)%first%h0 .or. &
-      h0 < self%known%piece(position%piece)%last%h0)
-      call self%step_over(h0 < self%known%piece(position%piece)%last%h0, from, position, lowest, &
-        event)
-      if (.not. event%ending%early()) cycle
-      if (event%jumped) event%lowest = lowest
-      return
-    end do
-    call lower_over(self%known, position%piece, from, h0, lowest)
-    call self%solve_on_piece(h0, position, event)
-    if (event%converged .and. position%state%load < lowest%load) &
-      lowest = extreme_t(position%state%load, h0)
-    event%lowest = lowest
-  end subroutine step_to
-
-  !> Leaves the position's piece over the fold at its inner or outer end, and lands. from: the h0 at
-  !> which the motion on this piece began; on return that of the fold.
-  subroutine step_over(self, inward, from, position, lowest, event)
-    class(path_stepper_t), intent(in) :: self
-    logical, intent(in) :: inward
-    real(wp), intent(inout) :: from
-    type(branch_point_t), intent(inout) :: position
-    type(extreme_t), intent(inout) :: lowest
-    type(step_result_t), intent(inout) :: event
-    type(landing_t) :: landing
-
-    if (inward) then
-      landing = self%known%inward(position%piece)
-    else
-      landing = self%known%outward(position%piece)
-    end if
-    if (landing%fold > 0) then
-      associate (fold => self%known%path%point(landing%fold)%state)
-        call lower_over(self%known, position%piece, from, fold%h0, lowest)
-        if (.not. event%jumped) then
-          event%jumped = .true.
-          event%jump_h0 = fold%h0
-          event%jump_load = fold%load
-          event%fold = landing%fold
-        end if
-        from = fold%h0
-      end associate
-    end if
-    if (landing%piece == 0) then
-      event%ending = self%known%ending
-      if (.not. event%ending%early()) event%ending%cause = beyond_path
-      return
-    end if
-    if (landing%after%load < lowest%load) &
-      lowest = extreme_t(landing%after%load, from, landing%fold, .true.)
-    position%piece = landing%piece
-    position%held = 0
-  end subroutine step_over
-
-  !> Replaces the largest tension by the largest one among the load extrema and folds of a piece
-  !> with h0 between two values if that is larger.
-  pure subroutine lower_over(known, piece, from, to, lowest)
-    type(known_path_t), intent(in) :: known
-    integer, intent(in) :: piece
-    real(wp), intent(in) :: from, to
-    type(extreme_t), intent(inout) :: lowest
+    type(walk_t) :: way
     integer :: i
 
-    do i = known%piece(piece)%first%interval, known%piece(piece)%last%interval + 1
-      associate (point => known%path%point(i), state => known%path%point(i)%state)
-        if (.not. (point%load_extremum .or. point%fold)) cycle
-        if ((state%h0 - from)*(state%h0 - to) > 0) cycle
-        if (state%load < lowest%load) lowest = extreme_t(state%load, state%h0, i)
+    if (size(self%known%stable%piece) == 0) event%ending = self%known%ending
+    if (event%ending%early()) return
+    way = self%known%way_to(position%piece, h0)
+    do i = 1, size(way%leg)
+      if (way%leg(i)%jumps) call self%jump_with(self%known%stable%jump_from(way%leg(i)%piece, &
+        way%leg(i)%inward), position, event)
+    end do
+    if (way%arrives) then
+      call self%solve_on_piece(h0, position, event)
+    else
+      event%ending = self%known%ending
+      if (.not. event%ending%early()) event%ending%cause = beyond_path
+    end if
+  end subroutine step_to
+
+  !> Moves the position to the piece in which a jump ends.
+  subroutine jump_with(self, jump, position, event)
+    class(path_stepper_t), intent(in) :: self
+    type(jump_t), intent(in) :: jump
+    type(branch_point_t), intent(inout) :: position
+    type(step_result_t), intent(inout) :: event
+
+    if (.not. event%jumped) then
+      event%jumped = .true.
+      event%fold = jump%fold()
+      event%jump_h0 = self%known%path%point(event%fold)%state%h0
+      event%jump_load = self%known%path%point(event%fold)%state%load
+    end if
+    if (jump%piece == 0) return
+    position%piece = jump%piece
+    position%held = 0
+  end subroutine jump_with
+
+  !> The way at prescribed h0 from a stable piece to an h0.
+  pure type(walk_t) function way_to(self, piece, h0) result(way)
+    class(known_path_t), intent(in) :: self
+    integer, intent(in) :: piece
+    real(wp), intent(in) :: h0
+
+    way = way_along(self%stable, piece, h0 < self%stable%piece(piece)%last%h0, h0)
+  end function way_to
+
+  !> The interval on a mesh in which a stable piece reaches h0.
+  pure integer function interval_at(self, piece, h0) result(i)
+    class(known_path_t), intent(in) :: self
+    integer, intent(in) :: piece
+    real(wp), intent(in) :: h0
+
+    i = max(interval_with(self%path, self%stable%piece(piece), of_h0, h0), self%path%undeformed + 1)
+  end function interval_at
+
+  !> See `stepper`: the load is lowest at an extremum, at a fold or after a jump.
+  subroutine find_lowest(self, piece, from, to, lowest)
+    class(path_stepper_t), intent(in) :: self
+    integer, intent(in) :: piece
+    real(wp), intent(in) :: from, to
+    type(place_t), allocatable, intent(inout) :: lowest
+    type(walk_t) :: way
+    type(jump_t) :: jump
+    type(place_t) :: landing
+    real(wp) :: begins, ends
+    integer :: i
+
+    way = self%known%way_to(piece, to)
+    begins = from
+    do i = 1, size(way%leg)
+      associate (leg => way%leg(i), stable => self%known%stable%piece(way%leg(i)%piece))
+        ends = to
+        if (leg%jumps) then
+          jump = self%known%stable%jump_from(leg%piece, leg%inward)
+          ends = self%known%path%point(jump%fold())%state%h0
+        end if
+        call lower_along(self%known%path, stable%first%interval, stable%last%interval + 1, lowest, &
+          [begins, ends])
+        if (.not. leg%jumps) return
+        landing = point_of_path(jump%fold(), landing=.true.)
+        landing%at(of_load) = jump%after%load
+        if (jump%landed) call lower(lowest, landing)
+        begins = ends
       end associate
     end do
-  end subroutine lower_over
+  end subroutine find_lowest
 
   !> Solves the state at h0 on the position's piece: by iteration at fixed h0 or, if this does not
   !> converge to the state on the path, or near a fold, by a search along the path.
@@ -192,13 +215,13 @@ contains
     logical :: jumped, beside(2)
 
     jumped = event%jumped
-    i = interval_at(self%known, position%piece, h0)
+    i = self%known%interval_at(position%piece, h0)
     if (self%span%point /= i) then
       self%span = new_path_span(self%known%path, i)
       call self%missed%clear()
     end if
     mesh = self%span%mesh
-    associate (ends => self%span%ends, piece => self%known%piece(position%piece))
+    associate (ends => self%span%ends, piece => self%known%stable%piece(position%piece))
       s = self%span%at_h0(h0)
       beside = abs(s - ends) < beside_fold*abs(ends(2) - ends(1)) .and. [piece%first_turns .and. i &
         == piece%first%interval, piece%last_turns .and. i == piece%last%interval]

@@ -93,7 +93,6 @@ contains
   subroutine pass_event(record, event)
     type(byte_record_t), intent(inout) :: record
     type(step_result_t), intent(inout) :: event
-    logical :: known
 
     call record%pass(event%converged)
     call record%pass(event%jumped)
@@ -110,14 +109,6 @@ contains
     call record%pass(event%ending%iterations)
     call record%pass(event%ending%residual)
     call record%pass(event%fold)
-    known = allocated(event%lowest)
-    call record%pass(known)
-    if (.not. known) return
-    if (record%reading) allocate (event%lowest)
-    call record%pass(event%lowest%load)
-    call record%pass(event%lowest%h0)
-    call record%pass(event%lowest%point)
-    call record%pass(event%lowest%landing)
   end subroutine pass_event
 
   !> Packs the place of a frozen Jacobian without the factors; frozen%factors%valid: there are

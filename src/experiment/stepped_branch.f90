@@ -5,9 +5,9 @@ module stepped_branch
   use equilibrium, only: holds
   use stepper, only: stepper_t, branch_point_t, step_result_t
   use ending, only: ending_t
+  use largest_tension, only: lower
   use tension_search, only: tension_search_t
-  use reported_place, only: place_t, place_of_state, place_without_state, point_of_path, of_h0, &
-    of_load
+  use reported_place, only: place_t, place_of_state, place_without_state, of_h0
   use places, only: places_t
   use records, only: observer_t, record_t, quality_t, record_of, stable_yes, stable_unasked
   implicit none
@@ -72,7 +72,7 @@ contains
     type(branch_point_t) :: previous, last
     type(step_result_t) :: event
     type(record_t) :: record
-    real(wp) :: last_h0, ends(2)
+    real(wp) :: began, reached, last_h0, ends(2)
     integer, allocatable :: place(:)
     integer :: i, k
 
@@ -80,22 +80,25 @@ contains
     allocate (place(0))
     if (present(keep)) place = [(minloc(abs(plan%h0 - keep(k)), 1), k=1, size(keep))]
     last_h0 = plan%h0(1)
+    reached = last_h0
     if (.not. fresh) then
       last_h0 = position%state%h0
       branch%first_piece = position%piece
     end if
+    began = last_h0
     do i = 1, size(plan%h0)
-      ! On a known path the steps return the largest tension themselves.
-      if (.not. allocated(event%lowest)) previous = position
+      if (position%piece == 0) previous = position
       if (fresh .and. i == 1) then
         call steps%approach_to(plan%h0(i), position, event)
         branch%first_piece = position%piece
+        if (event%ending%early()) branch%first_piece = 0
       else
         call steps%step_to(plan%h0(i), position, event)
       end if
       steps%cost%states = steps%cost%states + 1
       call note(plan%h0(i))
       call search%note_jump(event)
+      reached = plan%h0(i)
       if (event%ending%early()) exit
       associate (state => position%state)
         record = record_of(plan%name, steps%problem, steps%grid(position), state, &
@@ -110,7 +113,11 @@ contains
         last%mesh = position%mesh
         branch%last_piece = position%piece
         ends(2) = position%state%h0
-        if (.not. ends(1) < huge(ends)) ends(1) = ends(2)
+        if (.not. ends(1) < huge(ends)) then
+          ends(1) = ends(2)
+          if (position%piece > 0) &
+            call lower(branch%lowest, place_of_state(position%mesh, position%state))
+        end if
         if (plan%profile(i)) call places%add('profiles', place_of_state(last%mesh, last%state))
         if (position%piece == 0 .and. plan%sample(i)) &
           call places%add('samples', place_of_state(last%mesh, last%state))
@@ -118,16 +125,21 @@ contains
       do k = 1, size(place)
         if (place(k) == i) kept(k) = position
       end do
-      if (.not. allocated(event%lowest)) &
+      if (position%piece == 0) &
         call search%note_state(steps, last_h0, plan%h0(i), previous, position, event)
       last_h0 = plan%h0(i)
     end do
     if (allocated(last%state%gap)) branch%finish = place_of_state(last%mesh, last%state)
     if (branch%states > 0 .and. .not. event%converged) call doubt(farthest_known(), last_h0)
-    call search%finish(steps, last_h0)
-    if (.not. allocated(branch%lowest) .and. allocated(search%lowest)) then
-      branch%lowest = search%lowest
-      branch%lowest_beside_lost = search%beside_lost
+    if (branch%first_piece > 0) then
+      call steps%find_lowest(branch%first_piece, began, reached, branch%lowest)
+      if (allocated(branch%finish)) call lower(branch%lowest, branch%finish)
+    else
+      call search%finish(steps, last_h0)
+      if (allocated(search%lowest)) then
+        branch%lowest = search%lowest
+        branch%lowest_beside_lost = search%beside_lost
+      end if
     end if
     call compare_ends(branch, ends(1), ends(2))
     call enter_ends(branch, fresh, places)
@@ -144,7 +156,6 @@ contains
         branch%jump%left(of_h0) = event%jump_uncertainty
         branch%jump_uncertainty = event%jump_uncertainty
       end if
-      if (allocated(event%lowest)) call lower()
       branch%ending = event%ending
       if (event%ending%early()) return
       branch%states = branch%states + 1
@@ -169,22 +180,6 @@ contains
       farthest_known = plan%h0(1)
       if (allocated(last%state%gap)) farthest_known = last%state%h0
     end function farthest_known
-
-    !> Replaces the branch's largest tension by that of a step on a known path if it is larger.
-    subroutine lower()
-      associate (lowest => event%lowest)
-        if (.not. lowest%load < 0) return
-        if (allocated(branch%lowest)) then
-          if (lowest%load >= branch%lowest%at(of_load)) return
-        end if
-        if (lowest%point == 0) then
-          branch%lowest = place_of_state(position%mesh, position%state)
-        else
-          branch%lowest = point_of_path(lowest%point, landing=lowest%landing)
-          branch%lowest%at(of_load) = lowest%load
-        end if
-      end associate
-    end subroutine lower
 
   end subroutine run_branch
 

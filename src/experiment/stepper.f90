@@ -6,9 +6,10 @@ module stepper
   use contact_state, only: state_t
   use controls, only: control_t
   use frozen_jacobian, only: frozen_jacobian_t
-  use branch_tangent, only: tangent_t, tangent_at
+  use branch_tangent, only: branch_tangent_t, tangent_at
   use solver, only: solver_t
   use ending, only: ending_t
+  use reported_place, only: place_t
   use journal, only: journal_t
   implicit none
   private
@@ -36,12 +37,9 @@ module stepper
     real(wp) :: lost = 0, lost_error = 0
   end type branch_point_t
 
-  !> The largest tension in a step: the load, its h0, and the point of the path with this load, or
-  !> from which the jump starts that lands there; 0: the state at the end of the step.
+  !> A state of large tension: its load and h0.
   type :: extreme_t
     real(wp) :: load = 0, h0 = 0
-    integer :: point = 0
-    logical :: landing = .false.
   end type extreme_t
 
   !> The result of a step; `state_records` packs it.
@@ -60,8 +58,6 @@ module stepper
     real(wp) :: unsure_from = 0
     !> The fold from which the first jump starts, as a point of the path; 0 if it is not known.
     integer :: fold = 0
-    !> The largest tension in the step, if the path is known.
-    type(extreme_t), allocatable :: lowest
     !> Early if there is no state.
     type(ending_t) :: ending
   end type step_result_t
@@ -71,6 +67,7 @@ module stepper
     procedure(begin_at), deferred :: approach_to
     procedure(go_to), deferred :: step_to
     procedure :: find_load_slope
+    procedure :: find_lowest
     procedure :: grid
   end type stepper_t
 
@@ -83,6 +80,7 @@ module stepper
     real(wp) :: earlier_seconds = 0
   contains
     procedure :: keep_steps_of
+    procedure :: find_lowest => find_lowest_of_steps
   end type keeping_stepper_t
 
   abstract interface
@@ -125,7 +123,7 @@ contains
     type(state_t), intent(in) :: state
     real(wp), intent(out) :: slope
     type(frozen_jacobian_t) :: own
-    type(tangent_t) :: tangent
+    type(branch_tangent_t) :: tangent
 
     own = self%frozen
     call self%frozen%forget()
@@ -134,6 +132,25 @@ contains
     slope = nan
     if (tangent%regular) slope = tangent%load
   end subroutine find_load_slope
+
+  !> Makes `lowest` the place of the lowest load on the way from h0 = from, on a stable piece of the
+  !> path, to another h0 if that load is lower; does nothing if the path is not known. The states at
+  !> both ends are not considered.
+  subroutine find_lowest(self, piece, from, to, lowest)
+    class(stepper_t), intent(in) :: self
+    integer, intent(in) :: piece
+    real(wp), intent(in) :: from, to
+    type(place_t), allocatable, intent(inout) :: lowest
+  end subroutine find_lowest
+
+  subroutine find_lowest_of_steps(self, piece, from, to, lowest)
+    class(keeping_stepper_t), intent(in) :: self
+    integer, intent(in) :: piece
+    real(wp), intent(in) :: from, to
+    type(place_t), allocatable, intent(inout) :: lowest
+
+    call self%steps%find_lowest(piece, from, to, lowest)
+  end subroutine find_lowest_of_steps
 
   !> The mesh of a position's state.
   function grid(self, position)

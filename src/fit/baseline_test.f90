@@ -27,9 +27,9 @@ module baseline_test
 
   !> The residuals of a fit and an orthonormal basis of their derivatives by the unknowns, which the
   !> triangle maps to these.
-  type :: tangent_t
+  type :: model_tangent_t
     real(wp), allocatable :: residual(:), basis(:, :), triangle(:, :)
-  end type tangent_t
+  end type model_tangent_t
 
   !> Smallest part of a direction that must remain; rounding of the derivatives leaves less.
   real(wp), parameter :: rounding = 1.0e-4_wp
@@ -48,7 +48,7 @@ contains
     type(curve_residuals_t), intent(inout) :: residuals
     real(wp), intent(in) :: value(:)
     type(lacking_t), allocatable, intent(out) :: lacking(:)
-    type(tangent_t) :: tangent
+    type(model_tangent_t) :: tangent
     real(wp), allocatable :: column(:, :)
     logical :: found
     integer :: n
@@ -94,7 +94,7 @@ contains
     real(wp), intent(in) :: value(:)
     type(lacking_t), allocatable, intent(inout) :: lacking(:)
     type(curve_residuals_t) :: trial
-    type(tangent_t) :: tangent
+    type(model_tangent_t) :: tangent
     type(lacking_t) :: new, best
     real(wp), allocatable :: model(:), line(:), wave(:, :), left(:), amplitude(:)
     real(wp) :: period
@@ -137,7 +137,7 @@ contains
     real(wp), intent(in) :: value(:)
     logical, intent(inout) :: done
     type(curve_residuals_t) :: bare
-    type(tangent_t) :: tangent
+    type(model_tangent_t) :: tangent
     real(wp), allocatable :: model(:), line(:), amplitude(:)
     real(wp) :: period, gain, travel
     logical :: found
@@ -170,7 +170,7 @@ contains
   !> its waves.
   subroutine find_period(data, tangent, period, gain, amplitude)
     type(fit_samples_t), intent(in) :: data
-    type(tangent_t), intent(in) :: tangent
+    type(model_tangent_t), intent(in) :: tangent
     real(wp), intent(out) :: period, gain
     real(wp), allocatable, intent(out) :: amplitude(:)
     type(bracket_t) :: bracket
@@ -221,7 +221,7 @@ contains
   subroutine find_tangent(residuals, value, tangent, found)
     type(curve_residuals_t), intent(inout) :: residuals
     real(wp), intent(in) :: value(:)
-    type(tangent_t), intent(out) :: tangent
+    type(model_tangent_t), intent(out) :: tangent
     logical, intent(out) :: found
 
     allocate (tangent%residual(residuals%rows()), tangent%basis(residuals%rows(), size(value)))
@@ -232,7 +232,7 @@ contains
 
   !> Chi squared per degree of freedom, with a further part of the baseline.
   pure real(wp) function left_of(tangent, lacking)
-    type(tangent_t), intent(in) :: tangent
+    type(model_tangent_t), intent(in) :: tangent
     type(lacking_t), intent(in) :: lacking
 
     left_of = (sum(tangent%residual**2) - lacking%gain)/ &
@@ -243,7 +243,7 @@ contains
   !> columns.
   type(lacking_t) function explained(data, tangent, column, amplitude) result(new)
     type(fit_samples_t), intent(in) :: data
-    type(tangent_t), intent(in) :: tangent
+    type(model_tangent_t), intent(in) :: tangent
     real(wp), intent(in) :: column(:, :)
     real(wp), allocatable, intent(out), optional :: amplitude(:)
     real(wp) :: cleaned(size(tangent%residual), size(column, 2)), &

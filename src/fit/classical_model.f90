@@ -7,7 +7,7 @@ module classical_model
   use root_finding, only: bracket_t
   use classical, only: jkr_load, jkr_displacement, dmt_load, hertz_displacement
   use maugis, only: maugis_t, new_maugis
-  use force_model, only: force_model_t, response_t, way_t, branch_t, inward, outward
+  use force_model, only: force_model_t, response_t, way_t, force_branch_t, inward, outward
   implicit none
   private
   public :: classical_model_t, theories, hertz
@@ -57,9 +57,13 @@ contains
     unknowns = merge(size(value), 0, with_rates)
     associate (apart => response%branch(1))
       ! Separate bodies have no load. h0 falls linearly from beyond all distances.
-      allocate (apart%h0(4, 1), apart%load(4, 1), apart%h0_rate(unknowns, 2, 1), &
-        apart%load_rate(unknowns, 2, 1), source=0.0_wp)
-      apart%h0(:, 1) = widest*[1, 0, -1, -1]
+      allocate (apart%panel(1))
+      associate (panel => apart%panel(1))
+        panel%x = panel%ends
+        panel%h0 = widest*reshape([1, -1, 0, -1], [2, 2])
+        panel%load = 0*panel%h0
+        allocate (panel%h0_rate(unknowns, 2), panel%load_rate(unknowns, 2), source=0.0_wp)
+      end associate
       apart%turns_last = .true.
     end associate
     call set_in_contact(self, number, turn, widest, unknowns, response%branch(2))
@@ -77,32 +81,35 @@ contains
     class(classical_model_t), intent(in) :: model
     real(wp), intent(in) :: number(2), turn, widest
     integer, intent(in) :: unknowns
-    type(branch_t), intent(inout) :: branch
-    real(wp) :: a, edge(0:panels), by_a(2), now(2), rate(2)
+    type(force_branch_t), intent(inout) :: branch
+    real(wp) :: a, edge(0:panels), now(2), by_a(2), rate(2)
     integer, allocatable :: which(:)
     integer :: i, k, side
 
     which = pack([1, 2], [model%finds_work, model%finds_stiffness])
     edge = [(turn + (widest - turn)*(real(i, wp)/panels)**2, i=0, panels)]
-    allocate (branch%h0(4, panels), branch%load(4, panels), &
-      branch%h0_rate(unknowns, 2, panels), branch%load_rate(unknowns, 2, panels))
+    allocate (branch%panel(panels))
     branch%turns_first = .true.
     do i = 1, panels
-      do side = 1, 2
-        a = edge(i - 2 + side)
-        now = state(model, number, a)
-        branch%h0(side, i) = now(1)
-        branch%load(side, i) = now(2)
-        by_a = (state(model, number, a*(1 + step)) - state(model, number, a*(1 - step)))/ &
-          (2*step*a)*(edge(i) - edge(i - 1))
-        branch%h0(2 + side, i) = by_a(1)
-        branch%load(2 + side, i) = by_a(2)
-        do k = 1, unknowns
-          rate = varied(model, number, which(k), a)
-          branch%h0_rate(k, side, i) = rate(1)
-          branch%load_rate(k, side, i) = rate(2)
+      associate (panel => branch%panel(i))
+        panel%ends = edge(i - 1:i)
+        panel%x = panel%ends
+        allocate (panel%h0(2, 2), panel%load(2, 2), panel%h0_rate(unknowns, 2), &
+          panel%load_rate(unknowns, 2))
+        do side = 1, 2
+          a = panel%x(side)
+          now = state(model, number, a)
+          by_a = (state(model, number, a*(1 + step)) - state(model, number, a*(1 - step)))/ &
+            (2*step*a)
+          panel%h0(:, side) = [now(1), by_a(1)]
+          panel%load(:, side) = [now(2), by_a(2)]
+          do k = 1, unknowns
+            rate = varied(model, number, which(k), a)
+            panel%h0_rate(k, side) = rate(1)
+            panel%load_rate(k, side) = rate(2)
+          end do
         end do
-      end do
+      end associate
     end do
   end subroutine set_in_contact
 

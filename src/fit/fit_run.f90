@@ -9,7 +9,7 @@ module fit_run
   use variation, only: problem_family_t
   use experiment_request, only: numerics_t
   use fit_request, only: fit_t, of_model, of_contact_point, is_at_end, farthest_off
-  use measured_curve, only: measured_t
+  use measured_curve, only: measured_curve_t
   use measured_jumps, only: find_jump, find_far, off_baseline
   use measured_checks, only: check_measured
   use measured_loads, only: check_loads, other_order
@@ -65,7 +65,7 @@ contains
   !> same family with the fixed numbers of the deck as further parameters. problem: the problem with
   !> the deck's values.
   subroutine run_fit(measured, fit, numerics, family, wider, problem, listener, outcome)
-    type(measured_t), intent(in) :: measured
+    type(measured_curve_t), intent(in) :: measured
     type(fit_t), intent(in) :: fit
     type(numerics_t), intent(in) :: numerics
     class(problem_family_t), intent(in) :: family, wider

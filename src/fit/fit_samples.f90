@@ -5,7 +5,7 @@
 !> model, so one projection removes it from residuals and from their derivatives.
 module fit_samples
   use kinds, only: wp
-  use measured_curve, only: measured_t
+  use measured_curve, only: measured_curve_t
   use measured_jumps, only: measured_jump_t
   use noise, only: noise_t, whiten
   use force_model, only: inward, outward
@@ -14,7 +14,7 @@ module fit_samples
   public :: fit_samples_t, orthonormalise, solve_triangle
 
   type :: fit_samples_t
-    type(measured_t) :: measured
+    type(measured_curve_t) :: measured
     type(noise_t) :: noise
     !> The least deviation of the noise: that of rounding, in a signal of few digits.
     real(wp) :: least_noise = 0

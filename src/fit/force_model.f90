@@ -2,26 +2,35 @@
 !> along each stable piece as a function of the drive's position, with derivatives by the unknowns
 !> of the model. SI units.
 !>
-!> On each panel of a branch h0 and load are cubics of a parameter t. Newton's method finds the t of
-!> a given position h0 - load/stiffness.
+!> On each panel of a branch h0 and load are Hermite's polynomials of a coordinate x, which pass
+!> through nodes: for the path its points, so that they are the path's own polynomials. Newton's
+!> method finds the x of a given position h0 - load/stiffness.
 module force_model
   use kinds, only: wp
-  use interpolation, only: interval_of
+  use interpolation, only: interval_of, hermite_t, hermite_through, polynomial_weights, &
+    polynomial_slope
   use root_finding, only: bracket_t
   implicit none
   private
-  public :: force_model_t, response_t, way_t, branch_t, load_at_t, inward, outward
+  public :: force_model_t, response_t, way_t, force_branch_t, panel_t, load_at_t, inward, outward
 
   !> Error of a position at which the search ends, over the length of its panel.
   real(wp), parameter :: found_at = 1.0e-13_wp
   integer, parameter :: most_steps = 60
 
-  !> Panels, ordered from large to small h0. h0(:, i), load(:, i): values at begin and end of panel
-  !> i, and derivatives there by t, which goes from 0 to 1. h0_rate, load_rate(unknown, end, panel):
-  !> derivatives by the unknowns at fixed t. turns: the piece ends at a turn of the position, not at
+  !> A panel of a branch. ends: its coordinates x at begin and end. At the nodes, which may lie
+  !> beyond the ends: their coordinates, h0 and load with derivatives by x, (value and slope, node),
+  !> and derivatives by the unknowns at fixed x, (unknown, node).
+  type :: panel_t
+    real(wp) :: ends(2) = [0.0_wp, 1.0_wp]
+    real(wp), allocatable :: x(:), h0(:, :), load(:, :), h0_rate(:, :), load_rate(:, :)
+    type(hermite_t), private :: position_curve, load_curve
+  end type panel_t
+
+  !> Panels, ordered from large to small h0. turns: the piece ends at a turn of the position, not at
   !> an end of the path.
-  type :: branch_t
-    real(wp), allocatable :: h0(:, :), load(:, :), h0_rate(:, :, :), load_rate(:, :, :)
+  type :: force_branch_t
+    type(panel_t), allocatable :: panel(:)
     logical :: turns_first = .false., turns_last = .false.
     !> 1/stiffness of the spring.
     real(wp) :: compliance = 0
@@ -33,7 +42,8 @@ module force_model
     procedure :: close
     procedure :: at
     procedure :: end_of
-  end type branch_t
+    procedure, private :: position_rate
+  end type force_branch_t
 
   !> The load at a position, and its derivatives by the position and by the unknowns at that
   !> position.
@@ -56,10 +66,11 @@ module force_model
   end type way_t
 
   type :: response_t
-    type(branch_t), allocatable :: branch(:)
+    type(force_branch_t), allocatable :: branch(:)
     type(way_t) :: way(2)
   contains
     procedure :: load_on
+    procedure :: largest_tension
     procedure :: jump_from
   end type response_t
 
@@ -116,140 +127,148 @@ contains
     integer :: i, side
 
     associate (branch => self%branch(self%way(way)%branch(self%way(way)%main)))
-      i = merge(size(branch%h0, 2), 1, way == inward)
+      i = merge(size(branch%panel), 1, way == inward)
       side = merge(2, 1, way == inward)
       position = branch%position(merge(size(branch%position), 1, way == inward))
-      load = branch%load(side, i)
-      ! At a turn of the position, moving along the branch does not change the position.
-      rate = branch%h0_rate(:, side, i) - branch%compliance*branch%load_rate(:, side, i)
+      associate (panel => branch%panel(i))
+        load = panel%load_curve%value(panel%ends(side))
+        ! At a turn of the position, moving along the branch does not change the position.
+        rate = matmul(branch%position_rate(i), polynomial_weights(panel%x, panel%ends(side)))
+      end associate
     end associate
   end subroutine jump_from
 
+  !> The largest tension at an end of a panel.
+  pure real(wp) function largest_tension(self) result(tension)
+    class(response_t), intent(in) :: self
+    integer :: i, k, side
+
+    tension = -huge(tension)
+    do i = 1, size(self%branch)
+      do k = 1, size(self%branch(i)%panel)
+        associate (panel => self%branch(i)%panel(k))
+          do side = 1, 2
+            tension = max(tension, -panel%load_curve%value(panel%ends(side)))
+          end do
+        end associate
+      end do
+    end do
+  end function largest_tension
+
   !> Sets the spring, once the panels are set.
   pure subroutine close(self, stiffness)
-    class(branch_t), intent(inout) :: self
+    class(force_branch_t), intent(inout) :: self
     real(wp), intent(in) :: stiffness
-    integer :: n
+    integer :: i, n
 
     self%compliance = 1/stiffness
-    n = size(self%h0, 2)
-    self%position = [self%h0(1, :) - self%compliance*self%load(1, :), &
-      self%h0(2, n) - self%compliance*self%load(2, n)]
+    n = size(self%panel)
+    allocate (self%position(n + 1))
+    do i = 1, n
+      associate (panel => self%panel(i))
+        panel%load_curve = hermite_through(panel%x, panel%load(1, :), panel%load(2, :))
+        panel%position_curve = hermite_through(panel%x, &
+          panel%h0(1, :) - self%compliance*panel%load(1, :), &
+          panel%h0(2, :) - self%compliance*panel%load(2, :))
+        self%position(i:i + 1) = [panel%position_curve%value(panel%ends(1)), &
+          panel%position_curve%value(panel%ends(2))]
+      end associate
+    end do
     self%ascending = -self%position
   end subroutine close
+
+  !> Derivatives of the position by the unknowns at the nodes of panel i, at fixed x.
+  pure function position_rate(self, i) result(rate)
+    class(force_branch_t), intent(in) :: self
+    integer, intent(in) :: i
+    real(wp), allocatable :: rate(:, :)
+
+    rate = self%panel(i)%h0_rate - self%compliance*self%panel(i)%load_rate
+  end function position_rate
 
   !> The load at a position. Beyond a turn the load stays constant. Beyond an end of the path it
   !> continues along a straight line inward, and stays constant outward.
   pure type(load_at_t) function at(self, position) result(found)
-    class(branch_t), intent(in) :: self
+    class(force_branch_t), intent(in) :: self
     real(wp), intent(in) :: position
-    real(wp) :: t
     integer :: i, n
 
-    n = size(self%h0, 2)
+    n = size(self%panel)
     if (position >= self%position(1)) then
       found = self%end_of(.false.)
     else if (position <= self%position(n + 1)) then
       found = self%end_of(.true.)
       if (self%turns_last) return
-      found = on_panel(self, n, 1.0_wp)
+      found = on_panel(self, n, self%panel(n)%ends(2))
       found%load = found%load + found%slope*(position - self%position(n + 1))
     else
       i = interval_of(self%ascending(:n), -position)
-      t = place_on(self, i, position)
-      found = on_panel(self, i, t)
+      found = on_panel(self, i, place_on(self, i, position))
     end if
   end function at
 
-  !> t of a position on panel i, over which the position falls.
-  pure real(wp) function place_on(self, i, position) result(t)
-    class(branch_t), intent(in) :: self
+  !> The coordinate of a position on panel i, over which the position falls.
+  pure real(wp) function place_on(self, i, position) result(x)
+    class(force_branch_t), intent(in) :: self
     integer, intent(in) :: i
     real(wp), intent(in) :: position
     type(bracket_t) :: bracket
-    real(wp) :: c(4), missing, width
+    real(wp) :: value, slope, width
     integer :: step
 
-    c = cubic_of(self%h0(:, i) - self%compliance*self%load(:, i))
     width = abs(self%position(i) - self%position(i + 1))
-    bracket = bracket_t(0.0_wp, 1.0_wp)
-    t = (self%position(i) - position)/max(width, tiny(1.0_wp))
-    do step = 1, most_steps
-      missing = value_of(c, t) - position
-      if (abs(missing) <= found_at*width) exit
-      call bracket%narrow(missing > 0, t)
-      if (abs(slope_of(c, t)) > 0) t = t - missing/slope_of(c, t)
-      if (.not. (t > bracket%low .and. t < bracket%high)) t = bracket%middle()
-    end do
+    associate (panel => self%panel(i))
+      bracket = bracket_t(panel%ends(1), panel%ends(2))
+      x = panel%ends(1) + (panel%ends(2) - panel%ends(1))* &
+        (self%position(i) - position)/max(width, tiny(1.0_wp))
+      do step = 1, most_steps
+        call panel%position_curve%evaluate(x, value, slope)
+        if (abs(value - position) <= found_at*width) exit
+        call bracket%narrow(value > position, x)
+        if (abs(slope) > 0) x = x - (value - position)/slope
+        if (.not. (x > bracket%low .and. x < bracket%high)) x = bracket%middle()
+      end do
+    end associate
   end function place_on
 
-  !> Load and derivatives at t on panel i, where the position does not turn.
-  pure type(load_at_t) function on_panel(self, i, t) result(found)
-    class(branch_t), intent(in) :: self
+  !> Load and derivatives at x on panel i, where the position does not turn.
+  pure type(load_at_t) function on_panel(self, i, x) result(found)
+    class(force_branch_t), intent(in) :: self
     integer, intent(in) :: i
-    real(wp), intent(in) :: t
-    real(wp) :: load(4), h0(4), load_slope, slope
+    real(wp), intent(in) :: x
+    real(wp) :: load_slope
 
-    load = cubic_of(self%load(:, i))
-    h0 = cubic_of(self%h0(:, i))
-    load_slope = slope_of(load, t)
-    slope = slope_of(h0, t) - self%compliance*load_slope
-    found%load = value_of(load, t)
-    found%slope = load_slope/slope
-    found%rate = linear(self%load_rate(:, :, i), t)
-    found%rate = found%rate - found%slope*(linear(self%h0_rate(:, :, i), t) - &
-      self%compliance*found%rate)
+    associate (panel => self%panel(i))
+      call panel%load_curve%evaluate(x, found%load, load_slope)
+      found%slope = load_slope/panel%position_curve%slope(x)
+      associate (weight => polynomial_weights(panel%x, x))
+        found%rate = matmul(panel%load_rate - found%slope*self%position_rate(i), weight)
+      end associate
+    end associate
   end function on_panel
 
-  !> Load and derivatives at an end. A turn is where the derivative of the position by t vanishes,
+  !> Load and derivatives at an end. A turn is where the derivative of the position by x vanishes,
   !> and moves with the unknowns.
   pure type(load_at_t) function end_of(self, inner) result(found)
-    class(branch_t), intent(in) :: self
+    class(force_branch_t), intent(in) :: self
     logical, intent(in) :: inner
-    real(wp), allocatable :: shift(:)
-    real(wp) :: c(4), bend
-    integer :: i, side
+    real(wp), allocatable :: rate(:, :)
+    real(wp) :: bend, x, slope
+    integer :: i, k
 
-    i = merge(size(self%h0, 2), 1, inner)
-    side = merge(2, 1, inner)
-    found%load = self%load(side, i)
-    found%rate = self%load_rate(:, side, i)
-    if (.not. merge(self%turns_last, self%turns_first, inner)) return
-    c = cubic_of(self%h0(:, i) - self%compliance*self%load(:, i))
-    bend = 2*c(3) + 6*c(4)*merge(1, 0, inner)
-    shift = self%h0_rate(:, 2, i) - self%h0_rate(:, 1, i) - &
-      self%compliance*(self%load_rate(:, 2, i) - self%load_rate(:, 1, i))
-    if (abs(bend) > 0) found%rate = found%rate - shift/bend*self%load(2 + side, i)
-  end function end_of
-
-  !> The coefficients of the cubic on [0, 1] with these values and slopes at its ends.
-  pure function cubic_of(ends) result(c)
-    real(wp), intent(in) :: ends(4)
-    real(wp) :: c(4)
-
-    associate (rise => ends(2) - ends(1))
-      c = [ends(1), ends(3), 3*rise - 2*ends(3) - ends(4), ends(3) + ends(4) - 2*rise]
+    i = merge(size(self%panel), 1, inner)
+    associate (panel => self%panel(i))
+      x = panel%ends(merge(2, 1, inner))
+      call panel%load_curve%evaluate(x, found%load, slope)
+      found%rate = matmul(panel%load_rate, polynomial_weights(panel%x, x))
+      if (.not. merge(self%turns_last, self%turns_first, inner)) return
+      bend = panel%position_curve%curvature(x)
+      if (.not. abs(bend) > 0) return
+      rate = self%position_rate(i)
+      do k = 1, size(rate, 1)
+        found%rate(k) = found%rate(k) - slope/bend*polynomial_slope(panel%x, rate(k, :), x)
+      end do
     end associate
-  end function cubic_of
-
-  pure real(wp) function value_of(c, t)
-    real(wp), intent(in) :: c(4), t
-
-    value_of = c(1) + t*(c(2) + t*(c(3) + t*c(4)))
-  end function value_of
-
-  pure real(wp) function slope_of(c, t)
-    real(wp), intent(in) :: c(4), t
-
-    slope_of = c(2) + t*(2*c(3) + 3*t*c(4))
-  end function slope_of
-
-  !> Linear interpolation between both ends of a panel.
-  pure function linear(ends, t) result(value)
-    real(wp), intent(in) :: ends(:, :), t
-    real(wp) :: value(size(ends, 1))
-
-    value = (1 - t)*ends(:, 1) + t*ends(:, 2)
-  end function linear
+  end function end_of
 
 end module force_model

@@ -3,7 +3,7 @@ module measured_checks
   use kinds, only: wp
   use text, only: counted, rounded
   use baseline, only: ways_in
-  use measured_curve, only: measured_t
+  use measured_curve, only: measured_curve_t
   use measured_jumps, only: measured_jump_t, find_jump, off_baseline
   use noise, only: noise_t, white_noise, rough_deviation
   use second_look, only: lack_t, lack_in
@@ -23,7 +23,7 @@ contains
   !> Checks a curve. trouble: allocated if it cannot be fitted. stiffness: of the spring, units of
   !> signal over z.
   subroutine check_measured(measured, noise, stiffness, trouble)
-    type(measured_t), intent(in) :: measured
+    type(measured_curve_t), intent(in) :: measured
     type(noise_t), intent(in) :: noise
     real(wp), intent(in) :: stiffness
     character(len=:), allocatable, intent(out) :: trouble
@@ -66,7 +66,7 @@ contains
     function jumps_in(signal) result(found)
       real(wp), intent(in) :: signal(:)
       type(measured_jump_t) :: found(2)
-      type(measured_t) :: other
+      type(measured_curve_t) :: other
 
       other = measured
       other%signal = signal
@@ -146,7 +146,7 @@ contains
   !> Sets `trouble` if a straight line on each way describes the samples: single ones, and means
   !> over neighbours. left: the signal off the baseline.
   subroutine check_contact(measured, left, noise, stiffness, trouble)
-    type(measured_t), intent(in) :: measured
+    type(measured_curve_t), intent(in) :: measured
     real(wp), intent(in) :: left(:), stiffness
     type(noise_t), intent(in) :: noise
     character(len=:), allocatable, intent(inout) :: trouble
@@ -194,7 +194,7 @@ contains
   !> Height of the approach above the retreat, without their common slope, and its error, in each
   !> part of the travel in which both have samples, nearest first.
   pure subroutine compare_ways(measured, noise, above, error)
-    type(measured_t), intent(in) :: measured
+    type(measured_curve_t), intent(in) :: measured
     type(noise_t), intent(in) :: noise
     real(wp), allocatable, intent(out) :: above(:), error(:)
     real(wp), dimension(size(measured%z)) :: position, x, y
@@ -230,7 +230,7 @@ contains
   !> How far the retreat ends below the approach; 0 if this is within the noise, or less than half
   !> of the largest distance between them. A retreat that ends before the bodies part ends below.
   pure real(wp) function open_end(measured, noise) result(below)
-    type(measured_t), intent(in) :: measured
+    type(measured_curve_t), intent(in) :: measured
     type(noise_t), intent(in) :: noise
     real(wp), allocatable :: above(:), error(:)
     integer :: last
@@ -247,7 +247,7 @@ contains
   !> The first and last of the most samples in a row that have the smallest or the largest signal,
   !> far from the baseline; 0 if these are few, or if a signal of few digits has as many elsewhere.
   pure subroutine find_saturated(measured, noise, first, last)
-    type(measured_t), intent(in) :: measured
+    type(measured_curve_t), intent(in) :: measured
     type(noise_t), intent(in) :: noise
     integer, intent(out) :: first, last
     integer, parameter :: fewest = 4, more = 3

@@ -10,12 +10,12 @@ module measured_curve
   use fit_request, only: measurement_t
   implicit none
   private
-  public :: measured_t, read_measured
+  public :: measured_curve_t, read_measured
 
   !> Samples in the order of the file, the approach first. The contact point is the z at which
   !> undeformed bodies under a relaxed spring would touch. The position of the drive (`drive_t`) is
   !> facing*(z - contact point); facing is 1 if z falls towards the other body, else -1.
-  type, extends(measurement_t) :: measured_t
+  type, extends(measurement_t) :: measured_curve_t
     real(wp), allocatable :: z(:), signal(:)
     logical, allocatable :: inward(:)
     real(wp) :: facing = 1
@@ -28,7 +28,7 @@ module measured_curve
     character(len=:), allocatable :: understood
   contains
     procedure :: outlier
-  end type measured_t
+  end type measured_curve_t
 
   !> Median over mean of the changes from part to part of a curve, and the number of parts: a base
   !> moves evenly, and a signal changes mostly near contact. Shortest and longest travel of a base
@@ -42,7 +42,7 @@ contains
 
   !> Marks the outliers.
   pure function outlier(self)
-    class(measured_t), intent(in) :: self
+    class(measured_curve_t), intent(in) :: self
     logical :: outlier(size(self%z))
 
     outlier = .not. (self%usable .or. self%skipped)
@@ -50,7 +50,7 @@ contains
 
   !> Reads the samples of a curve from its file.
   subroutine read_measured(measured, error)
-    type(measured_t), intent(inout) :: measured
+    type(measured_curve_t), intent(inout) :: measured
     type(failure_t), allocatable, intent(out) :: error
     type(curve_rows_t) :: rows
     logical, allocatable :: wanted(:), repeated(:)
@@ -148,7 +148,7 @@ contains
   !> ways have the same direction.
   subroutine find_facing(file, measured, error)
     character(len=*), intent(in) :: file
-    type(measured_t), intent(inout) :: measured
+    type(measured_curve_t), intent(inout) :: measured
     type(failure_t), allocatable, intent(inout) :: error
     real(wp) :: travel(2)
     integer :: n(2)

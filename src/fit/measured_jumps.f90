@@ -10,7 +10,7 @@
 !> neither.
 module measured_jumps
   use kinds, only: wp
-  use measured_curve, only: measured_t
+  use measured_curve, only: measured_curve_t
   use noise, only: noise_t, noise_of, white_noise, rough_deviation
   use outliers, only: stand_apart
   implicit none
@@ -55,7 +55,7 @@ contains
   !> The largest jump on the way in or out. deviation: of the noise. stiffness: of the spring, units
   !> of signal over z.
   pure type(measured_jump_t) function find_jump(measured, deviation, stiffness, inward) result(jump)
-    type(measured_t), intent(in) :: measured
+    type(measured_curve_t), intent(in) :: measured
     real(wp), intent(in) :: deviation, stiffness
     logical, intent(in) :: inward
     integer, allocatable :: at(:)
@@ -203,7 +203,7 @@ contains
 
   !> Marks the far samples and finds their noise. stiffness: of the spring, units of signal over z.
   subroutine find_far(measured, stiffness, noise)
-    type(measured_t), intent(inout) :: measured
+    type(measured_curve_t), intent(inout) :: measured
     real(wp), intent(in) :: stiffness
     type(noise_t), intent(out) :: noise
     type(noise_t) :: outer_noise
@@ -255,7 +255,7 @@ contains
   !> The step of z about each sample: the mean over its way, or half the distance to the second
   !> sample on either side if that is larger.
   pure function steps_about(measured) result(step)
-    type(measured_t), intent(in) :: measured
+    type(measured_curve_t), intent(in) :: measured
     real(wp) :: step(size(measured%z))
     integer, allocatable :: mine(:)
     real(wp) :: travel
@@ -276,7 +276,7 @@ contains
 
   !> The signal minus the straight line through the baseline of its way.
   pure function off_baseline(measured) result(left)
-    type(measured_t), intent(in) :: measured
+    type(measured_curve_t), intent(in) :: measured
     real(wp) :: left(size(measured%z))
     logical :: far(size(measured%z))
     real(wp) :: middle(2), slope

@@ -76,7 +76,6 @@ contains
     type(modelled_curve_t) :: start
     real(wp) :: tension, own
     logical :: found
-    integer :: i
 
     words = ''
     tension = largest_tension_of(curve)
@@ -85,9 +84,7 @@ contains
     call start%use_model(model)
     call start%ask(start%unknown%value, .false., found)
     if (.not. found) return
-    associate (branch => start%response%branch)
-      own = -minval([(minval(branch(i)%load(:2, :)), i=1, size(branch))])
-    end associate
+    own = start%response%largest_tension()
     if (own < order*tension .and. tension < order*own) return
     words = 'the largest tension of the data is ' // rounded(tension) // ' N, and that of the ' // &
       'model with the values of the deck ' // rounded(own) // ' N: check the unit of the ' // &

@@ -3,30 +3,25 @@
 module path_model
   use kinds, only: wp
   use failure, only: failure_t
-  use interpolation, only: hermite_t, polynomial_weights
   use listener, only: listener_t
   use dimensionless_problem, only: problem_t
   use variation, only: problem_family_t, variation_t, vary, to_search
   use edge_locked, only: new_mesh_family
   use mesh_store, only: mesh_store_t
-  use path_tangent, only: of_h0, of_load
   use traced_path, only: traced_path_t
   use path_sensitivity, only: rate_t, rates_along
-  use driven_pieces, only: driven_piece_t, through_spring
+  use drives, only: through_spring
+  use driven_pieces, only: driven_piece_t
   use device, only: driven_t, drive_bodies
   use experiment_request, only: request_t, numerics_t
   use one_run, only: prepare
   use numerics_choice, only: choice_t, choose
   use path_demand, only: demand_of
   use path_stepper, only: path_stepper_t
-  use force_model, only: force_model_t, response_t, branch_t, inward, outward
+  use force_model, only: force_model_t, response_t, force_branch_t, inward, outward
   implicit none
   private
   public :: path_model_t
-
-  !> Panels of a branch for each interval of the path: between its points the curve is a polynomial
-  !> of the seventh degree, on a panel a cubic.
-  integer, parameter :: panels = 8
 
   type, extends(force_model_t) :: path_model_t
     !> The problems; the unknowns are its parameters.
@@ -145,54 +140,33 @@ contains
     type(traced_path_t), intent(in) :: path
     type(driven_piece_t), intent(in) :: piece
     type(rate_t), intent(in) :: rate(:, :)
-    type(branch_t), intent(out) :: branch
-    type(hermite_t) :: h0, load
+    type(force_branch_t), intent(out) :: branch
     integer, allocatable :: near(:)
-    integer :: i, k, n
-    real(wp) :: ends(2)
+    integer :: i, n
 
-    n = panels*(piece%last%interval - piece%first%interval + 1)
-    allocate (branch%h0(4, n), branch%load(4, n), branch%h0_rate(size(rate, 1), 2, n), &
-      branch%load_rate(size(rate, 1), 2, n))
+    allocate (branch%panel(piece%last%interval - piece%first%interval + 1))
     n = 0
     do i = piece%first%interval, piece%last%interval
       if (.not. path%point(i)%leads_on) cycle
-      call path%curve_between(i, of_h0, h0, ends)
-      call path%curve_between(i, of_load, load, ends, near)
-      if (i == piece%first%interval) ends(1) = piece%first%x
-      if (i == piece%last%interval) ends(2) = piece%last%x
-      if (.not. ends(2) > ends(1)) cycle
-      do k = 1, panels
-        n = n + 1
-        call add_end(1, ends(1) + (ends(2) - ends(1))*(k - 1)/panels, (ends(2) - ends(1))/panels)
-        call add_end(2, ends(1) + (ends(2) - ends(1))*k/panels, (ends(2) - ends(1))/panels)
-      end do
+      associate (panel => branch%panel(n + 1), point => path%point)
+        near = path%fitted_between(i)
+        panel%x = path%point(near)%coordinate
+        panel%ends = path%point(i:i + 1)%coordinate
+        if (i == piece%first%interval) panel%ends(1) = piece%first%x
+        if (i == piece%last%interval) panel%ends(2) = piece%last%x
+        if (.not. panel%ends(2) > panel%ends(1)) cycle
+        panel%h0 = reshape([problem%law%separation_of(point(near)%state%h0), &
+          problem%length*point(near)%tangent%h0], [2, size(near)], order=[2, 1])
+        panel%load = problem%load*reshape([point(near)%state%load, point(near)%tangent%load], &
+          [2, size(near)], order=[2, 1])
+        panel%h0_rate = rate(:, near)%h0
+        panel%load_rate = rate(:, near)%load
+      end associate
+      n = n + 1
     end do
-    branch%h0 = branch%h0(:, :n)
-    branch%load = branch%load(:, :n)
-    branch%h0_rate = branch%h0_rate(:, :, :n)
-    branch%load_rate = branch%load_rate(:, :, :n)
+    branch%panel = branch%panel(:n)
     branch%turns_first = piece%first_turns
     branch%turns_last = piece%last_turns
-
-  contains
-
-    !> Sets the begin, 1, or the end, 2, of panel n, at x; `width` is the unit of t.
-    subroutine add_end(side, x, width)
-      integer, intent(in) :: side
-      real(wp), intent(in) :: x, width
-
-      branch%h0(side, n) = problem%law%separation_of(h0%value(x))
-      branch%h0(2 + side, n) = problem%length*width*h0%slope(x)
-      branch%load(side, n) = problem%load*load%value(x)
-      branch%load(2 + side, n) = problem%load*width*load%slope(x)
-      if (size(rate, 1) == 0) return
-      associate (weight => polynomial_weights(path%point(near)%coordinate, x))
-        branch%h0_rate(:, side, n) = matmul(rate(:, near)%h0, weight)
-        branch%load_rate(:, side, n) = matmul(rate(:, near)%load, weight)
-      end associate
-    end subroutine add_end
-
   end subroutine make_branch
 
   !> Finds the branches of the way in and of the way out, and the main jump of each.
@@ -216,12 +190,12 @@ contains
     end do
     ! The jumps of a way start from its legs, in order, except the last leg.
     largest = 0
-    do i = 1, size(driven%jump)
-      k = merge(inward, outward, driven%jump(i)%inward)
-      associate (change => abs(driven%jump(i)%after%load - driven%jump(i)%before%load))
+    do i = 1, size(driven%jumped)
+      k = merge(inward, outward, driven%jumped(i)%inward)
+      associate (change => abs(driven%jumped(i)%after%load - driven%jumped(i)%before%load))
         if (.not. change > largest(k)) cycle
         largest(k) = change
-        response%way(k)%main = count(driven%jump(:i)%inward .eqv. driven%jump(i)%inward)
+        response%way(k)%main = count(driven%jumped(:i)%inward .eqv. driven%jumped(i)%inward)
       end associate
     end do
   end subroutine find_ways

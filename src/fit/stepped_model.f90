@@ -18,7 +18,7 @@ module stepped_model
   use experiment_request, only: request_t, numerics_t
   use one_run, only: prepare
   use numerics_choice, only: choice_t, choose
-  use force_model, only: force_model_t, response_t, branch_t, inward, outward
+  use force_model, only: force_model_t, response_t, force_branch_t, inward, outward
   implicit none
   private
   public :: stepped_model_t
@@ -167,7 +167,7 @@ contains
   !> its neighbours.
   subroutine make_branch(h0, load, rate, branch)
     real(wp), intent(in) :: h0(:), load(:), rate(:, :)
-    type(branch_t), intent(out) :: branch
+    type(force_branch_t), intent(out) :: branch
     real(wp), dimension(size(h0)) :: slope
     integer :: i, n
 
@@ -179,18 +179,18 @@ contains
         end associate
       end associate
     end do
-    allocate (branch%h0(4, n), branch%load(4, n), branch%load_rate(size(rate, 1), 2, n))
-    branch%h0(1, :) = h0(:n)
-    branch%h0(2, :) = h0(2:)
-    branch%h0(3, :) = h0(2:) - h0(:n)
-    branch%h0(4, :) = h0(2:) - h0(:n)
-    branch%load(1, :) = load(:n)
-    branch%load(2, :) = load(2:)
-    branch%load(3, :) = slope(:n)*(h0(2:) - h0(:n))
-    branch%load(4, :) = slope(2:)*(h0(2:) - h0(:n))
-    branch%load_rate(:, 1, :) = rate(:, :n)
-    branch%load_rate(:, 2, :) = rate(:, 2:)
-    allocate (branch%h0_rate, source=0*branch%load_rate)
+    allocate (branch%panel(n))
+    do i = 1, n
+      associate (panel => branch%panel(i))
+        ! The coordinate is -h0, which rises.
+        panel%ends = -h0(i:i + 1)
+        panel%x = panel%ends
+        panel%h0 = reshape([h0(i), -1.0_wp, h0(i + 1), -1.0_wp], [2, 2])
+        panel%load = reshape([load(i), -slope(i), load(i + 1), -slope(i + 1)], [2, 2])
+        panel%load_rate = rate(:, i:i + 1)
+        panel%h0_rate = 0*panel%load_rate
+      end associate
+    end do
   end subroutine make_branch
 
 end module stepped_model

@@ -4,7 +4,7 @@
 module turn_rest
   use kinds, only: wp
   use noise, only: noise_t
-  use measured_curve, only: measured_t
+  use measured_curve, only: measured_curve_t
   implicit none
   private
   public :: leave_out_rest
@@ -17,7 +17,7 @@ contains
 
   !> Marks the rests of both ways as skipped. stiffness: of the spring, units of signal over z.
   pure subroutine leave_out_rest(measured, noise, stiffness)
-    type(measured_t), intent(inout) :: measured
+    type(measured_curve_t), intent(inout) :: measured
     type(noise_t), intent(in) :: noise
     real(wp), intent(in) :: stiffness
     integer, allocatable :: at(:)

@@ -5,7 +5,7 @@
 module deck
   use text, only: lower, brief, guess, listing, clip
   use deck_source, only: load_source, take_source
-  use deck_scan, only: span_t, entry_t, scan_t, scan_deck
+  use deck_scan, only: span_t, deck_entry_t, scan_t, scan_deck
   use deck_keys, only: key_spec, ignored_group, allowed, names_of
   use deck_values, only: assumed, given, interpret, convert
   use deck_store, only: deck_t
@@ -102,7 +102,7 @@ contains
 
     !> Enters one assignment. what: its mistake, if there is one, at the position `at`.
     subroutine take_entry(entry, group, at, what)
-      type(entry_t), intent(in) :: entry
+      type(deck_entry_t), intent(in) :: entry
       character(len=*), intent(in) :: group
       integer, intent(out) :: at
       character(len=:), allocatable, intent(out) :: what

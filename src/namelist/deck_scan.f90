@@ -8,7 +8,7 @@ module deck_scan
   use deck_characters, only: newline, blank, skip_blank, next_is_equals, plain, is_name
   implicit none
   private
-  public :: span_t, entry_t, scan_t, scan_deck
+  public :: span_t, deck_entry_t, scan_t, scan_deck
 
   !> A piece of the text: its first and last position.
   type :: span_t
@@ -18,19 +18,19 @@ module deck_scan
 
   !> One assignment `name = items` in group number `group`, with the values
   !> `items(first_item : first_item + n_items - 1)`.
-  type :: entry_t
+  type :: deck_entry_t
     integer :: group = 0
     type(span_t) :: name
     integer :: first_item = 1
     integer :: n_items = 0
-  end type entry_t
+  end type deck_entry_t
 
   !> The content of a deck in its order: names of groups without `&`, assignments, and values with
   !> their quotes. The arrays are longer than their contents.
   type :: scan_t
     integer :: n_groups = 0, n_entries = 0, n_items = 0
     type(span_t), allocatable :: groups(:)
-    type(entry_t), allocatable :: entries(:)
+    type(deck_entry_t), allocatable :: entries(:)
     type(span_t), allocatable :: items(:)
   end type scan_t
 
@@ -161,7 +161,7 @@ contains
       else
         if (found%n_entries == size(found%entries)) found%entries = [found%entries, found%entries]
         found%n_entries = found%n_entries + 1
-        found%entries(found%n_entries) = entry_t(found%n_groups, span_t(start, at - 1), &
+        found%entries(found%n_entries) = deck_entry_t(found%n_groups, span_t(start, at - 1), &
           found%n_items + 1, 0)
         call skip_blank(source%text, at)
         at = at + 1

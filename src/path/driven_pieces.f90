@@ -1,113 +1,62 @@
-!> The pieces of the path that are stable when the bodies are driven through a spring.
+!> The pieces of the path that are stable under a drive, and the jumps from their ends.
 !>
-!> The drive is D = a h0 - b F: the position Z = h0 - F/k of the base of a spring of stiffness k (a
-!> = 1, b = 1/k), h0 itself (a = 1, b = 0), or a dead load -F (a = 0, b = 1). A state is stable at
-!> fixed D if no mode of the bodies is unstable at fixed h0 and k - dF/dh0 > 0, the Schur complement
-!> of bodies and spring. On the path followed inward D decreases there.
+!> A state is stable at fixed D = a h0 - b F (`drives`) if no mode of the bodies is unstable at
+!> fixed h0 and k - dF/dh0 > 0, the Schur complement of bodies and spring. On the path followed
+!> inward D decreases there.
 module driven_pieces
   use kinds, only: wp, nan
-  use quadrature, only: gauss_legendre
   use interpolation, only: hermite_t
   use solver, only: solver_t
   use traced_path, only: traced_path_t
+  use drives, only: drive_t
   use curve_states, only: path_state_t, path_place_t, state_of, state_where, find_turns
   implicit none
   private
-  public :: drive_t, driven_piece_t, jump_t, find_pieces, find_jump, piece_with, interval_with, &
-    state_driven, through_spring
-
-  !> Weights of h0 and load in D (`path_tangent`).
-  type :: drive_t
-    real(wp) :: weights(2) = [1.0_wp, 0.0_wp]
-  contains
-    procedure :: position
-    procedure :: energy
-    procedure :: work_between
-  end type drive_t
+  public :: driven_pieces_t, driven_piece_t, jump_t, find_pieces, find_jumps, interval_with, &
+    state_driven
 
   !> A stable piece, from large separations inward; its ends are turning points of D, or the ends of
   !> the known path.
   type :: driven_piece_t
     type(path_state_t) :: first, last
     logical :: first_turns = .false., last_turns = .false.
+  contains
+    procedure :: end_of
+    procedure :: turns
   end type driven_piece_t
 
   !> A jump from the end of a piece, and the energy that the jump dissipates, in units of load times
-  !> length; landed = .false.: no piece of the known path has the drive's position.
+  !> length; landed = .false.: no piece of the known path has the drive's position, or the state
+  !> there was not solved.
   type :: jump_t
     logical :: inward = .true., landed = .false.
     type(path_state_t) :: before, after
     !> The piece in which the jump ends; 0: there is none.
     integer :: piece = 0
     real(wp) :: energy = 0, uncertainty = 0
+  contains
+    procedure :: fold
   end type jump_t
+
+  !> All stable pieces under a drive, from large separations inward; whole = .false.: a state was
+  !> not solved, and its piece is missing. jump(k, 1), jump(k, 2): from the inner and from the
+  !> outer end of piece k, if D turns there.
+  type :: driven_pieces_t
+    type(drive_t) :: drive
+    type(driven_piece_t), allocatable :: piece(:)
+    type(jump_t), allocatable :: jump(:, :)
+    logical :: whole = .true.
+  contains
+    procedure :: jump_from
+    procedure :: jump_over
+    procedure :: piece_with
+  end type driven_pieces_t
 
   !> Least relative decrease of D over a piece: where a turn is a state of the path on two meshes,
   !> rounding leaves pieces over which D hardly decreases.
   real(wp), parameter :: least_fall = 1.0e-9_wp
-  !> Nodes of the quadrature rule for an interval.
-  integer, parameter :: rule = 8
 
 contains
-
-  !> The drive through a spring of stiffness k in units of load over length. k = 0 is a dead load;
-  !> if k is infinite, h0 is prescribed.
-  pure type(drive_t) function through_spring(k) result(drive)
-    real(wp), intent(in) :: k
-
-    if (k > 0) then
-      drive%weights = [1.0_wp, -1/k]
-    else
-      drive%weights = [0.0_wp, -1.0_wp]
-    end if
-  end function through_spring
-
-  !> D at a state.
-  elemental real(wp) function position(self, state)
-    class(drive_t), intent(in) :: self
-    class(path_state_t), intent(in) :: state
-
-    position = self%weights(1)*state%h0 + self%weights(2)*state%load
-  end function position
-
-  !> Energy of bodies and spring, or of bodies and dead load. At fixed D equilibria are stationary
-  !> points of this energy; a jump dissipates the difference. The derivative by D is minus the
-  !> conjugate of D.
-  elemental real(wp) function energy(self, state)
-    class(drive_t), intent(in) :: self
-    class(path_state_t), intent(in) :: state
-
-    if (self%weights(1) > 0) then
-      energy = state%energy - 0.5_wp*self%weights(2)*state%load**2
-    else
-      energy = state%energy + state%load*state%h0
-    end if
-  end function energy
-
-  !> The integral of the conjugate of D (the load; for a dead load h0) over D from one place to
-  !> another place farther in.
-  pure real(wp) function work_between(self, path, from, to) result(work)
-    class(drive_t), intent(in) :: self
-    type(traced_path_t), intent(in) :: path
-    class(path_place_t), intent(in) :: from, to
-    type(hermite_t) :: force, driven
-    real(wp) :: node(rule), weight(rule), ends(2), x
-    integer :: i, k
-
-    call gauss_legendre(node, weight)
-    work = 0
-    do i = from%interval, to%interval
-      if (.not. path%point(i)%leads_on) cycle
-      call path%curve_between(i, merge([0.0_wp, 1.0_wp], [1.0_wp, 0.0_wp], self%weights(1) > 0), &
-        force, ends)
-      call path%curve_between(i, self%weights, driven, ends)
-      ends = part_of(ends, i, from, to)
-      do k = 1, rule
-        x = ends(1) + (ends(2) - ends(1))*node(k)
-        work = work + (ends(2) - ends(1))*weight(k)*force%value(x)*driven%slope(x)
-      end do
-    end do
-  end function work_between
 
   !> The ends of the part of interval i, from ends(1) to ends(2), that is between two places.
   pure function part_of(ends, i, from, to) result(part)
@@ -121,15 +70,30 @@ contains
     if (i == to%interval) part(2) = to%x
   end function part_of
 
-  !> The stable pieces of a path under a drive, from large separations inward. A piece ends where
-  !> stability is lost or the known path ends. whole = .false.: a state was not solved, and its
-  !> piece is missing.
-  subroutine find_pieces(solver, path, drive, pieces, whole)
+  !> The inner or the outer end of a piece.
+  pure type(path_state_t) function end_of(self, inward)
+    class(driven_piece_t), intent(in) :: self
+    logical, intent(in) :: inward
+
+    end_of = self%first
+    if (inward) end_of = self%last
+  end function end_of
+
+  !> Whether D turns at the inner or outer end of a piece; otherwise the known path ends there.
+  pure logical function turns(self, inward)
+    class(driven_piece_t), intent(in) :: self
+    logical, intent(in) :: inward
+
+    turns = merge(self%last_turns, self%first_turns, inward)
+  end function turns
+
+  !> The stable pieces of a path under a drive. A piece ends where stability is lost or the known
+  !> path ends.
+  subroutine find_pieces(solver, path, drive, pieces)
     class(solver_t), intent(inout) :: solver
     type(traced_path_t), intent(in) :: path
     type(drive_t), intent(in) :: drive
-    type(driven_piece_t), allocatable, intent(out) :: pieces(:)
-    logical, intent(out) :: whole
+    class(driven_pieces_t), intent(inout) :: pieces
     type(driven_piece_t) :: piece
     type(path_state_t) :: state
     type(path_state_t), allocatable :: turns(:)
@@ -140,8 +104,11 @@ contains
     integer :: i, k
     logical :: open, stable, solved
 
-    allocate (pieces(0))
-    whole = .true.
+    pieces%drive = drive
+    pieces%whole = .true.
+    if (allocated(pieces%piece)) deallocate (pieces%piece)
+    if (allocated(pieces%jump)) deallocate (pieces%jump)
+    allocate (pieces%piece(0), pieces%jump(0, 2))
     open = .false.
     do i = 1, path%last - 1
       if (.not. path%point(i)%leads_on) cycle
@@ -154,7 +121,7 @@ contains
       ! The extrema of h0 are points of the path.
       if (stable .and. abs(drive%weights(2)) > 0) then
         call find_turns(solver, path, i, drive%weights, turns, solved)
-        whole = whole .and. solved
+        pieces%whole = pieces%whole .and. solved
       end if
       x = [ends(1), turns%x, ends(2)]
       do k = 1, size(x) - 1
@@ -189,10 +156,10 @@ contains
       piece%last = state
       piece%last_turns = turns
       if (.not. (piece%first%converged .and. piece%last%converged)) then
-        whole = .false.
+        pieces%whole = .false.
       else if (drive%position(piece%first) - drive%position(piece%last) > least_fall* &
         dot_product(abs(drive%weights), abs([state%h0, state%load]))) then
-        pieces = [pieces, piece]
+        pieces%piece = [pieces%piece, piece]
       end if
     end subroutine close_piece
 
@@ -200,9 +167,8 @@ contains
 
   !> The piece nearest to `from`, in the given direction, that has a state at a position of the
   !> drive; 0: there is none.
-  pure integer function piece_with(pieces, drive, position, from, inward) result(found)
-    type(driven_piece_t), intent(in) :: pieces(:)
-    type(drive_t), intent(in) :: drive
+  pure integer function piece_with(self, position, from, inward) result(found)
+    class(driven_pieces_t), intent(in) :: self
     real(wp), intent(in) :: position
     integer, intent(in) :: from
     logical, intent(in) :: inward
@@ -210,9 +176,9 @@ contains
 
     sense = merge(1, -1, inward)
     found = from + sense
-    do while (found >= 1 .and. found <= size(pieces))
-      if (position <= drive%position(pieces(found)%first) .and. &
-        position >= drive%position(pieces(found)%last)) return
+    do while (found >= 1 .and. found <= size(self%piece))
+      if (position <= self%drive%position(self%piece(found)%first) .and. &
+        position >= self%drive%position(self%piece(found)%last)) return
       found = found + sense
     end do
     found = 0
@@ -250,30 +216,75 @@ contains
     call state_where(solver, path, i, drive%weights, wanted, ends(1), ends(2), state)
   end subroutine state_driven
 
-  !> The jump from the turn at the inner or outer end of a piece: the bodies land on the nearest
-  !> stable piece with the same position of the drive.
-  subroutine find_jump(solver, path, drive, pieces, from, inward, jump)
+  !> The jumps from all ends of pieces at which D turns.
+  subroutine find_jumps(solver, path, pieces)
     class(solver_t), intent(inout) :: solver
     type(traced_path_t), intent(in) :: path
-    type(drive_t), intent(in) :: drive
-    type(driven_piece_t), intent(in) :: pieces(:)
+    class(driven_pieces_t), intent(inout) :: pieces
+    integer :: k, side
+
+    deallocate (pieces%jump)
+    allocate (pieces%jump(size(pieces%piece), 2))
+    do k = 1, size(pieces%piece)
+      do side = 1, 2
+        if (pieces%piece(k)%turns(side == 1)) &
+          call find_jump(solver, path, pieces, k, side == 1, pieces%jump(k, side))
+      end do
+    end do
+  end subroutine find_jumps
+
+  !> The jump from the turn at the inner or outer end of a piece: the bodies land on the nearest
+  !> stable piece with the same position of the drive.
+  subroutine find_jump(solver, path, pieces, from, inward, jump)
+    class(solver_t), intent(inout) :: solver
+    type(traced_path_t), intent(in) :: path
+    class(driven_pieces_t), intent(in) :: pieces
     integer, intent(in) :: from
     logical, intent(in) :: inward
     type(jump_t), intent(out) :: jump
 
     jump%inward = inward
-    jump%before = pieces(from)%first
-    if (inward) jump%before = pieces(from)%last
+    jump%before = pieces%piece(from)%end_of(inward)
     jump%energy = nan
-    associate (position => drive%position(jump%before))
-      jump%piece = piece_with(pieces, drive, position, from, inward)
+    associate (position => pieces%drive%position(jump%before))
+      jump%piece = pieces%piece_with(position, from, inward)
       if (jump%piece == 0) return
-      call state_driven(solver, path, drive, pieces(jump%piece), position, jump%after)
+      call state_driven(solver, path, pieces%drive, pieces%piece(jump%piece), position, jump%after)
     end associate
     jump%landed = jump%after%converged
     if (.not. jump%landed) return
-    jump%energy = drive%energy(jump%before) - drive%energy(jump%after)
+    jump%energy = pieces%drive%energy(jump%before) - pieces%drive%energy(jump%after)
     jump%uncertainty = jump%before%uncertainty + jump%after%uncertainty
   end subroutine find_jump
+
+  !> The point of the path from which a jump at prescribed h0 starts.
+  pure integer function fold(self)
+    class(jump_t), intent(in) :: self
+
+    fold = self%before%interval + merge(1, 0, self%inward)
+  end function fold
+
+  !> The jump from the inner or outer end of a piece.
+  pure type(jump_t) function jump_from(self, piece, inward) result(jump)
+    class(driven_pieces_t), intent(in) :: self
+    integer, intent(in) :: piece
+    logical, intent(in) :: inward
+
+    jump = self%jump(piece, merge(1, 2, inward))
+  end function jump_from
+
+  !> The jump at prescribed h0 from a point of the path at which a stable piece ends.
+  pure type(jump_t) function jump_over(self, fold) result(jump)
+    class(driven_pieces_t), intent(in) :: self
+    integer, intent(in) :: fold
+    integer :: k, side
+
+    do k = 1, size(self%piece)
+      do side = 1, 2
+        if (.not. self%piece(k)%turns(side == 1)) cycle
+        if (self%jump(k, side)%fold() == fold) jump = self%jump(k, side)
+      end do
+    end do
+  end function jump_over
 
 end module driven_pieces

@@ -45,6 +45,7 @@ module traced_path
     procedure :: add_to
     procedure :: arc_about
     procedure :: curve_between
+    procedure :: fitted_between
     procedure, private :: find_nearby
   end type traced_path_t
 
@@ -171,28 +172,35 @@ contains
     call self%add_to(i, arc)
   end function arc_about
 
-  !> The polynomial for weights(1) h0 + weights(2) load between point i and the next, the
-  !> coordinates of these two, and the points through which it passes.
-  pure subroutine curve_between(self, i, weights, curve, ends, fitted)
+  !> The points through which the polynomial between point i and the next passes.
+  pure function fitted_between(self, i) result(fitted)
+    class(traced_path_t), intent(in) :: self
+    integer, intent(in) :: i
+    integer, allocatable :: fitted(:)
+    integer :: nodes(most_hermite_nodes), n, from, to
+
+    call self%find_nearby(i, from, to)
+    to = min(to, max(self%last, i + 1))
+    call find_nodes_about(self%point(from:to)%coordinate, i + 1 - from, nodes, n)
+    fitted = nodes(:n) + from - 1
+  end function fitted_between
+
+  !> The polynomial for weights(1) h0 + weights(2) load between point i and the next, and the
+  !> coordinates of these two.
+  pure subroutine curve_between(self, i, weights, curve, ends)
     class(traced_path_t), intent(in) :: self
     integer, intent(in) :: i
     real(wp), intent(in) :: weights(2)
     type(hermite_t), intent(out) :: curve
     real(wp), intent(out) :: ends(2)
-    integer, allocatable, intent(out), optional :: fitted(:)
-    integer :: nodes(most_hermite_nodes), n, from, to, j
+    integer :: j
 
-    call self%find_nearby(i, from, to)
-    to = min(to, max(self%last, i + 1))
-    associate (x => self%point(from:to)%coordinate)
-      call find_nodes_about(x, i + 1 - from, nodes, n)
-    end associate
-    nodes(:n) = nodes(:n) + from - 1
     ends = self%point(i:i + 1)%coordinate
-    curve = hermite_through(self%point(nodes(:n))%coordinate, &
-      weights(1)*self%point(nodes(:n))%state%h0 + weights(2)*self%point(nodes(:n))%state%load, &
-      [(self%point(nodes(j))%tangent%of(weights), j=1, n)])
-    if (present(fitted)) fitted = nodes(:n)
+    associate (nodes => self%fitted_between(i))
+      curve = hermite_through(self%point(nodes)%coordinate, &
+        weights(1)*self%point(nodes)%state%h0 + weights(2)*self%point(nodes)%state%load, &
+        [(self%point(nodes(j))%tangent%of(weights), j=1, size(nodes))])
+    end associate
   end subroutine curve_between
 
 end module traced_path

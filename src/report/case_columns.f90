@@ -14,7 +14,7 @@ module case_columns
   implicit none
   private
   public :: columns_of, numbers_of, column_count, left_out, column_width
-  public :: number_t, chosen_numbers, key_columns
+  public :: chosen_number_t, chosen_numbers, key_columns
 
   !> Number of characters of a column's description.
   integer, parameter :: column_width = 132
@@ -29,11 +29,11 @@ module case_columns
     'device', 'device.csv device_jumps.csv', 'fixed_load', 'fixed_load.csv'], [2, 4])
 
   !> A number of the summary: row of `result_rows`, and element if this is a list.
-  type :: number_t
+  type :: chosen_number_t
     integer :: row = 0, element = 1
   contains
     procedure :: name => name_of
-  end type number_t
+  end type chosen_number_t
 
 contains
 
@@ -42,7 +42,7 @@ contains
   function columns_of(scene) result(columns)
     type(scene_t), intent(in) :: scene
     character(len=column_width), allocatable :: columns(:)
-    type(number_t), allocatable :: numbers(:)
+    type(chosen_number_t), allocatable :: numbers(:)
     integer :: i
 
     numbers = chosen_numbers(scene)
@@ -77,7 +77,7 @@ contains
 
   !> The name of a number's column.
   pure function name_of(self) result(name)
-    class(number_t), intent(in) :: self
+    class(chosen_number_t), intent(in) :: self
     character(len=:), allocatable :: name
 
     name = trim(rows(self%row)%key)
@@ -113,7 +113,7 @@ contains
     type(summary_t), intent(in) :: summary
     type(scene_t), intent(in) :: scene
     real(wp), allocatable :: values(:)
-    type(number_t), allocatable :: numbers(:)
+    type(chosen_number_t), allocatable :: numbers(:)
     integer :: i
 
     numbers = chosen_numbers(scene)
@@ -127,7 +127,7 @@ contains
   !> at last those of lists, element by element.
   pure function chosen_numbers(scene) result(numbers)
     type(scene_t), intent(in) :: scene
-    type(number_t), allocatable :: numbers(:)
+    type(chosen_number_t), allocatable :: numbers(:)
     integer :: i, k, n
     integer, allocatable :: single(:), of_list(:)
 
@@ -135,12 +135,12 @@ contains
       pack([(i, i=1, size(rows))], [(comes_with_group(rows(i)), i=1, size(rows))])]
     if (scene%law%terms > 1 .or. scene%law%group /= 'force') &
       single = [single, pack([(i, i=1, size(rows))], rows%sweep == '(forces)')]
-    numbers = [(number_t(single(i)), i=1, size(single))]
+    numbers = [(chosen_number_t(single(i)), i=1, size(single))]
     do n = 1, size(with_list)
       ! Row by row: compiler note 14.
       of_list = pack([(i, i=1, size(rows))], [(rows(i)%sweep == with_list(n), i=1, size(rows))])
       do k = 1, elements(scene, with_list(n))
-        numbers = [numbers, (number_t(of_list(i), k), i=1, size(of_list))]
+        numbers = [numbers, (chosen_number_t(of_list(i), k), i=1, size(of_list))]
       end do
     end do
 

@@ -8,7 +8,7 @@ module classical_rows
     hertz, jkr, dmt, maugis_dugdale, carpick, pietrement_troyon
   use convex_contact, only: hertz_like_load, jkr_like_load, jkr_like_radius, detachment_radius
   use maugis, only: maugis_t, new_maugis
-  use transition_fits, only: fit_t, carpick_fit, pietrement_fit
+  use transition_fits, only: transition_fit_t, carpick_fit, pietrement_fit
   use layered_contact, only: layered_contact_t, new_layered_contact, has_layers, of_load, &
     of_displacement
   use scene_groups, only: range_t
@@ -80,7 +80,7 @@ contains
 
     subroutine add_parabola()
       type(maugis_t) :: theory
-      type(fit_t) :: fit
+      type(transition_fit_t) :: fit
       real(wp) :: load
 
       associate (r => problem%radius, y => problem%stiffness)
@@ -201,7 +201,7 @@ contains
 
     subroutine tell(name, fit)
       character(len=*), intent(in) :: name
-      type(fit_t), intent(in) :: fit
+      type(transition_fit_t), intent(in) :: fit
 
       call summary%set('transition_alpha', fit%alpha)
       call summary%set(name//'_pull_off', -fit%pull_off)

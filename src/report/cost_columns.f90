@@ -4,7 +4,7 @@ module cost_columns
   use kinds, only: wp
   use result_rows, only: rows
   use result_tables, only: columns_of
-  use case_columns, only: number_t, chosen_numbers, key_columns, column_width
+  use case_columns, only: chosen_number_t, chosen_numbers, key_columns, column_width
   use scene_groups, only: scene_t
   use summary, only: summary_t
   implicit none
@@ -19,7 +19,7 @@ contains
   function cost_columns_of(scene) result(columns)
     type(scene_t), intent(in) :: scene
     character(len=column_width), allocatable :: columns(:)
-    type(number_t), allocatable :: numbers(:)
+    type(chosen_number_t), allocatable :: numbers(:)
     integer :: keys, of_all, i
 
     numbers = numbers_with_error(scene)
@@ -44,7 +44,7 @@ contains
     type(scene_t), intent(in) :: scene
     real(wp), intent(in) :: seconds
     real(wp), allocatable :: values(:)
-    type(number_t), allocatable :: numbers(:)
+    type(chosen_number_t), allocatable :: numbers(:)
     character(len=column_width), allocatable :: of_all(:)
     integer :: i
 
@@ -59,7 +59,7 @@ contains
   !> The numbers of the scene's sweep.csv that have an estimated error.
   pure function numbers_with_error(scene) result(numbers)
     type(scene_t), intent(in) :: scene
-    type(number_t), allocatable :: numbers(:)
+    type(chosen_number_t), allocatable :: numbers(:)
     integer :: i
 
     numbers = chosen_numbers(scene)

@@ -89,9 +89,9 @@ contains
         after(k) = places%read_numbers(problem, 'jump_after', of_both(k))
       end do
       do i = 1, size(readings%device)
-        do j = 1, size(readings%device(i)%jump)
+        do j = 1, size(readings%device(i)%jumped)
           n = n + 1
-          associate (jump => readings%device(i)%jump(j))
+          associate (jump => readings%device(i)%jumped(j))
             call results%row(cells([readings%device(i)%stiffness]) // ',' // &
               direction_of(jump%inward), [(before(k)%value(n), k=1, size(of_both)), &
               (after(k)%value(n), k=2, size(of_both)), jump%energy*problem%load*problem%length, &

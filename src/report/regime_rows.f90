@@ -9,7 +9,7 @@ module regime_rows
   use classical, only: hertz, jkr, hertz_radius_at_load, hertz_displacement, jkr_radius_at_load, &
     jkr_displacement, jkr_pull_off, dmt_radius_at_load, dmt_pull_off
   use maugis, only: maugis_t, new_maugis
-  use transition_fits, only: fit_t, carpick_fit, pietrement_fit
+  use transition_fits, only: transition_fit_t, carpick_fit, pietrement_fit
   use reported_place, only: place_t, of_h0, of_load, of_radius, of_edge
   use places, only: places_t, readings_t
   use summary, only: summary_t
@@ -127,7 +127,7 @@ contains
     function of_theories(load) result(says)
       real(wp), intent(in) :: load
       real(wp) :: says(3, size(theories)), a
-      type(fit_t) :: fit
+      type(transition_fit_t) :: fit
       integer :: i
 
       says = nan

@@ -15,7 +15,7 @@ module summary
   integer, parameter :: most_warnings = 20
 
   !> The value of a row, in SI units: one component is allocated, with one or several values.
-  type :: value_t
+  type :: summary_value_t
     real(wp), allocatable :: number(:)
     integer(long), allocatable :: count(:)
     logical, allocatable :: truth
@@ -23,14 +23,14 @@ module summary
     !> Errors of the numbers; derivatives by each parameter of &sensitivity, (parameters, numbers),
     !> and their errors.
     real(wp), allocatable :: error(:), rate(:, :), rate_error(:, :)
-  end type value_t
+  end type summary_value_t
 
   !> A row without a value is absent from the file. If one of several values of an array does not
   !> exist, such as the jump out of an unloading without one, it is NaN.
   type :: summary_t
     !> One element for each row. It is allocated, with the others, as the first value is set, since
     !> several summaries at once would need a larger stack, which a limit of memory can forbid.
-    type(value_t), allocatable, private :: value(:)
+    type(summary_value_t), allocatable, private :: value(:)
     type(line_t), allocatable :: warnings(:), notes(:)
     !> The first reason why the run did not converge; not allocated if there is none.
     character(len=:), allocatable :: failure

@@ -9,7 +9,7 @@ module scene_groups
   use shape, only: shape_t
   use layered_surface, only: layered_surface_t
   use fit_request, only: fit_t
-  use measured_curve, only: measured_t
+  use measured_curve, only: measured_curve_t
   use classical, only: theories, usual
   implicit none
   private
@@ -87,7 +87,7 @@ module scene_groups
     !> Whether the deck has &stability, and &regime.
     logical :: stability = .false., regime = .false.
     type(sweep_t), allocatable :: sweep
-    type(measured_t), allocatable :: measured
+    type(measured_curve_t), allocatable :: measured
     type(fit_t), allocatable :: fit
   contains
     procedure :: has_curve

@@ -16,12 +16,12 @@ module transition_fits
   use root_finding, only: bracket_t
   implicit none
   private
-  public :: fit_t, carpick_fit, pietrement_fit
+  public :: transition_fit_t, carpick_fit, pietrement_fit
 
   !> A fit for two bodies: alpha (0 in DMT, 0.98 in JKR theory), pull-off [N], negative, contact
   !> radius [m] without load, the displacement [m] of Hertz's theory at that radius, and the unit of
   !> load [N]. States are stable at their load; NaN beyond the pull-off.
-  type :: fit_t
+  type :: transition_fit_t
     real(wp) :: alpha = 0, pull_off = 0, radius = 0
     real(wp), private :: sunk = 0, no_load = 0
   contains
@@ -29,12 +29,12 @@ module transition_fits
     procedure :: radius_at_load
     procedure :: displacement_at_load
     procedure :: load_at_displacement
-  end type fit_t
+  end type transition_fit_t
 
 contains
 
   !> The fit of Carpick, Ogletree and Salmeron.
-  elemental type(fit_t) function carpick_fit(theory) result(fit)
+  elemental type(transition_fit_t) function carpick_fit(theory) result(fit)
     type(maugis_t), intent(in) :: theory
     real(wp) :: load, width
 
@@ -46,7 +46,7 @@ contains
   end function carpick_fit
 
   !> The fit of Pietrement and Troyon.
-  elemental type(fit_t) function pietrement_fit(theory) result(fit)
+  elemental type(transition_fit_t) function pietrement_fit(theory) result(fit)
     type(maugis_t), intent(in) :: theory
     real(wp) :: width
 
@@ -60,16 +60,16 @@ contains
   end function pietrement_fit
 
   !> A fit with the numbers of Maugis' units.
-  elemental type(fit_t) function new_fit(theory) result(fit)
+  elemental type(transition_fit_t) function new_fit(theory) result(fit)
     type(maugis_t), intent(in) :: theory
 
-    fit = fit_t((1 - exp(-theory%lambda/0.924_wp))/1.02_wp, theory%unit%load, theory%unit%radius, &
-      theory%unit%displacement, theory%unit%load)
+    fit = transition_fit_t((1 - exp(-theory%lambda/0.924_wp))/1.02_wp, theory%unit%load, &
+      theory%unit%radius, theory%unit%displacement, theory%unit%load)
   end function new_fit
 
   !> z at a load [N]; NaN below the pull-off, and for a load that does not exist.
   elemental real(wp) function state_at_load(self, load) result(z)
-    class(fit_t), intent(in) :: self
+    class(transition_fit_t), intent(in) :: self
     real(wp), intent(in) :: load
     real(wp) :: room
 
@@ -81,7 +81,7 @@ contains
 
   !> Contact radius [m] at a load [N].
   elemental real(wp) function radius_at_load(self, load)
-    class(fit_t), intent(in) :: self
+    class(transition_fit_t), intent(in) :: self
     real(wp), intent(in) :: load
 
     radius_at_load = self%radius*self%state_at_load(load)**(2.0_wp/3)
@@ -89,7 +89,7 @@ contains
 
   !> Displacement [m] at a load [N], in the fit of Pietrement and Troyon only.
   elemental real(wp) function displacement_at_load(self, load) result(displacement)
-    class(fit_t), intent(in) :: self
+    class(transition_fit_t), intent(in) :: self
     real(wp), intent(in) :: load
     real(wp) :: pull, beta
 
@@ -103,7 +103,7 @@ contains
   !> Load [N] at a displacement [m], in the fit of Pietrement and Troyon only; it grows with the
   !> displacement. NaN below the displacement of the pull-off.
   elemental real(wp) function load_at_displacement(self, displacement) result(load)
-    class(fit_t), intent(in) :: self
+    class(transition_fit_t), intent(in) :: self
     real(wp), intent(in) :: displacement
     type(bracket_t) :: bracket
 

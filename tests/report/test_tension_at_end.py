@@ -83,6 +83,17 @@ def test_the_first_scene_ended_early_has_less_than_its_pull_off(run):
     assert [one.summary["max_tension_at_end"] for one in (short, whole)] == [True, False]
 
 
+def test_steps_within_rounding_have_no_pull_off_between_them(run):
+    """Loads of neighbouring rows differ by rounding, which must make none of them an extremum."""
+    z0 = 0.0007010033371579751
+    found = run(deck(bodies={"radius": 7.182906070956518e-05, "stiffness": 1997295291.7220807},
+                     force={"law": "lennard_jones", "hamaker": 2.5335824919975316, "z0": z0},
+                     loading={"h0_start": z0, "h0_end": 0.0007010033371579745,
+                              "h0_step": 2.168404344971009e-20},
+                     numerics={"method": "newton"}))
+    assert found.summary["max_tension_at_end"]
+
+
 def test_each_unloading_tells_of_its_own_tension(run):
     summary = run(scene({"loading": {**CYCLE, "h0_end": -2e-9},
                          "unloading": {"from_": [3e-9, -2e-9]}})).summary

@@ -53,6 +53,19 @@ def test_a_module_is_named_like_its_file():
         assert declared[1] == name
 
 
+def test_every_name_of_a_type_has_one_meaning():
+    """`app/mpi/` and `app/alone/` have the same module, of which a build takes one."""
+    definition = re.compile(r"^ *type(?:, *[\w, ()]+)? *(?:::)? +(\w+_t) *$", re.MULTILINE)
+    places = {}
+    for path in sorted(SOURCE.rglob("*.f90*")):
+        if path.parent.name == "alone":
+            continue
+        for name in definition.findall(path.read_text()):
+            places.setdefault(name, []).append(path.name)
+    assert len(places) > 100
+    assert not {name: found for name, found in places.items() if len(found) > 1}
+
+
 @pytest.mark.parametrize("folder", ["src", "pywrap", "tests"])
 def test_no_line_is_longer_than_a_hundred_columns(folder):
     long = [

@@ -1,0 +1,50 @@
+!> The largest tension of an experiment, as the place of the lowest load. On a stretch of the path
+!> the load is lowest at an end or at an extremum, and the extrema of the path's polynomials are
+!> points of the path.
+module largest_tension
+  use kinds, only: wp
+  use traced_path, only: traced_path_t
+  use reported_place, only: place_t, point_of_path, of_load
+  implicit none
+  private
+  public :: lower, lower_along
+
+contains
+
+  !> Makes `place` that of the largest tension if its tension is larger. lowest: not allocated if
+  !> there is no attraction.
+  pure subroutine lower(lowest, place)
+    type(place_t), allocatable, intent(inout) :: lowest
+    type(place_t), intent(in) :: place
+
+    if (.not. place%at(of_load) < 0) return
+    if (allocated(lowest)) then
+      if (place%at(of_load) >= lowest%at(of_load)) return
+    end if
+    lowest = place
+  end subroutine lower
+
+  !> The same for the extrema and folds among the points `first` to `last` of a path, if h0 is given
+  !> with h0 between these two values.
+  pure subroutine lower_along(path, first, last, lowest, h0)
+    type(traced_path_t), intent(in) :: path
+    integer, intent(in) :: first, last
+    type(place_t), allocatable, intent(inout) :: lowest
+    real(wp), intent(in), optional :: h0(2)
+    type(place_t) :: place
+    integer :: i
+
+    do i = first, last
+      associate (point => path%point(i))
+        if (.not. (point%load_extremum .or. point%fold)) cycle
+        if (present(h0)) then
+          if (product(point%state%h0 - h0) > 0) cycle
+        end if
+        place = point_of_path(i)
+        place%at(of_load) = point%state%load
+        call lower(lowest, place)
+      end associate
+    end do
+  end subroutine lower_along
+
+end module largest_tension

@@ -1,0 +1,88 @@
+!> Drives of the bodies. The drive is D = a h0 - b F: the position Z = h0 - F/k of the base of a
+!> spring of stiffness k (a = 1, b = 1/k), h0 itself (a = 1, b = 0), or a dead load -F (a = 0, b =
+!> 1).
+module drives
+  use kinds, only: wp
+  use quadrature, only: gauss_legendre
+  use interpolation, only: hermite_t
+  use traced_path, only: traced_path_t
+  use curve_states, only: path_state_t, path_place_t
+  implicit none
+  private
+  public :: drive_t, through_spring
+
+  !> Weights of h0 and load in D (`path_tangent`).
+  type :: drive_t
+    real(wp) :: weights(2) = [1.0_wp, 0.0_wp]
+  contains
+    procedure :: position
+    procedure :: energy
+    procedure :: work_between
+  end type drive_t
+
+  !> Nodes of the quadrature rule for an interval.
+  integer, parameter :: rule = 8
+
+contains
+
+  !> The drive through a spring of stiffness k in units of load over length. k = 0 is a dead load;
+  !> if k is infinite, h0 is prescribed.
+  pure type(drive_t) function through_spring(k) result(drive)
+    real(wp), intent(in) :: k
+
+    if (k > 0) then
+      drive%weights = [1.0_wp, -1/k]
+    else
+      drive%weights = [0.0_wp, -1.0_wp]
+    end if
+  end function through_spring
+
+  !> D at a state.
+  elemental real(wp) function position(self, state)
+    class(drive_t), intent(in) :: self
+    class(path_state_t), intent(in) :: state
+
+    position = self%weights(1)*state%h0 + self%weights(2)*state%load
+  end function position
+
+  !> Energy of bodies and spring, or of bodies and dead load. At fixed D equilibria are stationary
+  !> points of this energy; a jump dissipates the difference. The derivative by D is minus the
+  !> conjugate of D.
+  elemental real(wp) function energy(self, state)
+    class(drive_t), intent(in) :: self
+    class(path_state_t), intent(in) :: state
+
+    if (self%weights(1) > 0) then
+      energy = state%energy - 0.5_wp*self%weights(2)*state%load**2
+    else
+      energy = state%energy + state%load*state%h0
+    end if
+  end function energy
+
+  !> The integral of the conjugate of D (the load; for a dead load h0) over D from one place to
+  !> another place farther in.
+  pure real(wp) function work_between(self, path, from, to) result(work)
+    class(drive_t), intent(in) :: self
+    type(traced_path_t), intent(in) :: path
+    class(path_place_t), intent(in) :: from, to
+    type(hermite_t) :: force, driven
+    real(wp) :: node(rule), weight(rule), ends(2), x
+    integer :: i, k
+
+    call gauss_legendre(node, weight)
+    work = 0
+    do i = from%interval, to%interval
+      if (.not. path%point(i)%leads_on) cycle
+      call path%curve_between(i, merge([0.0_wp, 1.0_wp], [1.0_wp, 0.0_wp], self%weights(1) > 0), &
+        force, ends)
+      call path%curve_between(i, self%weights, driven, ends)
+      if (i == from%interval) ends(1) = from%x
+      if (i == to%interval) ends(2) = to%x
+      do k = 1, rule
+        x = ends(1) + (ends(2) - ends(1))*node(k)
+        work = work + (ends(2) - ends(1))*weight(k)*force%value(x)*driven%slope(x)
+      end do
+    end do
+  end function work_between
+
+end module drives
