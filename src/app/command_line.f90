@@ -232,7 +232,7 @@ contains
       '  --name NAME name of the deck on standard input', &
       '  --check     validate the decks, compute nothing', &
       '  --price     the decks at five accuracies: a table of time and errors; no results', &
-      '  --resume    continue an interrupted run; leave finished results as they are', &
+      '  --resume    continue an interrupted sweep; leave finished results as they are', &
       '  --quiet     no progress on the terminal (-q)', &
       '  --keys      print all groups and keys of decks, with unit, default and meaning, or only', &
       '              those named, as GROUP or GROUP.KEY', &

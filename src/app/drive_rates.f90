@@ -12,7 +12,6 @@ module drive_rates
   use experiment_result, only: experiment_result_t
   use listener, only: listener_t
   use records, only: observer_t
-  use stepper, only: keeping_stepper_t
   use timed_record, only: timed_result_t, numbers
   use rate_entries, only: si_numbers
   implicit none
@@ -26,9 +25,8 @@ module drive_rates
 contains
 
   !> Sets the derivatives of the numbers of a drive by each parameter of &sensitivity.
-  subroutine rate_drive(scene, keeper, listener, timed)
+  subroutine rate_drive(scene, listener, timed)
     type(scene_t), intent(in) :: scene
-    class(keeping_stepper_t), intent(inout) :: keeper
     class(listener_t), intent(inout) :: listener
     type(timed_result_t), intent(inout) :: timed
     real(wp) :: change, place(2), side(numbers, 2)
@@ -49,7 +47,7 @@ contains
             place = [change, 2*change]
           end if
           do i = 1, 2
-            call run_with(scene, name, value*(1 + place(i)), keeper, side(:, i), found)
+            call run_with(scene, name, value*(1 + place(i)), side(:, i), found)
             if (.not. found) then
               timed%not_rated = name
               return
@@ -80,11 +78,10 @@ contains
   end function allowed
 
   !> The numbers that a run with another value of the number `name` finds.
-  subroutine run_with(scene, name, value, keeper, side, found)
+  subroutine run_with(scene, name, value, side, found)
     type(scene_t), intent(in) :: scene
     character(len=*), intent(in) :: name
     real(wp), intent(in) :: value
-    class(keeping_stepper_t), intent(inout) :: keeper
     real(wp), intent(out) :: side(:)
     logical, intent(out) :: found
     type(scene_t) :: variant
@@ -98,7 +95,7 @@ contains
     found = .not. allocated(error)
     if (.not. found) return
     problem = problem_of(variant)
-    call run_experiment(variant, problem, observer, outcome, keeper)
+    call run_experiment(variant, problem, observer, outcome)
     found = outcome%timed%begun .and. .not. outcome%timed%lost
     if (found) side = si_numbers(problem, outcome%timed)
   end subroutine run_with
