@@ -46,7 +46,7 @@ _NO_NUMBERS = (
     "deck_source", "deck_store", "deck_values", "dispatch", "failure", "files", "folder_lock",
     "journal", "journal_frame", "launch", "namelist_writer", "preflight", "price", "price_table",
     "progress", "publication", "ranks", "result_folder", "result_rows", "result_tables",
-    "run_identity", "snapin", "state_records",
+    "run_identity", "snapin",
     "text", "text_file",
 )
 _MARK = re.compile(r"<!-- measured at (\w+) -->")

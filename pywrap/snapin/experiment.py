@@ -38,8 +38,9 @@ def run(deck, out=None, *, resume=False, quiet=True):
 
     `deck` is a dictionary of groups, such as {"bodies": {"radius": 1.5e-2, "rigid": True}, ...},
     the text of a deck, or the path of one. Nothing is left on the disk unless `out` names a folder
-    for the results; there `resume` continues an interrupted run, and files that no run has written
-    are left alone. Without `quiet` progress and messages go to standard error.
+    for the results; there `resume` continues an interrupted sweep and leaves finished results as
+    they are, and files that no run has written are left alone. Without `quiet` progress and
+    messages go to standard error.
 
     A wrong deck raises `DeckError`; results that could not be written, or a calculation without
     results, `SnapinError`; a lack of memory `MemoryError`. Warnings of the program, also of states

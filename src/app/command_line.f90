@@ -236,7 +236,7 @@ contains
       '  --name NAME name of the deck on standard input', &
       '  --check     validate the decks, compute nothing', &
       '  --price     the decks at five accuracies: a table of time and errors; no results', &
-      '  --resume    continue an interrupted run; leave finished results as they are', &
+      '  --resume    continue an interrupted sweep; leave finished results as they are', &
       '  --quiet     no progress and no messages on the terminal (-q)', &
       '  --verbose   also tell which numerics were chosen, and why (-v)', &
       '  --keys      print all groups and keys of decks, with unit, default and meaning, or only', &

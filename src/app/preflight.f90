@@ -8,7 +8,6 @@ module preflight
   use scene_groups, only: scene_t
   use dimensionless_problem, only: problem_t
   use numerics_choice, only: choice_t, choose, with_fewer_nodes
-  use edge_locked, only: mesh_family_t, new_mesh_family
   use scene_problem, only: problem_of
   use scene, only: swept_scene
   use h0_schedule, only: states_planned
@@ -23,16 +22,13 @@ module preflight
   private
   public :: check_room, check_inputs, large_results
 
-  !> Memory of a run with matrices apart from these [bytes].
-  real(wp), parameter :: other_bytes = 1.0e7_wp
+  !> Memory of a run (compiler note 7) apart from matrices for a number of nodes that the deck gives
+  !> [bytes]; the meshes of a path are part of it.
+  real(wp), parameter :: other_bytes = 6.0e7_wp
   !> Number of matrices for a verified eigenvalue.
   real(wp), parameter :: eigenvalue_matrices = 5
-  !> Number of cells in a row of the curve, of a profile and of a table of theories; bytes of a step
-  !> in the journal.
-  integer, parameter :: of_curve = 10, of_profile = 9, of_theory = 5, kept = 900
-  !> Digits of meshes that are laid out only to count their nodes, whose number is taken as
-  !> proportional to the digits.
-  real(wp), parameter :: few_digits = 3
+  !> Number of cells in a row of the curve, of a profile and of a table of theories.
+  integer, parameter :: of_curve = 10, of_profile = 9, of_theory = 5
   !> Approximate number of nodes of a mesh.
   real(wp), parameter :: of_mesh = 200
   !> Size of results above which they are announced, and the free disk space is checked [bytes].
@@ -102,6 +98,7 @@ contains
     type(failure_t), allocatable, intent(out) :: error
     type(scene_t) :: last
     real(wp) :: bytes, available, more
+    character(len=:), allocatable :: what
     integer :: nodes, copies, most
 
     copies = 1
@@ -123,8 +120,10 @@ contains
     end if
     available = available_memory(blas_buffers(nodes, copies))
     if (bytes > available) then
-      call fail(error, no_room, 'not computed: matrices for '//brief(nodes)//' nodes need '// &
-        gigabytes(bytes)//' of memory, and '//gigabytes(available)//' are available')
+      what = 'not computed: a run needs '
+      if (nodes > 0) what = 'not computed: matrices for '//brief(nodes)//' nodes need '
+      call fail(error, no_room, what//gigabytes(bytes)//' of memory, and '// &
+        gigabytes(available)//' are available; free some, or raise the limit (ulimit -v)')
       return
     end if
     bytes = disk_bytes(scene)
@@ -144,16 +143,14 @@ contains
       gigabytes(disk_bytes(scene))//' on the disk while it runs'
   end function large_results
 
-  !> Bytes of the matrices that exist at the same time, and number of nodes of the largest mesh.
+  !> Bytes of what exists at the same time, and number of nodes of a grid of the deck.
   subroutine count_matrices(scene, bytes, nodes)
     type(scene_t), intent(in) :: scene
     real(wp), intent(out) :: bytes
     integer, intent(out) :: nodes
     type(problem_t) :: problem
     type(choice_t) :: chosen, other
-    type(mesh_family_t) :: meshes
-    real(wp), allocatable :: of_meshes(:)
-    real(wp) :: digits, entries, matrices
+    real(wp) :: entries, matrices
 
     bytes = 0
     nodes = 0
@@ -162,23 +159,13 @@ contains
     if (problem%rigid) return
     chosen = choose(scene, problem)
     entries = 0
-    if (allocated(scene%path) .or. .not. chosen%is_fixed()) then
-      digits = min(chosen%digits, few_digits)
-      meshes = new_mesh_family(problem, chosen%high, chosen%low, digits, shape_only=.true.)
-      of_meshes = chosen%digits/digits*meshes%grid%nodes
-      nodes = ceiling(maxval(of_meshes))
-      ! Kernels, one factorisation and another for a fold, and about one and a half times as much
-      ! again for the finer run, which exists at the same time.
-      entries = 2.6_wp*(sum(of_meshes**2) + 2*real(nodes, wp)**2)
-      if (scene%has_eigenvalues()) entries = entries + eigenvalue_matrices*real(nodes, wp)**2
-    end if
     if (chosen%is_fixed()) then
-      nodes = max(nodes, chosen%nodes)
+      nodes = chosen%nodes
       other = with_fewer_nodes(chosen)
       ! The kernel, the factors in use, and those for following a jump.
       matrices = merge(1, 3, chosen%options%mixing)
       if (scene%has_eigenvalues()) matrices = matrices + eigenvalue_matrices
-      entries = max(entries, matrices*real(chosen%nodes, wp)**2 + 2*real(other%nodes, wp)**2)
+      entries = matrices*real(chosen%nodes, wp)**2 + 2*real(other%nodes, wp)**2
     end if
     bytes = other_bytes + 8*entries
   end subroutine count_matrices
@@ -192,7 +179,7 @@ contains
       bytes = 2.0_wp*scene%sweep%cases()*row(column_count(scene))
       return
     end if
-    bytes = states_planned(scene)*(row(of_curve) + kept)
+    bytes = states_planned(scene)*row(of_curve)
     if (allocated(scene%profile_h0)) then
       bytes = bytes + size(scene%profile_h0)*of_mesh*row(of_profile)
     end if

@@ -8,7 +8,6 @@ module simulation
   use text, only: brief, counted
   use experiment_result, only: experiment_result_t
   use experiment, only: run_experiment
-  use resumable_stepper, only: resumable_stepper_t
   use scene_problem, only: problem_of
   use h0_schedule, only: states_planned
   use number_rates, only: rate_numbers
@@ -55,7 +54,7 @@ contains
   !> to standard output. If memory or disk space does
   !> not suffice, the folder is not changed. converged: .false. if a calculation failed; the results
   !> are kept and the summary says what failed. error: there are no results, or they could not be
-  !> written. resume: an interrupted run in the folder is continued, and finished results are left
+  !> written. resume: an interrupted sweep in the folder is continued, and finished results are left
   !> as they are. crew: the processes that compute a sweep, for which `job` is the number of the
   !> scene.
   subroutine run_scene(scene, out_dir, handed_over, quiet, verbose, resume, crew, job, &
@@ -106,7 +105,8 @@ contains
     call results%finish(error)
     if (allocated(error)) then
       if (error%kind /= bad_input .and. .not. destination%to_stream) &
-        error%message = error%message // '; then go on with --resume'
+        error%message = error%message // merge('; then go on with --resume', &
+        '; then run it again       ', allocated(scene%sweep))
       return
     end if
     call tell(scene, destination, summary, cost)
@@ -154,9 +154,7 @@ contains
 
       left_over = file_exists(journal_of(out_dir))
       call results%open(out_dir, scene, version, problem, &
-        ! Each case of a sweep has one thread, so that the number of threads does not matter.
-        identity_of(scene%deck%resolved(), merge(0, thread_count(), allocated(scene%sweep))), &
-        resume, error)
+        identity_of(scene%deck%resolved()), resume .and. allocated(scene%sweep), error)
       if (allocated(error)) return
       if (destination%to_stream) return
       if (.not. results%folder%lock%is_held()) call destination%say('warning: folders cannot ' // &
@@ -164,6 +162,8 @@ contains
       if (results%folder%journal%inherited > 0) then
         call destination%say('continuing a run that was interrupted after '// &
           duration(results%folder%journal%earlier))
+      else if (left_over .and. .not. allocated(scene%sweep)) then
+        call destination%say('an earlier run was interrupted; it is run again from the beginning')
       else if (left_over .and. resume) then
         call destination%say('the interrupted run left nothing to continue; ' // &
           'starting from the beginning')
@@ -202,20 +202,17 @@ contains
     end subroutine compute
 
     !> Runs the experiments. Each state goes into the results, with its eigenvalue if the scene asks
-    !> for it, and each step into the journal.
+    !> for it.
     subroutine run_observed()
       type(experiment_result_t) :: outcome
       type(stability_recorder_t) :: recorder
-      type(resumable_stepper_t) :: keeper
 
-      keeper%journal => results%folder%journal
       if (scene%has_eigenvalues()) then
         recorder%next => results
-        recorder%journal => results%folder%journal
         recorder%accuracy = scene%numerics%accuracy
-        call run_experiment(scene, problem, recorder, outcome, keeper)
+        call run_experiment(scene, problem, recorder, outcome)
       else
-        call run_experiment(scene, problem, results, outcome, keeper)
+        call run_experiment(scene, problem, results, outcome)
       end if
       if (allocated(outcome%readings)) &
         call write_path_tables(problem, outcome%readings, outcome%places, results)

@@ -1,6 +1,6 @@
 !> One case of a sweep: its computation, its record, and the tally of all cases.
 module sweep_case
-  use kinds, only: wp, nan
+  use kinds, only: wp, long, nan
   use clock, only: thread_seconds
   use text, only: first_line
   use failure, only: failure_t
@@ -19,7 +19,6 @@ module sweep_case
   use cost_columns, only: costs_of
   use mesh_store, only: mesh_store_t
   use byte_record, only: byte_record_t
-  use state_records, only: pass_cost
   implicit none
   private
   public :: case_t, sweep_tally_t, pass_case, run_case
@@ -183,7 +182,7 @@ contains
     call record%pass(case%numbers)
     call pass_text(case%failure)
     call pass_text(case%warning)
-    call pass_cost(record, case%cost)
+    call pass_cost(case%cost)
     call record%pass(case%values)
     call record%pass(case%costs)
 
@@ -197,6 +196,16 @@ contains
       call record%pass(passed)
       text = passed
     end subroutine pass_text
+
+    !> All components of a cost are numbers of one word.
+    subroutine pass_cost(cost)
+      type(cost_t), intent(inout) :: cost
+      integer(long) :: words(storage_size(cost)/storage_size(0_long))
+
+      words = transfer(cost, words)
+      call record%pass(words)
+      cost = transfer(words, cost)
+    end subroutine pass_cost
 
   end subroutine pass_case
 

@@ -24,10 +24,8 @@ module byte_record
     procedure :: add
     !> The argument has no intent: it is an input while the record is written, when it may be a
     !> constant, and an output while the record is read.
-    generic :: pass => pass_words, pass_integer, pass_real, pass_reals, pass_matrix, &
-      pass_logical, pass_text
-    procedure, private :: pass_words, pass_integer, pass_real, pass_reals, pass_matrix, &
-      pass_logical, pass_text
+    generic :: pass => pass_words, pass_integer, pass_real, pass_reals, pass_logical, pass_text
+    procedure, private :: pass_words, pass_integer, pass_real, pass_reals, pass_logical, pass_text
   end type byte_record_t
 
   !> Number of characters in a word.
@@ -133,21 +131,6 @@ contains
       call self%pass(values(i))
     end do
   end subroutine pass_reals
-
-  !> Passes the number of columns, then the values.
-  subroutine pass_matrix(self, values)
-    class(byte_record_t), intent(inout) :: self
-    real(wp), allocatable :: values(:, :), flat(:)
-    integer :: columns
-
-    if (.not. self%reading) then
-      columns = size(values, 2)
-      flat = reshape(values, [size(values)])
-    end if
-    call pass_count(self, columns)
-    call self%pass(flat)
-    if (self%reading) values = reshape(flat, [size(flat)/max(columns, 1), columns])
-  end subroutine pass_matrix
 
   !> Passes the length, then the characters.
   subroutine pass_text(self, text)

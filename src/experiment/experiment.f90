@@ -10,7 +10,7 @@ module experiment
   use equilibrium, only: cost_t
   use mesh_digits, only: most_digits
   use mesh_store, only: mesh_store_t
-  use stepper, only: stepper_t, keeping_stepper_t
+  use stepper, only: stepper_t
   use locked_stepper, only: locked_stepper_t, unique_stepper_t
   use path_stepper, only: path_stepper_t
   use fixed_stepper, only: fixed_stepper_t
@@ -20,7 +20,6 @@ module experiment
   use reported_numbers, only: run_numbers_t, largest_error, chance, chance_on_grids
   use path_sensitivity, only: rates_along
   use timed_run, only: run_timed
-  use journal, only: journal_t
   use records, only: observer_t
   use clock, only: seconds
   implicit none
@@ -42,14 +41,13 @@ module experiment
 
 contains
 
-  !> Runs the path and the cycle; does nothing if neither is requested. keeper: stores the cycle's
-  !> steps, and has the steps of an earlier run. store: a store of edge-locked meshes.
-  subroutine run_experiment(request, problem, observer, outcome, keeper, store)
+  !> Runs the path and the cycle; does nothing if neither is requested. store: a
+  !> store of edge-locked meshes.
+  subroutine run_experiment(request, problem, observer, outcome, store)
     class(request_t), intent(in) :: request
     type(problem_t), intent(in) :: problem
     class(observer_t), intent(inout) :: observer
     type(experiment_result_t), intent(out) :: outcome
-    class(keeping_stepper_t), intent(inout), optional :: keeper
     type(mesh_store_t), intent(inout), optional :: store
     ! Not allocatable steppers: compiler note 3.
     type(path_stepper_t), target :: along_path(2)
@@ -59,7 +57,7 @@ contains
 
     if (.not. request%finds_states()) return
     if (allocated(request%drive)) then
-      call run_driven(request, problem, observer, outcome, keeper)
+      call run_driven(request, problem, observer, outcome)
       return
     end if
     outcome%chosen = choose(request, problem)
@@ -70,49 +68,42 @@ contains
     fixed = outcome%chosen%is_fixed()
     if (allocated(request%path) .or. .not. fixed) then
       if (problem%law%adhesion > 0) then
-        call run_locked(along_path(1), along_path(2), request, problem, observer, outcome, keeper, &
-          store)
+        call run_locked(along_path(1), along_path(2), request, problem, observer, outcome, store)
       else
-        call run_locked(one_by_one(1), one_by_one(2), request, problem, observer, outcome, keeper, &
-          store)
+        call run_locked(one_by_one(1), one_by_one(2), request, problem, observer, outcome, store)
       end if
     end if
     if (allocated(request%loading) .and. fixed) &
-      call run_fixed(at_nodes, request, problem, observer, outcome, keeper)
+      call run_fixed(at_nodes, request, problem, observer, outcome)
   end subroutine run_experiment
 
   !> Runs the drive in time; passes: see `run_timed`. Rigid bodies are replaced by bodies that are
   !> too stiff for a noticeable deformation.
-  subroutine run_driven(request, problem, observer, outcome, keeper, passes)
+  subroutine run_driven(request, problem, observer, outcome, passes)
     class(request_t), intent(in) :: request
     type(problem_t), intent(in) :: problem
     class(observer_t), intent(inout) :: observer
     type(experiment_result_t), intent(inout) :: outcome
-    class(keeping_stepper_t), intent(in), optional :: keeper
     integer, intent(in), optional :: passes
     type(problem_t) :: driven
-    type(journal_t), pointer :: journal
 
     driven = problem
     driven%rigid = .false.
     if (problem%rigid) driven%coupling = unyielding
     outcome%chosen = choose(request, driven)
-    nullify (journal)
-    if (present(keeper)) journal => keeper%journal
     allocate (outcome%timed)
-    call run_timed(request, driven, outcome%chosen, journal, observer, outcome%timed, &
-      outcome%places, outcome%error_estimate, outcome%cost, outcome%nodes, passes)
+    call run_timed(request, driven, outcome%chosen, observer, outcome%timed, outcome%places, &
+      outcome%error_estimate, outcome%cost, outcome%nodes, passes)
   end subroutine run_driven
 
   !> Runs the experiments on meshes locked to the contact edge, as accurately as the deck asks for.
   !> Rows are made for the result alone. one, other: steppers of the same type.
-  subroutine run_locked(one, other, request, problem, observer, outcome, keeper, store)
+  subroutine run_locked(one, other, request, problem, observer, outcome, store)
     class(locked_stepper_t), intent(inout), target :: one, other
     class(request_t), intent(in) :: request
     type(problem_t), intent(in) :: problem
     class(observer_t), intent(inout) :: observer
     type(experiment_result_t), intent(inout) :: outcome
-    class(keeping_stepper_t), intent(inout), optional :: keeper
     type(mesh_store_t), intent(inout), optional :: store
     class(locked_stepper_t), pointer :: steps
     type(experiment_result_t) :: ahead, nothing
@@ -123,7 +114,7 @@ contains
     began = seconds()
     outcome%places = nothing%places
     call run_once(steps, request, .not. outcome%chosen%is_fixed(), .true., observer, outcome, &
-      keeper, ahead%places)
+      ahead%places)
     others(1)%number = ahead%places%numbers()
     call outcome%places%judge_by(others, chance)
     outcome%error_estimate = largest_error(outcome%places%number)
@@ -249,13 +240,12 @@ contains
 
   !> Runs the cycle on a grid that is fixed in space, then on a coarser one and on a smaller one,
   !> one at a time, so that their differences cannot cancel. outcome: has the numbers of the path.
-  subroutine run_fixed(steps, request, problem, observer, outcome, keeper)
+  subroutine run_fixed(steps, request, problem, observer, outcome)
     type(fixed_stepper_t), intent(inout) :: steps
     class(request_t), intent(in) :: request
     type(problem_t), intent(in) :: problem
     class(observer_t), intent(inout) :: observer
     type(experiment_result_t), intent(inout) :: outcome
-    class(keeping_stepper_t), intent(inout), optional :: keeper
     type(fixed_stepper_t) :: coarse
     type(experiment_result_t) :: of_path, ahead
     type(run_numbers_t) :: others(2)
@@ -267,7 +257,7 @@ contains
     began = seconds()
     steps%cost = outcome%cost
     call begin_run(steps, request, problem, outcome%chosen, observer)
-    call run_once(steps, request, .true., .true., observer, outcome, keeper)
+    call run_once(steps, request, .true., .true., observer, outcome)
     steps%cost%solve_seconds = steps%cost%solve_seconds + seconds() - began
     outcome%nodes = outcome%nodes + sum(steps%meshes%grid%nodes)
     began = seconds()

@@ -11,7 +11,7 @@ module one_run
   use edge_locked, only: mesh_family_t, new_mesh_family
   use mesh_store, only: mesh_store_t
   use ending, only: turn_not_reached, path_lost
-  use stepper, only: stepper_t, keeping_stepper_t, branch_point_t, step_result_t
+  use stepper, only: stepper_t, branch_point_t, step_result_t
   use fixed_branch, only: change
   use locked_stepper, only: locked_stepper_t, unique_stepper_t
   use path_stepper, only: path_stepper_t
@@ -114,13 +114,12 @@ contains
   !> wanted, or only those at which numbers are read. outcome: has the numbers of other steppers;
   !> readings that exist are not made again. like: the numbers of a run to which this one is
   !> compared.
-  subroutine run_once(steps, request, with_cycle, rows, observer, outcome, keeper, like)
+  subroutine run_once(steps, request, with_cycle, rows, observer, outcome, like)
     class(stepper_t), intent(inout), target :: steps
     class(request_t), intent(in) :: request
     logical, intent(in) :: with_cycle, rows
     class(observer_t), intent(inout) :: observer
     type(experiment_result_t), intent(inout) :: outcome
-    class(keeping_stepper_t), intent(inout), target, optional :: keeper
     type(places_t), intent(in), optional :: like
 
     integer(long) :: states
@@ -142,7 +141,7 @@ contains
       if (allocated(request%path)) call run_path_in_steps(steps, request, rows, observer, outcome)
     end select
     if (allocated(request%loading) .and. with_cycle) &
-      call run_cycle(steps, request, rows, observer, outcome, keeper)
+      call run_cycle(steps, request, rows, observer, outcome)
     ! Only rows count as states of the experiment.
     if (.not. rows) steps%cost%states = states
     select type (steps)
@@ -194,15 +193,13 @@ contains
     call run_branch(steps, plan, .true., position, observer, outcome%stepped_path, outcome%places)
   end subroutine run_path_in_steps
 
-  !> Runs the loading, then an unloading from each turning point; a keeper stores the steps.
-  subroutine run_cycle(solving, request, rows, observer, outcome, keeper)
-    class(stepper_t), intent(inout), target :: solving
+  !> Runs the loading, then an unloading from each turning point.
+  subroutine run_cycle(steps, request, rows, observer, outcome)
+    class(stepper_t), intent(inout) :: steps
     class(request_t), intent(in) :: request
     logical, intent(in) :: rows
     class(observer_t), intent(inout) :: observer
     type(experiment_result_t), intent(inout) :: outcome
-    class(keeping_stepper_t), intent(inout), target, optional :: keeper
-    class(stepper_t), pointer :: steps
     type(h0_schedule_t) :: plan
     type(branch_point_t) :: position
     type(branch_point_t), allocatable :: turning(:)
@@ -210,11 +207,6 @@ contains
     real(wp) :: start
     integer :: k
 
-    steps => solving
-    if (present(keeper)) then
-      call keeper%keep_steps_of(solving)
-      steps => keeper
-    end if
     allocate (from(0))
     if (allocated(request%unloading)) from = steps%problem%law%gap_of(request%unloading%from)
     ! The last one is the state at which loading begins.
@@ -249,9 +241,6 @@ contains
           call places%enter('jump_out', 1, branch%jump)
       end associate
     end do
-    if (.not. present(keeper)) return
-    solving%cost%states = solving%cost%states + keeper%cost%states
-    solving%cost%solve_seconds = solving%cost%solve_seconds + keeper%earlier_seconds
   end subroutine run_cycle
 
   !> Enters the energy that was lost in jumps between the start of a loading and the position at the

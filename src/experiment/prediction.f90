@@ -127,7 +127,7 @@ contains
     integer :: j, k, n
 
     if (position%mesh /= span%mesh .or. position%held == 0) then
-      ! A resumed run would not have the errors from another branch.
+      ! The errors of another branch say nothing about this one.
       self%held = 0
       return
     end if

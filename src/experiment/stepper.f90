@@ -10,18 +10,16 @@ module stepper
   use solver, only: solver_t
   use ending, only: ending_t
   use reported_place, only: place_t
-  use journal, only: journal_t
   implicit none
   private
-  public :: stepper_t, keeping_stepper_t, branch_point_t, step_result_t, extreme_t, memory, &
+  public :: stepper_t, branch_point_t, step_result_t, extreme_t, memory, &
     remember, move_to
 
   !> Number of states for the extrapolation in h0.
   integer, parameter :: memory = 4
 
   !> The position of an experiment: the present state and the past states that the next step can
-  !> use. Positions are copied for later use (turning points, refinements), and `state_records`
-  !> packs them.
+  !> use. Positions are copied for later use (turning points, refinements).
   type :: branch_point_t
     type(state_t) :: state
     !> The solver's mesh of the state, and the stable piece of the path, if it is known.
@@ -42,7 +40,7 @@ module stepper
     real(wp) :: load = 0, h0 = 0
   end type extreme_t
 
-  !> The result of a step; `state_records` packs it.
+  !> The result of a step.
   type :: step_result_t
     logical :: converged = .false.
     !> Whether the bodies jumped; h0 and load just before the first jump, and the uncertainty of h0.
@@ -71,18 +69,6 @@ module stepper
     procedure :: grid
   end type stepper_t
 
-  !> A stepper between an experiment and its solver that stores the steps.
-  type, abstract, extends(stepper_t) :: keeping_stepper_t
-    class(stepper_t), pointer :: steps => null()
-    !> The journal of the steps.
-    type(journal_t), pointer :: journal => null()
-    !> Time [s] that the steps of an earlier run took.
-    real(wp) :: earlier_seconds = 0
-  contains
-    procedure :: keep_steps_of
-    procedure :: find_lowest => find_lowest_of_steps
-  end type keeping_stepper_t
-
   abstract interface
     !> The state at h0 after an approach from large separation.
     subroutine begin_at(self, h0, position, event)
@@ -105,16 +91,6 @@ module stepper
   end interface
 
 contains
-
-  !> Sets the stepper whose steps are stored.
-  subroutine keep_steps_of(self, steps)
-    class(keeping_stepper_t), intent(inout) :: self
-    class(stepper_t), intent(in), target :: steps
-
-    self%steps => steps
-    self%problem = steps%problem
-    self%options = steps%options
-  end subroutine keep_steps_of
 
   !> The derivative of the load by h0 along the branch, at an equilibrium on a mesh fixed in space;
   !> NaN where the Jacobian is singular. The solver keeps its factors.
@@ -142,15 +118,6 @@ contains
     real(wp), intent(in) :: from, to
     type(place_t), allocatable, intent(inout) :: lowest
   end subroutine find_lowest
-
-  subroutine find_lowest_of_steps(self, piece, from, to, lowest)
-    class(keeping_stepper_t), intent(in) :: self
-    integer, intent(in) :: piece
-    real(wp), intent(in) :: from, to
-    type(place_t), allocatable, intent(inout) :: lowest
-
-    call self%steps%find_lowest(piece, from, to, lowest)
-  end subroutine find_lowest_of_steps
 
   !> The mesh of a position's state.
   function grid(self, position)

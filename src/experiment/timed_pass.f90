@@ -11,8 +11,6 @@ module timed_pass
   use time_jump, only: step_along
   use rest, only: begin_at_rest, load_at_rest, longest_step
   use drained_way, only: step_drained
-  use journal, only: journal_t
-  use timed_journal, only: keep, recall
   use timed_record, only: pass_t, accept, take_row, note, lose, most_steps, &
     of_tension, of_end_h0, of_end_load, of_end_displacement, of_dissipation
   implicit none
@@ -32,12 +30,10 @@ module timed_pass
 
 contains
 
-  !> One pass. It chooses its steps, or halves those of the previous pass if there is one. The part
-  !> of the pass that an earlier run stored in the journal is taken from there.
-  subroutine go_through(before, steps, journal, listener, now)
+  !> One pass. It chooses its steps, or halves those of the previous pass if there is one.
+  subroutine go_through(before, steps, listener, now)
     type(pass_t), intent(in) :: before
     type(time_stepper_t), intent(inout) :: steps
-    type(journal_t), pointer, intent(in) :: journal
     class(listener_t), intent(inout) :: listener
     type(pass_t), intent(inout) :: now
     integer :: way
@@ -48,34 +44,28 @@ contains
       now%most = 6*before%held + 2000
       now%most_jumps = before%result%jumps + 10
     end if
-    call recall(journal, steps, now)
-    if (now%ended) return
-    if (now%held == 0) then
-      now%load_unit = unit_of_load(now%drive, before, steps)
-      call begin_at_rest(steps, now%drive%position(0), now%at, now%result%begun)
-      now%result%lost = .not. now%result%begun
-      if (now%result%lost) return
-      now%begun_with = steps%energy(now%at)
-      now%way = 1
-      call note(steps, now)
-    end if
-    do way = now%way, 3
+    now%load_unit = unit_of_load(now%drive, before, steps)
+    call begin_at_rest(steps, now%drive%position(0), now%at, now%result%begun)
+    now%result%lost = .not. now%result%begun
+    if (now%result%lost) return
+    now%begun_with = steps%energy(now%at)
+    now%way = 1
+    call note(steps, now)
+    do way = 1, 3
       if (now%result%lost .or. .not. now%drive%lasts(way) > 0) cycle
-      if (now%held == 1 .or. way > now%way) then
-        now%way = way
-        now%began = now%drive%began(way)
-        now%step = 0
-        now%at%time = 0
-        now%recently = 0
-        ! The motion before a turn does not predict the motion after it; rates and loads of a fluid
-        ! jump.
-        steps%before = now%at
-        ! A path also leads inward from a turn close to a fold, along unstable states; the third way
-        ! is back.
-        if (way == 3) now%inwards = .false.
-        now%at%since_turn = 0
-        if (.not. allocated(steps%drainage)) call take_row(now)
-      end if
+      now%way = way
+      now%began = now%drive%began(way)
+      now%step = 0
+      now%at%time = 0
+      now%recently = 0
+      ! The motion before a turn does not predict the motion after it; rates and loads of a fluid
+      ! jump.
+      steps%before = now%at
+      ! A path also leads inward from a turn close to a fold, along unstable states; the third way
+      ! is back.
+      if (way == 3) now%inwards = .false.
+      now%at%since_turn = 0
+      if (.not. allocated(steps%drainage)) call take_row(now)
       do while (now%at%time < now%drive%lasts(way) .and. .not. now%result%lost)
         if (allocated(steps%drainage)) then
           call step_drained(longest_part, steps, now)
@@ -85,7 +75,6 @@ contains
           call halve_step()
         end if
         call tell()
-        call keep(journal, steps, now)
       end do
     end do
     associate (result => now%result, at => now%at)
@@ -97,8 +86,6 @@ contains
       result%number(of_dissipation) = now%work - (steps%energy(at) - now%begun_with)
       result%balance = result%number(of_dissipation) - now%inside
     end associate
-    now%ended = .true.
-    call keep(journal, steps, now)
 
   contains
 

@@ -12,9 +12,9 @@ module timed_record
   use time_stepper, only: time_stepper_t
   implicit none
   private
-  public :: timed_result_t, tally_t, pass_t, accept, take_row, note, make_room, lose, most_steps, &
-    of_tension, of_tension_h0, of_end_h0, of_end_load, of_end_displacement, of_dissipation, &
-    of_suction, enter_numbers
+  public :: timed_result_t, pass_t, accept, take_row, note, lose, most_steps, of_tension, &
+    of_tension_h0, of_end_h0, of_end_load, of_end_displacement, of_dissipation, of_suction, &
+    enter_numbers
 
   !> The numbers of a pass.
   integer, parameter :: of_tension = 1, of_tension_h0 = 2, of_end_h0 = 3, of_end_load = 4, &
@@ -45,10 +45,10 @@ module timed_record
     real(wp) :: of_start = 0
   end type timed_result_t
 
-  !> The progress of a pass: number of rows, the last three loads, the present way and the time [s]
-  !> at which it began, the length of the next step [s], and the row of the previous pass whose step
-  !> is halved.
-  type :: tally_t
+  !> A pass: its results and rows, whose times are those since the beginning of a way; the last
+  !> three loads, the present way and the time [s] at which it began, the length of the next step
+  !> [s], and the row of the previous pass whose step is halved.
+  type :: pass_t
     type(timed_result_t) :: result
     integer :: held = 0, way = 0, halved = 1
     real(wp) :: began = 0, step = 0
@@ -56,7 +56,6 @@ module timed_record
     real(wp) :: load_unit = 0
     !> Deviation of the last attempted step, if it was too large; otherwise 0.
     real(wp) :: missed = 0
-    logical :: ended = .false.
     !> Numbers of steps and of jumps at which a pass is given up.
     integer :: most = most_steps, most_jumps = 50
     real(wp) :: recent(3, 3) = 0
@@ -67,11 +66,6 @@ module timed_record
     !> Whether the bodies approached each other in their last motion.
     logical :: inwards = .true.
     real(wp) :: work = 0, inside = 0, begun_with = 0
-  end type tally_t
-
-  !> A pass and its rows, of which the first `kept` are in the journal. Their times are those since
-  !> the beginning of a way.
-  type, extends(tally_t) :: pass_t
     !> The number of the pass, the motion of the drive, the length of steps [s] if the deck gives
     !> it, and the present instant.
     integer :: number = 1
@@ -79,7 +73,6 @@ module timed_record
     real(wp), allocatable :: time_step
     type(instant_t) :: at
     type(record_t), allocatable :: row(:)
-    integer :: kept = 0
   end type pass_t
 
   !> A relative change of gap or radius that exceeds rounding.
@@ -158,7 +151,7 @@ contains
     type(pass_t), intent(inout) :: now
     integer :: k
 
-    call make_room(now, 1)
+    call make_room(now)
     now%held = now%held + 1
     associate (row => now%row(now%held), result => now%result, problem => steps%problem, &
       at => now%at, grid => steps%meshes%grid(now%at%mesh))
@@ -181,15 +174,14 @@ contains
     end associate
   end subroutine note
 
-  !> Makes room for further rows.
-  subroutine make_room(now, more)
+  !> Makes room for a further row.
+  subroutine make_room(now)
     type(pass_t), intent(inout) :: now
-    integer, intent(in) :: more
     type(record_t), allocatable :: longer(:)
 
     if (.not. allocated(now%row)) allocate (now%row(1024))
-    if (now%held + more <= size(now%row)) return
-    allocate (longer(2*(now%held + more)))
+    if (now%held < size(now%row)) return
+    allocate (longer(2*now%held))
     longer(:now%held) = now%row(:now%held)
     call move_alloc(longer, now%row)
   end subroutine make_room

@@ -9,7 +9,6 @@ module timed_run
   use edge_locked, only: new_mesh_family
   use mesh_digits, only: most_digits
   use records, only: observer_t
-  use journal, only: journal_t
   use path_stepper, only: path_stepper_t
   use stepper, only: branch_point_t, step_result_t
   use tracing, only: trace, tracing_t
@@ -53,16 +52,14 @@ module timed_run
 
 contains
 
-  !> Simulates the motion of request%drive, and shows the rows of the last pass. The journal, if
-  !> there is one, stores the passes. places: the numbers, with their errors; passes: the number of
-  !> passes, if the numbers are to have no errors; error: the largest relative one, huge if the
-  !> motion was lost.
-  subroutine run_timed(request, problem, chosen, journal, observer, result, places, error, cost, &
-    nodes, passes)
+  !> Simulates the motion of request%drive, and shows the rows of the last pass. places: the
+  !> numbers, with their errors; passes: the number of passes, if the numbers are to have no errors;
+  !> error: the largest relative one, huge if the motion was lost.
+  subroutine run_timed(request, problem, chosen, observer, result, places, error, cost, nodes, &
+    passes)
     class(request_t), intent(in) :: request
     type(problem_t), intent(in) :: problem
     type(choice_t), intent(in) :: chosen
-    type(journal_t), pointer, intent(in) :: journal
     class(observer_t), intent(inout) :: observer
     type(timed_result_t), intent(out) :: result
     type(places_t), intent(out) :: places
@@ -93,7 +90,7 @@ contains
       now%number = pass
       call lay_out()
       steps%farthest = farthest/2**(pass - 1)
-      call go_through(before, steps, journal, observer, now)
+      call go_through(before, steps, observer, now)
       if (now%result%lost) then
         ! Finer meshes may resolve the loss; otherwise the previous passes have their error
         ! estimates.
@@ -222,6 +219,7 @@ contains
         if (any(meshes%waits) .or. may_pass_early(relaxed)) call fit_to_path(relaxed, high)
         if (allocated(steps%drainage)) call steps%drainage%lay_out(meshes%grid)
         call steps%frozen%forget()
+        call steps%operator%forget()
         steps%cost%kernel_entries = steps%cost%kernel_entries + sum(meshes%grid%kernel_entries())
         if (.not. allocated(request%creep)) return
         numerics = request%numerics

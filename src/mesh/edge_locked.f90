@@ -32,28 +32,25 @@ module edge_locked
 contains
 
   !> Meshes for H0 from h0_high down to h0_low, accurate to the given number of digits
-  !> (`mesh_rule`). shape_only: the kernels are left out, because only their size is needed. store:
-  !> earlier meshes, to which these are added. coarser: meshes of fewer digits for the same problem
-  !> and range; keep: their panels are kept where these were laid out for computed gaps. fronts:
-  !> whether meshes may be locked to the front of a step; further: whether meshes may be inserted
-  !> later; both .true. if absent.
-  function new_mesh_family(problem, h0_high, h0_low, digits, shape_only, store, coarser, keep, &
-    fronts, further) result(meshes)
+  !> (`mesh_rule`). store: earlier meshes, to which these are added. coarser: meshes of fewer digits
+  !> for the same problem and range; keep: their panels are kept where these were laid out for
+  !> computed gaps. fronts: whether meshes may be locked to the front of a step; further: whether
+  !> meshes may be inserted later; both .true. if absent.
+  function new_mesh_family(problem, h0_high, h0_low, digits, store, coarser, keep, fronts, &
+    further) result(meshes)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: h0_high, h0_low, digits
-    logical, intent(in), optional :: shape_only, keep, fronts, further
+    logical, intent(in), optional :: keep, fronts, further
     type(mesh_store_t), intent(inout), optional :: store
     type(mesh_family_t), intent(in), optional :: coarser
     type(mesh_family_t) :: meshes
-    logical :: elastic, kept, follow_fronts, may_insert
+    logical :: kept, follow_fronts, may_insert
     integer :: k
 
     follow_fronts = .true.
     if (present(fronts)) follow_fronts = fronts
     may_insert = .true.
     if (present(further)) may_insert = further
-    elastic = .true.
-    if (present(shape_only)) elastic = .not. shape_only
     kept = .false.
     if (present(keep)) kept = keep
     if (present(coarser) .and. kept) then
@@ -66,7 +63,7 @@ contains
     do k = merge(approach, contact, meshes%traceable), size(meshes%grid)
       if (present(coarser)) call follow(meshes, coarser, k, problem, kept)
       if (.not. allocated(meshes%shape(k)%order)) meshes%shape(k) = meshes%shape_for(problem, k)
-      call make_mesh(meshes%shape(k), elastic .and. .not. meshes%waits(k), meshes%grid(k), store)
+      call make_mesh(meshes%shape(k), .not. meshes%waits(k), meshes%grid(k), store)
     end do
   end function new_mesh_family
 

@@ -5,13 +5,13 @@ module ending
   private
   public :: ending_t
   public :: as_planned, touching, beyond_rounding, no_equilibrium, path_lost, steps_lost, &
-    fallen_before, beyond_path, nothing_afar, state_lost, turn_not_reached, not_kept
+    fallen_before, beyond_path, nothing_afar, state_lost, turn_not_reached
 
   !> The causes, and their messages in the same order; blank if the end was planned.
   integer, parameter :: as_planned = 0, touching = 1, beyond_rounding = 2, no_equilibrium = 3, &
     path_lost = 4, steps_lost = 5, fallen_before = 6, beyond_path = 7, nothing_afar = 8, &
-    state_lost = 9, turn_not_reached = 10, not_kept = 11
-  character(len=*), parameter :: messages(0:not_kept) = [character(len=100) :: '', &
+    state_lost = 9, turn_not_reached = 10
+  character(len=*), parameter :: messages(0:turn_not_reached) = [character(len=100) :: '', &
     'rigid bodies would touch: the law has no pressure at gaps so small (h0 <= 0, or far ' // &
       'below it)', &
     'adhesion is so strong that rounding hides the force law once the bodies are in contact', &
@@ -22,8 +22,7 @@ module ending
     'this h0 is beyond the path that was traced', &
     'no equilibrium was found far from contact: after', &
     'a state at a given h0 did not converge', &
-    'loading did not reach the turning point', &
-    'the results can no longer be written']
+    'loading did not reach the turning point']
 
   type :: ending_t
     integer :: cause = as_planned

@@ -105,7 +105,7 @@ contains
     if (record%branch == 'path') then
       call self%progress%note(record%branch)
     else
-      call self%progress%step(record%branch, given=self%folder%journal%is_behind())
+      call self%progress%step(record%branch)
     end if
     if (allocated(self%trouble)) return
     call self%curve%line(curve_row(record), self%trouble)

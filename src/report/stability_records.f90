@@ -3,7 +3,6 @@
 !> modes, and the eigenvalue has to agree with this count.
 module stability_records
   use kinds, only: wp
-  use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
   use dimensionless_problem, only: problem_t
   use discretisation, only: discretisation_t
   use contact_state, only: state_t
@@ -11,9 +10,6 @@ module stability_records
   use records, only: observer_t, record_t, stable_yes, stable_no, stable_unasked
   use text, only: counted
   use summary, only: summary_t
-  use journal, only: journal_t, of_eigenvalue
-  use byte_record, only: byte_record_t
-  use state_records, only: pass_cost
   use stability, only: smallest_eigenvalue, unknown
   use local_criteria, only: local_criterion, axis_criterion
   implicit none
@@ -32,13 +28,10 @@ module stability_records
     real(wp) :: criterion_error = -1, by_gap = 0, by_h0 = 0
     !> Relative accuracy that the scene asks for.
     real(wp) :: accuracy = 0
-    !> The journal that keeps the eigenvalues.
-    type(journal_t), pointer :: journal => null()
   contains
     procedure :: take
     procedure :: hear
     procedure :: warn
-    procedure, private :: find_eigenvalue
   end type stability_recorder_t
 
   !> Largest magnitude, over the accuracy, of an eigenvalue that contradicts no count: at a fold it
@@ -75,7 +68,7 @@ contains
     completed%axis_criterion = unknown()
     ! A state that is not an equilibrium is neither stable nor unstable.
     if (record%converged) then
-      call self%find_eigenvalue(problem, grid, state, completed%eigenvalue, certain)
+      call smallest_eigenvalue(problem, grid, state, completed%eigenvalue, certain, self%cost)
       call local_criterion(problem, grid, state, completed%local_criterion, error, by_gap)
       if (completed%local_criterion > 0) then
         self%criterion_error = max(self%criterion_error, error)
@@ -117,28 +110,5 @@ contains
     if (self%contradicted > 0) call summary%warn('the eigenvalue of '// &
       counted(self%contradicted, 'state')//' contradicts the column stable')
   end subroutine warn
-
-  !> The smallest eigenvalue of a state, from the journal if it is there.
-  subroutine find_eigenvalue(self, problem, grid, state, eigenvalue, certain)
-    class(stability_recorder_t), intent(inout) :: self
-    type(problem_t), intent(in) :: problem
-    type(discretisation_t), intent(in) :: grid
-    type(state_t), intent(in) :: state
-    real(wp), intent(out) :: eigenvalue
-    logical, intent(out) :: certain
-    type(byte_record_t) :: record
-    logical :: known
-
-    call self%journal%next_of(of_eigenvalue, record, known)
-    if (.not. known) then
-      call smallest_eigenvalue(problem, grid, state, eigenvalue, certain, self%cost)
-      call record%pass(of_eigenvalue)
-    end if
-    call record%pass(eigenvalue)
-    call pass_cost(record, self%cost)
-    certain = .not. ieee_is_nan(eigenvalue)
-    if (.not. known) call self%journal%append(record)
-    if (record%exhausted) call self%journal%reject()
-  end subroutine find_eigenvalue
 
 end module stability_records

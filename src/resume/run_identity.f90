@@ -14,22 +14,18 @@ module run_identity
 
   character(len=1), parameter :: nl = new_line('a')
   !> The beginnings of the lines before the deck.
-  character(len=*), parameter :: program_line = 'program: ', libraries_line = 'libraries: ', &
-    threads_line = 'threads: '
+  character(len=*), parameter :: program_line = 'program: ', libraries_line = 'libraries: '
 
 contains
 
-  !> The identity of a run of `deck`, the text of a resolved deck, in this program; threads: number
-  !> of threads, or 0 if the numbers do not depend on it.
-  function identity_of(deck, threads) result(text)
+  !> The identity of a run of `deck`, the text of a resolved deck, in this program. Each case of a
+  !> sweep has one thread, so that the number of threads does not matter.
+  function identity_of(deck) result(text)
     character(len=*), intent(in) :: deck
-    integer, intent(in) :: threads
     character(len=:), allocatable :: text
 
     text = program_line // version // ' (build ' // build_number() // ')' // nl // &
-      libraries_line // compiler // ', ' // blas_in_use() // ', ' // options // nl
-    if (threads > 0) text = text // threads_line // brief(threads) // nl
-    text = text // deck
+      libraries_line // compiler // ', ' // blas_in_use() // ', ' // options // nl // deck
   end function identity_of
 
   !> The first difference between two identities, with advice.
@@ -55,9 +51,6 @@ contains
     else if (index(old, libraries_line) == 1) then
       text = 'program made of ' // old(len(libraries_line) + 1:) // ', this one is made of ' // &
         new(len(libraries_line) + 1:) // '; continue with that one'
-    else if (index(old, threads_line) == 1) then
-      text = 'run with OMP_NUM_THREADS=' // old(len(threads_line) + 1:) // ', this one has ' // &
-        new(len(threads_line) + 1:) // '; set OMP_NUM_THREADS=' // old(len(threads_line) + 1:)
     else
       text = 'deck, ' // change(group, old, new, now) // '; put that back'
     end if

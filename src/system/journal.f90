@@ -19,10 +19,7 @@ module journal
   use clock, only: seconds
   implicit none
   private
-  public :: journal_t, of_step, of_eigenvalue, of_drive
-
-  !> Kinds of records, with which the records of one journal begin.
-  integer, parameter :: of_step = 1, of_eigenvalue = 2, of_drive = 3
+  public :: journal_t
 
   !> A journal must not be copied while it is open. After the first error, which is kept in
   !> `trouble`, nothing more is written.
@@ -48,10 +45,7 @@ module journal
     procedure :: begin
     procedure :: go_on
     procedure :: is_open
-    procedure :: is_behind
     procedure :: next
-    procedure :: next_of
-    procedure :: reject
     procedure :: append
     procedure :: close => close_journal
     procedure :: drop => let_go
@@ -147,13 +141,6 @@ contains
     is_open = self%descriptor >= 0
   end function is_open
 
-  !> Whether there are more records of the earlier run.
-  pure logical function is_behind(self)
-    class(journal_t), intent(in) :: self
-
-    is_behind = self%waiting > 0 .and. self%is_open()
-  end function is_behind
-
   !> The next record of the earlier run. found = .false. after the last one; then `append` may
   !> begin.
   subroutine next(self, record, found)
@@ -163,7 +150,7 @@ contains
     integer(c_long) :: whole
 
     found = .false.
-    if (.not. self%is_behind()) return
+    if (self%waiting == 0 .or. .not. self%is_open()) return
     whole = 0
     call read_frame(self%descriptor, self%room, record, self%earlier, whole, found)
     self%waiting = self%waiting - 1
@@ -172,29 +159,6 @@ contains
     call fail(self%trouble, file_trouble, 'cannot read ' // self%path)
     call self%close()
   end subroutine next
-
-  !> The next record, which must be of this kind.
-  subroutine next_of(self, kind, record, found)
-    class(journal_t), intent(inout) :: self
-    integer, intent(in) :: kind
-    type(byte_record_t), intent(inout) :: record
-    logical, intent(out) :: found
-    integer :: first
-
-    call self%next(record, found)
-    if (.not. found) return
-    call record%pass(first)
-    if (first /= kind) call self%reject()
-  end subroutine next_of
-
-  !> Closes a journal whose records do not fit this run, with an error.
-  subroutine reject(self)
-    class(journal_t), intent(inout) :: self
-
-    call fail(self%trouble, file_trouble, self%path // &
-      ' does not belong to this run; remove it and start over')
-    call self%close()
-  end subroutine reject
 
   !> Appends a record, after `next` has returned all records.
   subroutine append(self, record)

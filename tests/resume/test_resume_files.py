@@ -77,7 +77,8 @@ def test_finished_results_of_another_file_are_not_taken_for_these(snapin, tmp_pa
 
 @every_scene
 def test_an_interrupted_run_does_not_go_on_with_another_file(snapin, snapin_path, tmp_path, scene):
-    text = lay_out(tmp_path, scene, loading=loading(5, -1, 0.5))
+    text = lay_out(tmp_path, scene, loading=loading(5, -1, 0.5),
+                   sweep={"key": "bodies.stiffness", "values": [1.0, 1.5, 2.0]})
     bench = Bench(snapin, snapin_path, tmp_path, text)
     bench.check(bench.journal)
     change(tmp_path, scene)

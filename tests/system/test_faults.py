@@ -180,7 +180,9 @@ def test_what_is_no_file_is_refused_and_not_opened(stand, make, name):
 
 @pytest.mark.slow
 def test_the_journal_is_put_on_the_disk_every_few_seconds(snapin_path, stand, tmp_path):
-    (tmp_path / "d.nml").write_text(lennard_jones(0.2, loading=loading(4, 1, 1e-6)))
+    (tmp_path / "d.nml").write_text(lennard_jones(
+        0.2, loading=loading(4, 1, 1e-2),
+        sweep={"key": "force.hamaker", "from_": 1.0, "to": 2.0, "count": 10000}))
     env = dict(os.environ, OMP_NUM_THREADS="1", LD_PRELOAD=str(stand.library), FAULT_CALL="fsync",
                FAULT_UNDER="results/d", FAULT_LOG=str(tmp_path / "log"))
     with subprocess.Popen([snapin_path, "--quiet", "d.nml"], cwd=tmp_path, env=env) as process:

@@ -12,8 +12,7 @@ MODULES = {
     "layered_body", "layered_surface", "mesh_waves", "wave_transforms",
     # bodies in time, and a fluid between them
     "running_integrals", "carried_values", "drainage", "drained_way", "frozen_start",
-    "timed_journal", "timed_pass", "timed_record", "timed_run", "rate_groups", "rate_entries",
-    "drive_rates",
+    "timed_pass", "timed_record", "timed_run", "rate_groups", "rate_entries",
     # theories of others, and fits
     "theory_groups", "classical_rows", "regime_rows", "approximation_tables", "fit_group",
     "measurement_group", "fit_rows", "fit_words",
@@ -45,8 +44,8 @@ SEAMS = {
     "result_folder": {"run_identity"},
     # one kind of run more
     "simulation": {
-        "approximation_tables", "classical_rows", "drive_rates", "fit_doubts", "fit_group",
-        "fit_rows", "fit_run", "fit_words", "ranks", "resumable_stepper", "run_identity"},
+        "approximation_tables", "classical_rows", "fit_doubts", "fit_group",
+        "fit_rows", "fit_run", "fit_words", "ranks", "run_identity"},
     "sweeps": {"ranks"},
     "dispatch": {"ranks"},
     "snapin": {"ranks"},
