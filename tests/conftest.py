@@ -11,8 +11,8 @@ import signal
 import subprocess
 import sys
 
-# Before anything loads OpenMP. Other tests run at the same time, and threads that wait for each other
-# take their time: what is claimed of several threads asks for them.
+# Before anything loads OpenMP. Other tests run at the same time, and threads that wait for each
+# other take their time: what is claimed of several threads asks for them.
 os.environ.setdefault("OMP_NUM_THREADS", "1")
 os.environ.setdefault("OMP_WAIT_POLICY", "PASSIVE")
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
@@ -65,8 +65,8 @@ def pytest_runtest_protocol(item):
 
 @contextlib.contextmanager
 def _limited(name):
-    """A test that hangs fails, which ends the programs that it waits for; where compiled code hangs,
-    the process ends with a trace of all threads."""
+    """A test that hangs fails, which ends the programs that it waits for; where compiled code
+    hangs, the process ends with a trace of all threads."""
     def fail(*_):
         pytest.fail(f"{name} has taken {LIMIT} s", pytrace=True)
 

@@ -46,6 +46,10 @@ def test_what_is_read_is_off_by_no_more_than_estimated(pair):
         if "energy" not in key and "regime" not in key:
             assert (errors[there] <= 100 * found.summary["error_estimate"] * abs(exact[there])
                     + 1e-6 * abs(exact[there]).max()).all()
+        else:
+            # Errors of theories are fractions.
+            size = np.maximum(abs(exact[there]), float("regime" in key))
+            assert (errors[there] <= 1e-3 * size).all(), key
         compared += there.sum()
     # One of each but of the errors of theories, which are three; Hertz's has fewer where bodies
     # adhere strongly.
@@ -158,9 +162,11 @@ def pairs():
 def test_every_place_has_a_contact_radius_off_by_no_more_than_its_error(radii, decks):
     """So that a row of `result_rows` may report the contact radius at a place of any name."""
     found, truth = map(radii, decks)
+    assert set(found) == set(truth) and len(found) > 5
     for name in set(found) - {"table"}:  # The table has other rows at another accuracy.
         (radius, error), (exact, own) = found[name], truth[name]
         there = np.isfinite(exact)
+        assert (np.isfinite(radius) == there).all(), name
         assert (abs(radius - exact) <= error + 3 * own)[there].all(), name
         assert (error <= 1e-4 * (1 + abs(radius)))[there].all(), name
     assert found["end"][0] > 0 and found["max_tension"][0] > 0

@@ -179,7 +179,7 @@ def rows(between, point, *columns):
 def test_conventions_do_not_matter(branches, tmp_path):
     """z that grows or falls, force of either sign, volts, columns by number, other units, tables
     as numpy writes them and with commas in numbers: the same."""
-    z, force, segment = branches.measure(120, noise=2e-12)
+    z, force, segment = branches.measure(300, noise=2e-12)
     plain = write(tmp_path / "a.csv", z, force, segment)
     keys = [STRENGTH, STIFFNESS, POINT]
     first = run(fit_deck(LENNARD_JONES, plain, keys))

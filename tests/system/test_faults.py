@@ -202,8 +202,8 @@ def test_the_journal_is_put_on_the_disk_every_few_seconds(snapin_path, stand, tm
 def test_a_journal_that_can_be_read_once_and_not_again_stops_the_run(sweep):  # noqa: F811
     """Its cases were counted as there, and had no rows."""
     target = sweep.emptied(sweep.journal)
-    fault = {"LD_PRELOAD": str(sweep.library), "FAULT_CALL": "read", "FAULT_UNDER": "unfinished/journal",
-             "FAULT_ERRNO": str(errno.EIO)}
+    fault = {"LD_PRELOAD": str(sweep.library), "FAULT_CALL": "read",
+             "FAULT_UNDER": "unfinished/journal", "FAULT_ERRNO": str(errno.EIO)}
     # A record takes two calls, and the end one.
     once = 2 * len(frames(sweep.journal)) + 1
     done = sweep.snapin("--out", "cut", "--resume", "deck.nml", cwd=sweep.folder,
