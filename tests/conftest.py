@@ -2,16 +2,18 @@
 way when several run at once."""
 
 import contextlib
+import faulthandler
 import fcntl
 import os
 import pathlib
 import runpy
+import signal
 import subprocess
 import sys
 
-# Before anything loads OpenMP. Other tests run at the same time: two threads are enough to be more
-# than one, and while they wait they leave the core to others. OpenBLAS's own do not.
-os.environ.setdefault("OMP_NUM_THREADS", "2")
+# Before anything loads OpenMP. Other tests run at the same time, and threads that wait for each
+# other take their time: what is claimed of several threads asks for them.
+os.environ.setdefault("OMP_NUM_THREADS", "1")
 os.environ.setdefault("OMP_WAIT_POLICY", "PASSIVE")
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
@@ -21,6 +23,9 @@ from support.processes import HANG  # noqa: E402
 from support.scenes import runner  # noqa: E402
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
+# Seconds of the clock that only a test that hangs takes on a busy machine; a hundred times those of
+# the slowest. Tests that take minutes have no limit.
+LIMIT = 900
 
 
 def pytest_addoption(parser):
@@ -53,7 +58,27 @@ def pytest_runtest_protocol(item):
     with contextlib.ExitStack() as room:
         with _locked("support/processes.py", fcntl.LOCK_EX):
             room.enter_context(_locked("conftest.py", fcntl.LOCK_EX if alone else fcntl.LOCK_SH))
+        if item.get_closest_marker("long") is None:
+            room.enter_context(_limited(item.name))
         return (yield)
+
+
+@contextlib.contextmanager
+def _limited(name):
+    """A test that hangs fails, which ends the programs that it waits for; where compiled code
+    hangs, the process ends with a trace of all threads."""
+    def fail(*_):
+        pytest.fail(f"{name} has taken {LIMIT} s", pytrace=True)
+
+    before = signal.signal(signal.SIGALRM, fail)
+    signal.alarm(LIMIT)
+    faulthandler.dump_traceback_later(LIMIT + 60, exit=True, file=sys.__stderr__)
+    try:
+        yield
+    finally:
+        signal.alarm(0)
+        faulthandler.cancel_dump_traceback_later()
+        signal.signal(signal.SIGALRM, before)
 
 
 @pytest.fixture(scope="session")

@@ -58,7 +58,7 @@ def test_check_says_what_does_not_fit_and_what_fills_the_disk(snapin, tmp_path):
     assert "short.nml" not in done.stderr
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_whatever_takes_long_says_so_and_goes_on_saying_so(snapin, tmp_path):
     """Each of hundreds of states needs factors of a matrix for 4000 nodes, which take seconds."""
     numerics = {"grid": "uniform", "nodes": 4000, "method": "newton"}

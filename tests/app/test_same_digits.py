@@ -42,14 +42,10 @@ def shared_from():
     return int(re.search(r":: worthwhile = (\d+)", text)[1])
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize(
-    "scene",
-    [
-        lambda **groups: exponential(1.0, **groups),
-        pytest.param(lambda **groups: lennard_jones(0.2, **groups), marks=pytest.mark.long)],
-    ids=["repulsion", "adhesion"],
-)
+    "scene", [lambda **groups: exponential(1.0, **groups),
+              lambda **groups: lennard_jones(0.2, **groups)], ids=["repulsion", "adhesion"])
 def test_threads_that_share_a_matrix_leave_eleven_digits(run, scene):
     """They add in another order. Solved to 1e-12, so that it is not the iteration that decides."""
     numerics = {

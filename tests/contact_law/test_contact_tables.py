@@ -40,7 +40,9 @@ def whole_numbers(tables):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("number", [2, -2], ids=["whole path", "two pieces"])
+@pytest.mark.parametrize("number", [
+    pytest.param(2, id="whole path"),
+    pytest.param(-2, id="two pieces", marks=pytest.mark.long)])
 def test_the_table_is_computed_from_solved_paths(number, monkeypatch):
     """One panel anew. What paths of accuracy 1e-9 leave open is a few of its last digits."""
     # It takes most of the time, and test_contact_law compares it between panels.

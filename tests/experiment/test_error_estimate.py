@@ -10,8 +10,7 @@ ACCURACIES = (1e-3, 1e-4, 1e-5, 1e-6, 1e-8)
 KNOWN = 3e-11
 
 
-@pytest.mark.parametrize("sigma", [0.01, 0.1, 0.14251, 0.2914, 0.3, 0.35, 0.45, 0.492388, 0.87, 8.7,
-                                   30.7029, 100.0, 1000.0])
+@pytest.mark.parametrize("sigma", [0.01, 0.14251, 0.2914, 0.35, 0.87, 30.7029, 1000.0])
 def test_the_estimate_of_path_and_cycle_bounds_the_error_within_a_hundred(tmp_path, sigma):
     """Against the independent solution; each number has an estimate of its own besides."""
     job = study_estimates.Job(sigma, study_estimates.ACCURACIES, tmp_path)
@@ -23,6 +22,7 @@ def test_the_estimate_of_path_and_cycle_bounds_the_error_within_a_hundred(tmp_pa
         lost = [one for one in found.deviations if one.key == "energy_lost"]
         assert all(one.allowed < 0.01 * one.value for one in lost)
         others = [one for one in found.deviations if one not in lost]
+        assert len(others) >= (8 if sigma > 0.2911 else 2), found.deviations
         assert max(found.estimate, *(one.relative for one in others)) <= found.accuracy
         errors = [one.relative for one in others if one.known]
         assert not errors or max(errors) <= found.estimate <= 100 * max(errors), found

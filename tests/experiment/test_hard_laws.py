@@ -248,7 +248,7 @@ def test_a_mesh_that_is_mended_does_not_have_the_whole_path_traced_again(run):
 
 @pytest.mark.parametrize(("share", "reach", "sigma"), [
     pytest.param(0.38, 3.4, 2.1, id="the axis passes the step and falls into the well"),
-    pytest.param(0.38, 4.0, 7.0, id="folds far apart"),
+    pytest.param(0.38, 4.0, 7.0, id="folds far apart", marks=pytest.mark.long),
     pytest.param(0.52, 6.0, 1.0, id="a front that recedes"),
     pytest.param(0.96, 6.0, 1.0, id="a last band that is divided")])
 def test_a_step_outside_a_well_is_followed(run, share, reach, sigma):

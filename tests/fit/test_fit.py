@@ -120,15 +120,17 @@ def test_errors_and_correlations_are_those_of_differences_between_curves(branche
     truth = SCENES["lennard_jones"][1]
     noise = 1e-11
     z, force, segment = branches.measure(150)
-    result = fitted(tmp_path, (z, force, segment), LENNARD_JONES, [*truth, POINT],
+    spring = "measurement.spring_constant"
+    result = fitted(tmp_path, (z, force, segment), LENNARD_JONES, [*truth, POINT, spring],
                     {"noise": noise}, numerics={"accuracy": 1e-8})
     inward, used = segment == 0, result.fit["used"] == 1
 
-    def model(groups, curve, shift=0.0):
+    def model(groups, curve, shift=0.0, stiffness=None):
         """Samples and jumps over their errors; shift: of the contact point."""
         force = np.where(inward, curve.force(z - shift, True), curve.force(z - shift, False))
         summary = run({**groups, "equilibrium_path": {"h0_end": -2e-9},
-                       "device": {"stiffness": SPRING}, "numerics": {"accuracy": 1e-9}}).summary
+                       "device": {"stiffness": stiffness or held},
+                       "numerics": {"accuracy": 1e-9}}).summary
         jumps = [(summary[f"device_jump_{way}_z"] + shift) /
                  result.fitted["fit"][f"jump_{way}_z_uncertainty"] for way in ("in", "out")]
         return np.concatenate([force[used] / noise, *jumps])
@@ -136,28 +138,36 @@ def test_errors_and_correlations_are_those_of_differences_between_curves(branche
     # A measured jump lies between samples, and so the solution is a little off the truth.
     found = values_of(result)
     solution = changed(LENNARD_JONES, {key: found[key] for key in truth})
-    z = z - found[POINT]
+    z, held = z - found[POINT], found[spring]
     columns = []
     for key in truth:
         value = found[key]
         off = 1e-3 * value
         near, far = (changed(solution, {key: value + side}) for side in (-off, off))
-        columns.append((model(far, Branches(far)) - model(near, Branches(near))) / (2 * off))
+        columns.append((model(far, Branches(far, held)) - model(near, Branches(near, held)))
+                       / (2 * off))
     off = 1e-12
-    curve = Branches(solution)
+    curve = Branches(solution, held)
     columns.append((model(solution, curve, off) - model(solution, curve, -off)) / (2 * off))
+    off = 1e-3 * held
+    stiffer, softer = (model(solution, Branches(solution, stiffness), stiffness=stiffness)
+                       for stiffness in (held + off, held - off))
+    columns.append((stiffer - softer) / (2 * off))
     for baseline in (np.ones_like(z), z):
         columns.append(np.append(baseline[used] / noise, [0, 0]))
     jacobian = np.array(columns).T
     scale = np.abs(jacobian).max(axis=0)
     covariance = np.linalg.inv(jacobian.T / scale[:, None] @ jacobian / scale)
     error = np.sqrt(np.diag(covariance))
-    expected = dict(zip([*truth, POINT], (error / scale)[:3]))
-    # What the interpolation leaves of differences a thousandth wide.
-    assert errors_of(result) == pytest.approx(expected, rel=2e-3)
-    correlation = (covariance / np.outer(error, error))[:3, :3]
-    assert np.reshape(result.fitted["fit"]["correlation"], (3, 3)) == pytest.approx(
-        correlation, abs=2e-3)
+    expected = dict(zip([*truth, POINT, spring], (error / scale)[:4]))
+    # What the interpolation leaves of differences a thousandth wide; spring and modulus nearly have
+    # the same effect, and a part of it three times as large.
+    assert errors_of(result) == pytest.approx(expected, rel=1e-2)
+    del expected[STIFFNESS], expected[spring]
+    assert {key: errors_of(result)[key] for key in expected} == pytest.approx(expected, rel=2e-3)
+    correlation = (covariance / np.outer(error, error))[:4, :4]
+    assert np.reshape(result.fitted["fit"]["correlation"], (4, 4)) == pytest.approx(
+        correlation, abs=5e-3)
 
 
 def rows(between, point, *columns):

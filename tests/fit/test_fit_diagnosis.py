@@ -106,6 +106,23 @@ def test_a_contact_of_few_weak_samples_is_no_absence_of_contact(tmp_path):
     assert fit["lower_95"][0] < SOFT < fit["upper_95"][0]
 
 
+def test_the_fewest_samples_are_twenty_on_a_way_and_two_for_each_number_with_four_more(tmp_path):
+    with pytest.raises(snapin.DeckError, match="fewer than 20 samples of the approach"):
+        fit_of_gel(tmp_path, hertz_curve(19))
+    fit_of_gel(tmp_path, hertz_curve(20))
+    z, force, segment = (column[:30] for column in hertz_curve(30))
+    half = (z[0] - z[1]) / 2
+
+    def left(near):
+        """The fit of the four farthest samples and of some nearest ones."""
+        return fit_of_gel(tmp_path, (z, force, segment), segment="approach",
+                          skip=[z[29 - near] - half, z[4] + half])
+
+    assert (left(4).fit["used"] == 1).sum() == 8
+    with pytest.raises(snapin.SnapinError, match="too few samples for so many parameters"):
+        left(3)
+
+
 def test_a_curve_that_is_nearly_all_contact_is_fitted(tmp_path):
     """A far third of the travel that is in contact was once the noise, and there was no contact."""
     z, force, segment = hertz_curve(200, noise=3e-11)
@@ -175,7 +192,8 @@ BASELINES = {"bow": "baseline = 'quadratic'", "drift": "slope_each_way = .true."
              "interference": "ripple = .true."}
 
 
-@pytest.mark.parametrize("kind", BASELINES)
+@pytest.mark.parametrize("kind", [
+    "bow", "drift", pytest.param("interference", marks=pytest.mark.long)])
 def test_what_a_baseline_lacks_is_named_and_can_be_given(tmp_path, kind):
     """A bow of a few deviations of the noise once made a stiffness 69 % too large in silence."""
     job = study_fits.Job(kind, 4)
@@ -205,10 +223,10 @@ def test_no_part_of_a_baseline_is_named_without_reason(branches, tmp_path):
         assert not any("the baseline" in text for text in told(result)), told(result)
 
 
-@pytest.mark.parametrize("factor", [2.0, 10.0])
+@pytest.mark.parametrize("factor", [pytest.param(2.0, marks=pytest.mark.long), 10.0])
 def test_a_wrong_spring_constant_is_named(branches, tmp_path, factor):
     """The slope in contact cannot be that of a spring ten times as stiff."""
-    result = fitted(tmp_path, branches.measure(400, 2e-11, seed=1), LENNARD_JONES,
+    result = fitted(tmp_path, branches.measure(200, 2e-11, seed=1), LENNARD_JONES,
                     [STRENGTH, STIFFNESS, POINT], measurement={"spring_constant": factor * SPRING})
     named = [text for text in told(result) if "with spring_constant = " in text]
     assert named, told(result)

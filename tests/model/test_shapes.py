@@ -138,6 +138,19 @@ def test_what_jumps_of_a_device_lose_is_the_area_of_its_cycle(run, shape):
     assert summary["device_energy_lost"] == pytest.approx(summary["device_cycle_energy"], rel=1e-5)
 
 
+@pytest.mark.parametrize("exponent", [2.2, 2.6])
+def test_energies_under_a_force_that_falls_slowly_are_areas_too(run, tmp_path, exponent):
+    """Far away, energies of all states are infinite or nearly; their differences are not."""
+    gap = np.geomspace(0.3, 30.0, 200)
+    np.savetxt(tmp_path / "law.txt", np.column_stack([gap, gap**-9.0 - gap**-exponent]))
+    summary = run(deck(
+        bodies={"radius": 1.0, "stiffness": 1.0},
+        tabulated={"file": str(tmp_path / "law.txt"), "tail_exponent": exponent},
+        equilibrium_path={"h0_end": -1.0}, device={"stiffness": [5.0, 0.5]})).summary
+    assert (np.array(summary["device_energy_lost"]) > 0).all()
+    assert summary["device_energy_lost"] == pytest.approx(summary["device_cycle_energy"], rel=1e-5)
+
+
 # --- Refusals
 
 

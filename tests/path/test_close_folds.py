@@ -84,7 +84,7 @@ def test_two_folds_within_a_step_whose_slope_is_least_inside_are_found(run, accu
 
 @pytest.mark.parametrize("stiffness, range_, h0_end, accuracies", [
     (2.047627728863176e9, 1.8378672890277213e-9, -8.066445348379321e-10, (2e-4,)),
-    (3.2874751938112336e8, 1.8819993963801085e-9, -3.7388340973471256e-9, (3e-5, 1e-5))])
+    (3.2874751938112336e8, 1.8819993963801085e-9, -3.7388340973471256e-9, (3e-5,))])
 def test_a_coarse_mesh_has_no_pairs_of_folds_of_its_own(run, stiffness, range_, h0_end, accuracies):
     """As the step of the tension passes the nodes, h0 has waves of the size of the mesh's error."""
     found = agreeing(run, lambda accuracy: path_of(

@@ -177,7 +177,8 @@ BLUNT = {
 }
 
 
-@pytest.mark.parametrize("name", BLUNT)
+@pytest.mark.parametrize("name", [pytest.param(
+    name, marks=pytest.mark.long if "thin" in name else ()) for name in BLUNT])
 def test_paths_of_blunt_bodies_on_layers_go_on_where_the_gap_on_the_axis_rises_again(run, name):
     """The gap on the axis, the coordinate before contact, has a fold while the contact grows; the
     path was lost there. In contact one state has this h0, and a fixed grid reaches it too."""

@@ -98,9 +98,9 @@ def test_errors_hold_and_work_is_stored_or_dissipated(run, case):
     assert fine["energy_dissipated_error"] < 1e-4 * fine["energy_dissipated"]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("sigma, viscosity, relaxed, time, turn", [
-    pytest.param(0.3035, 0.0028473, 0.09927, 0.03709, -1.466, marks=pytest.mark.long),
-    (0.2574, 0.0034987, 0.0935, 0.0538, -3.0)])
+    (0.3035, 0.0028473, 0.09927, 0.03709, -1.466), (0.2574, 0.0034987, 0.0935, 0.0538, -3.0)])
 def test_a_thin_fluid_between_bodies_that_creep_is_followed(run, sigma, viscosity, relaxed, time,
                                                             turn):
     # What the mesh of the memory does not resolve makes loads jump by as much in any step, however

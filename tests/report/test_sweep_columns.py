@@ -133,7 +133,7 @@ def end_of(curve, branch):
 
 @pytest.mark.parametrize("deck, branch", [
     (adhesive(), "loading"), (adhesive(equilibrium_path={"h0_end": -3.0}), "loading"),
-    (adhesive(numerics={"grid": "uniform"}), "loading"),
+    (adhesive(numerics={"grid": "uniform", "nodes": 150}), "loading"),
     (exponential(3, loading=loading(6, -1, 1)), "loading"),
     (lennard_jones(0.87, equilibrium_path={"h0_end": -3.0}), "path"),
     (exponential(3, equilibrium_path={"h0_end": -1.0}), "path")],
@@ -266,9 +266,10 @@ def test_warnings_of_cases_are_counted_and_the_first_is_shown(run):
     punch = {**groups, "bodies": {"radius": 1e-6, "stiffness": 1e8},
              "shape": {"kind": "rounded_punch", "flat_radius": 3e-8}}
     alone = run(deck(**punch)).summary["warnings"]
-    found = run(deck(**punch, sweep={"key": "shape.flat_radius", "values": [3e-8, 5e-8]})).summary
+    found = run(deck(**punch, sweep={
+        "key": "bodies.stiffness", "values": [1e9, 1e8, 3e8]})).summary
     assert several(found["warnings"]) == [
-        f"2 of 2 cases gave a warning; the first, case 1: {several(alone)[0]}"]
+        f"2 of 3 cases gave a warning; the first, case 2: {several(alone)[0]}"]
     assert "warnings" not in run(deck(
         **groups, sweep={"key": "bodies.stiffness", "values": [1e9, 2e9]})).summary
 

@@ -1,6 +1,7 @@
 /* Loaded before the C library, makes its calls fail, or the process die, where tests want it.
 
    FAULT_CALL   the call: open, write, fsync, close, rename, unlink, ftruncate, fstat, mkdir, or any
+                of these; or read
    FAULT_AT     which of them, from 1; 0 counts only
    FAULT_ERRNO  the error; 0: the process is killed before the call
    FAULT_LASTS  set: every later one fails too
@@ -144,6 +145,12 @@ ssize_t write(int fd, const void *bytes, size_t count) {
     put("\n");
   }
   return syscall(SYS_write, fd, bytes, count);
+}
+
+ssize_t read(int fd, void *bytes, size_t count) {
+  if (minds(fd) && call && !strcmp(call, "read") && fails("read"))
+    return -1;
+  return syscall(SYS_read, fd, bytes, count);
 }
 
 int fsync(int fd) {

@@ -9,6 +9,8 @@ import time
 
 import pytest
 from support import faults
+from support.interrupted import frames, sweep  # noqa: F401 (`sweep` is a fixture)
+from support.processes import threaded
 from support.scenes import lennard_jones, loading
 
 
@@ -197,3 +199,16 @@ def test_the_journal_is_put_on_the_disk_every_few_seconds(snapin_path, stand, tm
     synced = [os.path.normpath(path) for name, _, path, *_ in calls if name == "fsync"]
     assert synced[1:4] == ["results/d/unfinished", "results/d", "results"]
     assert {*synced[:1], *synced[4:]} == {"results/d/unfinished/journal"}
+
+
+def test_a_journal_that_can_be_read_once_and_not_again_stops_the_run(sweep):  # noqa: F811
+    """Its cases were counted as there, and had no rows."""
+    target = sweep.emptied(sweep.journal)
+    fault = {"LD_PRELOAD": str(sweep.library), "FAULT_CALL": "read",
+             "FAULT_UNDER": "unfinished/journal", "FAULT_ERRNO": str(errno.EIO)}
+    # A record takes two calls, and the end one.
+    once = 2 * len(frames(sweep.journal)) + 1
+    done = sweep.snapin("--out", "cut", "--resume", "deck.nml", cwd=sweep.folder,
+                        env=threaded(2, **fault, FAULT_AT=str(once + 5)))
+    assert done.returncode == 1 and "cannot read cut/deck/unfinished/journal" in done.stderr
+    assert not (target / "summary.nml").exists()

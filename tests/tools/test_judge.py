@@ -40,12 +40,11 @@ def test_a_cycle_reports_the_path_whatever_its_steps(tmp_path, case):
 
 @pytest.mark.parametrize("about", [{}, {"low": 0.28, "high": 0.45}], ids=["any sigma", "the cusp"])
 def test_random_cycles_report_the_path(tmp_path, about):
-    jobs = study_cycles.jobs(16, tmp_path, seed=2, **about)
+    jobs = study_cycles.jobs(8, tmp_path, seed=2, **about)
     assert not wrong_in(f for job in jobs for f in study_cycles.examine(job))
 
 
-@pytest.mark.parametrize("experiment", ["cycle", "path"])
-@pytest.mark.parametrize("sigma", [0.87, 8.7])
+@pytest.mark.parametrize("experiment, sigma", [("cycle", 0.87), ("path", 8.7)])
 def test_a_hair_before_a_fold_nothing_has_jumped_and_a_hair_beyond_all_has(
         tmp_path, sigma, experiment):
     job = study_folds.Job(sigma, 1e-6, experiment, (2, 5, 8), tmp_path)
@@ -75,7 +74,7 @@ def test_an_error_above_its_estimate_is_within_the_accuracy(tmp_path, number):
 
 @pytest.mark.parametrize("jobs", [study_bodies.experiments, study_bodies.shapes])
 def test_springs_and_fixed_loads_under_random_laws_are_within_the_accuracy(tmp_path, jobs):
-    for scene in jobs(5, tmp_path):
+    for scene in jobs(3, tmp_path):
         [finding] = study_bodies.examine(scene)
         assert finding.unknown > 0 and not finding.wrong, finding
         for one in finding.deviations:

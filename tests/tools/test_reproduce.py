@@ -304,7 +304,7 @@ CHAPTERS = ["fig06", "fig07", "fig08", "fig09", "fig10", "fig11"]
 
 @pytest.mark.slow
 @pytest.mark.parametrize(("name", "how"), [
-    *(pytest.param(name, "quick", marks=() if name in ("fig06", "fig10") else pytest.mark.long)
+    *(pytest.param(name, "quick", marks=() if name == "fig06" else pytest.mark.long)
       for name in CHAPTERS),
     *(pytest.param(name, "runs", marks=pytest.mark.long) for name in [*CHAPTERS, "verdict"])])
 def test_a_chapter_is_complete(request, name, how, tmp_path, monkeypatch):

@@ -4,7 +4,8 @@
 #
 # A stage is the function below with its name. Without a stage: all stages, about two hours on two
 # cores. Ends with status 1 if one fails. EXTREMES (200) is the number of random decks, FIRST (5000)
-# the first of them, FUZZ (240) the seconds of the search, SEED (1) that of the judge's decks.
+# the first of them, FUZZ (240) the seconds of the search, SEED (1) that of the judge's decks and of the
+# changes of the sources, MUTATIONS (15) their number.
 set -u
 here=$(dirname -- "$(readlink -f -- "$0")")
 top=$(dirname -- "$(dirname -- "$here")")
@@ -98,8 +99,8 @@ judge() { "$python" "$here/judge.py" --seed "${SEED:-1}"; }
 # Every system call on results fails, kills the run, or is the last before a power cut.
 faults() { OMP_NUM_THREADS=1 PYTHONPATH=tests "$python" -m support.faults; }
 
-# Guards are removed one at a time, and a test must fail.
-guards() { "$python" "$here/guards.py"; }
+# Single places of the sources are changed at random, and a test must fail.
+mutations() { "$python" "$here/mutations.py" --seed "${SEED:-1}" --count "${MUTATIONS:-15}"; }
 
 # Builds with OpenMPI and with MPICH, which are installed if Debian offers them, and the tests of
 # sweeps on many processes on each.
@@ -123,7 +124,7 @@ fuzz() {
 pages() { "$python" "$top/tools/pages.py"; }
 
 failed=
-stages='long traps memory coverage levels extremes faults judge guards mpi fuzz pages'
+stages='long traps memory coverage levels extremes faults judge mutations mpi fuzz pages'
 for stage in ${*:-$stages}; do
   case " $stages " in
     *" $stage "*) ;;

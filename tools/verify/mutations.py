@@ -1,0 +1,333 @@
+"""Changes single places of the sources at random, and tells whether a test notices.
+
+    mutations.py [--seed 1] [--count 20] [--room ROOM] [--again] [--folder build-mutations]
+
+The changes of a seed are always the same ones while the sources are: rooms of src/ take turns, and
+so do the kinds of change in a room. Work is in a copy of the checkout with its own build:
+
+1. The change is compiled. What does not compile does not count.
+2. A few decks are run. Where no number differs by 1e-9 of itself or of its column's largest, the
+   decks do not see the change: only the tests of its room are run, and it counts as `same` if they
+   pass.
+3. Otherwise all quick tests are run, those of the room first, up to the first failure: the change
+   is `noticed`, or `missed`.
+
+Outcomes are kept in FOLDER, and what has one is not tried again, `missed` and `same` only with
+--again. Prints the changes that were missed, and the score by room. Status 1 if one was missed.
+"""
+
+import argparse
+import fcntl
+import functools
+import itertools
+import json
+import os
+import pathlib
+import random
+import re
+import shutil
+import subprocess
+import sys
+
+import numpy as np
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
+sys.path.insert(0, str(ROOT / "pywrap"))
+from snapin import results  # noqa: E402
+
+# Processor seconds of a process, after which a change has made it endless.
+ENDLESS = 300
+SAME = 1e-9
+DECKS = ("tools/verify/decks/*.nml", "inputs/examples/*.nml", "inputs/tutorial/*.nml",
+         "inputs/first.nml")
+# These take as long as all others.
+LONG = ("map.nml", "fit.nml")
+# These read the sources themselves, or have nothing to do with them.
+BLIND = ("tests/tools", "tests/contact_law", "tests/model/test_translation.py")
+
+NUMBER = re.compile(r"(?<![\w.])\d+\.\d*(?:e[+-]?\d+)?_wp", re.IGNORECASE)
+PAIRS = ((" + ", " - "), ("*", "/"), (" < ", " <= "), (" > ", " >= "), (" == ", " /= "),
+         (".and.", ".or."), (".true.", ".false."), ("max(", "min("), (" && ", " || "))
+SWAPS = {one: other for pair in PAIRS for one, other in (pair, pair[::-1])}
+SWAP = re.compile(r" [-+] | [<>]=? | [=/]= |(?<![*(/])\*(?![*)])|(?<![*(/])/(?![*)=/])"
+                  r"|\.(?:and|or|true|false)\.|\bm(?:ax|in)\(| && | \|\| ")
+TERM = re.compile(r" [-+] (?:[\d.]+(?:_wp)?\*)?[a-z]\w*(?:%\w+)*(?:\([\w, :]*\))?(?![\w%(*/])")
+INDEX = re.compile(r"(?<=\()\d+(?=[,):])|(?<=[,:] )\d+(?=\))")
+CONDITION = re.compile(r"^(\s*(?:else )?if \()(.*)(\) .*)$")
+CALL = re.compile(r"^\s*call \w+(?:%\w+)*\(.*\)$")
+# Lines that say what there is and do nothing.
+STILL = re.compile(
+    r"\s*(?:!|#|/?\*|//|use |import\b|implicit|private|public|module|program|end\b|contains|return$"
+    r"|procedure|generic|interface|abstract|type\b|class\b|integer|logical|character|complex"
+    r"|(?:(?:pure|elemental|recursive|impure) )*(?:subroutine|function)|include|allocate|format"
+    r"|write|static|typedef|struct|real(?!.*::.*=))")
+
+
+class Change:
+    """One changed line of a file of src/: `after` stands where `before` stood."""
+
+    def __init__(self, path, line, before, after, kind):
+        self.path, self.line, self.before, self.after, self.kind = path, line, before, after, kind
+        self.room = path.split("/")[1]
+
+    def __str__(self):
+        return (f"{self.path}:{self.line}: {self.kind}\n    - {self.before.strip()}\n"
+                f"    + {self.after.strip()}")
+
+
+def without_text(line):
+    """The line with blanks for what stands in quotes and comments, of the same length."""
+    line = re.sub(r"'[^']*'|\"[^\"]*\"", lambda found: "'" + "x" * (len(found[0]) - 2) + "'", line)
+    return re.sub(r"(?:!|//| /\*).*", lambda found: " " * len(found[0]), line)
+
+
+def ways(line, dice):
+    """The changes of one line: pairs of a kind and the new line."""
+    code = without_text(line)
+    if STILL.match(code) or not code.strip():
+        return
+
+    def replaced(found, new):
+        return line[:found.start()] + new + line[found.end():]
+
+    for found in SWAP.finditer(code):
+        yield "other operator", replaced(found, SWAPS[found[0]])
+    for found in NUMBER.finditer(code):
+        factor = dice.choice((1.01, 1.1, 1.5, 2.0))
+        if value := float(found[0][:-3]):
+            yield "other constant", replaced(found, f"{value*factor:.6e}_wp")
+    for found in TERM.finditer(code):
+        yield "term dropped", replaced(found, "")
+    for found in INDEX.finditer(code):
+        yield "other index", replaced(found, str(int(found[0]) + dice.choice((-1, 1))))
+    if found := CONDITION.match(code):
+        depth = 0
+        for end in range(found.start(2), len(code)):
+            depth += (code[end] == "(") - (code[end] == ")")
+            if depth < 0:
+                inside = line[found.start(2):end]
+                yield "condition negated", f"{line[:found.start(2)]}.not. ({inside}){line[end:]}"
+                break
+    if CALL.match(code):
+        yield "call dropped", re.match(r"\s*", line)[0] + "continue"
+
+
+def candidates(seed):
+    """The changes of every file, by room and kind."""
+    found = {}
+    for path in sorted((ROOT / "src").rglob("*.[fc]*")):
+        name = str(path.relative_to(ROOT))
+        if path.suffix not in (".f90", ".c") or "minpack" in name or "/mpi/" in name:
+            continue
+        lines, dice = path.read_text(encoding="utf-8").split("\n"), random.Random(f"{seed} {name}")
+        for i, line in enumerate(lines):
+            # In C only operators that both languages have.
+            for kind, new in ways(line, dice):
+                if new != line and (path.suffix == ".f90" or kind == "other operator"):
+                    found.setdefault(name.split("/")[1], {}).setdefault(kind, []).append(
+                        Change(name, i + 1, line, new, kind))
+    return found
+
+
+def drawn(seed, count, room):
+    """The first changes of a seed: rooms take turns, and so do the kinds in a room."""
+    by_room = candidates(seed)
+    rooms = sorted(by_room) if room is None else [room]
+    for name in rooms:
+        dice = random.Random(f"{seed} {name}")
+        kinds = list(by_room[name].values())
+        for changes in kinds:
+            dice.shuffle(changes)
+        dice.shuffle(kinds)
+        by_room[name] = [change for turn in itertools.zip_longest(*kinds)
+                         for change in turn if change]
+    return [by_room[rooms[i % len(rooms)]][i // len(rooms)] for i in range(count)]
+
+
+class Copy:
+    """A copy of the checkout, with a build and the results of the decks without a change."""
+
+    def __init__(self, folder):
+        self.top = folder / "copy"
+        self.top.mkdir(parents=True, exist_ok=True)
+        self.outcomes = folder / "outcomes.json"
+        self._renew()
+        if not (self.top / "build" / "build.ninja").exists():
+            self._tool("meson", "setup", "-Dpython=enabled", "build")
+        assert self.builds(), "the sources do not compile"
+        self.usual = self.run_decks()
+
+    def _renew(self):
+        """Files that differ from those of the checkout; a change that was left behind is undone."""
+        listed = subprocess.run(["git", "ls-files", "-z", "--cached", "--others",
+                                 "--exclude-standard"], cwd=ROOT, capture_output=True, check=True)
+        for name in filter(None, listed.stdout.decode().split("\0")):
+            source, target = ROOT / name, self.top / name
+            if not source.exists():
+                target.unlink(missing_ok=True)
+            elif not target.exists() or source.read_bytes() != target.read_bytes():
+                target.parent.mkdir(parents=True, exist_ok=True)
+                shutil.copy(source, target)
+        if not (self.top / ".venv").exists():
+            (self.top / ".venv").symlink_to(ROOT / ".venv")
+
+    def _tool(self, name, *arguments):
+        tools = ROOT / ".venv" / "bin"
+        return subprocess.run(
+            [tools / name, *arguments], cwd=self.top, capture_output=True, text=True, check=False,
+            env={**os.environ, "PATH": f"{tools}:{os.environ['PATH']}"})
+
+    def builds(self):
+        return self._tool("ninja", "-C", "build", "-j", "1").returncode == 0
+
+    @functools.cached_property
+    def decks(self):
+        return sorted(path for pattern in DECKS for path in self.top.glob(pattern)
+                      if path.name not in LONG)
+
+    def run_decks(self):
+        """Status and folder of results of each deck, read into numbers and words."""
+        out = self.top / "results-of-decks"
+        shutil.rmtree(out, ignore_errors=True)
+        found = {}
+        for deck in self.decks:
+            name = "-".join(deck.relative_to(self.top).with_suffix("").parts)
+            done = subprocess.run(
+                ["sh", "-c", f'ulimit -t {ENDLESS}; exec "$@"', "sh", self.top / "build/snapin",
+                 "--quiet", "--out", out / name, deck], cwd=deck.parent, capture_output=True,
+                env={**os.environ, "OMP_NUM_THREADS": "1"}, check=False)
+            found[name] = done.returncode, _read(out / name)
+        return found
+
+    def first_failure(self, *tests):
+        """The first of these tests that fails, or None."""
+        done = subprocess.run(
+            [ROOT / ".venv/bin/python", "-m", "pytest", "-q", "-x", "-n", "0", "-p",
+             "no:cacheprovider", "-m", "not slow and not long", *tests], cwd=self.top,
+            capture_output=True, text=True, errors="replace", check=False)
+        if done.returncode in (0, 5):
+            return None
+        found = re.search(r"^(?:FAILED|ERROR) (.*?)(?: - .*)?$", done.stdout, re.MULTILINE)
+        return found[1] if found else f"pytest ends with status {done.returncode}"
+
+    def outcome(self, change):
+        path = self.top / change.path
+        text = path.read_text(encoding="utf-8")
+        lines = text.split("\n")
+        assert lines[change.line - 1] == change.before
+        lines[change.line - 1] = change.after
+        path.write_text("\n".join(lines), encoding="utf-8")
+        try:
+            if not self.builds():
+                return {"outcome": "no program"}
+            seen = differing(self.usual, self.run_decks())
+            room = self.top / "tests" / change.room
+            failed = self.first_failure(room) if room.exists() else None
+            if failed is None and seen:
+                skipped = [f"--ignore={path}" for path in (*BLIND, f"tests/{change.room}")]
+                failed = self.first_failure("tests", *skipped)
+            return {"outcome": "noticed" if failed else "missed" if seen else "same",
+                    "seen in": seen, "test": failed}
+        finally:
+            path.write_text(text, encoding="utf-8")
+
+
+def _read(folder):
+    """{file: {column: cells}} of results that can be read, otherwise their bytes."""
+    found = {}
+    for path in sorted(folder.rglob("*")) if folder.exists() else ():
+        try:
+            if path.suffix == ".csv" and path.name != "costs.csv":
+                found[path.name] = results.read_table(path.parent, path.name)
+            elif path.name == "summary.nml":
+                for group, keys in results._namelist(path.read_text()).items():
+                    if group != "cost":
+                        found[f"summary {group}"] = {key: np.array(value)
+                                                     for key, value in keys.items()}
+        except Exception:  # A changed program may write anything. # noqa: BLE001
+            found[path.name] = path.read_bytes()
+    return found
+
+
+def differing(one, other):
+    """The first file, with its deck, whose numbers differ; None if there is none."""
+    for name, (status, files) in one.items():
+        if status != other[name][0]:
+            return f"{name}: status"
+        if files.keys() != other[name][1].keys():
+            return f"{name}: files"
+        for file, columns in files.items():
+            if not _same(columns, other[name][1][file]):
+                return f"{name}: {file}"
+    return None
+
+
+def _same(one, other):
+    if isinstance(one, bytes) or isinstance(other, bytes):
+        return one == other
+    if one.keys() != other.keys():
+        return False
+    for key, cells in one.items():
+        mine, theirs = np.asarray(cells), np.asarray(other[key])
+        if mine.shape != theirs.shape or mine.dtype.kind != theirs.dtype.kind:
+            return False
+        # An error estimate is known to a few digits.
+        near = 1e-3 if "error" in key else SAME
+        if mine.dtype.kind == "f" and mine.size:
+            size = np.abs(mine[np.isfinite(mine)]).max(initial=0)
+            if not np.allclose(mine, theirs, rtol=near, atol=near*size, equal_nan=True):
+                return False
+        elif mine.dtype.kind != "f" and not (mine == theirs).all():
+            return False
+    return True
+
+
+def score(changes, known):
+    """Rows of a table by room, and the last for all."""
+    kinds = "noticed", "missed", "same", "no program"
+    rooms = {}
+    for change in changes:
+        found = known.get(str(change))
+        if found:
+            counts = rooms.setdefault(change.room, dict.fromkeys(kinds, 0))
+            counts[found["outcome"]] += 1
+    total = {kind: sum(counts[kind] for counts in rooms.values()) for kind in kinds}
+    print("| room | noticed | missed | same | no program |\n|---|---|---|---|---|")
+    for name, counts in [*sorted(rooms.items()), ("all", total)]:
+        print(f"| {name} |", " | ".join(str(counts[kind]) for kind in kinds), "|")
+    judged = total["noticed"] + total["missed"]
+    print(f"{total['noticed']} of {judged} changes that alter results or fail a test are noticed")
+    return total["missed"]
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--count", type=int, default=20)
+    parser.add_argument("--room")
+    parser.add_argument("--again", action="store_true")
+    parser.add_argument("--list", action="store_true", help="show the changes and try none")
+    parser.add_argument("--folder", type=pathlib.Path, default=ROOT / "build-mutations")
+    chosen = parser.parse_args()
+    changes = drawn(chosen.seed, chosen.count, chosen.room)
+    if chosen.list:
+        print(*changes, sep="\n")
+        return 0
+    chosen.folder.mkdir(parents=True, exist_ok=True)
+    lock = (chosen.folder / "lock").open("w")
+    fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    copy = Copy(chosen.folder.resolve())
+    known = json.loads(copy.outcomes.read_text()) if copy.outcomes.exists() else {}
+    for change in changes:
+        before = known.get(str(change), {}).get("outcome")
+        if before is None or (chosen.again and before in ("missed", "same")):
+            found = known[str(change)] = copy.outcome(change)
+            copy.outcomes.write_text(json.dumps(known, indent=1))
+            print(change, found["outcome"], found.get("seen in"), found.get("test"), sep="\n    ",
+                  flush=True)
+    return 1 if score(changes, known) else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
