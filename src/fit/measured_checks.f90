@@ -1,12 +1,12 @@
 !> Checks whether a measured curve can be fitted; if not, with the reason and advice.
 module measured_checks
   use kinds, only: wp
-  use text, only: counted, rounded
+  use text, only: rounded
   use baseline, only: ways_in
   use measured_curve, only: measured_t
   use measured_jumps, only: measured_jump_t, find_jump, off_baseline
-  use noise, only: noise_t, white_noise, rough_deviation
-  use second_look, only: lack_t, lack_in
+  use noise, only: noise_t, rough_deviation
+  use contact_check, only: check_contact
   implicit none
   private
   public :: check_measured, open_end, find_saturated
@@ -72,6 +72,8 @@ contains
       other%signal = signal
       found = [find_jump(other, noise%deviation, stiffness, .true.), &
         find_jump(other, noise%deviation, stiffness, .false.)]
+      where ([(no_jump(other, found(i)), i=1, 2)]) found%before = 0
+      where (found%before == 0) found%change = 0
     end function jumps_in
 
     !> Sets `trouble` if approach and retreat are exchanged. A cycle dissipates energy: between its
@@ -143,53 +145,26 @@ contains
 
   end subroutine check_measured
 
-  !> Sets `trouble` if a straight line on each way describes the samples: single ones, and means
-  !> over neighbours. left: the signal off the baseline.
-  subroutine check_contact(measured, left, noise, stiffness, trouble)
+  !> Whether what looks like a jump tells nothing of the order of rows: the base hardly moves there,
+  !> as at the turn, where a load relaxes; or its neighbours scatter as much, as contacts do that
+  !> slip.
+  pure logical function no_jump(measured, jump)
     type(measured_t), intent(in) :: measured
-    real(wp), intent(in) :: left(:), stiffness
-    type(noise_t), intent(in) :: noise
-    character(len=:), allocatable, intent(inout) :: trouble
-    type(noise_t) :: white
-    type(lack_t) :: lack
-    integer, allocatable :: way(:)
-    real(wp), allocatable :: off_line(:)
-    real(wp) :: middle(2), squares, slope
-    integer :: k
+    type(measured_jump_t), intent(in) :: jump
+    integer, parameter :: neighbours = 20
+    integer :: first, last
+    real(wp) :: step
 
-    if (maxval(abs(left), measured%usable) > stands_out*noise%deviation) return
-    ! A bend of a contact that reaches far would count as noise there.
-    white = white_noise(min(noise%deviation, rough_deviation(pack(measured%signal, &
-      measured%usable))))
-    off_line = measured%signal
-    slope = 0
-    do k = 1, 2
-      associate (mine => measured%usable .and. (measured%inward .eqv. k == 1), z => measured%z)
-        if (count(mine) < 2) cycle
-        middle = [sum(z, mine), sum(measured%signal, mine)]/count(mine)
-        squares = sum((z - middle(1))**2, mine)
-        associate (own => sum((z - middle(1))*(measured%signal - middle(2)), mine)/squares)
-          where (mine) off_line = measured%signal - middle(2) - own*(z - middle(1))
-          if (abs(own) > abs(slope)) slope = own
-        end associate
-      end associate
-    end do
-    way = pack(merge(1, 2, measured%inward), measured%usable)
-    lack = lack_in(pack(off_line, measured%usable)/white%deviation, way, size(way) - 4, white)
-    if (.not. lack%is_noise()) return
-    if (-measured%facing*slope > steep*stiffness) then
-      trouble = 'no baseline in the data: all samples lie on a straight line with ' // &
-        rounded(100*abs(slope)/stiffness) // ' % of the slope of the spring, and none is far ' // &
-        'from contact; the signal differs from a straight line by no more than the noise of ' // &
-        rounded(white%deviation)
-    else
-      trouble = 'no contact in the data: the signal differs from a straight line by no more ' // &
-        'than the noise of ' // rounded(white%deviation) // ' (means over ' // &
-        counted(lack%width, 'sample') // ' are ' // &
-        rounded(lack%times) // ' times those of noise); data must reach from outside ' // &
-        'contact into the forces; check that columns names the signal'
-    end if
-  end subroutine check_contact
+    no_jump = jump%before == 0
+    if (no_jump) return
+    associate (z => measured%z, inward => measured%inward)
+      step = (maxval(z) - minval(z))/count(inward .eqv. inward(jump%before))
+      first = max(jump%before - neighbours, findloc(inward, inward(jump%before), 1))
+      last = min(jump%after + neighbours, findloc(inward, inward(jump%before), 1, back=.true.))
+      no_jump = abs(z(jump%after) - z(jump%before)) < 0.5_wp*step .or. abs(jump%change) < &
+        stands_out*rough_deviation(pack(measured%signal(first:last), measured%usable(first:last)))
+    end associate
+  end function no_jump
 
   !> Height of the approach above the retreat, without their common slope, and its error, in each
   !> part of the travel in which both have samples, nearest first.

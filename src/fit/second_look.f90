@@ -3,8 +3,8 @@
 !> jumps, which they show better than the curve itself.
 module second_look
   use kinds, only: wp
-  use noise, only: noise_t, noise_of, white_noise, noise_of_steps, noise_of_residuals, contradicts, &
-    normal_median, whiten
+  use noise, only: noise_t, noise_of, white_noise, noise_of_steps, noise_of_residuals, &
+    contradicts, normal_median, whiten
   use outliers, only: stand_apart
   use order_statistics, only: median_of
   use measured_jumps, only: measured_jump_t, likely_jump, fewest_far
