@@ -5,7 +5,7 @@ module measured_checks
   use baseline, only: ways_in
   use measured_curve, only: measured_t
   use measured_jumps, only: measured_jump_t, find_jump, off_baseline
-  use noise, only: noise_t, rough_deviation
+  use noise, only: noise_t
   use contact_check, only: check_contact
   implicit none
   private
@@ -151,18 +151,24 @@ contains
   pure logical function no_jump(measured, jump)
     type(measured_t), intent(in) :: measured
     type(measured_jump_t), intent(in) :: jump
+    !> Neighbours on each side; the jump over their largest step.
     integer, parameter :: neighbours = 20
-    integer :: first, last
-    real(wp) :: step
+    real(wp), parameter :: larger = 2
+    integer :: i
+    real(wp) :: step, beside
 
     no_jump = jump%before == 0
     if (no_jump) return
     associate (z => measured%z, inward => measured%inward)
       step = (maxval(z) - minval(z))/count(inward .eqv. inward(jump%before))
-      first = max(jump%before - neighbours, findloc(inward, inward(jump%before), 1))
-      last = min(jump%after + neighbours, findloc(inward, inward(jump%before), 1, back=.true.))
+      beside = 0
+      do i = max(1, jump%before - neighbours), min(size(z) - 1, jump%after + neighbours - 1)
+        if (i >= jump%before .and. i < jump%after) cycle
+        if (measured%usable(i) .and. measured%usable(i + 1) .and. (inward(i) .eqv. inward(i + 1))) &
+          beside = max(beside, abs(measured%signal(i + 1) - measured%signal(i)))
+      end do
       no_jump = abs(z(jump%after) - z(jump%before)) < 0.5_wp*step .or. abs(jump%change) < &
-        stands_out*rough_deviation(pack(measured%signal(first:last), measured%usable(first:last)))
+        larger*beside
     end associate
   end function no_jump
 
