@@ -151,10 +151,10 @@ contains
   pure logical function no_jump(measured, jump)
     type(measured_t), intent(in) :: measured
     type(measured_jump_t), intent(in) :: jump
-    !> Neighbours on each side; the jump over their largest step.
-    integer, parameter :: neighbours = 20
+    !> Samples that are at the turn; neighbours on each side; the jump over their largest step.
+    integer, parameter :: at_turn = 10, neighbours = 20
     real(wp), parameter :: larger = 2
-    integer :: i
+    integer :: i, turn
     real(wp) :: step, beside
 
     no_jump = jump%before == 0
@@ -167,8 +167,9 @@ contains
         if (measured%usable(i) .and. measured%usable(i + 1) .and. (inward(i) .eqv. inward(i + 1))) &
           beside = max(beside, abs(measured%signal(i + 1) - measured%signal(i)))
       end do
-      no_jump = abs(z(jump%after) - z(jump%before)) < 0.5_wp*step .or. abs(jump%change) < &
-        larger*beside
+      turn = count(inward)
+      no_jump = (abs(z(jump%after) - z(jump%before)) < 0.5_wp*step .and. min(abs(jump%before - &
+        turn), abs(jump%after - turn)) < at_turn) .or. abs(jump%change) < larger*beside
     end associate
   end function no_jump
 
