@@ -73,7 +73,7 @@ def draw_fit(folder, whole=False):
 
 
 def _numbers_of(fit):
-    """Return lines with the fitted values and with what follows from them, of a group of fit.nml."""
+    """Return lines with the fitted values and what follows from them, of a group of fit.nml."""
     names, values, errors, units = (np.atleast_1d(fit[key]) for key in (
         "parameters", "estimate", "standard_error", "units"))
     rows = [(name.split(".", 1)[1].replace("_", " "), *row)

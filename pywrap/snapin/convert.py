@@ -162,16 +162,25 @@ def load_curves(path, spring_constant=None, sensitivity=None):
     override = {"spring constant": spring_constant, "sensitivity": sensitivity}
     override = {key: value for key, value in override.items() if value is not None}
     with _quiet():
-        # Errors of afmformats are of any kind, some of no other class than BaseException.
         try:
-            return [_curve(item) for item in afmformats.load_data(path, meta_override=override)]
-        except (KeyboardInterrupt, SystemExit):
-            raise
-        except BaseException as problem:
-            inside = _members(path, afmformats, override)
+            return _read(path, afmformats, override)
+        except ConvertError as problem:
+            # What an archive lacks, its members lack.
+            inside = [] if "give --" in str(problem) else _members(path, afmformats, override)
             if inside:
                 return inside
-            raise ConvertError(_reason(problem)) from None
+            raise
+
+
+def _read(path, afmformats, override):
+    """The curves of one file."""
+    # Errors of afmformats are of any kind, some of no other class than BaseException.
+    try:
+        return [_curve(item) for item in afmformats.load_data(path, meta_override=override)]
+    except (KeyboardInterrupt, SystemExit):
+        raise
+    except BaseException as problem:
+        raise ConvertError(_reason(problem)) from None
 
 
 def _members(path, afmformats, override):
@@ -185,9 +194,8 @@ def _members(path, afmformats, override):
                 continue
             place = pathlib.Path(folder) / pathlib.PurePosixPath(name).name
             place.write_bytes(archive.read(name))
-            with contextlib.suppress(Exception):
-                found += [_curve(item) for item in
-                          afmformats.load_data(place, meta_override=override)]
+            with contextlib.suppress(ConvertError):
+                found += _read(place, afmformats, override)
     return found
 
 

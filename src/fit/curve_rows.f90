@@ -133,8 +133,8 @@ contains
   end subroutine put_in_order
 
   !> Scales positions and signals to SI by the deck's units, by those in the file, or not at all.
-  !> unit: those of the first position and signal. signal_in: as in `measurement_t`. what: why a unit
-  !> cannot be right.
+  !> unit: those of the first position and signal. signal_in: as in `measurement_t`. what: why a
+  !> unit cannot be right.
   subroutine scale_columns(measurement, table, unit, signal_in, what)
     type(measurement_t), intent(in) :: measurement
     type(data_table_t), intent(inout) :: table

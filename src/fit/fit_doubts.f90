@@ -18,6 +18,8 @@ module fit_doubts
   !> Limits: correlation of two unknowns; smallest singular value; standard deviation of a
   !> logarithm; distance of a jump in standard deviations.
   real(wp), parameter :: alike = 0.98_wp, lost = 1.0e-3_wp, vague = 0.7_wp, far = 4
+  !> The chance of a part of the baseline that is told if it would move an unknown far.
+  real(wp), parameter :: unlikely = 0.02_wp
   !> The part of the excess of chi squared that is most of it.
   real(wp), parameter :: most_of = 0.5_wp
   character(len=*), parameter :: not_described = ': the model does not describe these data, ' // &
@@ -36,6 +38,8 @@ contains
     associate (fitted => outcome%fitted, unknown => outcome%curve%unknown)
       do i = 1, size(fitted%value)
         if (.not. is_at_end(unknown(i), fitted%value(i))) cycle
+        ! Where the data hardly depend on it, a start that is nearer does not help.
+        if (fitted%lack%is_noise() .and. fitted%fitted_deviation(i) > vague) cycle
         call add(unknown(i)%name // ' ends at ' // rounded(fitted%value(i)) // ', the ' // &
           trim(merge('largest ', 'smallest', fitted_of(unknown(i), fitted%value(i)) > 0)) // &
           ' value that is tried, a factor of ' // &
@@ -120,7 +124,10 @@ contains
       if (.not. allocated(outcome%lacking)) return
       if (size(outcome%lacking) == 0) return
       i = minloc(outcome%lacking%chance, 1)
-      if (.not. rarely(outcome%lacking(i)%chance)) return
+      k = maxloc(abs(outcome%lacking(i)%shift)/outcome%fitted%deviation, 1)
+      if (.not. rarely(outcome%lacking(i)%chance) .and. .not. &
+        (outcome%lacking(i)%chance < log(unlikely) .and. abs(outcome%lacking(i)%shift(k)) > &
+        far*outcome%fitted%deviation(k))) return
       associate (fitted => outcome%fitted, unknown => outcome%curve%unknown, &
         lacking => outcome%lacking(i))
         if (.not. fitted%lack%is_noise() .and. lacking%gain < most_of*(fitted%chi_squared - &
@@ -136,7 +143,7 @@ contains
         case default
           words = 'the slope of the approach differs from that of the retreat on the baseline'
         end select
-        k = maxloc(abs(lacking%shift)/fitted%deviation, 1)
+        if (.not. rarely(lacking%chance)) words = words // ', though this may be chance'
         call add(words // ': ' // lacking%name // ' would lower chi squared by ' // &
           rounded(lacking%gain) // ' and move ' // unknown(k)%name // ' by ' // &
           rounded(lacking%shift(k)) // ' (' // rounded(abs(lacking%shift(k))/ &

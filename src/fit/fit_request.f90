@@ -24,8 +24,8 @@ module fit_request
     real(wp), allocatable :: sensitivity, contact_point
     !> Pairs of positions; the samples between them do not count.
     real(wp), allocatable :: skip(:)
-    !> Units of position and signal in the file; 0: as the names of the columns say, or SI. signal_in:
-    !> what the signal is, 'N', 'V' or 'm'; blank if neither deck nor file says it.
+    !> Units of position and signal in the file; 0: as the names of the columns say, or SI.
+    !> signal_in: what the signal is, 'N', 'V' or 'm'; blank if neither deck nor file says it.
     real(wp) :: unit(2) = 0
     character :: signal_in = ' '
     type(baseline_t) :: baseline

@@ -1,12 +1,12 @@
 !> Checks whether a measured curve can be fitted; if not, with the reason and advice.
 module measured_checks
   use kinds, only: wp
-  use text, only: counted, rounded
+  use text, only: rounded
   use baseline, only: ways_in
   use measured_curve, only: measured_curve_t
   use measured_jumps, only: measured_jump_t, find_jump, off_baseline
-  use noise, only: noise_t, white_noise, rough_deviation
-  use second_look, only: lack_t, lack_in
+  use noise, only: noise_t
+  use contact_check, only: check_contact
   implicit none
   private
   public :: check_measured, open_end, find_saturated
@@ -72,6 +72,8 @@ contains
       other%signal = signal
       found = [find_jump(other, noise%deviation, stiffness, .true.), &
         find_jump(other, noise%deviation, stiffness, .false.)]
+      where ([(no_jump(other, found(i)), i=1, 2)]) found%before = 0
+      where (found%before == 0) found%change = 0
     end function jumps_in
 
     !> Sets `trouble` if approach and retreat are exchanged. A cycle dissipates energy: between its
@@ -143,53 +145,33 @@ contains
 
   end subroutine check_measured
 
-  !> Sets `trouble` if a straight line on each way describes the samples: single ones, and means
-  !> over neighbours. left: the signal off the baseline.
-  subroutine check_contact(measured, left, noise, stiffness, trouble)
+  !> Whether what looks like a jump tells nothing of the order of rows: the base hardly moves there,
+  !> as at the turn, where a load relaxes; or its neighbours scatter as much, as contacts do that
+  !> slip.
+  pure logical function no_jump(measured, jump)
     type(measured_curve_t), intent(in) :: measured
-    real(wp), intent(in) :: left(:), stiffness
-    type(noise_t), intent(in) :: noise
-    character(len=:), allocatable, intent(inout) :: trouble
-    type(noise_t) :: white
-    type(lack_t) :: lack
-    integer, allocatable :: way(:)
-    real(wp), allocatable :: off_line(:)
-    real(wp) :: middle(2), squares, slope
-    integer :: k
+    type(measured_jump_t), intent(in) :: jump
+    !> Samples that are at the turn; neighbours on each side; the jump over their largest step.
+    integer, parameter :: at_turn = 10, neighbours = 20
+    real(wp), parameter :: larger = 2
+    integer :: i, turn
+    real(wp) :: step, beside
 
-    if (maxval(abs(left), measured%usable) > stands_out*noise%deviation) return
-    ! A bend of a contact that reaches far would count as noise there.
-    white = white_noise(min(noise%deviation, rough_deviation(pack(measured%signal, &
-      measured%usable))))
-    off_line = measured%signal
-    slope = 0
-    do k = 1, 2
-      associate (mine => measured%usable .and. (measured%inward .eqv. k == 1), z => measured%z)
-        if (count(mine) < 2) cycle
-        middle = [sum(z, mine), sum(measured%signal, mine)]/count(mine)
-        squares = sum((z - middle(1))**2, mine)
-        associate (own => sum((z - middle(1))*(measured%signal - middle(2)), mine)/squares)
-          where (mine) off_line = measured%signal - middle(2) - own*(z - middle(1))
-          if (abs(own) > abs(slope)) slope = own
-        end associate
-      end associate
-    end do
-    way = pack(merge(1, 2, measured%inward), measured%usable)
-    lack = lack_in(pack(off_line, measured%usable)/white%deviation, way, size(way) - 4, white)
-    if (.not. lack%is_noise()) return
-    if (-measured%facing*slope > steep*stiffness) then
-      trouble = 'no baseline in the data: all samples lie on a straight line with ' // &
-        rounded(100*abs(slope)/stiffness) // ' % of the slope of the spring, and none is far ' // &
-        'from contact; the signal differs from a straight line by no more than the noise of ' // &
-        rounded(white%deviation)
-    else
-      trouble = 'no contact in the data: the signal differs from a straight line by no more ' // &
-        'than the noise of ' // rounded(white%deviation) // ' (means over ' // &
-        counted(lack%width, 'sample') // ' are ' // &
-        rounded(lack%times) // ' times those of noise); data must reach from outside ' // &
-        'contact into the forces; check that columns names the signal'
-    end if
-  end subroutine check_contact
+    no_jump = jump%before == 0
+    if (no_jump) return
+    associate (z => measured%z, inward => measured%inward)
+      step = (maxval(z) - minval(z))/count(inward .eqv. inward(jump%before))
+      beside = 0
+      do i = max(1, jump%before - neighbours), min(size(z) - 1, jump%after + neighbours - 1)
+        if (i >= jump%before .and. i < jump%after) cycle
+        if (measured%usable(i) .and. measured%usable(i + 1) .and. (inward(i) .eqv. inward(i + 1))) &
+          beside = max(beside, abs(measured%signal(i + 1) - measured%signal(i)))
+      end do
+      turn = count(inward)
+      no_jump = (abs(z(jump%after) - z(jump%before)) < 0.5_wp*step .and. min(abs(jump%before - &
+        turn), abs(jump%after - turn)) < at_turn) .or. abs(jump%change) < larger*beside
+    end associate
+  end function no_jump
 
   !> Height of the approach above the retreat, without their common slope, and its error, in each
   !> part of the travel in which both have samples, nearest first.

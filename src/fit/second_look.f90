@@ -3,8 +3,8 @@
 !> jumps, which they show better than the curve itself.
 module second_look
   use kinds, only: wp
-  use noise, only: noise_t, noise_of, white_noise, noise_of_steps, noise_of_residuals, contradicts, &
-    normal_median, whiten
+  use noise, only: noise_t, noise_of, white_noise, noise_of_steps, noise_of_residuals, &
+    contradicts, normal_median, whiten
   use outliers, only: stand_apart
   use order_statistics, only: median_of
   use measured_jumps, only: measured_jump_t, likely_jump, fewest_far
@@ -212,10 +212,36 @@ contains
         call whiten(noise, data%run(data%sample), white)
         lack = lack_in(white(:, 1), 3*data%way(data%sample) + data%side(data%sample), &
           size(white) - size(curve%unknown) - data%baseline_numbers(), noise)
-        explains = lack%is_noise() .and. .not. contradicts(pack(data%measured%z, far), &
+        explains = lack%is_noise() .and. is_even(data%measured%z(data%sample), &
+          left(data%sample), noise) .and. .not. contradicts(pack(data%measured%z, far), &
           pack(data%measured%signal, far), pack(data%way, far), noise)
       end associate
     end function explains
+
+    !> Whether residuals have the same variance in each part of the travel: a misfit is largest in
+    !> contact. The variance of that of m samples of a correlated noise is 2/m times the sum of its
+    !> squared correlations (Bartlett, 1946).
+    pure logical function is_even(z, residual, noise)
+      real(wp), intent(in) :: z(:), residual(:)
+      type(noise_t), intent(in) :: noise
+      integer, parameter :: parts = 4
+      logical :: mine(size(z))
+      real(wp) :: low, width, squares, ratio
+      integer :: k, m
+
+      is_even = .true.
+      low = minval(z)
+      width = (maxval(z) - low)/parts
+      squares = 1 + 2*sum(noise%correlation(1:)**2)
+      do k = 1, parts
+        mine = min(parts, 1 + int((z - low)/width)) == k
+        m = count(mine)
+        if (m < fewest_far) cycle
+        ratio = sum(residual**2, mine)/m/(sum(residual**2)/size(z))
+        if (abs(ratio - 1) > hardly_ever*sqrt(2*squares*(1.0_wp/m - 1.0_wp/size(z)))) &
+          is_even = .false.
+      end do
+    end function is_even
 
   end subroutine renew_noise
 

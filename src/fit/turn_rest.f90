@@ -39,21 +39,25 @@ contains
   end subroutine leave_out_rest
 
   !> The number of the first samples that are a rest: all those within a mean step of the first
-  !> one, if the means of their halves differ by more than spring and noise explain; otherwise 0.
+  !> one, if the means of two parts of them differ by more than spring and noise explain; otherwise
+  !> 0. A load that relaxes fast changes in the first few samples alone.
   pure integer function resting(travel, signal, deviation, stiffness) result(n)
     real(wp), intent(in) :: travel(:), signal(:), deviation, stiffness
-    real(wp) :: change
-    integer :: half
+    real(wp) :: change, most
+    integer :: k
 
     n = findloc(travel > maxval(travel)/size(travel), .true., 1) - 1
     if (n < fewest) then
       n = 0
       return
     end if
-    half = n/2
-    change = abs(sum(signal(:half))/half - sum(signal(half + 1:n))/(n - half))
-    if (.not. change > stiffness*maxval(travel(:n)) + surely*deviation*sqrt(1.0_wp/half + &
-      1.0_wp/(n - half))) n = 0
+    most = 0
+    do k = 1, n - 1
+      change = abs(sum(signal(:k))/k - sum(signal(k + 1:n))/(n - k))
+      most = max(most, (change - stiffness*maxval(travel(:n)))/ &
+        (deviation*sqrt(1.0_wp/k + 1.0_wp/(n - k))))
+    end do
+    if (.not. most > surely) n = 0
   end function resting
 
 end module turn_rest

@@ -4,6 +4,7 @@ the position of the base, and what is said where something is missing."""
 import re
 import subprocess
 import sys
+import zipfile
 
 import numpy as np
 import pytest
@@ -125,7 +126,7 @@ def load_data(path, meta_override):
     path = str(path)
     base = np.array({BASE.tolist()})
     curve = Curve({{"height (piezo)": base, "force": 0 * base, "segment": np.repeat([0, 1], 31)}})
-    if "other" in path:
+    if "other" in path or path.endswith(".zip"):
         raise BaseException("no recipe")
     if "bare" in path and "spring constant" not in meta_override:
         raise ValueError("Please specify sensitivity and spring constant!")
@@ -175,6 +176,15 @@ def test_what_the_file_lacks_can_be_given(call):
     assert done.stderr.endswith("give --spring-constant and --sensitivity\n")
     assert call("bare.csv", "-o", "tables", "--spring-constant", "0.1", "--sensitivity",
                 "5e-8").returncode == 0
+
+
+def test_an_archive_of_curves_is_read_as_far_as_its_members_are_curves(call, tmp_path):
+    with zipfile.ZipFile(tmp_path / "all.zip", "w") as archive:
+        for name in ("notes.xyz-other", "a.jpk-force", "b.jpk-force"):
+            archive.writestr(name, "")
+    done = call("all.zip", "-o", "tables")
+    assert done.returncode == 0, done.stderr
+    assert "2 of 2 curves" in done.stdout
 
 
 def test_another_file_is_not_replaced(call, tmp_path):

@@ -123,6 +123,38 @@ def test_the_fewest_samples_are_twenty_on_a_way_and_two_for_each_number_with_fou
         left(3)
 
 
+@pytest.mark.parametrize("seed", [2, 3, 4])
+def test_a_contact_at_the_end_alone_is_no_absence_of_contact(tmp_path, seed):
+    """Three weak samples at the end of a line: means over neighbours anywhere did not show them."""
+    noise, n = 1e-12, 200
+    z = np.linspace(1e-6, 0, n)
+    force = noise * np.random.default_rng(seed).standard_normal(n)
+    force[-3:] += noise * np.array([1.5, 3, 5])
+    result = fit_of_gel(tmp_path, (z, force, 0 * z), segment="approach")
+    assert result.fitted["fit"]["estimate"][0] > 0
+
+
+def test_a_fall_of_the_load_between_two_samples_at_the_turn_is_no_reversed_order(tmp_path):
+    """A sample that loses load as the base turns: it was said to jump in reverse order."""
+    z, force, segment = hertz_curve(60)
+    z[61], force[61:] = z[60] + 6e-12, 0.95 * force[61:]
+    assert fit_of_gel(tmp_path, (z, force, segment)).fitted
+
+
+@pytest.mark.parametrize("seed", [0, 1])
+def test_a_load_that_relaxes_in_a_sample_at_the_turn_is_left_out(tmp_path, seed):
+    """The halves of the rest hardly differed, and the right model was said not to describe it."""
+    z, force, segment = hertz_curve(60, seed=seed)
+    noise = 3e-12 * np.random.default_rng(seed).standard_normal(10)
+    rest = force[59] * (1 - 0.01 * (1 - np.exp(-np.arange(10) / 0.4))) + noise
+    curve = (np.insert(z, 60, np.full(10, z[59])), np.insert(force, 60, rest),
+             np.repeat([0, 1], [60, 70]))
+    result = fit_of_gel(tmp_path, curve)
+    stiffness, error = estimates(result)[STIFFNESS]
+    assert abs(stiffness - SOFT) < 4 * error
+    assert not any("does not describe" in text for text in told(result))
+
+
 def test_a_curve_that_is_nearly_all_contact_is_fitted(tmp_path):
     """A far third of the travel that is in contact was once the noise, and there was no contact."""
     z, force, segment = hertz_curve(200, noise=3e-11)

@@ -45,13 +45,15 @@ def test_the_fit_is_drawn(example, called):
 @pytest.mark.filterwarnings("ignore::snapin.SnapinWarning")
 @pytest.mark.parametrize(("head", "unit"), [("Deflection (nm)", "nm"), ("Signal (mV)", "mV"),
                                             ("signal", "V or m")])
-def test_the_picture_has_the_unit_of_the_signal_and_all_of_the_tension(tmp_path, monkeypatch, head, unit):
-    """A deflection in metres was labelled as volts. Where the residuals of a wrong model are as large
-    as the tension, the axis ended before it."""
+def test_the_picture_has_the_unit_of_the_signal_and_all_of_the_tension(
+        tmp_path, monkeypatch, head, unit):
+    """A deflection in metres was labelled as volts. Where the residuals of a wrong model are as
+    large as the tension, the axis ended before it."""
     pytest.importorskip("matplotlib")
     table = ROOT / "inputs/tutorial/probe.txt"
     rows = [line.split("\t") for line in table.read_text(encoding="utf-8").splitlines()[6:]]
-    lines = [f"Z (um),{head},Segment"] + [f"{z},{float(force) / 42},{way}" for z, force, way in rows]
+    lines = [f"Z (um),{head},Segment"]
+    lines += [f"{z},{float(force) / 42},{way}" for z, force, way in rows]
     (tmp_path / "curve.csv").write_text("\n".join(lines))
     # Softer bodies than any that describe the data: the residuals are large.
     run({

@@ -1,0 +1,100 @@
+!> Whether there is a contact in a measured curve at all: something that is no straight line.
+module contact_check
+  use kinds, only: wp
+  use text, only: counted, rounded
+  use measured_curve, only: measured_t
+  use noise, only: noise_t, white_noise, rough_deviation
+  use second_look, only: lack_t, lack_in
+  implicit none
+  private
+  public :: check_contact
+
+  !> Limits: a signal in standard deviations of the noise; standard errors of a certain statement;
+  !> the slope of samples in contact, over that of the spring.
+  real(wp), parameter :: stands_out = 8, surely = 5, steep = 0.2_wp
+
+contains
+
+  !> Sets `trouble` if a straight line on each way describes the samples: single ones, means over
+  !> neighbours, and those nearest to the other body. left: the signal off the baseline.
+  subroutine check_contact(measured, left, noise, stiffness, trouble)
+    type(measured_t), intent(in) :: measured
+    real(wp), intent(in) :: left(:), stiffness
+    type(noise_t), intent(in) :: noise
+    character(len=:), allocatable, intent(inout) :: trouble
+    type(noise_t) :: white
+    type(lack_t) :: lack
+    integer, allocatable :: way(:)
+    real(wp), allocatable :: off_line(:)
+    real(wp) :: middle(2), squares, slope
+    integer :: k
+
+    if (maxval(abs(left), measured%usable) > stands_out*noise%deviation) return
+    ! A bend of a contact that reaches far would count as noise there.
+    white = white_noise(min(noise%deviation, rough_deviation(pack(measured%signal, &
+      measured%usable))))
+    off_line = measured%signal
+    slope = 0
+    do k = 1, 2
+      associate (mine => measured%usable .and. (measured%inward .eqv. k == 1), z => measured%z)
+        if (count(mine) < 2) cycle
+        middle = [sum(z, mine), sum(measured%signal, mine)]/count(mine)
+        squares = sum((z - middle(1))**2, mine)
+        associate (own => sum((z - middle(1))*(measured%signal - middle(2)), mine)/squares)
+          where (mine) off_line = measured%signal - middle(2) - own*(z - middle(1))
+          if (abs(own) > abs(slope)) slope = own
+        end associate
+      end associate
+    end do
+    way = pack(merge(1, 2, measured%inward), measured%usable)
+    lack = lack_in(pack(off_line, measured%usable)/white%deviation, way, size(way) - 4, white)
+    if (.not. lack%is_noise()) return
+    if (any([(end_off_line(measured, k == 1, white%deviation), k=1, 2)] > surely)) return
+    if (-measured%facing*slope > steep*stiffness) then
+      trouble = 'no baseline in the data: all samples lie on a straight line with ' // &
+        rounded(100*abs(slope)/stiffness) // ' % of the slope of the spring, and none is far ' // &
+        'from contact; the signal differs from a straight line by no more than the noise of ' // &
+        rounded(white%deviation)
+    else
+      trouble = 'no contact in the data: the signal differs from a straight line by no more ' // &
+        'than the noise of ' // rounded(white%deviation) // ' (means over ' // &
+        counted(lack%width, 'sample') // ' are ' // &
+        rounded(lack%times) // ' times those of noise); data must reach from outside ' // &
+        'contact into the forces; check that columns names the signal'
+    end if
+  end subroutine check_contact
+
+  !> By how many standard errors the mean of the nearest samples of a way is above a straight line
+  !> through the others: the most of 2, 4, 8 and more samples. A short contact of weak samples shows
+  !> best there.
+  pure real(wp) function end_off_line(measured, inward, deviation) result(off)
+    type(measured_t), intent(in) :: measured
+    logical, intent(in) :: inward
+    real(wp), intent(in) :: deviation
+    integer, allocatable :: at(:)
+    real(wp), allocatable :: x(:), y(:)
+    real(wp) :: middle(2), squares, slope, ahead
+    integer :: i, m, n
+
+    off = 0
+    at = pack([(i, i=1, size(measured%z))], measured%usable .and. (measured%inward .eqv. inward))
+    ! From the nearest sample on.
+    if (inward) at = at(size(at):1:-1)
+    n = size(at)
+    x = measured%facing*measured%z(at)
+    y = measured%signal(at)
+    m = 2
+    do while (m <= n/3)
+      associate (others => x(m + 1:), signals => y(m + 1:))
+        middle = [sum(others), sum(signals)]/(n - m)
+        squares = max(sum((others - middle(1))**2), tiny(1.0_wp))
+        slope = sum((others - middle(1))*(signals - middle(2)))/squares
+        ahead = sum(x(:m))/m - middle(1)
+        off = max(off, (sum(y(:m))/m - middle(2) - slope*ahead)/ &
+          (deviation*sqrt(1.0_wp/m + 1.0_wp/(n - m) + ahead**2/squares)))
+      end associate
+      m = 2*m
+    end do
+  end function end_off_line
+
+end module contact_check
