@@ -50,8 +50,8 @@ module reported_numbers
   !> Part of the median error below which no error is, on meshes of other digits, which seldom agree
   !> by chance; and on grids that are fixed in space, whose errors depend on where the contact edge
   !> is between nodes. Of 1025 numbers on meshes locked to the edge under random laws, 1.5 % had
-  !> errors above such estimates and 3.1 % below a thirtieth of them; with one median of all kinds it
-  !> is 1.7 % and 7.2 %, without a least error 2.0 % and 0.6 %.
+  !> errors above such estimates and 3.1 % below a thirtieth of them; with one median of all kinds
+  !> it is 1.7 % and 7.2 %, without a least error 2.0 % and 0.6 %.
   real(wp), parameter :: chance = 0.1_wp, chance_on_grids = 1
   !> The relative error that stands for an unknown value.
   real(wp), parameter :: most = 1.0e6_wp
