@@ -19,11 +19,11 @@ from support.measured import Branches  # noqa: E402
 
 FOLDER = ROOT / "inputs/tutorial"
 #: What the fit should find.
-TRUTH = {"force.surface_energy": 0.042, "bodies.young(2)": 1.3e9}
+TRUTH = {"force.work_of_adhesion": 0.042, "bodies.young(2)": 1.3e9}
 SPRING = 42.0
 _SCENE = {
     "bodies": {"radius": 5e-6, "young": [70e9, TRUTH["bodies.young(2)"]], "poisson": [0.17, 0.4]},
-    "force": {"law": "lennard_jones", "surface_energy": TRUTH["force.surface_energy"], "z0": 5e-10},
+    "force": {"law": "lennard_jones", "surface_energy": TRUTH["force.work_of_adhesion"], "z0": 5e-10},
 }
 # Nearest and farthest position of the drive [m], samples of each way, noise of the force [N], its
 # tilt along the base [N/m], and the position of the base at which undeformed bodies would touch [m].

@@ -2,7 +2,7 @@
 module contact_check
   use kinds, only: wp
   use text, only: counted, rounded
-  use measured_curve, only: measured_t
+  use measured_curve, only: measured_curve_t
   use noise, only: noise_t, white_noise, rough_deviation
   use second_look, only: lack_t, lack_in
   implicit none
@@ -18,7 +18,7 @@ contains
   !> Sets `trouble` if a straight line on each way describes the samples: single ones, means over
   !> neighbours, and those nearest to the other body. left: the signal off the baseline.
   subroutine check_contact(measured, left, noise, stiffness, trouble)
-    type(measured_t), intent(in) :: measured
+    type(measured_curve_t), intent(in) :: measured
     real(wp), intent(in) :: left(:), stiffness
     type(noise_t), intent(in) :: noise
     character(len=:), allocatable, intent(inout) :: trouble
@@ -68,7 +68,7 @@ contains
   !> through the others: the most of 2, 4, 8 and more samples. A short contact of weak samples shows
   !> best there.
   pure real(wp) function end_off_line(measured, inward, deviation) result(off)
-    type(measured_t), intent(in) :: measured
+    type(measured_curve_t), intent(in) :: measured
     logical, intent(in) :: inward
     real(wp), intent(in) :: deviation
     integer, allocatable :: at(:)

@@ -66,7 +66,7 @@ def test_a_spoilt_curve_has_the_message_of_the_page(fit, name):
 def test_the_remedy_of_the_page_gives_the_truth(fit, name, keys, columns):
     said, found = fit(name, keys, columns)
     assert "does not describe" not in said, said
-    assert found["force.surface_energy"] == pytest.approx(0.042, rel=0.02)
+    assert found["force.work_of_adhesion"] == pytest.approx(0.042, rel=0.02)
     assert found["bodies.young(2)"] == pytest.approx(1.3e9, rel=0.05)
 
 
