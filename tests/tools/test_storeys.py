@@ -52,7 +52,7 @@ SEAMS = {
 }
 
 # The longest chain of `use`, in modules: what a reader must know who begins at its end.
-LONGEST_CHAIN = 39
+LONGEST_CHAIN = 40
 
 
 def is_beyond(name):
