@@ -246,7 +246,7 @@ contains
     type(number_t), intent(in) :: number
 
     largest = maxval([0.0_wp, pack(parts_of(number), number%compared)])
-    if (.not. number%known .and. any(number%compared)) largest = max(1.0_wp, largest)
+    if (.not. number%known) largest = max(1.0_wp, largest)
   end function relative_error
 
   !> The relative errors of all quantities of a number.

@@ -88,14 +88,14 @@ module result_rows
       place='max_tension', quantity=of_h0, error=judged), &
     row_t('max_tension_at_end', '', 'whether max_tension is at an end of a branch or of its ' // &
       'solved rows, and no pull-off (sweep.csv: 1 or 0)', always), &
-    row_t('jump_in_h0', 'm', 'h0 of snap-in, the turning point at which approaching bodies jump into contact', always, &
-      place='jump_in', quantity=of_h0, error=judged), &
+    row_t('jump_in_h0', 'm', 'h0 of snap-in, the turning point at which approaching ' // &
+      'bodies jump into contact', always, place='jump_in', quantity=of_h0, error=judged), &
     row_t('jump_in_load', 'N', 'load just before snap-in', always, &
       place='jump_in', quantity=of_load, error=judged), &
     row_t('jump_in_uncertainty', 'm', &
       'on a fixed grid: uncertainty of jump_in_h0, plus or minus'), &
-    row_t('jump_out_h0', 'm', 'h0 of snap-off, at which retracting bodies separate, in the first ' // &
-      'unloading with a jump', always, place='jump_out', quantity=of_h0, error=judged), &
+    row_t('jump_out_h0', 'm', 'h0 of snap-off, at which retracting bodies separate, in the ' // &
+      'first unloading with a jump', always, place='jump_out', quantity=of_h0, error=judged), &
     row_t('jump_out_load', 'N', 'load just before snap-off', always, &
       place='jump_out', quantity=of_load, error=judged), &
     row_t('jump_out_uncertainty', 'm', &

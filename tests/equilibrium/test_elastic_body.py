@@ -2,7 +2,6 @@
 half-space with a ring image, against dense states that share nothing with the program."""
 
 import csv
-import math
 import subprocess
 
 import f90nml
@@ -30,9 +29,7 @@ class Outcome:
         self.branch = np.array([row[0] for row in rows])
         self.h0, self.centre, self.load, self.stable, self.eigenvalue = (
             np.array([float(row[k]) for row in rows]) for k in (1, 2, 4, 6, 10))
-        self.rate = {row[1]: np.array(row[2:], float)
-                     for row in csv.reader(lines) if row[0] == "rate"}
-        others = [line for line in lines if not line.startswith(("row,", "rate,", "place,"))]
+        others = [line for line in lines if not line.startswith(("row,", "place,"))]
         self.summary = f90nml.reads("\n".join(others) + "\n")["summary"]
 
 
@@ -96,15 +93,3 @@ def test_the_smallest_eigenvalue_passes_zero_at_the_folds(run, image):
     assert (found.eigenvalue[inside] < 0).all()
     assert (np.delete(found.eigenvalue, np.r_[folds[0]:folds[1] + 1]) > 0).all()
     assert (found.stable[inside] == 0).all()
-
-
-def test_derivatives_are_differences_of_runs(run):
-    """By sigma, through the Hamaker constant, at an image that stays."""
-    step = 1e-3
-    low, here, high = (
-        run(SOFT, sigma=SIGMA * (1 + k * step), equilibrium_path=PATH, numerics={"accuracy": 1e-9},
-            sensitivity={"parameters": ["force.hamaker"]}) for k in (-1, 0, 1))
-    for key, rate in here.rate.items():
-        difference = (high.summary[key] - low.summary[key]) / (2 * step)
-        assert 16 * math.pi * rate[0] == pytest.approx(difference, rel=1e-5)
-    assert {"max_tension", "jump_in_h0", "jump_out_h0"} <= set(here.rate)

@@ -124,7 +124,7 @@ def test_the_noise_of_a_signal_of_few_digits_is_that_of_rounding_at_least(branch
     assert fit["noise"][0] == pytest.approx(step / np.sqrt(12), rel=1e-6)
     true = [1e-19, 1e10, 0.0]
     assert np.all(np.abs(np.array(fit["estimate"]) - true) < 4 * np.array(fit["standard_error"]))
-    # A bow that chance explains in one fit of fifty is named as such, if it would move a number far.
+    # A bow that chance explains in one fit of fifty is named, if it would move a number far.
     assert all("may be chance" in text for text in fit.get("warnings", []))
 
 

@@ -144,7 +144,7 @@ def test_a_capillary_bridge_has_the_energy_of_its_surface():
     ("&force law='lennard_jones', hamaker=1e-19, z0=1e-9, exponents=3,9 /", 'key "exponents"'),
     ("&force law='lennard_jones', hamaker=1e-19, z0=1e-9, exponents=9 /", 'key "exponents"'),
     ("&force law='lennard_jones', hamaker=1e-19, z0=1e-9, exponents=10,4 /",
-     'key "surface_energy"'),
+     'key "work_of_adhesion"'),
     ("&force law='exponential', p0=1, decay_length=1, exponents=9,3 /", 'key "exponents"'),
     ("&hydration decay_length = 1e-9 /", "give either energy or pressure"),
     ("&hydration energy = 1, pressure = 1, decay_length = 1e-9 /",

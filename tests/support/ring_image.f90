@@ -116,7 +116,6 @@ program ring_image
   use experiment_result, only: experiment_result_t
   use reported_place, only: of_load, of_radius
   use places, only: readings_t
-  use result_rows, only: row_of
   use summarise, only: summary_of
   use summary, only: summary_t, summary_text
   use ring_image_body, only: ring_image_t
@@ -130,11 +129,8 @@ program ring_image
   type(printing_observer_t) :: observer
   type(failure_t), allocatable :: error
   character(len=1000) :: file, number(2)
-  character(len=*), parameter :: told(*) = [character(len=16) :: 'max_tension', 'jump_in_h0', &
-    'jump_out_h0', 'jump_in_load', 'end_load']
-  type(readings_t) :: found
   real(wp) :: strength, depth
-  integer :: j, k
+  integer :: k
 
   call get_command_argument(1, file)
   call get_command_argument(2, number(1))
@@ -145,22 +141,10 @@ program ring_image
   if (allocated(error)) error stop 'the deck is wrong'
   problem = problem_of(scene)
   call give_body(problem)
-  if (allocated(scene%varied)) then
-    do j = 1, size(scene%varied)
-      do k = 1, size(scene%varied(j)%problem)
-        call give_body(scene%varied(j)%problem(k))
-      end do
-    end do
-  end if
   observer%eigenvalues = scene%stability
   call run_experiment(scene, problem, observer, outcome)
   summary = summary_of(scene, problem, outcome)
   print '(a)', summary_text(summary)
-  do k = 1, size(told)
-    found = summary%numbers_of_row(row_of(trim(told(k))))
-    if (size(found%rate) > 0) print '(3a, *(es25.16))', 'rate,', trim(told(k)), ',', &
-      found%rate(:, 1)
-  end do
   do k = 1, merge(size(outcome%places%entry), 0, allocated(outcome%places%entry))
     associate (name => outcome%places%entry(k)%name)
       if (any(outcome%places%entry(:k - 1)%name == name)) cycle
@@ -175,6 +159,7 @@ contains
   subroutine tell_place(quantity, what)
     integer, intent(in) :: quantity
     character(len=*), intent(in) :: what
+      type(readings_t) :: found
 
     associate (name => outcome%places%entry(k)%name)
       found = outcome%places%read_numbers(problem, name, quantity)
