@@ -1,8 +1,7 @@
 !> &bodies and &layer: the two bodies, how they deform, and layers bonded to them. With forces and
 !> shape of the deck they make the dimensionless problem of a scene.
 module scene_problem
-  ! The module with most dependencies is first: compiler note 12.
-  use scene_groups, only: scene_t
+  ! The order of modules is one that compilers read: compiler note 12.
   use kinds, only: wp
   use deck_keys, only: key_spec, real_value, real_list, logical_value, word_value
   use text, only: brief, counted
@@ -12,6 +11,7 @@ module scene_problem
   use laws, only: keys_of_laws, read_laws
   use shapes, only: keys_of_shapes, read_shapes
   use layered_body, only: new_layered_body
+  use scene_groups, only: scene_t
   implicit none
   private
   public :: keys_of_model, take_model, problem_of
