@@ -40,7 +40,7 @@ def test_a_limit_on_the_size_of_files_stops_a_run_that_then_goes_on(name, reques
 
 def test_a_journal_that_cannot_grow_stops_a_run_that_then_goes_on(snapin, snapin_path, tmp_path):
     """Cases are written every twentieth of a second: these take several."""
-    cases = {"key": "force.hamaker", "from_": 1.0, "to": 100.0, "count": 80, "scale": "log"}
+    cases = {"key": "force.hamaker", "from_": 1.0, "to": 100.0, "count": 120, "scale": "log"}
     long = lennard_jones(0.2, equilibrium_path={"h0_end": -2.0}, numerics={"accuracy": 1e-9},
                          sweep=cases)
     sweep = Bench(snapin, snapin_path, tmp_path, long)

@@ -28,7 +28,7 @@ METHODS = (
      "convergence = 'displacement_change'", ("mixing",)),
 )
 # Seconds after which a run is given up.
-_PATIENCE = {True: 1.0, False: 15.0}
+_PATIENCE = {True: 1.0, False: 4.0}
 _CLAIMED = ("pull_off", "load")
 
 
