@@ -68,8 +68,10 @@ contains
       integer :: i
 
       off = [(summary%number(trim(keys(i)))/summary%number('max_tension') - 1, i=1, size(keys))]
-      ! The theories are for bodies without memory, and without a fluid.
-      if (summary%has('time_steps') .or. all(ieee_is_nan(off))) return
+      ! The theories are for bodies without memory, and without a fluid; states that are no
+      ! equilibria are near to none.
+      if (summary%has('time_steps') .or. .not. summary%is_true('converged')) return
+      if (all(ieee_is_nan(off))) return
       i = minloc(abs(off), 1, mask=.not. ieee_is_nan(off))
       call add('the nearest theory, ' // trim(names(i)) // ', has a pull-off force ' // &
         rounded(100*abs(off(i))) // ' % ' // trim(merge('larger ', 'smaller', off(i) > 0)))

@@ -66,3 +66,11 @@ def test_theories_are_not_compared_with_a_drive(snapin, tmp_path):
         "force": {"law": "lennard_jones", "work_of_adhesion": 0.1, "z0": 1.0},
         "viscoelastic": {"stiffness_relaxed": 0.5, "retardation_time": 1.0}})
     assert "pull-off force" in text and "nearest theory" not in text
+
+
+def test_no_theory_is_the_nearest_to_states_that_did_not_converge(snapin, tmp_path):
+    (tmp_path / "d.nml").write_text(deck(**SCENE, **CYCLE, numerics={
+        "method": "mixing", "nodes": 100, "max_iterations": 3}))
+    done = snapin("--out", ".", "d.nml", cwd=tmp_path)
+    assert done.returncode == 1
+    assert "nearest theory" not in done.stderr and "states in" in done.stderr
