@@ -50,7 +50,7 @@ OF_RESIDUAL = 10
 # their ranges), and those with grids so coarse that the edge of a contact is pinned until it slips:
 # the last slip depends on rounding. Maps: thousands of paths such as others show alone. And drives,
 # whose steps depend on differences of loads: rows are at other times.
-LEFT_OUT = ("_paper", "history_", "fig10c_uniform", "map_", "viscoelastic", "drainage")
+LEFT_OUT = ("_paper", "history_", "fig10c_uniform", "map", "viscoelastic", "drainage")
 # Not compared: the remaining residual; estimates, which are differences of numbers that agree to
 # many digits; and the resolution, which depends on the node nearest to the edge.
 ROUNDED = ("residual", "iterations", "_error", "_uncertainty", "_estimate", "spacing_over_neck")
@@ -120,9 +120,9 @@ def input_decks():
 
 
 def numbers_of(one):
-    """The columns of all tables, and the numbers of the summary, by name."""
+    """The columns of all tables but that of costs, and the numbers of the summary, by name."""
     found = {f"{path.name}: {name}": column
-             for path in sorted(one.folder.glob("*.csv"))
+             for path in sorted(one.folder.glob("*.csv")) if path.name != "costs.csv"
              for name, column in one.table(path.name).columns.items()}
     for key, value in one.summary.items():
         if not isinstance(several(value)[0], str):
