@@ -67,13 +67,16 @@ contains
       real(wp), intent(in) :: signal(:)
       type(measured_jump_t) :: found(2)
       type(measured_curve_t) :: other
+      integer :: k
 
       other = measured
       other%signal = signal
       found = [find_jump(other, noise%deviation, stiffness, .true.), &
         find_jump(other, noise%deviation, stiffness, .false.)]
-      where ([(no_jump(other, found(i)), i=1, 2)]) found%before = 0
-      where (found%before == 0) found%change = 0
+      do k = 1, size(found)
+        if (no_jump(other, found(k))) found(k)%before = 0
+        if (found(k)%before == 0) found(k)%change = 0
+      end do
     end function jumps_in
 
     !> Sets `trouble` if approach and retreat are exchanged. A cycle dissipates energy: between its
@@ -156,11 +159,13 @@ contains
     real(wp), parameter :: larger = 2
     integer :: i, turn
     real(wp) :: step, beside
+    logical :: on_approach
 
     no_jump = jump%before == 0
     if (no_jump) return
     associate (z => measured%z, inward => measured%inward)
-      step = (maxval(z) - minval(z))/count(inward .eqv. inward(jump%before))
+      on_approach = inward(jump%before)
+      step = (maxval(z) - minval(z))/count(inward .eqv. on_approach)
       beside = 0
       do i = max(1, jump%before - neighbours), min(size(z) - 1, jump%after + neighbours - 1)
         if (i >= jump%before .and. i < jump%after) cycle
