@@ -50,7 +50,8 @@ OF_RESIDUAL = 10
 # their ranges), and those with grids so coarse that the edge of a contact is pinned until it slips:
 # the last slip depends on rounding. Maps: thousands of paths such as others show alone. And drives,
 # whose steps depend on differences of loads: rows are at other times.
-LEFT_OUT = ("_paper", "history_", "fig10c_uniform", "map", "viscoelastic", "drainage")
+LEFT_OUT = (
+    "_paper", "history_", "fig10c_uniform", "fig10c_coarse", "map", "viscoelastic", "drainage")
 # Not compared: the remaining residual; estimates, which are differences of numbers that agree to
 # many digits; and the resolution, which depends on the node nearest to the edge.
 ROUNDED = ("residual", "iterations", "_error", "_uncertainty", "_estimate", "spacing_over_neck")
