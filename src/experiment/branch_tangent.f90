@@ -5,7 +5,7 @@
 !> ends at a fold of h0, where gaps change infinitely fast with h0. With `along` against this change
 !> Q has no fold there: the curve can be followed past the fold, which is a zero of dh0/dQ.
 module branch_tangent
-  use kinds, only: wp, pi
+  use kinds, only: wp, pi, nan
   use beyond_mesh, only: load_slope_beyond
   use contact_state, only: state_t, gap_at_end, load_reach
   use controls, only: control_t
@@ -16,7 +16,7 @@ module branch_tangent
   use solver, only: solver_t
   implicit none
   private
-  public :: branch_tangent_t, tangent_at, has_factors_at, joins, passing
+  public :: branch_tangent_t, tangent_at, find_load_slope, has_factors_at, joins, passing
 
   !> Derivatives by Q of h0, of the displacement on the axis, of the load and of the gaps.
   type :: branch_tangent_t
@@ -83,6 +83,23 @@ contains
       tangent%axis = dot_product(grid%at_axis, tangent%gap) - tangent%h0
     end associate
   end subroutine tangent_at
+
+  !> The derivative of the load by h0 along the branch, at an equilibrium on a mesh fixed in space;
+  !> NaN where the Jacobian is singular. The solver keeps its factors.
+  subroutine find_load_slope(solver, state, slope)
+    class(solver_t), intent(inout) :: solver
+    type(state_t), intent(in) :: state
+    real(wp), intent(out) :: slope
+    type(frozen_jacobian_t) :: own
+    type(branch_tangent_t) :: tangent
+
+    own = solver%frozen
+    call solver%frozen%forget()
+    call tangent_at(solver, control_t(value=state%h0), state, tangent)
+    solver%frozen = own
+    slope = nan
+    if (tangent%regular) slope = tangent%load
+  end subroutine find_load_slope
 
   !> Whether there are factors of the Jacobian at a state where h0 is prescribed.
   pure logical function has_factors_at(frozen, control, state) result(has)

@@ -12,16 +12,19 @@ module largest_tension
 contains
 
   !> Makes `place` that of the largest tension if its tension is larger. lowest: not allocated if
-  !> there is no attraction.
-  pure subroutine lower(lowest, place)
+  !> there is no attraction. lowered: whether it is now `place`.
+  pure subroutine lower(lowest, place, lowered)
     type(place_t), allocatable, intent(inout) :: lowest
     type(place_t), intent(in) :: place
+    logical, intent(out), optional :: lowered
 
+    if (present(lowered)) lowered = .false.
     if (.not. place%at(of_load) < 0) return
     if (allocated(lowest)) then
       if (place%at(of_load) >= lowest%at(of_load)) return
     end if
     lowest = place
+    if (present(lowered)) lowered = .true.
   end subroutine lower
 
   !> The same for the extrema and folds among the points `first` to `last` of a path, if h0 is given

@@ -1,12 +1,9 @@
 !> The interface between a quasi-static experiment at controlled h0 and its solver: an approach from
 !> large separation to the start, steps from one h0 to the next, and the jumps in a step.
 module stepper
-  use kinds, only: wp, nan
+  use kinds, only: wp
   use discretisation, only: discretisation_t
   use contact_state, only: state_t
-  use controls, only: control_t
-  use frozen_jacobian, only: frozen_jacobian_t
-  use branch_tangent, only: branch_tangent_t, tangent_at
   use solver, only: solver_t
   use ending, only: ending_t
   use reported_place, only: place_t
@@ -64,7 +61,6 @@ module stepper
   contains
     procedure(begin_at), deferred :: approach_to
     procedure(go_to), deferred :: step_to
-    procedure :: find_load_slope
     procedure :: find_lowest
     procedure :: grid
   end type stepper_t
@@ -91,23 +87,6 @@ module stepper
   end interface
 
 contains
-
-  !> The derivative of the load by h0 along the branch, at an equilibrium on a mesh fixed in space;
-  !> NaN where the Jacobian is singular. The solver keeps its factors.
-  subroutine find_load_slope(self, state, slope)
-    class(stepper_t), intent(inout) :: self
-    type(state_t), intent(in) :: state
-    real(wp), intent(out) :: slope
-    type(frozen_jacobian_t) :: own
-    type(branch_tangent_t) :: tangent
-
-    own = self%frozen
-    call self%frozen%forget()
-    call tangent_at(self, control_t(value=state%h0), state, tangent)
-    self%frozen = own
-    slope = nan
-    if (tangent%regular) slope = tangent%load
-  end subroutine find_load_slope
 
   !> Makes `lowest` the place of the lowest load on the way from h0 = from, on a stable piece of the
   !> path, to another h0 if that load is lower; does nothing if the path is not known. The states at

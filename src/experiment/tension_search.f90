@@ -3,9 +3,11 @@
 module tension_search
   use kinds, only: wp
   use path_tangent, only: load_alone => of_load
+  use branch_tangent, only: find_load_slope
   use root_finding, only: root_search_t, new_root_search
+  use largest_tension, only: lower
   use stepper, only: stepper_t, branch_point_t, step_result_t
-  use reported_place, only: place_t, place_of_state, place_without_state, of_h0, of_load
+  use reported_place, only: place_t, place_of_state, place_without_state, of_h0
   implicit none
   private
   public :: tension_search_t
@@ -36,7 +38,7 @@ module tension_search
     procedure :: note_jump
     procedure :: note_state
     procedure :: finish
-    procedure, private :: lower
+    procedure, private :: note_place
     procedure, private :: end_stretch
     procedure, private :: refine
     procedure, private :: descend
@@ -64,19 +66,18 @@ contains
 
   !> Replaces the place of largest tension by another if its tension is larger. lost: whether the
   !> tension grows from there towards states that did not converge.
-  subroutine lower(self, place, lost)
+  subroutine note_place(self, place, lost)
     class(tension_search_t), intent(inout) :: self
     type(place_t), intent(in) :: place
     logical, intent(in), optional :: lost
 
-    if (.not. place%at(of_load) < 0) return
-    if (allocated(self%lowest)) then
-      if (place%at(of_load) >= self%lowest%at(of_load)) return
-    end if
-    self%lowest = place
+    logical :: lowered
+
+    call lower(self%lowest, place, lowered)
+    if (.not. lowered) return
     self%beside_lost = .false.
     if (present(lost)) self%beside_lost = lost
-  end subroutine lower
+  end subroutine note_place
 
   !> Considers the last state before a jump or slip, which may have the largest tension.
   subroutine note_jump(self, event)
@@ -86,7 +87,7 @@ contains
 
     place = place_without_state(event%before%h0, event%before%load)
     place%left(of_h0) = event%jump_uncertainty
-    call self%lower(place)
+    call self%note_place(place)
   end subroutine note_jump
 
   !> Considers the step from `previous` at last_h0 to `position` at h0.
@@ -179,14 +180,14 @@ contains
       if (steps%options%stop_on_change) then
         place = place_of_state(best%mesh, best%state)
         place%left(of_h0) = max(abs(before - h0), abs(after - h0))
-        call self%lower(place)
+        call self%note_place(place)
         return
       end if
       if (stretch%jagged) then
         call self%search_jump_by_jump(steps, stretch)
         return
       end if
-      call steps%find_load_slope(best%state, slope)
+      call find_load_slope(steps, best%state, slope)
       bound = merge(min(before, after), max(before, after), slope > 0)
       lost = stretch%lost_after .and. abs(bound - after) <= 0 .or. &
         stretch%lost_before .and. abs(bound - before) <= 0
@@ -226,7 +227,7 @@ contains
         if ((bound - best%state%h0)*onward > 0) call self%note_jump(event)
         cycle
       end if
-      call steps%find_load_slope(trial%state, ahead)
+      call find_load_slope(steps, trial%state, ahead)
       if (ahead*slope < 0) then
         call self%find_root(steps, best, slope, trial, ahead)
         return
@@ -240,7 +241,7 @@ contains
     end do
     place = place_of_state(best%mesh, best%state)
     place%left(of_h0) = abs(bound - best%state%h0)
-    call self%lower(place, lost)
+    call self%note_place(place, lost)
   end subroutine descend
 
   !> Finds the root of the slope between two states of a stretch without jumps.
@@ -267,7 +268,7 @@ contains
       call steps%step_to(search%place(), trial, event)
       ! A jump between two states of one branch is the work of an iteration that failed.
       if (leaps(event) .or. .not. event%converged) exit
-      call steps%find_load_slope(trial%state, slope)
+      call find_load_slope(steps, trial%state, slope)
       if (abs(trial%state%h0 - last) > 0) bend = (slope - last_slope)/(trial%state%h0 - last)
       if (abs(slope) <= max(exact, steps%options%tolerance)*abs(bend)) exit
       call search%note(trial%state%h0, slope)
@@ -283,7 +284,7 @@ contains
       place%turn_of = load_alone
       place%left(of_h0) = min(abs(slope/bend), abs(high%state%h0 - low%state%h0))
     end if
-    call self%lower(place)
+    call self%note_place(place)
   end subroutine find_root
 
   !> Steps again from stretch%before, or from the lowest state if a jump came before it, to
@@ -317,7 +318,7 @@ contains
     place = place_of_state(best%mesh, best%state)
     lost = abs(best%state%h0 - reached) <= 0 .and. stretch%lost_after
     if (.not. lost) place%left(of_h0) = short_step
-    call self%lower(place, lost)
+    call self%note_place(place, lost)
   end subroutine search_jump_by_jump
 
   !> Whether the bodies jumped in a step, or the contact edge slipped.
