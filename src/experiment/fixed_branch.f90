@@ -7,8 +7,11 @@ module fixed_branch
   use stepper, only: stepper_t, branch_point_t
   implicit none
   private
-  public :: expected_at, is_expected, is_pinned, change
+  public :: expected_at, is_expected, is_pinned, change, same_state
 
+  !> Largest difference between the deformations of two states that are the same, in the law's
+  !> lengths: far more than iterations leave, and less than a jump.
+  real(wp), parameter :: same_state = 1.0e-3_wp
   !> On a mesh that pins the edge, a state continues the branch if its distance from the expected
   !> one is at most half the expected change plus this many of the law's lengths.
   real(wp), parameter :: slip = 0.05_wp

@@ -9,7 +9,7 @@ module fixed_stepper
   use dimensionless_problem, only: calm_gap
   use contact_state, only: state_t, undeformed_state
   use controls, only: control_t
-  use fixed_branch, only: change, expected_at
+  use fixed_branch, only: change, same_state, expected_at
   use h0_step, only: step_h0
   use fixed_motion, only: advance, has_fallen, known_tangent, is_joined
   use branch_tangent, only: branch_tangent_t
@@ -34,9 +34,6 @@ module fixed_stepper
   !> With the paper's stopping rule states are not accurate enough for a search for folds; a change
   !> of deformation above a law's length and this many times the change of h0 then counts as a jump.
   real(wp), parameter :: paper_jump = 5
-  !> Difference between a landing by mixing and one by relaxation up to which they are the same
-  !> state, in the law's lengths: far more than iterations leave.
-  real(wp), parameter :: same_landing = 1.0e-3_wp
   !> Largest residual of states between which folds are looked for, in the law's lengths.
   real(wp), parameter :: accurate = 1.0e-8_wp
 
@@ -150,7 +147,7 @@ contains
       joined = .not. event%jumped .and. .not. event%unsure
       position%lost = moved%lost
       position%lost_error = moved%lost_error
-      if (change(state, moved%state) > same_landing) position%lost = nan
+      if (change(state, moved%state) > same_state) position%lost = nan
       if (joined .or. .not. (self%options%is_plain_mixing() .or. event%unsure)) state = moved%state
       event%converged = .true.
     end if

@@ -12,7 +12,7 @@ module one_run
   use mesh_store, only: mesh_store_t
   use ending, only: turn_not_reached, path_lost
   use stepper, only: stepper_t, branch_point_t, step_result_t
-  use fixed_branch, only: change
+  use fixed_branch, only: change, same_state
   use locked_stepper, only: locked_stepper_t, unique_stepper_t
   use path_stepper, only: path_stepper_t
   use path_demand, only: path_start, demand_of
@@ -30,10 +30,6 @@ module one_run
   implicit none
   private
   public :: prepare, begin_run, run_once
-
-  !> Largest difference between the states at both ends of a closed cycle, in the law's lengths: far
-  !> more than iterations leave, and less than a jump.
-  real(wp), parameter :: closed = 1.0e-3_wp
 
 contains
 
@@ -261,7 +257,7 @@ contains
       call steps%step_to(start%state%h0, position, event)
       if (event%jumped .or. .not. event%converged) return
     end if
-    if (.not. change(start%state, position%state) <= closed) return
+    if (.not. change(start%state, position%state) <= same_state) return
     place = place_without_state(0.0_wp, 0.0_wp)
     place%at(of_energy) = position%lost
     place%left(of_energy) = position%lost_error
