@@ -17,7 +17,7 @@ module curve_states
   implicit none
   private
   public :: path_state_t, path_place_t, states_of_points, state_of, state_where, states_where, &
-    find_turns, equilibrium_at
+    find_turns, equilibrium_at, part_of
 
   !> A place between point `interval` of a path and the next, at the path's coordinate x.
   type :: path_place_t
@@ -45,6 +45,18 @@ module curve_states
   integer, parameter :: looks = 8
 
 contains
+
+  !> The ends of the part of interval i, from ends(1) to ends(2), that is between two places.
+  pure function part_of(ends, i, from, to) result(part)
+    real(wp), intent(in) :: ends(2)
+    integer, intent(in) :: i
+    class(path_place_t), intent(in) :: from, to
+    real(wp) :: part(2)
+
+    part = ends
+    if (i == from%interval) part(1) = from%x
+    if (i == to%interval) part(2) = to%x
+  end function part_of
 
   !> The reported values at the points of a path, up to the end of its last stable piece. At a fold
   !> the number of modes is that of the more unstable side.

@@ -9,7 +9,8 @@ module driven_pieces
   use solver, only: solver_t
   use traced_path, only: traced_path_t
   use drives, only: drive_t
-  use curve_states, only: path_state_t, path_place_t, state_of, state_where, find_turns
+  use curve_states, only: path_state_t, path_place_t, state_of, state_where, find_turns, &
+    part_of
   implicit none
   private
   public :: driven_pieces_t, driven_piece_t, jump_t, find_pieces, find_jumps, interval_with, &
@@ -57,18 +58,6 @@ module driven_pieces
   real(wp), parameter :: least_fall = 1.0e-9_wp
 
 contains
-
-  !> The ends of the part of interval i, from ends(1) to ends(2), that is between two places.
-  pure function part_of(ends, i, from, to) result(part)
-    real(wp), intent(in) :: ends(2)
-    integer, intent(in) :: i
-    class(path_place_t), intent(in) :: from, to
-    real(wp) :: part(2)
-
-    part = ends
-    if (i == from%interval) part(1) = from%x
-    if (i == to%interval) part(2) = to%x
-  end function part_of
 
   !> The inner or the outer end of a piece.
   pure type(path_state_t) function end_of(self, inward)

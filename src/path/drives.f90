@@ -6,7 +6,7 @@ module drives
   use quadrature, only: gauss_legendre
   use interpolation, only: hermite_t
   use traced_path, only: traced_path_t
-  use curve_states, only: path_state_t, path_place_t
+  use curve_states, only: path_state_t, path_place_t, part_of
   implicit none
   private
   public :: drive_t, through_spring
@@ -76,8 +76,7 @@ contains
       call path%curve_between(i, merge([0.0_wp, 1.0_wp], [1.0_wp, 0.0_wp], self%weights(1) > 0), &
         force, ends)
       call path%curve_between(i, self%weights, driven, ends)
-      if (i == from%interval) ends(1) = from%x
-      if (i == to%interval) ends(2) = to%x
+      ends = part_of(ends, i, from, to)
       do k = 1, rule
         x = ends(1) + (ends(2) - ends(1))*node(k)
         work = work + (ends(2) - ends(1))*weight(k)*force%value(x)*driven%slope(x)
