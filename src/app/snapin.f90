@@ -126,16 +126,7 @@ contains
         said = trouble%message
       else if (options%check .and. crew%rank == 0) then
         written = max(written, status_of(options%decks(i)%name // ': ok' // nl))
-        if (allocated(scenes(i)%measured)) call print_line(error_unit, 'snapin: ' // &
-          options%decks(i)%name // ': ' // scenes(i)%measured%understood)
-        call check_room(scenes(i), folder_of(i), trouble)
-        if (allocated(trouble)) call print_line(error_unit, 'snapin: ' // options%decks(i)%name // &
-          ': ' // trouble%message)
-        if (large_results(scenes(i)) /= '') call print_line(error_unit, 'snapin: ' // &
-          options%decks(i)%name // ': ' // large_results(scenes(i)))
-        if (left_out(scenes(i)) /= '') call print_line(error_unit, 'snapin: ' // &
-          options%decks(i)%name // ': ' // left_out(scenes(i)))
-        call print_advice(scenes(i), options%decks(i)%name)
+        call print_notes(scenes(i), options%decks(i)%name, folder_of(i))
       end if
     end do
     ! A deck that one process cannot read stops all processes.
@@ -162,26 +153,39 @@ contains
       end if
       folder = folder_of(i)
       call run_scene(scenes(i), folder, options%out == to_stream, options%quiet, &
-        options%verbose, options%resume, &
-        crew, i, converged, trouble)
+        options%verbose, options%resume, crew, i, converged, trouble)
       if (allocated(trouble)) call print_line(error_unit, folder // ': ' // trouble%message)
       if (allocated(trouble) .or. .not. converged) status = 1
     end do
     call dismiss(crew)
   end function run_decks
 
-  !> Prints the warnings of numerical choices that will fail or take long.
-  subroutine print_advice(scene, name)
+  !> Prints what `--check` says of a valid deck: how its curve is understood, what its results need
+  !> and leave out, and the numerical choices that will fail or take long.
+  subroutine print_notes(scene, name, folder)
     type(scene_t), intent(in) :: scene
-    character(len=*), intent(in) :: name
+    character(len=*), intent(in) :: name, folder
     type(advice_t), allocatable :: advice(:)
+    type(failure_t), allocatable :: trouble
     integer :: i
 
+    if (allocated(scene%measured)) call print_note(name, scene%measured%understood)
+    call check_room(scene, folder, trouble)
+    if (allocated(trouble)) call print_note(name, trouble%message)
+    call print_note(name, large_results(scene))
+    call print_note(name, left_out(scene))
     advice = advice_on(scene)
     do i = 1, size(advice)
-      call print_line(error_unit, 'snapin: ' // name // ': warning: ' // advice(i)%text)
+      call print_note(name, 'warning: ' // advice(i)%text)
     end do
-  end subroutine print_advice
+  end subroutine print_notes
+
+  !> Prints what is to be said of a deck, if anything.
+  subroutine print_note(name, text)
+    character(len=*), intent(in) :: name, text
+
+    if (text /= '') call print_line(error_unit, 'snapin: ' // name // ': ' // text)
+  end subroutine print_note
 
   function folder_of(i) result(folder)
     integer, intent(in) :: i
