@@ -131,7 +131,7 @@ contains
     type(known_path_t), intent(in) :: known
     type(experiment_result_t), intent(inout) :: outcome
     type(walk_t) :: inward, outward
-    type(leg_t) :: leg
+    type(leg_t), allocatable :: leg(:)
     type(jump_t) :: jump
     real(wp) :: lowest
     integer, allocatable :: fold(:)
@@ -155,11 +155,10 @@ contains
     outward = way_along(known%stable, turned, .false., until=1)
     if (.not. (inward%arrives .and. outward%arrives)) return
     allocate (fold(0))
-    do i = 1, size(inward%leg) + size(outward%leg)
-      if (i <= size(inward%leg)) leg = inward%leg(i)
-      if (i > size(inward%leg)) leg = outward%leg(i - size(inward%leg))
-      if (.not. leg%jumps) cycle
-      jump = known%stable%jump_from(leg%piece, leg%inward)
+    leg = [inward%leg, outward%leg]
+    do i = 1, size(leg)
+      if (.not. leg(i)%jumps) cycle
+      jump = known%stable%jump_from(leg(i)%piece, leg(i)%inward)
       if (.not. jump%landed .or. jump%before%h0 < lowest) return
       fold = [fold, jump%fold()]
     end do
