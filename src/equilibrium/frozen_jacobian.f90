@@ -1,7 +1,6 @@
 !> A factorised Jacobian that is used for many states, and the state at which it was made. Equal
 !> states and controls give equal factors, bit by bit, if both are exact or both are not.
 module frozen_jacobian
-  use kinds, only: wp
   use contact_state, only: state_t
   use controls, only: control_t
   use equilibrium, only: equations_t

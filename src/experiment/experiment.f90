@@ -41,8 +41,8 @@ module experiment
 
 contains
 
-  !> Runs the path and the cycle; does nothing if neither is requested. store: a
-  !> store of edge-locked meshes.
+  !> Runs the path and the cycle; does nothing if neither is requested. store: of edge-locked
+  !> meshes.
   subroutine run_experiment(request, problem, observer, outcome, store)
     class(request_t), intent(in) :: request
     type(problem_t), intent(in) :: problem

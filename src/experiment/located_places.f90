@@ -4,7 +4,7 @@
 module located_places
   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
   use kinds, only: wp, nan
-  use contact_state, only: state_t, gap_at, contact_radius_of, far_gap
+  use contact_state, only: gap_at, contact_radius_of, far_gap
   use equilibrium, only: residual_floor
   use solver, only: solver_t
   use path_tangent, only: h0_alone => of_h0, load_alone => of_load

@@ -11,7 +11,7 @@ module path
   use largest_tension, only: lower, lower_along
   use path_stepper, only: path_stepper_t, known_path_t
   use path_rows, only: path_row_t, row_of_point, row_at_h0, rows_between
-  use reported_place, only: place_t, place_of_state, of_load
+  use reported_place, only: place_t, place_of_state
   use places, only: places_t
   use records, only: observer_t, record_t, quality_t, record_of, stable_yes, stable_no
   implicit none

@@ -6,7 +6,7 @@ module places
   use kinds, only: wp, nan
   use dimensionless_problem, only: problem_t
   use reported_place, only: place_t, point_of_path, values_of, units_of, least, &
-    rounding, quantities, of_h0, of_load, of_radius, of_profile
+    rounding, quantities, of_load, of_radius, of_profile
   use reported_numbers, only: number_t, run_numbers_t, judge, name_length
   use result_rows, only: rows
   implicit none

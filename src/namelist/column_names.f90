@@ -1,6 +1,5 @@
 !> Names of the columns of a table, and the columns that a deck asks for.
 module column_names
-  use kinds, only: wp
   use failure, only: failure_t
   use text, only: lower, quoted, clip, guess, counted, listed
   use deck_number, only: parse_integer
