@@ -22,7 +22,7 @@ module layered_body
   !> Largest turn of a wave over a panel of waves, and numbers of nodes of a panel (`wave_rule`).
   real(wp), parameter :: swing = 16
   real(wp), parameter :: nodes(2) = 20
-  !> More panels than needed for layers within the limits of `scene_problem`.
+  !> More panels than needed for layers within the limits of `scene_layers`.
   integer, parameter :: most_panels = 1000
   !> Largest size of the last coefficients of a series.
   real(wp), parameter :: resolved = 1.0e-13_wp

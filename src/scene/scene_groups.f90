@@ -13,7 +13,7 @@ module scene_groups
   use classical, only: theories, usual
   implicit none
   private
-  public :: scene_t, bodies_t, range_t, sweep_t, axis_t, case_file_t
+  public :: scene_t, bodies_t, range_t, sweep_t, axis_t, case_file_t, compliance_of
 
   !> &bodies
   type :: bodies_t
@@ -96,6 +96,13 @@ module scene_groups
   end type scene_t
 
 contains
+
+  !> (1-nu^2)/E.
+  elemental real(wp) function compliance_of(young, poisson)
+    real(wp), intent(in) :: young, poisson
+
+    compliance_of = (1 - poisson)*(1 + poisson)/young
+  end function compliance_of
 
   !> Number of cases of a sweep.
   pure integer function cases(self)

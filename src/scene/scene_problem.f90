@@ -1,17 +1,16 @@
-!> &bodies and &layer: the two bodies, how they deform, and layers bonded to them. With forces and
-!> shape of the deck they make the dimensionless problem of a scene.
+!> &bodies: the two bodies and how they deform. With layers, forces and shape of the deck they make
+!> the dimensionless problem of a scene.
 module scene_problem
   ! The order of modules is one that compilers read: compiler note 12.
   use kinds, only: wp
-  use deck_keys, only: key_spec, real_value, real_list, logical_value, word_value
-  use text, only: brief, counted
-  use deck, only: deck_t
+  use deck_keys, only: key_spec, real_value, real_list, logical_value
   use layered_surface, only: layered_surface_t
   use dimensionless_problem, only: problem_t, new_problem
   use laws, only: keys_of_laws, read_laws
   use shapes, only: keys_of_shapes, read_shapes
   use layered_body, only: new_layered_body
-  use scene_groups, only: scene_t
+  use scene_groups, only: scene_t, compliance_of
+  use scene_layers, only: layer_keys, take_layer, layer_bears_all, check_thinness
   implicit none
   private
   public :: keys_of_model, take_model, problem_of
@@ -35,33 +34,6 @@ module scene_problem
       'the same.', most=2, above=-1.0_wp, high=0.5_wp), &
     key_spec('bodies', 'rigid', logical_value, 'Whether the bodies do not deform at all.', &
       default='.false.')]
-
-  !> Largest ratio of two thicknesses or moduli.
-  real(wp), parameter :: most_unlike = 1.0e9_wp
-  !> Smallest thickness of the top layer over the lateral unit. Contacts are wider than that unit.
-  !> The number of waves that a thin layer affects grows as the contact radius over the thickness;
-  !> at this limit they take gigabytes of memory, and minutes of work.
-  real(wp), parameter :: thinnest = 1.0e-3_wp
-
-  !> Largest number of layers.
-  integer, parameter :: most = 20
-
-  !> The rows of &layer.
-  type(key_spec), parameter :: layer_keys(*) = [ &
-    key_spec('layer', meaning='Layers bonded to a body, from the top down, on the half-space ' // &
-      'of &bodies.'), &
-    key_spec('layer', 'thickness', real_list, 'Thickness of each layer.', 'm', most=most, &
-      above=0.0_wp, required=.true.), &
-    key_spec('layer', 'young', real_list, 'Young''s modulus of each layer.', 'Pa', most=most, &
-      above=0.0_wp, required=.true.), &
-    key_spec('layer', 'poisson', real_list, 'Poisson''s ratio of each layer; 0.5: ' // &
-      'incompressible.', most=most, above=-1.0_wp, high=0.5_wp, required=.true.), &
-    key_spec('layer', 'body', word_value, 'The body that has the layers.', choices='1 2 both', &
-      default='1'), &
-    key_spec('layer', 'base', word_value, 'The base below the layers: the half-space of ' // &
-      '&bodies, or rigid.', choices='elastic rigid', otherwise='elastic, or as &bodies rigid'), &
-    key_spec('layer', 'partner', word_value, 'The body without layers.', choices='elastic rigid', &
-      otherwise='elastic, or as &bodies rigid')]
 
 contains
 
@@ -115,155 +87,6 @@ contains
       end if
     end associate
   end subroutine take_bodies
-
-  !> Whether only layers deform, so that &bodies need not say how the bodies do.
-  logical function layer_bears_all(deck)
-    type(deck_t), intent(in) :: deck
-
-    layer_bears_all = deck%has_group('layer') .and. word_is(deck, 'base', 'rigid') .and. &
-      (word_is(deck, 'body', 'both') .or. word_is(deck, 'partner', 'rigid'))
-  end function layer_bears_all
-
-  !> Reads &layer, after &bodies: the surfaces, and the stiffness of the two bodies as given by
-  !> their top layers.
-  subroutine take_layer(scene)
-    type(scene_t), intent(inout) :: scene
-    type(layered_surface_t) :: coat
-    real(wp), allocatable :: young(:)
-    real(wp) :: compliance(2)
-    character(len=:), allocatable :: body, partner
-    logical :: has_coat(2)
-    integer :: i
-
-    if (.not. scene%deck%has_group('layer') .or. allocated(scene%deck%error)) return
-    associate (deck => scene%deck, bodies => scene%bodies)
-      call deck%assume('layer', 'base', trim(merge('rigid  ', 'elastic', bodies%rigid)))
-      call deck%get('layer', 'body', body)
-      if (body /= 'both') &
-        call deck%assume('layer', 'partner', trim(merge('rigid  ', 'elastic', bodies%rigid)))
-      call deck%get('layer', 'partner', partner)
-      call deck%get('layer', 'thickness', coat%thickness)
-      call deck%get('layer', 'young', young)
-      call deck%get('layer', 'poisson', coat%poisson)
-      call check_layers(scene, coat%thickness, young, coat%poisson)
-      if (allocated(scene%deck%error)) return
-      call join_alike(coat%thickness, young, coat%poisson)
-      coat%shear = young/(2*(1 + coat%poisson))
-      coat%on_rigid = word_is(deck, 'base', 'rigid')
-      has_coat = [body /= '2', body /= '1']
-      allocate (bodies%surface(2))
-      do i = 1, 2
-        if (has_coat(i)) then
-          compliance(i) = compliance_of(young(1), coat%poisson(1))
-          if (.not. coat%on_rigid) then
-            coat%base_shear = bodies%young(i)/(2*(1 + bodies%poisson(i)))
-            coat%base_poisson = bodies%poisson(i)
-          end if
-          bodies%surface(i) = coat
-        else
-          allocate (bodies%surface(i)%thickness(0))
-          compliance(i) = 0
-          if (partner /= 'elastic') cycle
-          compliance(i) = 1/bodies%stiffness
-          if (allocated(bodies%young)) &
-            compliance(i) = compliance_of(bodies%young(i), bodies%poisson(i))
-        end if
-      end do
-      bodies%stiffness = 2/sum(compliance)
-      bodies%share = compliance*bodies%stiffness
-      bodies%rigid = .false.
-    end associate
-  end subroutine take_layer
-
-  !> Refuses a top layer that is too thin to be computed; called after forces and shape are read.
-  subroutine check_thinness(scene)
-    type(scene_t), intent(inout) :: scene
-    real(wp), allocatable :: thickness(:)
-
-    if (.not. scene%deck%has_group('layer')) return
-    call scene%deck%get('layer', 'thickness', thickness)
-    associate (least => thinnest*sqrt(scene%shape%radius*scene%law%length))
-      if (thickness(1) < least) call scene%deck%mistake('layer', 'thickness', 'the top layer ' // &
-        'is thinner than ' // brief(least) // ' m, ' // brief(thinnest) // ' of sqrt(R L), ' // &
-        'with the range L of the force; contacts are too wide beside it; leave it out')
-    end associate
-  end subroutine check_thinness
-
-  !> Joins neighbouring layers of the same material to one.
-  pure subroutine join_alike(thickness, young, poisson)
-    real(wp), allocatable, intent(inout) :: thickness(:), young(:), poisson(:)
-    integer :: i
-
-    do i = size(thickness) - 1, 1, -1
-      if (abs(young(i + 1) - young(i)) > 0 .or. abs(poisson(i + 1) - poisson(i)) > 0) cycle
-      thickness = [thickness(:i - 1), thickness(i) + thickness(i + 1), thickness(i + 2:)]
-      young = [young(:i), young(i + 2:)]
-      poisson = [poisson(:i), poisson(i + 2:)]
-    end do
-  end subroutine join_alike
-
-  !> (1-nu^2)/E.
-  elemental real(wp) function compliance_of(young, poisson)
-    real(wp), intent(in) :: young, poisson
-
-    compliance_of = (1 - poisson)*(1 + poisson)/young
-  end function compliance_of
-
-  !> Refuses keys that contradict each other or &bodies.
-  subroutine check_layers(scene, thickness, young, poisson)
-    type(scene_t), intent(inout) :: scene
-    real(wp), intent(in) :: thickness(:), young(:), poisson(:)
-
-    associate (deck => scene%deck, bodies => scene%bodies)
-      if (size(young) /= size(thickness)) call deck%mistake('layer', 'young', &
-        brief(size(young)) // ' for ' // counted(size(thickness), 'layer') // &
-        '; give one value for each thickness, from the top down')
-      if (size(poisson) /= size(thickness)) call deck%mistake('layer', 'poisson', &
-        brief(size(poisson)) // ' for ' // counted(size(thickness), 'layer') // &
-        '; give one value for each thickness, from the top down')
-      call check_spread(scene, 'thickness', thickness)
-      call check_spread(scene, 'young', young)
-      if (allocated(bodies%young) .and. word_is(deck, 'base', 'elastic')) &
-        call check_spread(scene, 'young', [young, bodies%young])
-      if (allocated(scene%deck%error)) return
-      if (word_is(deck, 'base', 'elastic')) then
-        if (bodies%rigid) then
-          call deck%mistake('layer', 'base', 'the bodies are rigid; give base = ''rigid'', or ' // &
-            'young and poisson in &bodies')
-        else if (.not. allocated(bodies%young)) then
-          call deck%mistake('bodies', 'stiffness', 'the material below the layers must be ' // &
-            'known; give young and poisson here, or base = ''rigid'' in &layer')
-        end if
-      end if
-      if (word_is(deck, 'body', 'both')) then
-        if (deck%is_set('layer', 'partner')) call deck%mistake('layer', 'partner', &
-          'both bodies have layers; leave it out')
-      else if (bodies%rigid .and. word_is(deck, 'partner', 'elastic')) then
-        call deck%mistake('layer', 'partner', 'the bodies are rigid; leave it out, or give ' // &
-          'how they deform in &bodies')
-      end if
-    end associate
-  end subroutine check_layers
-
-  !> Refuses numbers so different that rounding would hide the smaller ones.
-  subroutine check_spread(scene, key, values)
-    type(scene_t), intent(inout) :: scene
-    character(len=*), intent(in) :: key
-    real(wp), intent(in) :: values(:)
-
-    if (maxval(values) > most_unlike*minval(values)) call scene%deck%mistake('layer', key, 'from ' &
-      // brief(minval(values)) // ' to ' // brief(maxval(values)) // ' is more than a factor of ' &
-      // brief(most_unlike) // '; leave out layers so thin or soft, or make so stiff a body rigid')
-  end subroutine check_spread
-
-  pure logical function word_is(deck, key, word)
-    type(deck_t), intent(in) :: deck
-    character(len=*), intent(in) :: key, word
-    character(len=:), allocatable :: held
-
-    call deck%get('layer', key, held)
-    word_is = held == word
-  end function word_is
 
   !> The rows of bodies, layers, shapes and forces in the table of keys.
   pure function keys_of_model() result(specs)

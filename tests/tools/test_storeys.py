@@ -9,7 +9,7 @@ import house
 ROOMS = {"rates", "theory", "fit", "resume"}
 MODULES = {
     # layers
-    "layered_body", "layered_surface", "mesh_waves", "wave_transforms",
+    "layered_body", "layered_surface", "mesh_waves", "scene_layers", "wave_transforms",
     # bodies in time, and a fluid between them
     "running_integrals", "carried_values", "drainage", "drained_way", "frozen_start",
     "timed_pass", "timed_record", "timed_run", "rate_groups", "rate_entries",
@@ -27,7 +27,7 @@ SEAMS = {
     # the deck: one group more
     "scene": {"rate_groups", "theory_groups", "fit_group", "measurement_group"},
     "scene_groups": {"classical", "fit_request", "layered_surface", "measured_curve"},
-    "scene_problem": {"layered_body", "layered_surface"},
+    "scene_problem": {"layered_body", "layered_surface", "scene_layers"},
     # the body: its deformation besides that of a half-space, and a film on it
     "elastic_operator": {"mesh_waves"},
     "equilibrium": {"drainage"},
