@@ -53,9 +53,9 @@ contains
   !> Computes a scene and writes its results into the folder `out_dir`, and with `handed_over` then
   !> to standard output. If memory or disk space does not suffice, the folder is not changed.
   !> converged: .false. if a calculation failed; the results are kept and the summary says what
-  !> failed. error: there are no results, or they could not be written. resume: an interrupted sweep in the folder is continued, and finished results are left
-  !> as they are. crew: the processes that compute a sweep, for which `job` is the number of the
-  !> scene.
+  !> failed. error: there are no results, or they could not be written. resume: an interrupted sweep
+  !> in the folder is continued, and finished results are left as they are. crew: the processes that
+  !> compute a sweep, for which `job` is the number of the scene.
   subroutine run_scene(scene, out_dir, handed_over, quiet, verbose, resume, crew, job, &
     converged, error)
     type(scene_t), intent(in) :: scene

@@ -2,16 +2,15 @@
 !> a name, one or more elements, and for each element one place, or several places of which it is
 !> the sum, such as the energies before and after jumps.
 module places
-  use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
   use kinds, only: wp, nan
   use dimensionless_problem, only: problem_t
-  use reported_place, only: place_t, point_of_path, values_of, units_of, least, &
-    rounding, quantities, of_load, of_radius, of_profile
+  use reported_place, only: place_t, point_of_path, values_of, units_of, rounding, quantities, &
+    of_load, of_radius, of_profile
   use reported_numbers, only: number_t, run_numbers_t, judge, name_length
   use result_rows, only: rows
   implicit none
   private
-  public :: places_t, readings_t
+  public :: places_t
 
   !> A term of an element: `factor` times the quantity at the place; without a place the term is
   !> `factor` itself: 0, or NaN for a number that does not exist.
@@ -37,14 +36,7 @@ module places
     procedure :: place_of
     procedure :: numbers
     procedure :: judge_by
-    procedure :: read_numbers
   end type places_t
-
-  !> The values of a number, element by element, SI units; NaN if it does not exist. rate,
-  !> rate_error: derivatives by the parameters of &sensitivity, (parameters, elements).
-  type :: readings_t
-    real(wp), allocatable :: value(:), error(:), rate(:, :), rate_error(:, :)
-  end type readings_t
 
   !> Differences of energies, whose relative errors do not tell how accurate a run is.
   character(len=*), parameter :: of_energies(*) = [character(len=name_length) :: 'energy_lost', &
@@ -261,65 +253,5 @@ contains
     call judge(all, others, part)
     call move_alloc(all, self%number)
   end subroutine judge_by
-
-  !> The elements of a number, with errors and derivatives; empty if the number does not exist. An
-  !> error is NaN if no other run was made, and the magnitude of the number if it is not known.
-  type(readings_t) function read_numbers(self, problem, name, quantity) result(found)
-    class(places_t), intent(in) :: self
-    type(problem_t), intent(in) :: problem
-    character(len=*), intent(in) :: name
-    integer, intent(in) :: quantity
-    real(wp), dimension(quantities) :: units, values
-    real(wp) :: none
-    integer :: i, n
-
-    n = self%elements(name)
-    none = nan
-    units = units_of(problem)
-    allocate (found%value(n), source=0.0_wp)
-    allocate (found%error(n), source=none)
-    allocate (found%rate(parameters_of(self), n), source=none)
-    found%rate_error = found%rate
-    do i = 1, merge(size(self%entry), 0, n > 0)
-      associate (entry => self%entry(i), k => self%entry(i)%element)
-        if (entry%name /= name) cycle
-        if (entry%place == 0) then
-          found%value(k) = found%value(k) + entry%factor
-          cycle
-        end if
-        associate (place => self%place(entry%place))
-          values = values_of(problem, place)
-          found%value(k) = found%value(k) + entry%factor*values(quantity)
-        end associate
-      end associate
-    end do
-    if (.not. allocated(self%number)) return
-    do i = 1, merge(size(self%number), 0, n > 0)
-      associate (number => self%number(i), k => self%number(i)%element)
-        if (number%name /= name) cycle
-        found%error(k) = number%error(quantity)*units(quantity)
-        if (.not. number%known) found%error(k) = max(found%error(k), abs(found%value(k)), &
-          least(quantity)*units(quantity))
-        if (ieee_is_nan(found%value(k))) found%error(k) = none
-        if (allocated(number%rate)) then
-          found%rate(:, k) = number%rate(quantity, :)
-          found%rate_error(:, k) = number%rate_error(quantity, :)
-        end if
-        if (quantity == of_profile) found%value(k) = found%error(k)
-      end associate
-    end do
-  end function read_numbers
-
-  !> Number of parameters by which the numbers are differentiated.
-  pure integer function parameters_of(self) result(parameters)
-    class(places_t), intent(in) :: self
-    integer :: i
-
-    parameters = 0
-    if (.not. allocated(self%number)) return
-    do i = 1, size(self%number)
-      if (allocated(self%number(i)%rate)) parameters = size(self%number(i)%rate, 2)
-    end do
-  end function parameters_of
 
 end module places

@@ -5,7 +5,7 @@ module rate_entries
   use kinds, only: wp, long
   use dimensionless_problem, only: problem_t, adhesion_strength
   use experiment_result, only: experiment_result_t
-  use places, only: readings_t
+  use reported_values, only: readings_t, read_numbers
   use reported_place, only: of_h0, of_pressure => of_suction
   use summary, only: summary_t
   use text, only: rounded
@@ -65,11 +65,11 @@ contains
           ', which its error does not include; raise z_start')
       end if
       ! Without a spring h0 is that of the drive, without an error.
-      end = places%read_numbers(problem, 'end', of_h0)
+      end = read_numbers(places, problem, 'end', of_h0)
       if (allocated(scene%drive%stiffness)) call summary%set('end_h0', end%value, end%error, &
         end%rate, end%rate_error)
       if (places%has('max_suction')) then
-        suction = places%read_numbers(problem, 'max_suction', of_pressure)
+        suction = read_numbers(places, problem, 'max_suction', of_pressure)
         if (suction%error(1) > suction%value(1)) then
           call summary%warn('drive: max_suction is not determined: the error, ' // &
             rounded(suction%error(1)) // ' Pa, is larger than the suction')

@@ -8,7 +8,8 @@ module reading_rows
   use curve_states, only: path_state_t
   use device, only: driven_t, states_on
   use reported_place, only: of_h0, of_load, of_energy, of_radius, of_position, of_displacement
-  use places, only: places_t, readings_t
+  use places, only: places_t
+  use reported_values, only: readings_t, read_numbers
   use path_readings, only: path_readings_t
   use results, only: results_t
   use tables, only: cells, direction_of
@@ -85,8 +86,8 @@ contains
       call results%begin_table('device_jumps.csv')
       n = 0
       do k = 1, size(of_both)
-        before(k) = places%read_numbers(problem, 'jump_before', of_both(k))
-        after(k) = places%read_numbers(problem, 'jump_after', of_both(k))
+        before(k) = read_numbers(places, problem, 'jump_before', of_both(k))
+        after(k) = read_numbers(places, problem, 'jump_after', of_both(k))
       end do
       do i = 1, size(readings%device)
         do j = 1, size(readings%device(i)%jumped)
@@ -107,9 +108,9 @@ contains
       integer :: i
 
       call results%begin_table('fixed_load.csv')
-      h0 = places%read_numbers(problem, 'fixed_load', of_h0)
-      displacement = places%read_numbers(problem, 'fixed_load', of_displacement)
-      radius = places%read_numbers(problem, 'fixed_load', of_radius)
+      h0 = read_numbers(places, problem, 'fixed_load', of_h0)
+      displacement = read_numbers(places, problem, 'fixed_load', of_displacement)
+      radius = read_numbers(places, problem, 'fixed_load', of_radius)
       do i = 1, size(readings%loaded)
         associate (loaded => readings%loaded(i))
           call results%row(cells([loaded%wanted*problem%load, h0%value(i), &
@@ -156,7 +157,7 @@ contains
     type(summary_t), intent(inout) :: summary
     type(readings_t) :: lost
 
-    lost = places%read_numbers(problem, 'device_energy', of_energy)
+    lost = read_numbers(places, problem, 'device_energy', of_energy)
     associate (device => readings%device, unit => problem%load*problem%length)
       call summary%set('device_stiffness', device%stiffness)
       call summary%set('device_cycle_energy', device%cycle_energy*unit, &
@@ -233,7 +234,7 @@ contains
       real(wp), dimension(size(loads)) :: value, error
       integer :: i
 
-      found = places%read_numbers(problem, 'fixed_load', quantity)
+      found = read_numbers(places, problem, 'fixed_load', quantity)
       value = nan
       error = nan
       do i = 1, size(loads)

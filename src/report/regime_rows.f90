@@ -11,7 +11,8 @@ module regime_rows
   use maugis, only: maugis_t, new_maugis
   use transition_fits, only: transition_fit_t, carpick_fit, pietrement_fit
   use reported_place, only: place_t, of_h0, of_load, of_radius, of_edge
-  use places, only: places_t, readings_t
+  use places, only: places_t
+  use reported_values, only: readings_t, read_numbers
   use summary, only: summary_t
   implicit none
   private
@@ -118,7 +119,7 @@ contains
       integer, intent(in) :: quantity
       type(readings_t) :: found
 
-      found = places%read_numbers(problem, name, quantity)
+      found = read_numbers(places, problem, name, quantity)
       error = nan
       if (size(found%error) > 0) error = found%error(1)
     end function error_of

@@ -9,7 +9,7 @@ module sensitivity_rows
   use reported_place, only: of_h0, of_displacement, of_radius
   use curve_states, only: path_state_t
   use experiment_result, only: experiment_result_t
-  use places, only: readings_t
+  use reported_values, only: readings_t, read_numbers
   use path_sensitivity, only: rate_t, held
   use drives, only: through_spring
   use path_readings, only: path_readings_t
@@ -55,9 +55,9 @@ contains
           if (.not. rows(i)%list) call write_lines(trim(rows(i)%key), number, k)
         end do
       end do
-      h0 = outcome%places%read_numbers(problem, 'fixed_load', of_h0)
-      displacement = outcome%places%read_numbers(problem, 'fixed_load', of_displacement)
-      radius = outcome%places%read_numbers(problem, 'fixed_load', of_radius)
+      h0 = read_numbers(outcome%places, problem, 'fixed_load', of_h0)
+      displacement = read_numbers(outcome%places, problem, 'fixed_load', of_displacement)
+      radius = read_numbers(outcome%places, problem, 'fixed_load', of_radius)
       do i = 1, size(h0%value)
         call write_element('fixed_load.h0', h0, i)
         call write_element('fixed_load.displacement', displacement, i)

@@ -13,7 +13,8 @@ module summarise
   use path_readings, only: path_readings_t
   use reported_place, only: place_t, of_h0, of_load
   use tension_at_end, only: judge_tension
-  use places, only: places_t, readings_t
+  use places, only: places_t
+  use reported_values, only: readings_t, read_numbers
   use reported_numbers, only: largest_of, of_table
   use problem_numbers, only: describe_problem
   use result_rows, only: rows
@@ -93,7 +94,7 @@ contains
 
       do i = 1, size(rows)
         if (.not. places%has(rows(i)%place)) cycle
-        found = places%read_numbers(problem, rows(i)%place, rows(i)%quantity)
+        found = read_numbers(places, problem, rows(i)%place, rows(i)%quantity)
         if (rows(i)%error == '') then
           call summary%set(trim(rows(i)%key), found%value)
         else
@@ -102,7 +103,7 @@ contains
         end if
       end do
       if (.not. places%has('end')) return
-      found = places%read_numbers(problem, 'end', of_h0)
+      found = read_numbers(places, problem, 'end', of_h0)
       call summary%set('end_h0', found%value)
     end subroutine take_places
 
@@ -135,7 +136,7 @@ contains
 
       place = outcome%places%place_of(name)
       if (place%turns()) return
-      found = outcome%places%read_numbers(problem, name, of_h0)
+      found = read_numbers(outcome%places, problem, name, of_h0)
       call summary%set(name // '_uncertainty', found%error(1))
     end subroutine tell_uncertainty
 

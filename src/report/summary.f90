@@ -5,7 +5,7 @@ module summary
   use kinds, only: wp, long, nan
   use equilibrium, only: cost_t
   use namelist_writer, only: line_t, assignment_of
-  use places, only: readings_t
+  use reported_values, only: readings_t
   use result_rows, only: rows, row_of, in_summary, in_cost
   implicit none
   private

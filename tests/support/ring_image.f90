@@ -115,7 +115,7 @@ program ring_image
   use experiment, only: run_experiment
   use experiment_result, only: experiment_result_t
   use reported_place, only: of_load, of_radius
-  use places, only: readings_t
+  use reported_values, only: readings_t, read_numbers
   use summarise, only: summary_of
   use summary, only: summary_t, summary_text
   use ring_image_body, only: ring_image_t
@@ -162,7 +162,7 @@ contains
       type(readings_t) :: found
 
     associate (name => outcome%places%entry(k)%name)
-      found = outcome%places%read_numbers(problem, name, quantity)
+      found = read_numbers(outcome%places, problem, name, quantity)
       print '(5a, *(es25.16))', 'place,', trim(name), ',', what, ',', found%value, found%error
     end associate
   end subroutine tell_place
