@@ -29,15 +29,18 @@ LIMIT = 900
 
 
 def pytest_addoption(parser):
-    parser.addoption("--long", action="store_true", help="also run tests that take minutes")
+    parser.addoption("--slow", action="store_true", help="also run tests that take seconds")
+    parser.addoption("--long", action="store_true", help="run all tests, also those of minutes")
 
 
 def pytest_collection_modifyitems(config, items):
-    if config.getoption("--long"):
+    """Slow and long tests are left out, unless an option asks for them or a test is named."""
+    if config.getoption("--long") or any("::" in argument for argument in config.args):
         return
-    for item in items:
-        if "long" in item.keywords:
-            item.add_marker(pytest.mark.skip(reason="takes minutes: --long"))
+    names = ["long"] if config.getoption("--slow") else ["long", "slow"]
+    left_out = [item for item in items if any(map(item.get_closest_marker, names))]
+    config.hook.pytest_deselected(items=left_out)
+    items[:] = [item for item in items if item not in left_out]
 
 
 @contextlib.contextmanager

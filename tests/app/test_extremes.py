@@ -10,6 +10,7 @@ SECONDS = 1000
 SLOWEST = (8, 28)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("numbers", [
     *([number for number in range(first, first + 10) if number not in SLOWEST]
       for first in range(0, 40, 10)),

@@ -140,6 +140,7 @@ def test_an_interrupted_map_goes_on_to_the_same_bytes(snapin, snapin_path, tmp_p
         bench.check(first + b"".join(some))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("change", ["shorter", "last row", "no number"])
 def test_a_file_that_changes_meanwhile_stops_the_sweep(snapin_path, tmp_path, change):
     """A row that was another when it was read again became a case. No run goes on from these."""
@@ -197,6 +198,7 @@ def test_a_case_that_fails_is_a_row_that_says_why(run):
     assert any("1 of 4 cases failed: rows of" in text for text in result.warnings)
 
 
+@pytest.mark.slow
 def test_a_terminal_shows_how_far_a_sweep_is(snapin_path, tmp_path):
     """In half of the cases the loading would go the wrong way."""
     sweep = {"key": ["loading.h0_start", "loading.h0_end"], "from": [2e-9, 1e-9],
@@ -294,6 +296,7 @@ def test_several_at_once_are_refused_without_mpi(snapin, tmp_path, size, rank, m
     assert not (tmp_path / "results").exists()
 
 
+@pytest.mark.slow
 @pytest.mark.alone
 @pytest.mark.parametrize("counts", [(2000, 26000),
                                     pytest.param((1000, 1000000), marks=pytest.mark.long)])
@@ -327,6 +330,7 @@ def models(run):
     return run(scene(sweep, **COLLOID, double_layer=LAYER))
 
 
+@pytest.mark.slow
 def test_words_are_swept(run, models):
     table = models.table("sweep.csv")
     assert list(table["double_layer.model"]) == MODELS

@@ -29,6 +29,7 @@ def test_units_that_would_overflow_together_are_refused(run):
     assert "a pressure of about 1e149 Pa" in run(scene, status=2).stderr
 
 
+@pytest.mark.slow
 def test_adhesion_far_beyond_rounding_is_refused_by_sigma(run):
     """Bodies were searched for states for minutes."""
     said = run(lennard_jones(1e45, equilibrium_path={"h0_end": -2.0}), status=2).stderr
@@ -77,6 +78,7 @@ def test_gaps_of_a_million_lengths_do_not_limit_steps(run):
     assert len(run(text).curve["h0"]) == 10
 
 
+@pytest.mark.slow
 def test_no_residual_above_a_thousandth_is_put_down_to_rounding(run):
     """At depths of 10^13 lengths rounding leaves a hundredth, too much for a state."""
     for scene in (

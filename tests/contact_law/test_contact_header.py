@@ -132,6 +132,7 @@ int main(void) {
 """
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("traps", [0, 1])
 def test_no_number_makes_it_fail(tmp_path, traps):
     """Zeros, negative, tiny, huge and no numbers give an error code or NaN, under the sanitizers,

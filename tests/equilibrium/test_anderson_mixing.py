@@ -92,6 +92,7 @@ SIGMAS = (0.0087, 0.3)
 PASSAGE_H0 = 1.0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("sigma", SIGMAS)
 def test_loads_on_panels_are_those_of_the_independent_solution(run, sigma):
     result = run(lennard_jones(

@@ -260,6 +260,7 @@ def test_eigenvalues_of_blunt_bodies_are_verified(run):
     assert values.min() < 0.95
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("nodes", [240, 400])
 def test_the_error_of_criterion_28_is_that_of_a_uniform_grid_too(run, nodes):
     """It was that of the interpolation alone, which falls faster with the spacing."""

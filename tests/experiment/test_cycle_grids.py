@@ -23,6 +23,7 @@ def fig5(hamaker, **numerics):
 # --- Methods and grids
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("hamaker", "method", "grid"), [
     *itertools.product([1e-19], ["anderson", "newton"], ["panels", "uniform"]),
     (2e-20, "newton", "panels"), (1e-21, "anderson", "uniform")])
@@ -75,6 +76,7 @@ def coarse_scene(spacing, **numerics):
     )
 
 
+@pytest.mark.slow
 def test_a_coarse_grid_warns_and_exaggerates_the_pull_off(run):
     """The contact edge is pinned between nodes; 1.7 necks are the paper's 200 nm at sigma 8.7."""
     result = run(coarse_scene(1.7))

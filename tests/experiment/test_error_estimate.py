@@ -10,6 +10,7 @@ ACCURACIES = (1e-3, 1e-4, 1e-5, 1e-6, 1e-8)
 KNOWN = 3e-11
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("sigma", [0.01, 0.14251, 0.2914, 0.35, 0.87, 30.7029, 1000.0])
 def test_the_estimate_of_path_and_cycle_bounds_the_error_within_a_hundred(tmp_path, sigma):
     """Against the independent solution; each number has an estimate of its own besides."""

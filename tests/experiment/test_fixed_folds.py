@@ -56,6 +56,7 @@ def dense_folds(sigma, start=4.0, end=0.7):
     return folds
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("sigma", [0.296, 0.33])
 def test_a_small_jump_is_found_at_every_step_and_is_the_dense_fold(run, sigma):
     """At sigma 0.3 some steps found the jump out and others did not; profiles changed which."""
@@ -67,6 +68,7 @@ def test_a_small_jump_is_found_at_every_step_and_is_the_dense_fold(run, sigma):
             assert found["jump_out_h0"] == pytest.approx(out, abs=2e-6)
 
 
+@pytest.mark.slow
 def test_a_curve_that_is_steep_but_has_no_fold_has_no_jump(run):
     assert not dense_folds(0.285)
     for step in (0.05, 0.25, 0.5):
@@ -93,6 +95,7 @@ def test_mixing_that_stops_short_of_a_fold_finds_the_same_fold(run, limit):
     assert right_or_missing(found, exact) == (2 if limit == 4000 else 0)
 
 
+@pytest.mark.slow
 def test_rows_that_did_not_converge_are_no_jump(run):
     """A stiff contact does not converge by mixing: once a jump out of it, far from any fold."""
     grid = {"grid": "uniform", "nodes": 150, "r_max": 5.5}

@@ -171,6 +171,7 @@ def test_attraction_alone_is_resolved_into_its_fall(run):
     assert result.summary["error_estimate"] <= 1e-6
 
 
+@pytest.mark.slow
 def test_what_no_mesh_resolves_is_not_silent(run):
     """A step far too sharp outside a stronger attraction, at which the front recedes."""
     law = {
@@ -247,6 +248,7 @@ def test_a_mesh_that_is_mended_does_not_have_the_whole_path_traced_again(run):
     assert result.cost["factorisations"] < 2.2 * result.cost["states"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("share", "reach", "sigma"), [
     pytest.param(0.38, 3.4, 2.1, id="the axis passes the step and falls into the well"),
     pytest.param(0.38, 4.0, 7.0, id="folds far apart", marks=pytest.mark.long),
@@ -287,6 +289,7 @@ EASILY_MISSED = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("scene", EASILY_MISSED)
 def test_no_fold_is_made_by_the_mesh(run, scene):
     """Nodes that miss a weak step, or features far outside a tiny contact, make folds that bodies

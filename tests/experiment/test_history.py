@@ -50,6 +50,7 @@ def converged(run):
     return np.ravel(run(cycle()).summary["unload_max_tension"])
 
 
+@pytest.mark.slow
 def test_solved_on_a_resolving_grid_pull_off_forgets_the_penetration(solved, converged):
     columns, pull_off = solved
     assert (columns["worst_residual"] <= 1e-8).all() and (columns["converged"] == 1).all()
@@ -86,6 +87,7 @@ def test_rounding_decides_what_pull_off_the_paper_s_rule_gives(run, converged):
     assert np.ptp(pull_off, axis=1).max() > 0.2 * converged[0]
 
 
+@pytest.mark.slow
 def test_pull_off_on_a_grid_that_pins_does_not_depend_on_the_steps(run):
     """The tension is largest just before a jump of the edge, which steps alone would miss."""
     for spacing, within in ((0.3, 1e-3), (0.5, 3e-3), (1.0, 2e-3)):
@@ -95,6 +97,7 @@ def test_pull_off_on_a_grid_that_pins_does_not_depend_on_the_steps(run):
         np.testing.assert_allclose(one, other, rtol=within)
 
 
+@pytest.mark.slow
 def test_jump_out_is_found_whether_or_not_the_edge_is_pinned(run):
     exact = run(cycle()).summary["jump_out_h0"]
     summary = run(cycle(numerics=on_grid(0.1))).summary

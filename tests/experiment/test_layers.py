@@ -43,6 +43,7 @@ def layered(layer, sigma=1.0, pieces=1, accuracy=1e-8, **groups):
 PATH = {"h0_end": -1.0}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("scene", SCENES)
 def test_folds_and_states_are_those_of_independent_states(run, scene):
     layer = SCENES[scene]

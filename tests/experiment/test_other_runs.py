@@ -23,6 +23,7 @@ def fixed(sigma, h0_end, **numerics):
                 unloading={}, numerics=numerics)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", GRIDS)
 def test_numbers_on_a_uniform_grid_have_the_error_of_the_grid(run, kind):
     """Against meshes locked to the contact edge. The uncertainty of a jump was that of its bracket
@@ -136,6 +137,7 @@ def test_the_place_of_the_largest_tension_has_an_error_which_holds(run, numerics
     assert found["max_tension_h0"] == pytest.approx(found["unload_max_tension_h0"], abs=1e-7 * Z0)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("sigma", [0.33, 0.87])
 @pytest.mark.parametrize("method", ["anderson", "mixing"])
 def test_the_energy_lost_in_a_cycle_on_a_fixed_grid_has_an_error_which_holds(run, sigma, method):

@@ -117,6 +117,7 @@ def test_loads_of_a_table_are_off_by_no_more_than_estimated(pair):
     assert 0 < error < 1e-3 * abs(mine["load"]).max()
 
 
+@pytest.mark.slow
 def test_a_table_of_many_rows_is_judged_where_its_slope_has_a_kink(run):
     """Every seventieth interval was judged, none of them at the gap at which a brush is touched."""
     def table(accuracy):

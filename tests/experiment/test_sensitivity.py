@@ -184,6 +184,7 @@ STEEP = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("case", STEEP)
 def test_derivatives_hold_where_the_problem_depends_steeply_on_the_parameter(run, case):
     """They were wrong by up to ten orders: the problems that are compared differed too much, or the

@@ -95,6 +95,7 @@ def test_data_without_noise_give_the_values_back(exact, name):
     assert (~used).sum() <= 6
 
 
+@pytest.mark.slow
 def test_errors_are_those_of_the_profile_of_the_sum_of_squares(branches, tmp_path):
     """With one value held a little off, the others found again, chi squared is the square of how
     many standard errors it is off: the Jacobian and what is made of it are right together."""
@@ -114,6 +115,7 @@ def test_errors_are_those_of_the_profile_of_the_sum_of_squares(branches, tmp_pat
         assert np.mean(gained) == pytest.approx(0.25, rel=0.01)
 
 
+@pytest.mark.slow
 def test_errors_and_correlations_are_those_of_differences_between_curves(branches, tmp_path):
     """The Jacobian of the fit against forces and jumps of scenes on either side of the solution,
     interpolated from states at given h0: another way to the same curve."""
@@ -176,6 +178,7 @@ def rows(between, point, *columns):
                    for a, b, c in zip(*columns))
 
 
+@pytest.mark.slow
 def test_conventions_do_not_matter(branches, tmp_path):
     """z that grows or falls, force of either sign, volts, columns by number, other units, tables
     as numpy writes them and with commas in numbers: the same."""
@@ -225,6 +228,7 @@ def test_one_way_alone_can_be_fitted(branches, tmp_path, segment):
     assert abs(values_of(result)[STRENGTH] - 1e-19) < 5 * errors_of(result)[STRENGTH]
 
 
+@pytest.mark.slow
 def test_intervals_hold_what_they_say(branches, tmp_path):
     """Of 6 curves the errors are as large as the standard errors say; tools/bench/coverage.py does
     hundreds."""
@@ -266,6 +270,7 @@ def test_a_prescribed_noise_that_is_too_large_is_said(branches, tmp_path):
             assert 0.05 < float(re.search(r"is (\S+) times", said[0])[1]) < 0.15
 
 
+@pytest.mark.slow
 def test_sensitivity_and_spring_are_found_with_what_is_known_of_them(exact):
     """Both scale the signal: without a prior they cannot be told apart from the stiffness."""
     deck = fit_deck(LENNARD_JONES, exact("lennard_jones"),
@@ -282,6 +287,7 @@ def test_sensitivity_and_spring_are_found_with_what_is_known_of_them(exact):
         1 / SPRING, rel=1e-6)
 
 
+@pytest.mark.slow
 def test_what_cannot_be_told_apart_is_said(branches, tmp_path):
     result = fitted(tmp_path, branches.measure(300, noise=2e-11), LENNARD_JONES,
                     [STRENGTH, "force.z0", "bodies.radius", STIFFNESS, POINT])
@@ -320,6 +326,7 @@ def jkr_curve(work, stiffness, radius, spring, n):
     return z[:last][:: last // n], load[:last][:: last // n]
 
 
+@pytest.mark.slow
 def test_jkr_data_give_the_values_of_jkr_back_and_the_path_agrees(tmp_path):
     """The path of a short range of force is JKR's, but for the part 1/sigma or so."""
     work, stiffness, radius = 0.05, 1e8, 100e-9

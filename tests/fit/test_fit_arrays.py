@@ -68,6 +68,7 @@ def test_a_curve_without_contact_is_refused_with_the_reason(curve):
         fit((curve[0], noise, curve[2]))
 
 
+@pytest.mark.slow
 def test_what_limits_a_fit_is_in_its_warnings(curve):
     z, force, segment = curve
     found = fit((z, force * (1 + 0.2 * np.sin(z / 3e-9)), segment), parameters=[

@@ -134,6 +134,7 @@ def test_a_contact_at_the_end_alone_is_no_absence_of_contact(tmp_path, seed):
     assert result.fitted["fit"]["estimate"][0] > 0
 
 
+@pytest.mark.slow
 def test_a_fall_of_the_load_between_two_samples_at_the_turn_is_no_reversed_order(tmp_path):
     """A sample that loses load as the base turns: it was said to jump in reverse order."""
     z, force, segment = hertz_curve(60)
@@ -175,6 +176,7 @@ def test_samples_in_hard_contact_alone_are_no_absence_of_contact(branches, tmp_p
         fitted(tmp_path, (z[near], force[near], segment[near]), LENNARD_JONES, [STRENGTH, POINT])
 
 
+@pytest.mark.slow
 def test_an_approach_alone_is_not_refused_for_a_tension_of_the_retreat(tmp_path):
     """The largest tension of the model, that of the retreat, was compared with an approach."""
     z, force, segment = hertz_curve(60)
@@ -193,6 +195,7 @@ def test_an_approach_alone_is_not_refused_for_a_tension_of_the_retreat(tmp_path)
     assert found[0][1] == found[1][1]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("number", [1010, 1081, 1136])
 def test_strongly_adhering_bodies_find_their_optimum(number):
     """From starts up to ten times off these fits of curves of the independent solution once ended
@@ -202,6 +205,7 @@ def test_strongly_adhering_bodies_find_their_optimum(number):
     assert not any("does not describe" in text for text in finding.warned)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind, number", [("filtered", 30), ("digits", 3), ("outliers", 1)])
 def test_fits_find_the_truth_in_several_kinds_of_noise(kind, number):
     """A sample of the study that tools/verify/judge.py makes of 150 curves (`fits`)."""
@@ -211,6 +215,7 @@ def test_fits_find_the_truth_in_several_kinds_of_noise(kind, number):
     assert not finding.warned
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("number", [5044, 6009, 6051])
 def test_noise_of_a_filter_is_found_without_many_far_samples(number):
     """These curves have few samples beyond both jumps. Their correlated noise was taken for white:
@@ -224,6 +229,7 @@ BASELINES = {"bow": "baseline = 'quadratic'", "drift": "slope_each_way = .true."
              "interference": "ripple = .true."}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", [
     "bow", "drift", pytest.param("interference", marks=pytest.mark.long)])
 def test_what_a_baseline_lacks_is_named_and_can_be_given(tmp_path, kind):
@@ -248,6 +254,7 @@ def test_a_baseline_without_slopes_has_none_on_each_way(tmp_path):
                for text in told(fit_of_gel(tmp_path, tilted, baseline="constant")))
 
 
+@pytest.mark.slow
 def test_no_part_of_a_baseline_is_named_without_reason(branches, tmp_path):
     for seed in range(4):
         result = fitted(tmp_path, branches.measure(600, 1e-10, seed=seed), LENNARD_JONES,
@@ -255,6 +262,7 @@ def test_no_part_of_a_baseline_is_named_without_reason(branches, tmp_path):
         assert not any("the baseline" in text for text in told(result)), told(result)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("factor", [pytest.param(2.0, marks=pytest.mark.long), 10.0])
 def test_a_wrong_spring_constant_is_named(branches, tmp_path, factor):
     """The slope in contact cannot be that of a spring ten times as stiff."""
@@ -266,6 +274,7 @@ def test_a_wrong_spring_constant_is_named(branches, tmp_path, factor):
     assert found == pytest.approx(SPRING, rel=0.1)
 
 
+@pytest.mark.slow
 def test_the_retreat_is_proposed_where_it_alone_is_described(branches, tmp_path):
     """Hysteresis of a sample: the approach needs a larger force at the same depth."""
     z, force, segment = branches.measure(400, 2e-11, seed=1)

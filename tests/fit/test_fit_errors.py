@@ -51,6 +51,7 @@ def test_errors_grow_where_the_farthest_trial_is_nearer_than_three_of_them(shall
     assert fit["upper_95"][1] > TRUTH[STIFFNESS]
 
 
+@pytest.mark.slow
 def test_the_ends_of_intervals_are_less_likely_than_the_estimate(shallow, tmp_path):
     """With the modulus held at either end of its 95 % interval and the others found again, chi
     squared is larger by nearly four at least, also where its rise ends soon."""
@@ -101,6 +102,7 @@ def test_a_wrong_spring_constant_cannot_be_seen_in_a_deflection(branches, tmp_pa
     assert wrong["chi_squared"][0] == pytest.approx(right["chi_squared"][0], abs=0.01)
 
 
+@pytest.mark.slow
 def test_a_saturated_detector_has_a_warning_and_its_samples_can_be_left_out(branches, tmp_path):
     """The pull-off was too small by five errors, and no warning said so."""
     z, force, segment = branches.measure(1500, NOISE / 5, seed=4)
@@ -128,6 +130,7 @@ def test_the_noise_of_a_signal_of_few_digits_is_that_of_rounding_at_least(branch
     assert all("may be chance" in text for text in fit.get("warnings", []))
 
 
+@pytest.mark.slow
 def test_a_number_at_the_end_of_its_range_does_not_keep_others_from_their_best_values(tmp_path):
     """The search could not step beyond a regulation of 1, and ended with another contact point."""
     groups = {"bodies": {"radius": 5e-6, "stiffness": 1e10}, "van_der_waals": {"hamaker": 2e-20},
@@ -147,6 +150,7 @@ def test_a_number_at_the_end_of_its_range_does_not_keep_others_from_their_best_v
     assert all(fit["upper_95"][0] == 1 for fit in found)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", [0, 8])
 def test_a_number_has_the_error_that_another_brings_along_a_curved_valley(tmp_path, seed):
     """The spring is so soft that stiff bodies look like soft ones which adhere more. The modulus
@@ -164,6 +168,7 @@ def test_a_number_has_the_error_that_another_brings_along_a_curved_valley(tmp_pa
         assert abs(np.log(estimate / true)) < 4 * error / estimate
 
 
+@pytest.mark.slow
 def test_a_sample_at_the_turn_of_its_branch_makes_no_error_small(tmp_path):
     """A small jump cannot be located, and a sample close to it had a derivative without limit. Two
     numbers that cannot be told apart had errors of a thousandth, with one 700 of them off."""

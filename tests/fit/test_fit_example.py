@@ -15,6 +15,7 @@ def example(snapin, tmp_path_factory):
     return folder / "fit", done.stderr
 
 
+@pytest.mark.slow
 def test_the_example_gives_what_its_page_says(example):
     folder, said = example
     result = read_results(folder)
@@ -42,6 +43,7 @@ def test_the_fit_is_drawn(example, called):
     assert (folder / "fit.png").stat().st_size > 2e4
 
 
+@pytest.mark.slow
 @pytest.mark.filterwarnings("ignore::snapin.SnapinWarning")
 @pytest.mark.parametrize(("head", "unit"), [("Deflection (nm)", "nm"), ("Signal (mV)", "mV"),
                                             ("signal", "V or m")])

@@ -59,6 +59,7 @@ def test_outliers_are_left_out_and_marked(branches, tmp_path):
     assert (marked & ~spoilt).sum() <= 2
 
 
+@pytest.mark.slow
 def test_a_wrong_range_of_force_is_said(branches, tmp_path):
     """z0 held at twice the truth: what is left exceeds the noise by little, but for long."""
     curve = branches.measure(SAMPLES, NOISE, seed=3)
@@ -77,6 +78,7 @@ def test_a_start_a_thousand_times_off_is_enough(branches, tmp_path, off):
     assert not result.summary.get("warnings")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("off", [pytest.param(1e-7, marks=pytest.mark.long), 1e7])
 def test_starts_that_lead_nowhere_end_with_what_the_data_suggest(branches, tmp_path, off):
     """The model is right, and would be found from a start that is nearer; there is a contact."""
@@ -89,6 +91,7 @@ def test_starts_that_lead_nowhere_end_with_what_the_data_suggest(branches, tmp_p
 
 
 # Keys without a value follow a fitted one: born.hamaker, capillary.smoothing.
+@pytest.mark.slow
 def test_what_the_data_ask_for_does_not_depend_on_the_start(tmp_path):
     """Of a number that is held, when the default of another key follows a fitted number: the
     smoothing of a bridge follows its radius."""
@@ -114,6 +117,7 @@ def test_little_baseline_is_enough(branches, tmp_path):
     assert np.abs(errors_off(result)).max() < 4
 
 
+@pytest.mark.slow
 def test_skipped_samples_do_not_count(branches, tmp_path):
     z, force, segment = branches.measure(SAMPLES, NOISE, seed=3)
     spoilt = (z > 20e-9) & (z < 25e-9)
@@ -164,6 +168,7 @@ def test_a_steep_baseline_does_not_hide_the_pull_off(branches, tmp_path, rise):
     assert np.abs(errors_off(result)).max() < 4
 
 
+@pytest.mark.slow
 def test_a_retreat_that_ends_before_the_bodies_part_is_named(branches, tmp_path):
     """The end of the retreat counts as baseline, and the answer is wrong."""
     z, force, segment = branches.measure(300, NOISE, seed=7)
@@ -210,6 +215,7 @@ def test_a_number_that_does_not_show_before_the_jump_is_named(branches, tmp_path
                [STRENGTH, STIFFNESS], measurement={"segment": "approach", "contact_point": 0.0})
 
 
+@pytest.mark.slow
 def test_the_time_of_a_fit_is_proportional_to_the_samples(branches, tmp_path):
     """Ten times the samples took thirty times as long."""
     taken = []

@@ -78,6 +78,7 @@ BAD_SIGNALS = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("case", BAD_SIGNALS)
 def test_a_signal_in_a_wrong_unit_is_refused_with_both_loads(branches, tmp_path, case):
     unit, keys, message = BAD_SIGNALS[case]

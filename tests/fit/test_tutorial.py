@@ -50,6 +50,7 @@ def test_the_curve_gives_the_numbers_of_the_page(fit):
     assert "warning" not in said
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["probe_sign", "probe_exchanged", "probe_ripple", "probe_bow"])
 def test_a_spoilt_curve_has_the_message_of_the_page(fit, name):
     said, _ = fit(name)

@@ -153,6 +153,7 @@ def test_summary_tells_what_the_points_leave_open(tmp_path):
     assert "table_error" not in exact
 
 
+@pytest.mark.slow
 @pytest.mark.filterwarnings("ignore::snapin.SnapinWarning")
 def test_noise_of_the_points_is_part_of_the_error_of_the_table(tmp_path):
     """The error of the interpolation alone was up to 71 times too small."""
@@ -215,6 +216,7 @@ def test_a_force_that_ends_before_its_first_gap_cannot_be_continued(tmp_path):
         snapin.law_numbers(table(tmp_path, gap, 1e6 * (gap / 1e-9) * np.exp(-gap / 1e-9)))
 
 
+@pytest.mark.slow
 @pytest.mark.filterwarnings("ignore::snapin.SnapinWarning")
 @pytest.mark.parametrize("tail", [{"tail_exponent": 6}, {"tail_exponent": 2},
                                   {"tail_exponent": None, "tail_decay_length": 0.3e-9}])

@@ -195,6 +195,7 @@ def deck_in(summary):
     return re.sub(rb"&(summary|cost)\n(?:  .*\n)*/\n", b"", summary)
 
 
+@pytest.mark.slow
 def test_an_accepted_deck_means_what_another_reader_makes_of_it(accepted):
     for deck, summary in zip(*(by_name.values() for by_name in accepted)):
         # To f90nml a group that begins in a comment is a group.
@@ -204,6 +205,7 @@ def test_an_accepted_deck_means_what_another_reader_makes_of_it(accepted):
         assert not list(differences(f90nml.reads(summary.decode()), meant)), deck
 
 
+@pytest.mark.slow
 def test_the_summary_of_an_accepted_deck_is_a_deck_that_says_the_same(snapin, tmp_path, accepted):
     again = summaries(snapin, tmp_path / "again", accepted[1])
     for name, summary in accepted[1].items():

@@ -82,6 +82,7 @@ def test_two_folds_within_a_step_whose_slope_is_least_inside_are_found(run, accu
     assert found["jump_in_load"] == pytest.approx(-2.97126e-6, rel=1e-4)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("stiffness, range_, h0_end, accuracies", [
     (2.047627728863176e9, 1.8378672890277213e-9, -8.066445348379321e-10, (2e-4,)),
     (3.2874751938112336e8, 1.8819993963801085e-9, -3.7388340973471256e-9, (3e-5,))])

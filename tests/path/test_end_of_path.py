@@ -59,6 +59,7 @@ def test_springs_do_not_change_where_the_path_ends(run):
     assert driven.table("table.csv")["load"].max() == pytest.approx(alone["end_load"], rel=1e-4)
 
 
+@pytest.mark.slow
 def test_a_path_beyond_its_end_says_so(run):
     """At h0_end a barrier keeps these bodies apart, without contact; only far below they come
     together, and the path goes there."""

@@ -14,6 +14,7 @@ FLAT_FACES = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("face", FLAT_FACES)
 def test_paths_of_wide_flat_punches_have_the_folds_of_the_bodies(run, face):
     """Nodes that miss the rim far outside a nucleus of contact made folds, and the mesh for all
@@ -177,6 +178,7 @@ BLUNT = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", [pytest.param(
     name, marks=pytest.mark.long if "thin" in name else ()) for name in BLUNT])
 def test_paths_of_blunt_bodies_on_layers_go_on_where_the_gap_on_the_axis_rises_again(run, name):

@@ -59,6 +59,7 @@ def test_numbers_of_outer_contacts_are_within_their_errors(name):
     assert (abs(np.subtract(near[name], exact[name])) <= allowed).all()
 
 
+@pytest.mark.slow
 def test_a_small_contact_far_inside_a_sharp_rim_has_meshes_for_narrow_bands():
     """A path that was lost: the last layer leaves the middle of a wide outer contact, and meshes
     for the small contact there, for all its radii at once, did not resolve the rim."""

@@ -4,6 +4,7 @@ import pytest
 from support.scenes import lennard_jones
 
 
+@pytest.mark.slow
 def test_derivatives_of_a_drive_keep_its_invariances(run):
     names = ("force.hamaker", "bodies.stiffness", "viscoelastic.stiffness_relaxed",
              "drive.velocity", "viscoelastic.retardation_time")

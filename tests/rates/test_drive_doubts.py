@@ -52,6 +52,7 @@ def test_what_cannot_be_resolved_is_not_silent(run):
         "above the accuracy" in text for text in found.summary["warnings"])
 
 
+@pytest.mark.slow
 def test_bodies_that_are_lost_have_no_numbers(run):
     # A fluid that hardly resists, between bodies fifty times as soft at rest. Rounding decides
     # whether the bodies are lost or come to the end with an unknown error.
@@ -67,6 +68,7 @@ def test_bodies_that_are_lost_have_no_numbers(run):
         assert any("the error could not be estimated" in text for text in found.warnings)
 
 
+@pytest.mark.slow
 def test_a_drive_of_too_many_steps_says_so(run):
     # With halved steps they are a few more than the largest number.
     found = run(deck(
@@ -107,6 +109,7 @@ def test_a_largest_tension_at_the_end_has_a_warning(run):
     assert held.summary["max_tension"] < 0.9 * apart.summary["max_tension"]
 
 
+@pytest.mark.slow
 def test_what_bodies_keep_of_their_start_is_told_where_it_matters(run):
     """Relaxed bodies are drawn out at z_start. Fast ones keep this and pull less than elastic ones,
     by ten times the error or more; slow ones forget it; from farther away there is none."""

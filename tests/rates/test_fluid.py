@@ -74,6 +74,7 @@ def test_bodies_yield_to_first_order_as_davis_serayssol_and_hinch_have_it(run):
     assert 2 * off[1] - off[0] == pytest.approx(0, abs=1e-6)
 
 
+@pytest.mark.slow
 def test_steps_are_of_second_order(run):
     found = [run(scene(0.1, 0.025, turn=0.0, accuracy=1e-7, time_step=step)).summary
              for step in (0.02, 0.01, 0.005)]
@@ -82,6 +83,7 @@ def test_steps_are_of_second_order(run):
     assert abs(a - c) < 1e-4 * c
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("case", [
     {"sigma": 0.1, "viscosity": 0.025},
     pytest.param({"sigma": 2.0, "viscosity": 0.05}, marks=pytest.mark.long),
@@ -131,6 +133,7 @@ def test_finite_volumes_agree(run):
         assert abs(here - value) <= 3 * off + 1e-5, end
 
 
+@pytest.mark.slow
 def test_little_fluid_or_slow_drives_leave_elastic_cycles(run):
     for sigma in (0.1, 2.0):
         path = run(lennard_jones(sigma, equilibrium_path={"h0_end": -1.0})).summary
@@ -169,6 +172,7 @@ def test_ways_within_the_errors_of_positions_are_none(run):
             assert summary[key] == pytest.approx(without[key], rel=1e-5)
 
 
+@pytest.mark.slow
 def test_viscoelastic_bodies_with_a_fluid_have_their_limits(run):
     """Without creep to speak of they are elastic, at once or at rest."""
     elastic = run(scene(0.1, 0.01)).summary
@@ -197,6 +201,7 @@ def test_a_stiff_spring_is_none(run):
         assert stiff[key] == pytest.approx(driven[key], rel=2e-3)
 
 
+@pytest.mark.slow
 def test_only_viscosity_times_velocity_counts(run):
     one = run(scene(0.1, 0.01, velocity=1.0, accuracy=1e-4)).summary
     other = run(scene(0.1, 1e-4, velocity=100.0, accuracy=1e-4)).summary
@@ -288,6 +293,7 @@ def test_steps_do_not_follow_what_the_iteration_leaves(run):
     assert steps.min() > 0.1 * steps[0]
 
 
+@pytest.mark.slow
 def test_the_error_of_the_suction_holds_where_two_passes_agree_by_chance(run):
     case = {"sigma": 0.026, "viscosity": 4.6095e-4, "slip": [0.0, 0.5], "z_end": 30.0}
     rough, fine = (run(scene(**case, accuracy=accuracy)).summary for accuracy in (1e-3, 1e-4))

@@ -132,8 +132,9 @@ def test_two_terms_of_one_time_are_one(run):
     one = run(scene(0.1, 0.3, time_step=0.1)).summary
     two = run(scene(0.1, creep={"compliance": [1.0, 1.0], "retardation_time": [1.0, 1.0]},
                     time_step=0.1)).summary
+    # Sums in another order: rounding decides after which iteration a state is solved.
     for key in ("max_tension", "energy_dissipated", "end_load"):
-        assert two[key] == pytest.approx(one[key], rel=1e-9)
+        assert abs(two[key] - one[key]) <= 1e-4 * one[key + "_error"]
 
 
 def test_steps_are_of_second_order(run):

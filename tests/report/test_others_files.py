@@ -125,6 +125,7 @@ def test_results_of_an_older_version_are_replaced(snapin, folder, version):
     assert sorted(os.listdir(folder / "mine")) == ["curve.csv", "summary.nml"]
 
 
+@pytest.mark.slow
 def test_a_file_that_appears_during_the_run_stays(snapin_path, snapin, folder):
     """The results then stay among the unfinished ones, and are there when the file is away."""
     name = "mine/profiles.csv"

@@ -258,6 +258,7 @@ def test_bodies_that_yield_have_their_relaxed_strength_of_adhesion(run):
     np.testing.assert_allclose(table["sigma_relaxed"], 2 * table["sigma"], rtol=1e-6)
 
 
+@pytest.mark.slow
 def test_warnings_of_cases_are_counted_and_the_first_is_shown(run):
     """A sweep said nothing of cases that missed the accuracy asked for."""
     groups = {"bodies": {"radius": 1e-6, "stiffness": 1e9},

@@ -38,6 +38,7 @@ def test_a_limit_on_the_size_of_files_stops_a_run_that_then_goes_on(name, reques
         assert bench.files("cut") == bench.whole
 
 
+@pytest.mark.slow
 def test_a_journal_that_cannot_grow_stops_a_run_that_then_goes_on(snapin, snapin_path, tmp_path):
     """Cases are written every twentieth of a second: these take several."""
     cases = {"key": "force.hamaker", "from_": 1.0, "to": 100.0, "count": 120, "scale": "log"}

@@ -46,6 +46,7 @@ def test_a_rename_that_fails_leaves_one_set_of_results_or_says_so(either, code):
             assert end == f"status 1, {torn(either, at)}"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("code", [faults.KILL, errno.ENOSPC], ids=["killed", "ENOSPC"])
 def test_no_failing_call_leaves_results_that_are_not_one_set(either, code):
     for at in range(1, either.number("any") + 1, 7):
@@ -58,6 +59,7 @@ def test_a_disk_that_fails_for_good_amid_the_renames_is_told_and_mended(either):
     assert ends == [f"status 1, {torn(either, at)}" for at in range(1, number + 1)]
 
 
+@pytest.mark.slow
 def test_a_power_failure_at_any_call_leaves_one_set_of_results_or_says_so(either):
     ends = faults.power_failures(either, every=5)
     assert ends[either.before] and ends[faults.TORN] and ends["new"]

@@ -38,6 +38,7 @@ def costs(snapin, tmp_path_factory):
     return folder
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("args", [
     ("accuracy",), ("methods",), ("accuracy", "--beside", "{folder}/nodes"),
     ("accuracy", "--reference", "{folder}/true.csv"), ("accuracy", "--numbers", "end_load"),

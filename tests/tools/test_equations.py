@@ -9,6 +9,7 @@ from conftest import ROOT
 INDEX = equations.index()
 
 
+@pytest.mark.slow
 def test_the_page_is_what_the_tool_makes():
     assert (ROOT / "docs" / "equations.md").read_text(encoding="utf-8") == equations.page()
 

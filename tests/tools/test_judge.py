@@ -44,6 +44,7 @@ def test_random_cycles_report_the_path(tmp_path, about):
     assert not wrong_in(f for job in jobs for f in study_cycles.examine(job))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("experiment, sigma", [("cycle", 0.87), ("path", 8.7)])
 def test_a_hair_before_a_fold_nothing_has_jumped_and_a_hair_beyond_all_has(
         tmp_path, sigma, experiment):

@@ -64,6 +64,7 @@ def plot(called):
     return lambda name, *args: called(SCRIPTS / name, *args)
 
 
+@pytest.mark.slow
 def test_a_script_is_a_command(results, tmp_path):
     command = [sys.executable, SCRIPTS / "profiles.py", results / "cycle", "-o", "here.png"]
     done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=HANG,
@@ -217,6 +218,7 @@ def test_files_without_a_summary_are_not_drawn(plot, results, tmp_path):
     assert "no summary.nml in" in done.stderr
 
 
+@pytest.mark.slow
 def test_a_law_is_drawn_beside_its_curve(plot, tmp_path):
     """A table's file is looked for beside the deck, wherever the command is given."""
     for name in ("tabulated", "van_der_waals"):

@@ -59,6 +59,7 @@ def numbers(found):
                     + [found.energy_lost or 0.0])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("sigma", [1e-3, 0.35, 30.0])
 def test_two_resolutions_agree_to_nine_digits(sigma):
     usual, fine = map(numbers, (path(sigma), Path(sigma, resolution=FINE)))
@@ -83,6 +84,7 @@ def test_energy_lost_is_the_work_of_the_loop():
     assert weights @ (rate * loads) == pytest.approx(found.energy_lost, rel=1e-8)
 
 
+@pytest.mark.slow
 def test_branches_between_the_jumps_are_unstable_however_many_folds():
     found = path(1000.0)
     assert len(found.folds) == 8

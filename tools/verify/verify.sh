@@ -50,7 +50,7 @@ memory() {
   return $errors
 }
 
-# Lines of src/ that the quick tests reach, with a list of the other lines.
+# Lines of src/ that all tests but those of minutes reach, with a list of the other lines.
 # gcovr merges the counts of gcov and writes the report. gcov takes counts of more than 2^32 for
 # errors, and `end module` for a line, since the compiler puts copies of types there.
 coverage() {
@@ -58,7 +58,7 @@ coverage() {
     "$python" -m pip install --quiet --disable-pip-version-check gcovr==8.3 || return
   builds build-coverage --buildtype=debug -Db_coverage=true -Dpython=enabled || return
   find build-coverage -name '*.gcda' -delete
-  tests_of build-coverage -m 'not slow and not long'
+  tests_of build-coverage --slow
   tested=$?
   "$python" -m gcovr -r "$top" --filter src/ --sort uncovered-percent --print-summary \
     --gcov-ignore-parse-errors=all --exclude-lines-by-pattern '\s*end module.*' \
