@@ -191,7 +191,7 @@ def confirmed(job, groups, truth, unit, length):
     known = list(zip(*(several(truth.get(name, [])) for name in names)))
     for h0 in folds:
         pair = nearest_pair([states_at(shapes, h0 + side * BESIDE * length) for side in (-1, 1)])
-        right = SecondMesh.twice(groups, pair, lambda one: one.fold()) if pair else None
+        right = SecondMesh.fold(groups, pair) if pair else None
         if right:
             # The pair may belong to a neighbour of this fold.
             (x, _), (y, _) = right

@@ -13,6 +13,8 @@ from support.half_space import HalfSpace
 
 # Panels of the coarse and the fine resolution, nodes of a panel.
 COARSE, FINE, ORDER = 36, 54, 10
+# Chebyshev points between two states, and how often a bracket of a fold is made narrower.
+POINTS, CLOSER = chebyshev.chebpts1(9), 2
 NOT_FORCES = ("bodies", "shape", "equilibrium_path", "device", "loading", "numerics", "layer")
 
 
@@ -104,14 +106,24 @@ class SecondMesh:
         """The load of the first profile's state at h0, as a list."""
         return [self.load(self.solved(self.begun(self.profiles[0]), h0)[0])]
 
-    def fold(self):
-        """H0 and load of the fold between the two profiles: h0 over the gap of the node that
-        changes most is extreme there."""
+    @classmethod
+    def fold(cls, groups, profiles):
+        """H0 and load of the fold between two profiles, as `twice` gives them."""
+        try:
+            # The edge of a contact moves between the profiles; then the mesh follows the fold.
+            for _ in range(CLOSER):
+                profiles = cls(groups, profiles, COARSE).closer()
+        except ArithmeticError:
+            return None
+        return cls.twice(groups, profiles, lambda one: one.between()[1:])
+
+    def along(self):
+        """States between the two profiles at Chebyshev points of the gap of the node that changes
+        most: (h0, load, gap) of each, and the place of the fold, where h0 is extreme."""
         one, two = (self.solved(self.begun(profile), profile[0])[0] for profile in self.profiles)
         node = int(abs(np.log(two / one)).argmax())
-        at = chebyshev.chebpts1(9)
-        wanted = one[node] ** ((1 - at) / 2) * two[node] ** ((1 + at) / 2)
-        h0s, loads, gaps = [], [], [two, one]
+        wanted = one[node] ** ((1 - POINTS) / 2) * two[node] ** ((1 + POINTS) / 2)
+        states, gaps = [], [two, one]
         for value in wanted:
             # Begun as the gaps changed last, with the wanted gap at the node.
             before, last = gaps[-2:]
@@ -121,13 +133,24 @@ class SecondMesh:
             begun = last * np.exp(np.clip(rate * math.log(value / last[node]), -1, 1))
             gap, h0 = self.solved(begun, self.profiles[0][0], node)
             gaps.append(gap)
-            h0s.append(h0)
-            loads.append(self.load(gap))
-        series = chebyshev.chebfit(at, h0s, 8)
+            states.append((h0, self.load(gap), gap))
+        series = chebyshev.chebfit(POINTS, [h0 for h0, _, _ in states], len(POINTS) - 1)
         roots = chebyshev.chebroots(chebyshev.chebder(series))
         inside = roots[(abs(roots.imag) < 1e-6) & (abs(roots.real) <= 1)].real
         if not len(inside):
             raise ArithmeticError("no fold between the profiles on the second mesh")
-        place = inside[abs(inside).argmin()]
-        return [float(chebyshev.chebval(place, series)),
-                float(chebyshev.chebval(place, chebyshev.chebfit(at, loads, 8)))]
+        return states, inside[abs(inside).argmin()]
+
+    def between(self):
+        """The place of the fold, its h0 and its load."""
+        states, place = self.along()
+        values = zip(*((h0, load) for h0, load, _ in states))
+        fits = [chebyshev.chebfit(POINTS, value, len(POINTS) - 1) for value in values]
+        return place, *(float(chebyshev.chebval(place, fit)) for fit in fits)
+
+    def closer(self):
+        """Profiles of the two states next to the fold, one on either side."""
+        states, place = self.along()
+        after = int(np.clip(np.searchsorted(POINTS, place), 1, len(POINTS) - 1))
+        inside = self.r <= self.profiles[0][1][-1]
+        return [(states[i][0], self.r[inside], states[i][2][inside]) for i in (after - 1, after)]

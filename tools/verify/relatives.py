@@ -32,6 +32,7 @@ os.environ["OMP_NUM_THREADS"] = os.environ["OPENBLAS_NUM_THREADS"] = "1"
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 sys.path[:0] = [str(ROOT / folder) for folder in ("tests", "pywrap", "build/pywrap")]
 
+from snapin.command import as_command  # noqa: E402
 from support.decks_in_units import program_path  # noqa: E402
 from support.relatives import Job  # noqa: E402
 from support.spread import spread  # noqa: E402
@@ -90,4 +91,4 @@ def main():
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(as_command(main)())
