@@ -46,8 +46,10 @@ class Judged:
 
     @classmethod
     def lost(cls, job, text, told, why):
-        """No results: told if the program says so."""
+        """No results: told if the program says so; a run that takes too long is not judged."""
         judged = cls(job, text)
+        if why.startswith("more than"):
+            judged.doubt = "undecided"
         (judged.told if told else judged.silent).append(f"no results: {why.strip()[-150:]}")
         return judged
 

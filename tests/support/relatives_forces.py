@@ -13,7 +13,7 @@ from support.relatives import Judged, is_told, logarithmic, numbers_verdict
 from support.scenes import UNIT, deck, lennard_jones, read_groups, read_table, several
 from support.states import EDGE, pressure, slope, solve
 
-SECONDS = 40
+SECONDS = 15
 # Relative accuracy of closed forms that are solved here on a grid of the contact radius.
 CLOSED = 1e-6
 # A bulge that matters less than so many accuracies is not worth a warning.

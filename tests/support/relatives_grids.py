@@ -18,7 +18,7 @@ from support.scenes import loading
 # on a grid of a hundred nodes the fold may be on the other side.
 BESIDE_FOLD, BESIDE_CUSP = 0.05, 2e-3
 # A deck takes at most so many seconds of the processor.
-SECONDS = 40
+SECONDS = 15
 
 
 class Scene:
