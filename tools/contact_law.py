@@ -24,6 +24,7 @@ import law_errors  # noqa: E402
 import law_header  # noqa: E402
 import law_states  # noqa: E402
 import law_tables  # noqa: E402
+from snapin.command import as_command  # noqa: E402
 
 TABLE = pages.ROOT / "pywrap" / "snapin" / "contact_law.json"
 SCRIPT = pages.ROOT / "contact_law" / "snapin_contact.js"
@@ -99,4 +100,4 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(as_command(main)())

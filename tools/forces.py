@@ -15,6 +15,7 @@ import snapin
 sys.path.append(str(pages.ROOT / "pywrap" / "plots"))
 
 from law_and_curve import draw_law_and_curve  # noqa: E402
+from snapin.command import as_command  # noqa: E402
 
 EXAMPLES = pages.ROOT / "inputs" / "examples"
 PICTURES = pages.ROOT / "docs" / "forces"
@@ -70,4 +71,4 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(as_command(main)())

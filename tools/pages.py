@@ -129,4 +129,6 @@ def main():
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    from snapin.command import as_command
+
+    sys.exit(as_command(main)())

@@ -16,6 +16,7 @@ import numpy as np
 import pages
 import snapin
 from matplotlib.figure import Figure
+from snapin.command import as_command
 
 sys.path.append(str(pages.ROOT / "tools" / "bench"))
 
@@ -176,4 +177,4 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(as_command(main)())

@@ -7,6 +7,7 @@ import sys
 import textwrap
 
 import numpy as np
+from snapin.command import as_command
 from snapin.results import ResultsError
 
 # Okabe and Ito's colours, which colour-blind readers can distinguish.
@@ -119,6 +120,7 @@ def states_of(rows):
             for state in np.unique(rows["state"])]
 
 
+@as_command
 def run(draw, default_name, description, add_options=lambda parser: None):
     """Run a plotting script: arguments, `draw(folder, **options)`, the picture, the exit status."""
     parser = argparse.ArgumentParser(description=description)

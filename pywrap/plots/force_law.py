@@ -17,6 +17,7 @@ import snapin
 from drawing import (
     BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILION, dress, entitle, scale)
 from matplotlib.figure import Figure
+from snapin.command import as_command
 
 SAMPLES = 1500
 # Values above this multiple of the largest shown are left out; pressures of a barrier are at least
@@ -197,4 +198,4 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(as_command(main)())

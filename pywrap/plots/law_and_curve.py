@@ -15,6 +15,7 @@ from drawing import save, scale
 from force_curve import Curve
 from force_law import Law, forces_of, parts_of, results_of, styled
 from matplotlib.figure import Figure
+from snapin.command import as_command
 
 # Largest and smallest load shown, over the largest tension.
 _HIGHEST, _FAINT = 2.0, 0.02
@@ -80,4 +81,4 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(as_command(main)())

@@ -8,6 +8,7 @@ all curves of a file into a folder.
 import argparse
 import sys
 
+from snapin.command import as_command
 from snapin.convert import ConvertError, load_curves, table_of
 
 
@@ -33,4 +34,4 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(as_command(main)())

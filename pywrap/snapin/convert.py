@@ -20,6 +20,8 @@ import zipfile
 
 import numpy as np
 
+from .command import as_command
+
 # Columns of afmformats that may be the position of the base, the better one first.
 _HEIGHTS = ("height (measured)", "height (piezo)")
 # A base rests where it travels less than this part of its range, as in a pause at constant force.
@@ -275,6 +277,7 @@ def convert(path, folder, number=None, spring_constant=None, sensitivity=None, s
     return written
 
 
+@as_command
 def main(arguments=None):
     """The command snapin-convert; ends with 1 and one line where a file cannot be converted."""
     parser = argparse.ArgumentParser(

@@ -49,7 +49,8 @@ module places
 
 contains
 
-  !> Finds a place in the table, or adds it, after the place from which its jump started.
+  !> Finds a place in the table, or adds it, after the place from which its jump started. A row that
+  !> is also the place of a search is as uncertain as that.
   recursive subroutine keep(self, place, i)
     class(places_t), intent(inout) :: self
     type(place_t), intent(in) :: place
@@ -60,7 +61,10 @@ contains
     after = place%after
     if (place%landing) call self%keep(point_of_path(place%point), after)
     do i = 1, size(self%place)
-      if (is_same(self%place(i), place)) return
+      if (is_same(self%place(i), place)) then
+        self%place(i)%left = max(self%place(i)%left, place%left)
+        return
+      end if
     end do
     self%place = [self%place, place]
     self%place(i)%after = after

@@ -156,3 +156,18 @@ def test_a_largest_tension_beside_states_that_did_not_converge_is_said_to_be_no_
     assert limited.summary["max_tension_at_end"]
     assert any("the tension is largest beside states that did not converge, at h0 =" in text
                for text in limited.warnings)
+
+
+@pytest.mark.parametrize("profiles", [False, True])
+def test_a_largest_tension_under_the_papers_rule_is_known_to_within_rows(run, profiles):
+    """Where a profile was read at the same row, its h0 was said to be exact."""
+    step, end = 0.25, -0.5
+    h0 = [end + step * k for k in range(26)]
+    summary = run(lennard_jones(
+        0.9577, loading=loading(6.0, end, step), unloading={},
+        profiles={"h0": h0} if profiles else None,
+        numerics={"method": "mixing", "grid": "uniform", "nodes": 200, "r_max": 8.0,
+                  "convergence": "displacement_change", "displacement_tolerance": 4e-4}),
+        status=1).summary
+    assert summary["max_tension_h0"] in h0
+    assert summary["max_tension_h0_error"] >= step

@@ -105,7 +105,7 @@ KINDS = {function.__name__: function for function in (
     white, outliers, filtered, digits, bow, drift, interference)}
 
 
-def made(job):
+def made(job, kinds=None):
     """The truth, the curve's z, force and segment, and the starting values over the true ones."""
     rng = np.random.default_rng((job.number, len(job.kind)))
     strengths = STRONG if job.kind == "clean" else ANY
@@ -118,7 +118,7 @@ def made(job):
     curve = smooth._replace(noise=noise * pull_off)
     tilted = curve._replace(force=curve.force + curve.noise * (
         rng.normal(0, 20, 2)[curve.segment] + rng.normal(0, 20) * curve.z / np.ptp(curve.z)))
-    force, keys = KINDS.get(job.kind, white)(tilted, rng)
+    force, keys = (kinds or KINDS).get(job.kind, white)(tilted, rng)
     start = 10 ** rng.uniform(-1, 1, 2)
     return true, (curve.z, force, curve.segment), start, keys
 
@@ -139,9 +139,9 @@ def cpu():
     return resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
 
 
-def examine(job):
-    """A list of the finding of a job."""
-    true, curve, start, keys = made(job)
+def examine(job, kinds=None):
+    """A list of the finding of a job; kinds: other ways to spoil a curve than `KINDS`."""
+    true, curve, start, keys = made(job, kinds)
     began = cpu()
     with tempfile.TemporaryDirectory() as folder, warnings.catch_warnings():
         warnings.simplefilter("ignore", snapin.SnapinWarning)

@@ -33,6 +33,7 @@ import scaling  # noqa: E402
 import tables  # noqa: E402
 import work_precision  # noqa: E402
 from pages import ROOT  # noqa: E402
+from snapin.command import as_command  # noqa: E402
 
 # Each has marks for some of the tables.
 _GUIDES = (ROOT / "docs" / "accuracy.md", ROOT / "docs" / "records" / "costs.md")
@@ -156,4 +157,4 @@ def _say(text):
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(as_command(main)())

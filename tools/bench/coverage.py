@@ -23,6 +23,7 @@ import snapin
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 sys.path.append(str(ROOT / "tests"))
 
+from snapin.command import as_command  # noqa: E402
 from support.measured import write  # noqa: E402
 from support.reference_curves import RADIUS, Z0, Driven, measure, truth  # noqa: E402
 
@@ -142,4 +143,4 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(as_command(main)())

@@ -26,6 +26,7 @@ import methods_page  # noqa: E402 (found through the lines above)
 import pages  # noqa: E402
 import snapin  # noqa: E402
 import tables  # noqa: E402
+from snapin.command import as_command  # noqa: E402
 
 # Scenes in units of the law's length are beyond small strains, which does not matter here.
 warnings.simplefilter("ignore", snapin.SnapinWarning)
@@ -246,4 +247,4 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(as_command(main)())

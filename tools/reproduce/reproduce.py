@@ -28,6 +28,7 @@ import report  # noqa: E402
 import style  # noqa: E402
 from pages import ROOT  # noqa: E402
 from runs import Runs  # noqa: E402
+from snapin.command import as_command  # noqa: E402
 
 
 def main():
@@ -126,10 +127,7 @@ def _say(text):
 
 if __name__ == "__main__":
     try:
-        main()
+        sys.exit(as_command(main)())
     except KeyboardInterrupt:
         _say("interrupted; the runs that were done stay, ./reproduce goes on with the others")
         sys.exit(130)
-    except OSError as trouble:  # such as a folder that cannot be written
-        _say(f"{trouble.filename}: {trouble.strerror}")
-        sys.exit(1)

@@ -258,4 +258,6 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    from snapin.command import as_command
+
+    sys.exit(as_command(main)())

@@ -30,6 +30,7 @@ import warnings
 
 import numpy as np
 import snapin
+from snapin.command import as_command
 from snapin.convert import ConvertError, convert
 
 PACKAGES = ("afmformats==0.18.7", "nanite==4.2.3")
@@ -233,4 +234,4 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(as_command(main)())

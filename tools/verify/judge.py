@@ -30,6 +30,7 @@ os.environ["OMP_NUM_THREADS"] = os.environ["OPENBLAS_NUM_THREADS"] = "1"
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 sys.path.insert(0, str(ROOT / "tests"))
 
+from snapin.command import as_command  # noqa: E402
 from support import study_bodies, study_cycles, study_estimates, study_fits  # noqa: E402
 from support import study_folds, study_laws  # noqa: E402
 from support.comparison import is_bad  # noqa: E402
@@ -89,4 +90,4 @@ def main():
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(as_command(main)())

@@ -26,6 +26,7 @@ import numpy as np
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 sys.path.insert(0, str(ROOT / "tests"))
 
+from snapin.command import as_command  # noqa: E402
 from support.processes import threaded  # noqa: E402
 from support.scenes import Run, exponential, lennard_jones, loading, several  # noqa: E402
 
@@ -279,4 +280,4 @@ def main():
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(as_command(main)())

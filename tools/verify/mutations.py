@@ -34,6 +34,7 @@ import numpy as np
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 sys.path.insert(0, str(ROOT / "pywrap"))
 from snapin import results  # noqa: E402
+from snapin.command import as_command  # noqa: E402
 
 # Processor seconds of a process, after which a change has made it endless.
 ENDLESS = 300
@@ -330,4 +331,4 @@ def main():
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(as_command(main)())

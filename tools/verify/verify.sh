@@ -4,8 +4,8 @@
 #
 # A stage is the function below with its name. Without a stage: all stages, about two hours on two
 # cores. Ends with status 1 if one fails. EXTREMES (200) is the number of random decks, FIRST (5000)
-# the first of them, FUZZ (240) the seconds of the search, SEED (1) that of the judge's decks and of the
-# changes of the sources, MUTATIONS (15) their number.
+# the first of them, FUZZ (240) the seconds of the search, SEED (1) that of the judge's decks, of
+# the relatives and of the changes of the sources, MUTATIONS (15) their number.
 set -u
 here=$(dirname -- "$(readlink -f -- "$0")")
 top=$(dirname -- "$(dirname -- "$here")")
@@ -96,6 +96,9 @@ extremes() {
 # Lennard-Jones problem.
 judge() { "$python" "$here/judge.py" --seed "${SEED:-1}"; }
 
+# Random relatives of decks whose numbers were once wrong, each judged by another solution.
+relatives() { "$python" "$here/relatives.py" --seed "${SEED:-1}"; }
+
 # Every system call on results fails, kills the run, or is the last before a power cut.
 faults() { OMP_NUM_THREADS=1 PYTHONPATH=tests "$python" -m support.faults; }
 
@@ -124,7 +127,7 @@ fuzz() {
 pages() { "$python" "$top/tools/pages.py"; }
 
 failed=
-stages='long traps memory coverage levels extremes faults judge mutations mpi fuzz pages'
+stages='long traps memory coverage levels extremes faults judge relatives mutations mpi fuzz pages'
 for stage in ${*:-$stages}; do
   case " $stages " in
     *" $stage "*) ;;
