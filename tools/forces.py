@@ -11,10 +11,7 @@ import tempfile
 import f90nml
 import pages
 import snapin
-
-sys.path.append(str(pages.ROOT / "pywrap" / "plots"))
-
-from law_and_curve import draw_law_and_curve  # noqa: E402
+from snapin.plots.law_and_curve import draw_law_and_curve
 
 EXAMPLES = pages.ROOT / "inputs" / "examples"
 PICTURES = pages.ROOT / "docs" / "forces"
