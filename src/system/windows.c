@@ -245,10 +245,15 @@ int snapin_rename(int folder, const char *from, const char *to) {
   return MoveFileExA(old, new, MOVEFILE_REPLACE_EXISTING | MOVEFILE_WRITE_THROUGH) ? 0 : failure();
 }
 
+/* A file that is open keeps its name until it is closed, and its folder cannot be removed: it is
+   moved out of a subfolder first. */
 int snapin_remove(int folder, const char *name) {
-  char path[2 * MAX_PATH];
-  if (!path_in(folder, name, path))
+  char path[2 * MAX_PATH], away[2 * MAX_PATH], other[64];
+  snprintf(other, sizeof other, "removed-%lu-%lu", GetCurrentProcessId(), GetTickCount());
+  if (!path_in(folder, name, path) || !path_in(folder, other, away))
     return failure();
+  if (strchr(name, '/') != NULL && MoveFileExA(path, away, 0))
+    return DeleteFileA(away) ? 0 : failure();
   return DeleteFileA(path) || failure() == -ENOENT ? 0 : failure();
 }
 
