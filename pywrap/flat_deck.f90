@@ -1,4 +1,4 @@
-!> Decks for f2py: the kind of a key of results, and the force law of a deck.
+!> Decks for f2py: the kind of a key of results, the force law of a deck, and the version.
 !>
 !> All flat modules have only scalars, arrays of explicit shape with their sizes last, and for each
 !> procedure that may refuse its arguments `stat` (0, or the kind of `failure`) and `message`; no
@@ -13,9 +13,17 @@ module flat_deck
   use iso_c_binding, only: c_double, c_int
   implicit none
   private
-  public :: is_list, law_values, use_one_thread
+  public :: is_list, law_values, library_version, use_one_thread
 
 contains
+
+  !> The version of the library.
+  subroutine library_version(text)
+    use build_info, only: version
+    character(len=32), intent(out) :: text
+
+    text = version
+  end subroutine library_version
 
   !> Whether a key of &summary or &cost is a list, even with one value: 0 or 1.
   subroutine is_list(key, list)

@@ -11,11 +11,8 @@ import tempfile
 import f90nml
 import pages
 import snapin
-
-sys.path.append(str(pages.ROOT / "pywrap" / "plots"))
-
-from law_and_curve import draw_law_and_curve  # noqa: E402
-from snapin.command import as_command  # noqa: E402
+from snapin.command import as_command
+from snapin.plots.law_and_curve import draw_law_and_curve
 
 EXAMPLES = pages.ROOT / "inputs" / "examples"
 PICTURES = pages.ROOT / "docs" / "forces"

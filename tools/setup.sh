@@ -148,7 +148,7 @@ tests() { "$venv/bin/python" -m pytest -q -n auto --dist worksteal "$@"; }
 tests_of() {
   folder=$1
   shift
-  SNAPIN=$top/$folder/snapin tests -o pythonpath="pywrap $folder/pywrap tests pywrap/plots tools \
+  SNAPIN=$top/$folder/snapin tests -o pythonpath="pywrap $folder/pywrap tests tools \
 tools/verify tools/reproduce tools/law" "$@"
 }
 

@@ -2,7 +2,7 @@
 
 `run` computes any deck; `force_curve` and `equilibrium_path` write the deck themselves. The other
 functions are the pieces of a calculation, for a closer look and for tests. Each module here wraps
-one part of the library; this file has the names that users call.
+one part of the library; this file has the names that users call. `snapin.plots` draws results.
 """
 
 import os
@@ -21,6 +21,9 @@ from .numerics import (
     equilibrium, force_law, gauss_rule, kernel, kernel_log_coefficient, law_numbers, panel_mesh,
     panel_weights, turning_intervals, uniform_mesh)
 from .results import Result, read_results
+
+#: The version of the library, which is that of the program.
+__version__: str = _snapin.flat_deck.library_version().decode().rstrip()
 
 # Systems without fork need no registration.
 if hasattr(os, "register_at_fork"):

@@ -3,13 +3,14 @@
 SI; `radius`, `stiffness`, `rigid` and `law` are as in `force_curve`.
 """
 
-from typing import NamedTuple
+from typing import NamedTuple, Optional
 
 import _snapin
 import numpy as np
+from numpy.typing import ArrayLike
 
-from .arguments import one_of, vector
-from .deck import accept_deck, problem_deck, scene
+from .arguments import Array, one_of, vector
+from .deck import Groups, accept_deck, problem_deck, scene
 from .experiment import run
 from .numerics import law_numbers
 
@@ -21,10 +22,10 @@ _JUMPS = ("jump_criterion_29", "jump_equation_37", "fold_attractive_only", "fold
 class SlowDeformation(NamedTuple):
     """States of the approximation, SI; `slope` is the derivative of the displacement by the gap."""
 
-    h0: np.ndarray
-    displacement: np.ndarray
-    slope: np.ndarray
-    load: np.ndarray
+    h0: Array
+    displacement: Array
+    slope: Array
+    load: Array
 
 
 class JumpState(NamedTuple):
@@ -39,13 +40,15 @@ class JumpState(NamedTuple):
 class JumpEstimates(NamedTuple):
     """Jumps by (29), by (37), and at the folds of h0 along (35b) and (35a); None: there is none."""
 
-    criterion: JumpState
-    equation_37: JumpState
-    fold_attraction: JumpState
-    fold: JumpState
+    criterion: Optional[JumpState]
+    equation_37: Optional[JumpState]
+    fold_attraction: Optional[JumpState]
+    fold: Optional[JumpState]
 
 
-def slow_deformation(gap, *, radius, stiffness=None, law, rigid=False, form="quadrature"):
+def slow_deformation(gap: ArrayLike, *, radius: float, stiffness: Optional[float] = None,
+                     law: Groups, rigid: bool = False,
+                     form: str = "quadrature") -> SlowDeformation:
     """Return the `SlowDeformation` at gaps on the axis [m].
 
     `form` is "quadrature", (22) and (23); "closed_form", (31) and (32) or (35a) and (36a); or
@@ -63,7 +66,8 @@ def slow_deformation(gap, *, radius, stiffness=None, law, rigid=False, form="qua
     return SlowDeformation(gap - displacement, displacement, slope, load)
 
 
-def jump_estimates(*, radius, stiffness=None, law, rigid=False):
+def jump_estimates(*, radius: float, stiffness: Optional[float] = None, law: Groups,
+                   rigid: bool = False) -> JumpEstimates:
     """Return the `JumpEstimates` for approaching bodies."""
     # Estimates do not depend on the range of the curves.
     numbers = law_numbers(law)
@@ -79,7 +83,9 @@ def _jump(row):
     return JumpState(h0 + displacement, h0, displacement, load)
 
 
-def approximation_rows(h0_start, h0_end, *, radius, stiffness=None, law, rigid=False, count=200):
+def approximation_rows(h0_start: float, h0_end: float, *, radius: float,
+                       stiffness: Optional[float] = None, law: Groups, rigid: bool = False,
+                       count: int = 200) -> np.ndarray:
     """Return the table of &approximations over a range of h0 [m]."""
     group = {"h0_start": h0_start, "h0_end": h0_end, "count": count}
     return run(scene(law, radius, stiffness, rigid, approximations=group)).approximations

@@ -11,8 +11,17 @@ import pathlib
 import reprlib
 from decimal import Decimal
 from numbers import Real
+from typing import Union
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+
+#: What functions return: arrays of float64, and of bool.
+Array = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+#: A path of a file or folder.
+Path = Union[str, "os.PathLike[str]"]
 
 
 class SnapinError(RuntimeError):
@@ -43,7 +52,7 @@ def shown(value):
         return f"this {type(value).__name__}"
 
 
-def folder_path(name, value):
+def folder_path(name: str, value: Path) -> pathlib.Path:
     """Return the path of a folder."""
     if not isinstance(value, (str, os.PathLike)):
         raise TypeError(f"{name}: the path of a folder is needed, not {shown(value)}")
@@ -53,7 +62,7 @@ def folder_path(name, value):
 # --- Numbers
 
 
-def reals(name, values, most=np.inf):
+def reals(name: str, values: ArrayLike, most: float = np.inf) -> Array:
     """Return `values`, of any shape, as a contiguous float64 array within +-`most`."""
     refusal = f"{name}: real numbers are needed, not {shown(values)}"
     try:
@@ -100,7 +109,7 @@ def _exact(given, array):
     )
 
 
-def vector(name, values, *, most=_MOST):
+def vector(name: str, values: ArrayLike, *, most: float = _MOST) -> Array:
     """Return `values`, also a single number, as a one-dimensional array of finite float64."""
     array = reals(name, values, most)
     if array.ndim > 1:
@@ -108,7 +117,7 @@ def vector(name, values, *, most=_MOST):
     return array.reshape(-1)
 
 
-def positive_vector(name, values):
+def positive_vector(name: str, values: ArrayLike) -> Array:
     """Return `values` as `vector` does; all must be above zero."""
     array = vector(name, values)
     if not (array >= _LEAST).all():
@@ -116,7 +125,7 @@ def positive_vector(name, values):
     return array
 
 
-def ascending(name, values, least_size):
+def ascending(name: str, values: ArrayLike, least_size: int) -> Array:
     """Return `values` as a vector of at least `least_size` numbers, each above the one before."""
     array = vector(name, values)
     if array.size < least_size:
@@ -126,7 +135,7 @@ def ascending(name, values, least_size):
     return array
 
 
-def as_long_as(name, values, size):
+def as_long_as(name: str, values: ArrayLike, size: int) -> Array:
     """Return `values` as a vector of `size` numbers."""
     array = vector(name, values)
     if array.size != size:
@@ -134,7 +143,7 @@ def as_long_as(name, values, size):
     return array
 
 
-def flags(name, values, size):
+def flags(name: str, values: ArrayLike, size: int) -> Flags:
     """Return `values`, one bool or `size` of them, as an array of `size` bools."""
     known = isinstance(values, (bool, np.bool_, list, tuple, np.ndarray))
     if isinstance(values, (list, tuple)):
@@ -147,7 +156,7 @@ def flags(name, values, size):
     return np.full(size, given)
 
 
-def scalar(name, value):
+def scalar(name: str, value: float) -> float:
     """Return `value` as a finite float."""
     array = reals(name, value, _MOST)
     if array.ndim > 0:
@@ -155,7 +164,7 @@ def scalar(name, value):
     return float(array)
 
 
-def positive(name, value):
+def positive(name: str, value: float) -> float:
     """Return `value` as a finite float above zero."""
     number = scalar(name, value)
     if not number >= _LEAST:
@@ -163,7 +172,7 @@ def positive(name, value):
     return number
 
 
-def not_negative(name, value):
+def not_negative(name: str, value: float) -> float:
     """Return `value` as a finite float that is zero or more."""
     number = scalar(name, value)
     if number < 0:
@@ -171,7 +180,7 @@ def not_negative(name, value):
     return number
 
 
-def count(name, value, least, most=2**31 - 1):
+def count(name: str, value: int, least: int, most: int = 2**31 - 1) -> int:
     """Return `value` as an int within the limits; floats are refused."""
     try:
         if isinstance(value, (bool, np.bool_)) or np.ndim(value) > 0:

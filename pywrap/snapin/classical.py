@@ -9,8 +9,9 @@ needs only those that it uses. NaN marks values without an equilibrium.
 
 import _snapin
 import numpy as np
+from numpy.typing import ArrayLike
 
-from .arguments import not_negative, one_of, positive, positive_vector, vector
+from .arguments import Array, not_negative, one_of, positive, positive_vector, vector
 
 _flat = _snapin.flat_theory
 
@@ -45,7 +46,9 @@ def _values(theory, quantity, x, material, a=0.0):
     return values
 
 
-def contact_radius(theory, control, values, *, radius, stiffness, surface_energy=0.0, strength=0.0):
+def contact_radius(theory: str, control: str, values: ArrayLike, *, radius: float,
+                   stiffness: float, surface_energy: float = 0.0,
+                   strength: float = 0.0) -> Array:
     """Return the contact radii at given values of `control`.
 
     `control` is "load" [N] or "displacement" [m], on the branch that is stable at fixed control, or
@@ -59,37 +62,42 @@ def contact_radius(theory, control, values, *, radius, stiffness, surface_energy
     return _values(theory, f"radius at {control}", values, material)
 
 
-def contact_curve(theory, contact_radius, *, radius, stiffness, surface_energy=0.0, strength=0.0):
+def contact_curve(theory: str, contact_radius: ArrayLike, *, radius: float, stiffness: float,
+                  surface_energy: float = 0.0, strength: float = 0.0) -> tuple[Array, Array]:
     """Return load [N] and displacement [m] at contact radii [m], all above zero."""
     material = _material(theory, radius, stiffness, surface_energy, strength)
     a = positive_vector("contact_radius", contact_radius)
-    return tuple(_values(theory, name, a, material) for name in ("load", "displacement"))
+    return _values(theory, "load", a, material), _values(theory, "displacement", a, material)
 
 
-def profile(theory, r, contact_radius, *, radius, stiffness, surface_energy=0.0):
+def profile(theory: str, r: ArrayLike, contact_radius: float, *, radius: float, stiffness: float,
+            surface_energy: float = 0.0) -> tuple[Array, Array]:
     """Return pressure [Pa] and gap [m] at distances `r` [m] from the axis (Hertz and JKR)."""
     material = _material(theory, radius, stiffness, surface_energy, strength=1.0)
     r = vector("r", r)
     if (r < 0).any():
         raise ValueError("r: must not be negative")
     a = positive("contact_radius", contact_radius)
-    return tuple(_values(theory, name, r, material, a) for name in ("pressure", "gap"))
+    return _values(theory, "pressure", r, material, a), _values(theory, "gap", r, material, a)
 
 
-def load_at_displacement(theory, displacement, *, radius, stiffness, surface_energy=0.0):
+def load_at_displacement(theory: str, displacement: ArrayLike, *, radius: float,
+                         stiffness: float, surface_energy: float = 0.0) -> Array:
     """Return loads [N] at displacements [m], on the branch stable at fixed displacement."""
     material = _material(theory, radius, stiffness, surface_energy, strength=1.0)
     return _values(theory, "load at displacement", vector("displacement", displacement), material)
 
 
-def pull_off(theory, *, radius, stiffness, surface_energy=0.0, strength=0.0, control="load"):
+def pull_off(theory: str, *, radius: float, stiffness: float, surface_energy: float = 0.0,
+             strength: float = 0.0, control: str = "load") -> float:
     """Return the load [N], negative, at which the bodies separate at a fixed `control`."""
     material = _material(theory, radius, stiffness, surface_energy, strength)
     one_of("control", control, _CONTROLS)
     return float(_values(theory, f"pull_off at {control}", np.zeros(1), material)[0])
 
 
-def cohesive_zone(contact_radius, *, radius, stiffness, surface_energy, z0):
+def cohesive_zone(contact_radius: ArrayLike, *, radius: float, stiffness: float,
+                  surface_energy: float, z0: float) -> tuple[float, float, Array]:
     """Return strength [Pa], lambda and edge ratios of Maugis-Dugdale for a Lennard-Jones law.
 
     `z0` [m] is the law's equilibrium separation; the strength is its largest tension.

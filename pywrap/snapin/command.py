@@ -5,11 +5,13 @@ import functools
 import os
 import pathlib
 import sys
+from collections.abc import Callable
+from typing import Any
 
 __all__ = ["as_command"]
 
 
-def as_command(main):
+def as_command(main: Callable[..., Any]) -> Callable[..., Any]:
     """Return main as a command that writes all of its output before it ends.
 
     Output that cannot be written, as into a full device, ends the command with one line on standard

@@ -5,9 +5,13 @@ contact_law.json has; tools/contact_law.py makes both out of a deck. docs/tables
 law. Here are SI units and arguments; `_contact_path` has the law without units.
 """
 
-import numpy as np
+from collections.abc import Mapping
+from typing import Any, Optional
 
-from .arguments import flags, positive, vector
+import numpy as np
+from numpy.typing import ArrayLike
+
+from .arguments import Array, Flags, flags, positive, vector
 from ._contact_path import ContactPath
 from ._contact_tables import coefficients, tabor_of
 
@@ -25,7 +29,8 @@ class ContactLaw:
     state they have jumped to the other; `in_contact` tells. `history` follows a sequence of h0.
     """
 
-    def __init__(self, radius, reduced_modulus, work_of_adhesion, z0, *, table=None):
+    def __init__(self, radius: float, reduced_modulus: float, work_of_adhesion: float, z0: float,
+                 *, table: Optional[Mapping[str, Any]] = None) -> None:
         radius, modulus = positive("radius", radius), positive("reduced_modulus", reduced_modulus)
         work, z0 = positive("work_of_adhesion", work_of_adhesion), positive("z0", z0)
         table = coefficients() if table is None else table
@@ -42,42 +47,42 @@ class ContactLaw:
     # --- Numbers of the law
 
     @property
-    def jumps(self):
+    def jumps(self) -> bool:
         """Whether there are jumps when h0 is prescribed."""
         return self._path.jumps
 
     @property
-    def pull_off(self):
+    def pull_off(self) -> float:
         """Pull-off force [N]: the largest tension, at which a dead load separates the bodies."""
         return -self._load_unit*self._path.load_at(self._path.tension)
 
     @property
-    def pull_off_h0(self):
+    def pull_off_h0(self) -> float:
         """h0 [m] of the largest tension."""
         return self.z0*self._path.tension.gap
 
     @property
-    def snap_in(self):
+    def snap_in(self) -> float:
         """h0 [m] of the jump into contact; NaN without jumps."""
         return self.z0*self._path.snap_in.gap if self.jumps else np.nan
 
     @property
-    def snap_off(self):
+    def snap_off(self) -> float:
         """h0 [m] of the jump out of contact; NaN without jumps."""
         return self.z0*self._path.snap_off.gap if self.jumps else np.nan
 
     @property
-    def snap_in_load(self):
+    def snap_in_load(self) -> float:
         """Load [N] just before the jump into contact."""
         return self._load_unit*self._path.load_at(self._path.snap_in) if self.jumps else np.nan
 
     @property
-    def snap_off_load(self):
+    def snap_off_load(self) -> float:
         """Load [N] just before the jump out of contact: minus the pull-off force at given h0."""
         return self._load_unit*self._path.load_at(self._path.snap_off) if self.jumps else np.nan
 
     @property
-    def energy_lost(self):
+    def energy_lost(self) -> float:
         """Energy [J] lost in both jumps; 0 without jumps."""
         if not self.jumps:
             return 0.0
@@ -87,12 +92,12 @@ class ContactLaw:
 
     # --- Functions of h0
 
-    def in_contact(self, h0, before=False):
+    def in_contact(self, h0: ArrayLike, before: ArrayLike = False) -> Flags:
         """Return whether the bodies are in contact at h0 [m] if they were or were not before."""
         gap = vector("h0", h0)/self.z0
         return self._path.contact(gap, flags("before", before, gap.size))
 
-    def history(self, h0, before=False):
+    def history(self, h0: ArrayLike, before: ArrayLike = False) -> Flags:
         """Return whether the bodies are in contact at each of a sequence of h0 [m]."""
         gap = vector("h0", h0)/self.z0
         state, found = flags("before", before, 1), np.empty(gap.shape, bool)
@@ -101,19 +106,19 @@ class ContactLaw:
             found[index] = state[0]
         return found
 
-    def load(self, h0, in_contact=False):
+    def load(self, h0: ArrayLike, in_contact: ArrayLike = False) -> Array:
         """Return the load [N]: positive under pressure."""
         return self._load_unit*self._path.load(*self._arguments(h0, in_contact))
 
-    def contact_radius(self, h0, in_contact=False):
+    def contact_radius(self, h0: ArrayLike, in_contact: ArrayLike = False) -> Array:
         """Return the contact radius [m], 0 outside contact."""
         return self._radius_unit*self._path.radius(*self._arguments(h0, in_contact))
 
-    def stiffness(self, h0, in_contact=False):
+    def stiffness(self, h0: ArrayLike, in_contact: ArrayLike = False) -> Array:
         """Return -dF/dh0 [N/m], which goes to minus infinity at a jump."""
         return self._load_unit/self.z0*self._path.stiffness(*self._arguments(h0, in_contact))
 
-    def energy(self, h0, in_contact=False):
+    def energy(self, h0: ArrayLike, in_contact: ArrayLike = False) -> Array:
         """Return the energy [J] of bodies and surfaces, 0 far apart: dE/dh0 = -F."""
         return self._load_unit*self.z0*self._path.energy(*self._arguments(h0, in_contact))
 

@@ -17,9 +17,13 @@ import sys
 import tempfile
 import warnings
 import zipfile
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, Optional
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
+from .arguments import Path
 from .command import as_command
 
 # Columns of afmformats that may be the position of the base, the better one first.
@@ -45,13 +49,13 @@ def _rows(count):
     return f"{count} row" + ("" if count == 1 else "s")
 
 
-def moves_throughout(height):
+def moves_throughout(height: np.ndarray) -> bool:
     """Whether a position moves in more than half of the parts of an approach."""
     ends = height[np.linspace(0, len(height) - 1, _PARTS + 1).astype(int)]
     return np.median(np.abs(np.diff(ends))) > 0.01 * np.ptp(height)
 
 
-def segments_of(height, labels):
+def segments_of(height: ArrayLike, labels: ArrayLike) -> NDArray[np.int_]:
     """Return for each row 0 (approach), 1 (retreat) or -1 (pause), by what the base does.
 
     `labels` divide the rows into segments. If all are equal, the base turns where it is farthest
@@ -68,7 +72,7 @@ def segments_of(height, labels):
         labels = np.arange(len(height)) > np.argmax(np.abs(height - height[0]))
     ends = np.r_[0, np.flatnonzero(labels[1:] != labels[:-1]) + 1, len(labels)]
     kind = np.full(len(height), -1)
-    found = []
+    found: list[int] = []
     direction = 0
     for first, last in zip(ends[:-1], ends[1:]):
         travel = height[last - 1] - height[first]
@@ -113,7 +117,9 @@ def base_of(columns, spring_constant):
     return tip + sign * deflection, f"{heights[0]} and the deflection together"
 
 
-def table_of(columns, name="curve", spring_constant=None, sensitivity=None):
+def table_of(columns: Mapping[str, Any], name: str = "curve",
+             spring_constant: Optional[float] = None,
+             sensitivity: Optional[float] = None) -> tuple[str, str]:
     """Return the text of a curve's table, and a line about it.
 
     columns: arrays by afmformats' names: "force" [N], "segment", and heights [m]. Rows of pauses
@@ -148,7 +154,8 @@ def table_of(columns, name="curve", spring_constant=None, sensitivity=None):
     return "\n".join(lines) + "\n", told
 
 
-def load_curves(path, spring_constant=None, sensitivity=None):
+def load_curves(path: Path, spring_constant: Optional[float] = None,
+                sensitivity: Optional[float] = None) -> list[tuple[dict[str, Any], dict[str, Any]]]:
     """Return the curves of an instrument's file as a list of (columns, metadata).
 
     spring_constant [N/m], sensitivity [m/V]: for files that have none. Raises ConvertError with one
@@ -229,7 +236,9 @@ def _reason(problem):
     return text
 
 
-def convert(path, folder, number=None, spring_constant=None, sensitivity=None, say=print):
+def convert(path: Path, folder: Path, number: Optional[int] = None,
+            spring_constant: Optional[float] = None, sensitivity: Optional[float] = None,
+            say: Callable[[str], object] = print) -> list[pathlib.Path]:
     """Write the tables of a file's curves into `folder`; return their paths.
 
     number: one curve of a map, counted from 0; else all. `say` gets a line about each file. Raises
@@ -278,7 +287,7 @@ def convert(path, folder, number=None, spring_constant=None, sensitivity=None, s
 
 
 @as_command
-def main(arguments=None):
+def main(arguments: Optional[Sequence[str]] = None) -> int:
     """The command snapin-convert; ends with 1 and one line where a file cannot be converted."""
     parser = argparse.ArgumentParser(
         prog="snapin-convert", description=__doc__.split("\n\n")[0].replace("\n", " "))

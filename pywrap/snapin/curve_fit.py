@@ -4,13 +4,14 @@ import os
 import pathlib
 import tempfile
 import warnings
-from collections.abc import Mapping
-from typing import NamedTuple
+from collections.abc import Mapping, Sequence
+from typing import NamedTuple, Optional, Union
 
 import numpy as np
+from numpy.typing import ArrayLike
 
-from .arguments import DeckError, SnapinWarning, vector
-from .deck import deck_of, deck_text
+from .arguments import Array, DeckError, SnapinWarning, vector
+from .deck import Deck, deck_of, deck_text
 from .experiment import run
 from .results import Result
 
@@ -21,25 +22,29 @@ _OWN = ("measurement", "fit")
 class Fit(NamedTuple):
     """The result of a fit, SI. Dictionaries have the parameters of the fit as keys."""
 
-    estimate: dict
-    standard_error: dict
+    estimate: dict[str, float]
+    standard_error: dict[str, float]
     #: The ends of the 95 % interval of each parameter.
-    interval_95: dict
-    correlation: np.ndarray
+    interval_95: dict[str, tuple[float, float]]
+    correlation: Array
     chi_squared: float
     degrees_of_freedom: float
     #: Standard deviation of the signal.
     noise: float
     #: What limits the result; empty where the model describes the data.
-    warnings: list
+    warnings: list[str]
     #: Position [m], signal as measured and by the model, and residual of each sample.
     samples: np.ndarray
     #: The whole result: `result.fitted` has the classical theories too.
     result: Result
 
 
-def fit(z, force, *, spring_constant, deck, parameters, segment=None, sensitivity=None,
-        contact_point=None, branches=None, lower=None, upper=None, prior=None, noise=None):
+def fit(z: ArrayLike, force: ArrayLike, *, spring_constant: float, deck: Deck,
+        parameters: Union[str, Sequence[str]], segment: Optional[ArrayLike] = None,
+        sensitivity: Optional[float] = None, contact_point: Optional[float] = None,
+        branches: Optional[str] = None, lower: Optional[ArrayLike] = None,
+        upper: Optional[ArrayLike] = None, prior: Optional[ArrayLike] = None,
+        noise: Optional[float] = None) -> Fit:
     """Fit numbers of a deck to a measured curve and return a `Fit`.
 
     z: position of the base of the spring [m]; force: force [N], repulsion positive, or the signal

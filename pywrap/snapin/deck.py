@@ -7,17 +7,23 @@ program's message.
 import os
 import re
 from collections.abc import Mapping
+from typing import Any, Optional, Union
 
 import numpy as np
 
-from .arguments import DeckError, SnapinError, reals, shown
+from .arguments import DeckError, Path, SnapinError, reals, shown
+
+#: Groups of a deck by name: each a dictionary of its keys, True for one without keys, or None.
+Groups = Mapping[str, Any]
+#: A deck: its groups, its text, or its path.
+Deck = Union[Groups, Path]
 
 _BAD_INPUT, _NO_ROOM = 1, 3
 # f2py counts bytes in C ints; the program's own limit for decks is far lower.
 _MOST_BYTES = 2**30
 
 
-def deck_of(deck):
+def deck_of(deck: Deck) -> tuple[str, bytes]:
     """Return name and text of a deck: a dictionary of groups, a text (it has an &), or a path."""
     if isinstance(deck, Mapping):
         return "deck", deck_text(deck).encode()
@@ -32,7 +38,7 @@ def deck_of(deck):
         return os.fspath(deck), file.read(_MOST_BYTES)
 
 
-def deck_text(groups):
+def deck_text(groups: Groups) -> str:
     """Return the text of a deck, one key on each line.
 
     `groups` maps names of groups to dictionaries of their keys. True is a group without keys; a
@@ -84,7 +90,7 @@ def _quoted(name, text):
     return "'" + text.replace("'", "''") + "'"
 
 
-def accept_deck(stat, message):
+def accept_deck(stat: int, message: bytes) -> None:
     """Raise the error that the library reported; `stat` is 0 or a kind of src/base/failure.f90."""
     if stat:
         text = message.decode(errors="replace").rstrip()
@@ -95,29 +101,31 @@ def accept_deck(stat, message):
 # --- Groups from a few arguments
 
 
-def force(law, **keys):
+def force(law: str, **keys: Any) -> dict[str, dict[str, Any]]:
     """Return the group of a force law by its name in &force, with its keys."""
     return {"force": {"law": law, **keys}}
 
 
-def lennard_jones(**keys):
+def lennard_jones(**keys: Any) -> dict[str, dict[str, Any]]:
     """Return the group of the Lennard-Jones law; its keys are those of &force."""
     return force("lennard_jones", **keys)
 
 
-def exponential(**keys):
+def exponential(**keys: Any) -> dict[str, dict[str, Any]]:
     """Return the group of the exponential repulsion; its keys are those of &force."""
     return force("exponential", **keys)
 
 
-def scene(law, radius, stiffness, rigid, **groups):
+def scene(law: Groups, radius: float, stiffness: Optional[float], rigid: bool,
+          **groups: Any) -> dict[str, Any]:
     """Return the groups of a deck: the two bodies, those of a law, and others."""
     if not isinstance(law, Mapping):
         raise TypeError(f"law: a dictionary of groups is needed, not {shown(law)}")
     return {"bodies": {"radius": radius, "stiffness": stiffness, "rigid": rigid}, **law, **groups}
 
 
-def problem_deck(law, radius=1.0, stiffness=None, rigid=True):
+def problem_deck(law: Groups, radius: float = 1.0, stiffness: Optional[float] = None,
+                 rigid: bool = True) -> bytes:
     """Return the text of a deck with law and bodies, for a problem without an experiment."""
     nothing = {"h0_start": 1e-50, "h0_end": 0.0}
     return deck_text(scene(law, radius, stiffness, rigid, classical=nothing)).encode()

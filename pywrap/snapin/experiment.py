@@ -14,13 +14,15 @@ import sys
 import sysconfig
 import threading
 import warnings
-from typing import NamedTuple
+from typing import Any, NamedTuple, Optional
 
 import _snapin
 import numpy as np
+from numpy.typing import ArrayLike
 
-from .arguments import DeckError, SnapinError, SnapinWarning, folder_path, vector
-from .deck import deck_of, scene
+from .arguments import (
+    Array, DeckError, Flags, Path, SnapinError, SnapinWarning, folder_path, vector)
+from .deck import Deck, Groups, deck_of, scene
 from .results import Result, result_of
 
 # The exit statuses of a run with results, of one with failures and results, and of a wrong deck;
@@ -33,7 +35,8 @@ _END = b"complete 0\n"
 _EQUAL = 1e-6
 
 
-def run(deck, out=None, *, resume=False, quiet=True):
+def run(deck: Deck, out: Optional[Path] = None, *, resume: bool = False,
+        quiet: bool = True) -> Result:
     """Run a deck and return its `Result`.
 
     `deck` is a dictionary of groups, such as {"bodies": {"radius": 1.5e-2, "rigid": True}, ...},
@@ -192,13 +195,13 @@ class ForceCurve(NamedTuple):
     states were found. `result` has all that the run reports.
     """
 
-    h0: np.ndarray
-    h_centre: np.ndarray
-    displacement: np.ndarray
-    load: np.ndarray
-    contact_radius: np.ndarray
-    residual: np.ndarray
-    jumps: list
+    h0: Array
+    h_centre: Array
+    displacement: Array
+    load: Array
+    contact_radius: Array
+    residual: Array
+    jumps: list[Point]
     max_tension: float
     max_tension_h0: float
     error_estimate: float
@@ -213,14 +216,14 @@ class EquilibriumPath(NamedTuple):
     all points at which h0 turns: the first is the jump in; the last of several is the jump out.
     """
 
-    h0: np.ndarray
-    h_centre: np.ndarray
-    displacement: np.ndarray
-    load: np.ndarray
-    contact_radius: np.ndarray
-    stable: np.ndarray
-    residual: np.ndarray
-    folds: list
+    h0: Array
+    h_centre: Array
+    displacement: Array
+    load: Array
+    contact_radius: Array
+    stable: Flags
+    residual: Array
+    folds: list[Point]
     max_tension: float
     max_tension_h0: float
     error_estimate: float
@@ -228,7 +231,8 @@ class EquilibriumPath(NamedTuple):
     result: Result
 
 
-def force_curve(h0, *, radius, stiffness=None, law, rigid=False, **numerics):
+def force_curve(h0: ArrayLike, *, radius: float, stiffness: Optional[float] = None, law: Groups,
+                rigid: bool = False, **numerics: Any) -> ForceCurve:
     """Return the `ForceCurve` through the separations `h0` [m], in the order of the experiment.
 
     They fall in equal steps, as in &loading; then they may rise in equal steps, as in &unloading,
@@ -248,7 +252,9 @@ def force_curve(h0, *, radius, stiffness=None, law, rigid=False, **numerics):
 
 
 def equilibrium_path(
-        h0_end, *, radius, stiffness=None, law, rigid=False, h0_start=None, **numerics):
+        h0_end: float, *, radius: float, stiffness: Optional[float] = None, law: Groups,
+        rigid: bool = False, h0_start: Optional[float] = None,
+        **numerics: Any) -> EquilibriumPath:
     """Return the `EquilibriumPath` to the contact at `h0_end` [m].
 
     It has also the unstable states, which no experiment at controlled h0 shows. It begins where

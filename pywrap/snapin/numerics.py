@@ -6,12 +6,15 @@ sqrt(R length), pressures in the law's unit, loads in that unit times R length.
 """
 
 from dataclasses import dataclass, field
-from typing import NamedTuple
+from typing import NamedTuple, Optional
 
 import _snapin
 import numpy as np
+from numpy.typing import ArrayLike
 
 from .arguments import (
+    Array,
+    Flags,
     as_long_as,
     ascending,
     count,
@@ -24,7 +27,7 @@ from .arguments import (
     scalar,
     vector,
 )
-from .deck import accept_deck, problem_deck
+from .deck import Groups, accept_deck, problem_deck
 
 _flat = _snapin.flat_numerics
 
@@ -39,7 +42,7 @@ _MOST_NODES = 20000
 _MOST_DEPTH = 1000
 
 
-def bytes_for(nodes):
+def bytes_for(nodes: int) -> int:
     """Return the memory [bytes] of a calculation on so many nodes: at most three matrices, and some
     vectors of an accelerated iteration."""
     return 8 * (3 * nodes**2 + 100 * nodes)
@@ -56,12 +59,12 @@ def _sum_and_distance(total, distance):
     return total, distance
 
 
-def kernel(total, distance):
+def kernel(total: ArrayLike, distance: ArrayLike) -> Array:
     """Return k(r, t) for arrays of r + t and |r - t|, both positive."""
     return _flat.kernel_values(*_sum_and_distance(total, distance))[0]
 
 
-def kernel_log_coefficient(total, distance):
+def kernel_log_coefficient(total: ArrayLike, distance: ArrayLike) -> Array:
     """Return a in k(r, t) = -a ln|r - t| + smooth, for arrays of r + t and |r - t|."""
     return _flat.kernel_values(*_sum_and_distance(total, distance))[1]
 
@@ -69,18 +72,18 @@ def kernel_log_coefficient(total, distance):
 class GaussRule(NamedTuple):
     """Nodes on [0, 1]; weights of f and of f(s) ln(s); barycentric weights of the nodes."""
 
-    x: np.ndarray
-    weight: np.ndarray
-    log_weight: np.ndarray
-    barycentric: np.ndarray
+    x: Array
+    weight: Array
+    log_weight: Array
+    barycentric: Array
 
 
-def gauss_rule(points):
+def gauss_rule(points: int) -> GaussRule:
     """Return the Gauss-Legendre rule with `points` points (src/base/quadrature.f90)."""
     return GaussRule(*_flat.gauss_rule(count("points", points, 1, _LARGEST_ORDER)))
 
 
-def turning_intervals(x, value, slope):
+def turning_intervals(x: ArrayLike, value: ArrayLike, slope: ArrayLike) -> Flags:
     """Return for each interval of a curve whether it may turn there (src/path/path_search.f90).
 
     `x` must ascend; `value` and `slope` are those of the curve at `x`.
@@ -90,7 +93,8 @@ def turning_intervals(x, value, slope):
     return _flat.turning_intervals(x, value, slope) > 0
 
 
-def panel_weights(node, target, left, right, *, centre=0.0):
+def panel_weights(node: ArrayLike, target: ArrayLike, left: float, right: float, *,
+                  centre: float = 0.0) -> Array:
     """Return the integrals of k(r, t) L_j(t) t dt over the panel of offsets [left, right].
 
     L_j are the Lagrange polynomials on the nodes `node` of [0, 1]; r = centre + target for every
@@ -117,9 +121,9 @@ def panel_weights(node, target, left, right, *, centre=0.0):
 class LawValues(NamedTuple):
     """Pressure [Pa], its derivative by the gap [Pa/m], its integral to infinity [J/m^2]."""
 
-    pressure: np.ndarray
-    slope: np.ndarray
-    energy: np.ndarray
+    pressure: Array
+    slope: Array
+    energy: Array
 
 
 class LawNumbers(NamedTuple):
@@ -136,7 +140,7 @@ class LawNumbers(NamedTuple):
     range: float
 
 
-def force_law(law, gap):
+def force_law(law: Groups, gap: ArrayLike) -> LawValues:
     """Return the `LawValues` at gaps [m] of a law: the groups of a deck that describe it."""
     gap = vector("gap", gap, most=np.inf)
     *values, _, stat, message = _snapin.flat_deck.law_values(problem_deck(law), gap)
@@ -147,7 +151,7 @@ def force_law(law, gap):
     return LawValues(*values)
 
 
-def law_numbers(law):
+def law_numbers(law: Groups) -> LawNumbers:
     """Return the `LawNumbers` of a law, as in `force_law`."""
     *_, numbers, stat, message = _snapin.flat_deck.law_values(problem_deck(law), np.empty(0))
     accept_deck(stat, message)
@@ -164,9 +168,9 @@ class KernelMatrix(NamedTuple):
     nodes) for r at the nodes.
     """
 
-    axis: np.ndarray
-    centre: np.ndarray
-    nodes: np.ndarray
+    axis: Array
+    centre: Array
+    nodes: Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -178,10 +182,10 @@ class Mesh:
 
     kind: str
     centre: float
-    ends: np.ndarray
+    ends: Array
     order: int
-    x: np.ndarray = field(init=False)
-    weight: np.ndarray = field(init=False)
+    x: Array = field(init=False)
+    weight: Array = field(init=False)
     spacing: float = field(init=False)
 
     def __post_init__(self):
@@ -212,13 +216,13 @@ class Mesh:
     def _description(self):
         return self.kind, self.centre, self.ends, [self.order], _UNMAPPED
 
-    def matrix(self):
+    def matrix(self) -> KernelMatrix:
         """Return the `KernelMatrix`, computed anew at each call."""
         room_for("mesh", bytes_for(self.x.size))
         rows = _flat.mesh_matrix(*self._description, self.x.size)
         return KernelMatrix(rows[0], rows[1], rows[2:])
 
-    def interpolate(self, values, at):
+    def interpolate(self, values: ArrayLike, at: ArrayLike) -> Array:
         """Return the function with the given nodal values at positions `at` on the mesh."""
         values = as_long_as("values", values, self.x.size)
         at = vector("at", at)
@@ -227,17 +231,17 @@ class Mesh:
         return _flat.mesh_interpolation(*self._description, values, at)
 
 
-def uniform_mesh(nodes, extent):
+def uniform_mesh(nodes: int, extent: float) -> Mesh:
     """Return a mesh of equally spaced nodes on [0, extent], pressure linear between them."""
     return Mesh("uniform", 0.0, np.array([0.0, positive("extent", extent)]), nodes)
 
 
-def panel_mesh(ends, order, *, centre=0.0):
+def panel_mesh(ends: ArrayLike, order: int, *, centre: float = 0.0) -> Mesh:
     """Return a mesh of Gauss-Legendre panels of `order` nodes each.
 
     `ends` are the panels' ends as offsets from `centre`, ascending, none beyond the axis.
     """
-    return Mesh("panels", centre, ends, order)
+    return Mesh("panels", centre, ascending("ends", ends, 2), order)
 
 
 # --- Equilibrium
@@ -250,8 +254,8 @@ class State(NamedTuple):
     of equilibrium.
     """
 
-    gap: np.ndarray
-    pressure: np.ndarray
+    gap: Array
+    pressure: Array
     axis_gap: float
     load: float
     residual: float
@@ -262,21 +266,21 @@ class State(NamedTuple):
 
 
 def equilibrium(
-    law,
-    mesh,
-    h0,
-    coupling,
+    law: Groups,
+    mesh: Mesh,
+    h0: float,
+    coupling: float,
     *,
-    method="anderson",
-    start=None,
-    scale=1.0,
-    tolerance=1e-8,
-    most_iterations=60,
-    depth=5,
-    patience=8,
-    mixing_limit=0.2,
-    displacement_tolerance=None,
-):
+    method: str = "anderson",
+    start: Optional[ArrayLike] = None,
+    scale: float = 1.0,
+    tolerance: float = 1e-8,
+    most_iterations: int = 60,
+    depth: int = 5,
+    patience: int = 8,
+    mixing_limit: float = 0.2,
+    displacement_tolerance: Optional[float] = None,
+) -> State:
     """Return the state at a prescribed h0, iterated from the gaps `start`.
 
     `law` is as in `force_law`, here in its own units. `coupling` is sigma (40) for Lennard-Jones,
@@ -296,8 +300,7 @@ def equilibrium(
         rest = (numbers.rest_gap - numbers.origin) / numbers.length
         start = np.fmax(h0 + (scale * mesh.x) ** 2 / 2, rest)
     start = as_long_as("start", start, mesh.x.size)
-    on_change = displacement_tolerance is not None
-    if on_change and method != "mixing":
+    if displacement_tolerance is not None and method != "mixing":
         raise ValueError("displacement_tolerance: only mixing has this stopping rule")
     gap, pressure, numbers, counts, stat, message = _flat.equilibrium_state(
         deck,
@@ -312,9 +315,12 @@ def equilibrium(
         count("depth", depth, 0, _MOST_DEPTH),
         count("patience", patience, 1),
         positive("mixing_limit", mixing_limit),
-        int(on_change),
-        not_negative("displacement_tolerance", displacement_tolerance) if on_change else 0.0,
+        int(displacement_tolerance is not None),
+        0.0 if displacement_tolerance is None
+        else not_negative("displacement_tolerance", displacement_tolerance),
     )
     accept_deck(stat, message)
-    converged, *spent = map(int, counts)
-    return State(gap, pressure, *map(float, numbers), bool(converged), *spent)
+    axis_gap, load, residual = map(float, numbers)
+    converged, products, factorisations, rejected = map(int, counts)
+    return State(gap, pressure, axis_gap, load, residual, bool(converged), products,
+                 factorisations, rejected)

@@ -4,11 +4,12 @@ import os
 import pathlib
 import re
 import time
+from typing import Any, Optional
 
 import _snapin
 import numpy as np
 
-from .arguments import SnapinError, folder_path
+from .arguments import Path, SnapinError, folder_path
 
 _TEXT_COLUMNS = ("branch", "direction", "theory", "quantity", "parameter", "failure")
 # How the program's tables and its fits begin.
@@ -36,16 +37,22 @@ class Result:
     a deck without &fit.
     """
 
-    def __init__(self, tables, summary, cost, fitted=None):
+    tables: dict[str, np.ndarray]
+    summary: dict[str, Any]
+    cost: dict[str, Any]
+    fitted: dict[str, dict[str, Any]]
+
+    def __init__(self, tables: dict[str, np.ndarray], summary: dict[str, Any],
+                 cost: dict[str, Any], fitted: Optional[dict[str, dict[str, Any]]] = None) -> None:
         self.tables, self.summary, self.cost = tables, summary, cost
         self.fitted = fitted or {}
 
     @property
-    def converged(self):
+    def converged(self) -> bool:
         """Return whether all states were found."""
         return self.summary["converged"]
 
-    def __getattr__(self, name):
+    def __getattr__(self, name: str) -> np.ndarray:
         tables = self.__dict__.get("tables", {})
         if name not in tables:
             raise AttributeError(f"no table {name!r}; this run has {', '.join(tables) or 'none'}")
@@ -58,7 +65,7 @@ class Result:
         return f"<Result: {', '.join([*self.tables, 'summary', 'cost'])}>"
 
 
-def read_results(folder):
+def read_results(folder: Path) -> Result:
     """Return the `Result` in a folder written by the program."""
     folder = folder_path("folder", folder)
     return result_of(ResultFiles(folder).texts, folder)
@@ -72,7 +79,9 @@ class ResultFiles:
     its number.
     """
 
-    def __init__(self, folder):
+    texts: dict[str, str]
+
+    def __init__(self, folder: Path) -> None:
         self.folder = pathlib.Path(folder)
         patience = time.monotonic() + _PATIENCE
         while not self._have_been_read():
@@ -96,19 +105,23 @@ class ResultFiles:
         self.texts = {name: text.decode() for name, text in found.items()}
         return whole
 
-    def text(self, name):
+    def text(self, name: str) -> str:
         """Return the text of a file."""
         if name not in self.texts:
             raise ResultsError(_absence(self.folder, name))
         return self.texts[name]
 
-    def table(self, name):
+    def table(self, name: str) -> dict[str, np.ndarray]:
         """Return the columns of a table as a dict of arrays, text for `_TEXT_COLUMNS`."""
         return _columns(self.text(name), self.folder / name)
 
-    def summary(self):
+    def summary(self) -> dict[str, Any]:
         """Return the group &summary of summary.nml as a dict."""
         return _summary_groups(self.text("summary.nml"), self.folder / "summary.nml")["summary"]
+
+    def fit(self) -> dict[str, Any]:
+        """Return the group &fit of fit.nml: lists of texts and arrays by key."""
+        return _fitted(self.text("fit.nml"))["fit"]
 
 
 def _tables_in(folder):
@@ -119,7 +132,7 @@ def _tables_in(folder):
             if text.startswith(_HEAD if name.endswith(".csv") else _FIT_HEAD)}
 
 
-def result_of(files, place):
+def result_of(files: dict[str, str], place: Path) -> Result:
     """Return the `Result` in texts of files by name; `place` names them in messages."""
     groups = _summary_groups(files["summary.nml"], f"{place}/summary.nml")
     tables = {
@@ -186,7 +199,7 @@ def _value(word):
     return int(word) if word.lstrip("+-").isdigit() else float(word)
 
 
-def read_table(folder, name):
+def read_table(folder: Path, name: str) -> dict[str, np.ndarray]:
     """Return the columns of one table of a folder as a dict of arrays."""
     path = pathlib.Path(folder) / name
     if not path.is_file():

@@ -1,6 +1,7 @@
 !> The command line: options, decks, help.
 module command_line
   use failure, only: failure_t, fail, bad_input
+  use files, only: with_slashes
   use text, only: guess, printable
   implicit none
   private
@@ -210,6 +211,7 @@ contains
     call get_command_argument(i, length=length)
     allocate (character(len=length) :: argument)
     call get_command_argument(i, argument)
+    argument = with_slashes(argument)
   end function argument_at
 
   !> Prints the one-line usage.

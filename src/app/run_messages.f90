@@ -22,12 +22,10 @@ module run_messages
     procedure :: say
   end type destination_t
 
-  !> Python and the folder of the scripts: in a checkout, with the program in a build folder, and in
-  !> an installation.
-  character(len=*), parameter :: pythons(2) = [character(len=16) :: '.venv/bin/python', &
-    'bin/python3']
-  character(len=*), parameter :: scripts(2) = [character(len=19) :: 'pywrap/plots/', &
-    'share/snapin/plots/']
+  !> The command that draws, beside an installed program; Python and the folder of the scripts in a
+  !> checkout, with the program in a build folder.
+  character(len=*), parameter :: plotter = 'snapin-plot', python_there = '.venv/bin/python', &
+    scripts = 'pywrap/plots/'
 
 contains
 
@@ -103,26 +101,26 @@ contains
     if (.not. self%quiet) call write_stderr(self%folder//': '//text//new_line('a'))
   end subroutine say
 
-  !> The command that draws the sweep in a folder of results; empty if there is no such script.
+  !> The command that draws the sweep in a folder of results; empty if there is none.
   function drawing_of(folder, script) result(command)
     character(len=*), intent(in) :: folder, script
-    character(len=:), allocatable :: command, program, top, python
-    integer :: i
+    character(len=:), allocatable :: command, program, beside, top, python
 
     command = ''
     program = trim(own_path())
-    top = program(:index(program, '/', back=.true.) - 1)
-    top = top(:index(top, '/', back=.true.))
-    do i = 1, size(scripts)
-      if (.not. file_exists(top // trim(scripts(i)) // script)) cycle
-      python = top // trim(pythons(i))
-      if (.not. file_exists(python)) python = 'python3'
-      if (top == whole_path('')) top = ''
-      if (top == '' .and. python /= 'python3') python = trim(pythons(i))
-      command = shell_word(python) // ' ' // &
-        shell_word(top // trim(scripts(i)) // script) // ' ' // shell_word(folder)
+    beside = program(:index(program, '/', back=.true.))
+    if (beside /= '' .and. file_exists(beside // plotter)) then
+      command = shell_word(beside // plotter) // ' ' // shell_word(folder)
       return
-    end do
+    end if
+    top = beside(:index(beside(:len(beside) - 1), '/', back=.true.))
+    if (.not. file_exists(top // scripts // script)) return
+    python = top // python_there
+    if (.not. file_exists(python)) python = 'python3'
+    if (top == whole_path('')) top = ''
+    if (top == '' .and. python /= 'python3') python = python_there
+    command = shell_word(python) // ' ' // shell_word(top // scripts // script) // ' ' // &
+      shell_word(folder)
   end function drawing_of
 
   !> A text as one word of a shell command: in quotes, if a character may mean something.

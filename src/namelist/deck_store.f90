@@ -2,7 +2,7 @@
 module deck_store
   use kinds, only: wp, long
   use failure, only: failure_t
-  use files, only: whole_path
+  use files, only: whole_path, is_absolute
   use text_file, only: plain
   use deck_source, only: source_t
   use deck_keys, only: key_spec, group_row, is_called
@@ -215,7 +215,7 @@ contains
     character(len=:), allocatable :: path
 
     call self%get(group, key, path)
-    if (index(path, '/') /= 1) path = self%source%folder // path
+    if (.not. is_absolute(path)) path = self%source%folder // path
   end function path_of
 
   !> Notes the checksum of the file that a key names. `resolved` writes it, so that a deck with a

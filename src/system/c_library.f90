@@ -1,4 +1,5 @@
-!> The system calls for files, terminal and process, by way of `posix.c`, and their error messages.
+!> The system calls for files, terminal and process, by way of `posix.c` and `beyond_posix.c`, or of
+!> `windows.c`, and their error messages.
 !> A negative status is a failure, for `check_status`. Paths and names end with `nul`.
 module c_library
   use, intrinsic :: iso_c_binding, only: c_char, c_double, c_int, c_long, nul => c_null_char
@@ -6,7 +7,8 @@ module c_library
   implicit none
   private
   public :: c_open, c_read, c_write, c_sync, c_sync_in, c_sync_above, c_close, c_size, c_cut, &
-    c_make_folder, c_current_folder, c_own_path, c_lock, c_kind, c_same_file, c_rename, c_remove, &
+    c_make_folder, c_current_folder, c_own_path, c_is_absolute, c_use_slashes, c_lock, c_kind, &
+    c_same_file, c_rename, c_remove, &
     c_remove_folder, c_beginning, c_free_disk, &
     c_is_terminal, c_prepare, c_end_with_parent, c_pause, c_openblas_threads, &
     c_openblas_end_threads, c_openblas_config, c_build_id, explain, check_status, nul, as_input, &
@@ -101,6 +103,19 @@ module c_library
       character(kind=c_char), intent(out) :: path(*)
       integer(c_int), value :: size
     end subroutine c_own_path
+
+    !> 1 if a path does not depend on the current folder.
+    pure integer(c_int) function c_is_absolute(path) bind(c, name='snapin_is_absolute')
+      import :: c_char, c_int
+      character(kind=c_char), intent(in) :: path(*)
+    end function c_is_absolute
+
+    !> Gives a path slashes for whatever separates folders on this system.
+    subroutine c_use_slashes(path, size) bind(c, name='snapin_use_slashes')
+      import :: c_char, c_int
+      character(kind=c_char), intent(inout) :: path(*)
+      integer(c_int), value :: size
+    end subroutine c_use_slashes
 
     !> Locks a folder without waiting; fails as `locked_elsewhere` if another process has locked it.
     integer(c_int) function c_lock(folder) bind(c, name='snapin_lock')

@@ -3,6 +3,9 @@
    large. Variables of gfortran's library would change the format of numbers, or end runs. A stack
    that is too small ends a run by a signal: it is enlarged, or the program says so. Libraries that
    the program does not carry have read the variables already. */
+#ifndef _POSIX_C_SOURCE
+#define _POSIX_C_SOURCE 200809L
+#endif
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

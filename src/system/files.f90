@@ -5,11 +5,13 @@ module files
   use kinds, only: wp, long
   use failure, only: failure_t, fail, file_trouble
   use c_library, only: c_make_folder, c_current_folder, c_own_path, c_same_file, c_free_disk, &
-    c_is_terminal, c_write, c_open, c_read, c_sync, c_sync_above, c_close, as_folder, &
+    c_is_absolute, c_use_slashes, c_is_terminal, c_write, c_open, c_read, c_sync, c_sync_above, &
+    c_close, as_folder, &
     check_status, explain, nul
   implicit none
   private
   public :: make_folder, sync_names, file_exists, same_file, free_disk, whole_path, own_path, &
+    is_absolute, with_slashes, &
     read_file, read_standard_input, is_terminal, write_stdout, write_stderr
 
   !> Numbers of the standard streams.
@@ -63,10 +65,26 @@ contains
     character(len=4096) :: here
 
     whole = path
-    if (index(path, '/') == 1) return
+    if (is_absolute(path)) return
     call c_current_folder(here, len(here, kind=c_int))
     if (here /= '') whole = trim(here) // '/' // path
   end function whole_path
+
+  !> Whether a path does not depend on the current folder.
+  pure logical function is_absolute(path)
+    character(len=*), intent(in) :: path
+
+    is_absolute = c_is_absolute(path // nul) == 1
+  end function is_absolute
+
+  !> A path of the command line, with slashes on every system.
+  function with_slashes(path) result(same)
+    character(len=*), intent(in) :: path
+    character(len=len(path)) :: same
+
+    same = path
+    call c_use_slashes(same, len(same, kind=c_int))
+  end function with_slashes
 
   !> Whether both paths lead to the same file, by whatever names and links.
   logical function same_file(path, other)

@@ -1,6 +1,8 @@
 /* Progress of a run on standard error, written by a thread of its own, so that the line is updated
    during long steps. `progress` documents each function. */
-#define _GNU_SOURCE
+#ifndef _POSIX_C_SOURCE
+#define _POSIX_C_SOURCE 200809L
+#endif
 #include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -20,15 +22,17 @@ struct heartbeat {
   pthread_cond_t ended;
   pthread_t thread;
   int stop, live, shown, lines;
+  /* The clock of waits and of times. */
+  clockid_t clock;
   char name[longest_label], label[longest_label];
   /* Numbers of steps: done, done by an earlier run, failed, and all steps (0: unknown). */
   long done, given, failed, total;
   double began, origin, next, interval;
 };
 
-static double now(void) {
+static double now(const struct heartbeat *self) {
   struct timespec t;
-  clock_gettime(CLOCK_MONOTONIC, &t);
+  clock_gettime(self->clock, &t);
   return t.tv_sec + 1e-9 * t.tv_nsec;
 }
 
@@ -96,7 +100,7 @@ static void *beat(void *of) {
   struct heartbeat *self = of;
   pthread_mutex_lock(&self->lock);
   while (!self->stop) {
-    double time = now();
+    double time = now(self);
     if (time >= self->next)
       show(self, time);
     struct timespec until = {.tv_sec = (time_t)self->next};
@@ -109,7 +113,7 @@ static void *beat(void *of) {
 
 void *snapin_begin_progress(const char *name, long total, int live) {
   struct heartbeat *self = calloc(1, sizeof *self);
-  pthread_condattr_t clock;
+  pthread_condattr_t waits;
   pthread_attr_t small;
   if (!self)
     return NULL;
@@ -118,12 +122,15 @@ void *snapin_begin_progress(const char *name, long total, int live) {
   self->total = total;
   self->live = live;
   self->interval = live ? live_interval : first_line;
-  self->began = self->origin = now();
-  self->next = self->began + self->interval;
   pthread_mutex_init(&self->lock, NULL);
-  pthread_condattr_init(&clock);
-  pthread_condattr_setclock(&clock, CLOCK_MONOTONIC);
-  pthread_cond_init(&self->ended, &clock);
+  pthread_condattr_init(&waits);
+  /* Some systems can wait by the time of day alone, which may be set meanwhile. */
+  self->clock = CLOCK_MONOTONIC;
+  if (pthread_condattr_setclock(&waits, CLOCK_MONOTONIC) != 0)
+    self->clock = CLOCK_REALTIME;
+  pthread_cond_init(&self->ended, &waits);
+  self->began = self->origin = now(self);
+  self->next = self->began + self->interval;
   /* A small stack, to leave address space to the calculation. */
   pthread_attr_init(&small);
   pthread_attr_setstacksize(&small, 1 << 16);
@@ -137,7 +144,7 @@ void snapin_progress(void *of, const char *label, int counted, int given, int fa
   struct heartbeat *self = of;
   pthread_mutex_lock(&self->lock);
   /* The label of a step of less than a second is too short to be read. */
-  if (given < 0 && self->done - self->given > now() - self->origin) {
+  if (given < 0 && self->done - self->given > now(self) - self->origin) {
     pthread_mutex_unlock(&self->lock);
     return;
   }
@@ -147,7 +154,7 @@ void snapin_progress(void *of, const char *label, int counted, int given, int fa
     self->given = self->done;
   /* The time before the first counted step does not count in the time of a step. */
   if (given > 0 || (self->done == 0 && given == 0))
-    self->origin = now();
+    self->origin = now(self);
   snprintf(self->label, sizeof self->label, "%s", label);
   pthread_mutex_unlock(&self->lock);
 }
@@ -163,7 +170,7 @@ void snapin_end_progress(void *of) {
   if (self->shown > 0)
     put(line, snprintf(line, sizeof line, "\r%*s\r", self->shown, ""));
   if (self->lines > 0) {
-    snapin_duration(now() - self->began, duration, sizeof duration);
+    snapin_duration(now(self) - self->began, duration, sizeof duration);
     put(line, snprintf(line, sizeof line, "%s: ended after %s\n", self->name, duration));
   }
   free(self);

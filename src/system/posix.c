@@ -1,39 +1,25 @@
 /* System calls for files, folders and the process; in C, to take their constants from the system's
-   headers. A call that fails returns minus its errno. `c_library` documents each function. */
-#define _GNU_SOURCE
-#include <dlfcn.h>
+   headers. A call that fails returns minus its errno. `c_library` documents each function.
+
+   Here are those of POSIX.1-2008, and nothing else; `beyond_posix.c` has what further systems add,
+   and `windows.c` has all of them for Windows. */
+#ifndef _POSIX_C_SOURCE
+#define _POSIX_C_SOURCE 200809L
+#endif
 #include <errno.h>
 #include <fcntl.h>
 #include <limits.h>
-#include <poll.h>
 #include <signal.h>
 #include <stdio.h>
 #include <string.h>
-#include <sys/file.h>
-#ifdef __linux__
-#include <sys/prctl.h>
-#endif
-#include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/statvfs.h>
 #include <time.h>
 #include <unistd.h>
 
-/* Larger than every errno; also in `c_library`. */
-enum { not_regular = 100000 };
-
-enum { too_large = 1, disk_full = 2, in_the_way = 3, not_there = 4, locked = 5 };
-
-enum { as_input = 1, as_output = 2, as_kept_output = 3, as_folder = 4 };
+#include "system_calls.h"
 
 static int status_of(int result) { return result < 0 ? -errno : result; }
-
-/* Copies a C string into a Fortran string, with blanks behind it. */
-static void hand_over(const char *from, char *text, int size) {
-  size_t length = strnlen(from, size);
-  memcpy(text, from, length);
-  memset(text + length, ' ', size - length);
-}
 
 /* A link could redirect the output, and opening a pipe could wait. A file is emptied only after its
    kind is known. */
@@ -143,14 +129,13 @@ void snapin_current_folder(char *text, int size) {
   hand_over(getcwd(path, sizeof path) != NULL ? path : "", text, size);
 }
 
-void snapin_own_path(char *text, int size) {
-  char path[PATH_MAX];
-  ssize_t length = readlink("/proc/self/exe", path, sizeof path - 1);
-  path[length > 0 ? length : 0] = 0;
-  hand_over(path, text, size);
-}
+int snapin_is_absolute(const char *path) { return path[0] == '/'; }
 
-int snapin_lock(int folder) { return status_of(flock(folder, LOCK_EX | LOCK_NB)); }
+/* Any character but a slash may be part of a name. */
+void snapin_use_slashes(char *path, int size) {
+  (void)path;
+  (void)size;
+}
 
 int snapin_kind(int folder, const char *name) {
   struct stat file;
@@ -210,31 +195,6 @@ double snapin_free_disk(const char *path) {
 
 int snapin_is_terminal(int fd) { return isatty(fd) == 1; }
 
-/* The sort of a failure, or 0 for others, and the system's message. */
-int snapin_explain(int status, char *reason, int size) {
-  hand_over(status == -not_regular ? "not a file but a link, a pipe or a device"
-                                   : strerror(-status),
-            reason, size);
-  switch (-status) {
-  case EFBIG:
-    return too_large;
-  case ENOSPC:
-  case EDQUOT:
-    return disk_full;
-  case EEXIST:
-  case ENOTDIR:
-  case EISDIR:
-  case not_regular:
-    return in_the_way;
-  case ENOENT:
-    return not_there;
-  case EWOULDBLOCK:
-    return locked;
-  default:
-    return 0;
-  }
-}
-
 /* Writing to a pipe without a reader, or beyond the largest file size, fails instead of ending the
    process. Closed standard streams are opened on /dev/null, since another file would get their
    number, and messages; only for reading, so that writing fails as before. */
@@ -249,17 +209,6 @@ void snapin_prepare(void) {
     close(fd);
 }
 
-/* When the parent process has ended, nobody reads standard output. If it ended before this call,
-   the pipe has no reader. */
-void snapin_end_with_parent(void) {
-  struct pollfd out = {.fd = STDOUT_FILENO};
-#ifdef PR_SET_PDEATHSIG
-  prctl(PR_SET_PDEATHSIG, SIGTERM);
-#endif
-  if (poll(&out, 1, 0) == 1 && (out.revents & POLLERR))
-    raise(SIGTERM);
-}
-
 /* Processor time of this thread: unlike elapsed time it does not grow by other work. */
 double snapin_thread_seconds(void) {
   struct timespec time = {0};
@@ -271,28 +220,4 @@ void snapin_pause(int microseconds) {
   struct timespec time = {.tv_sec = microseconds / 1000000};
   time.tv_nsec = microseconds % 1000000 * 1000L;
   nanosleep(&time, NULL);
-}
-
-/* OpenBLAS is looked up at run time, since the linear algebra may be another library. 1 if it is
-   there; count > 0: its number of threads. Setting a number restarts threads that were ended, even
-   if it is 1. */
-int snapin_openblas_threads(int count) {
-  void (*set)(int) = (void (*)(int))dlsym(RTLD_DEFAULT, "openblas_set_num_threads");
-  int (*get)(void) = (int (*)(void))dlsym(RTLD_DEFAULT, "openblas_get_num_threads");
-  if (set != NULL && count > 0 && (get == NULL || get() != count))
-    set(count);
-  return set != NULL;
-}
-
-/* With a limited address space the threads stay, since they might not get their memory again. */
-void snapin_openblas_end_threads(void) {
-  int (*end)(void) = (int (*)(void))dlsym(RTLD_DEFAULT, "blas_thread_shutdown_");
-  struct rlimit limit;
-  if (end != NULL && getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur == RLIM_INFINITY)
-    end();
-}
-
-void snapin_openblas_config(char *text, int size) {
-  const char *(*get)(void) = (const char *(*)(void))dlsym(RTLD_DEFAULT, "openblas_get_config");
-  hand_over(get != NULL ? get() : "", text, size);
 }

@@ -48,7 +48,7 @@ def test_the_fit_is_drawn(example, called):
 @pytest.mark.parametrize(("head", "unit"), [("Deflection (nm)", "nm"), ("Signal (mV)", "mV"),
                                             ("signal", "V or m")])
 def test_the_picture_has_the_unit_of_the_signal_and_all_of_the_tension(
-        tmp_path, monkeypatch, head, unit):
+        tmp_path, head, unit):
     """A deflection in metres was labelled as volts. Where the residuals of a wrong model are as
     large as the tension, the axis ended before it."""
     pytest.importorskip("matplotlib")
@@ -66,8 +66,7 @@ def test_the_picture_has_the_unit_of_the_signal_and_all_of_the_tension(
                         "sensitivity": {"nm": 1.0, "mV": 1e-6, "V or m": 1e-9}[unit]},
         "fit": {"parameters": ["bodies.stiffness", "measurement.contact_point"],
                 "upper": [2e6, 1.0], "lower": [1e3, -1.0]}}, tmp_path / "out")
-    monkeypatch.syspath_prepend(ROOT / "pywrap/plots")
-    fit = importlib.import_module("fit")
+    fit = importlib.import_module("snapin.plots.fit")
     panel, below = fit.draw_fit(tmp_path / "out").axes
     assert panel.get_ylabel() == f"signal less baseline [{unit}]"
     left, right = panel.get_xlim()

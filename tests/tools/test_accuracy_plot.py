@@ -7,7 +7,7 @@ from conftest import ROOT
 from support.pictures import size_of
 
 pytest.importorskip("matplotlib")
-from accuracy import draw_accuracy  # noqa: E402 (needs matplotlib)
+from snapin.plots.accuracy import draw_accuracy  # noqa: E402 (needs matplotlib)
 
 SCRIPT = ROOT / "pywrap" / "plots" / "accuracy.py"
 BODIES = "&bodies radius = 1.5e-2, stiffness = 1.0e10 /\n"

@@ -8,7 +8,9 @@ import sys
 import venv
 from pathlib import Path
 
+import numpy as np
 import pytest
+import snapin
 from installed_pages import names_of
 
 TOP = Path(__file__).resolve().parents[2]
@@ -44,8 +46,13 @@ def run(*command, cwd=None, **variables):
 
 @pytest.fixture(scope="module")
 def checkout(tmp_path_factory):
-    """The tracked files, as someone has them who clones the project."""
+    """The tracked files, as someone has them who clones the project; of a source distribution, all
+    files but those of builds."""
     copy = tmp_path_factory.mktemp("clone") / "snapin"
+    if not (TOP / ".git").exists():
+        shutil.copytree(TOP, copy, ignore=shutil.ignore_patterns(
+            ".venv", "build*", "results", "reproduction", "__pycache__"))
+        return copy
     tracked = run("git", "ls-files", "-z", cwd=TOP).split("\0")
     for name in filter(None, tracked):
         if (TOP / name).is_file():
@@ -80,12 +87,38 @@ def test_pip_installs_package_and_command(checkout, tmp_path):
     assert f"Version: {version}\n" in about
 
 
-@pytest.mark.long
-def test_meson_installs_pages_and_completions_beside_the_program(checkout, tmp_path):
-    build, root = tmp_path / "build", tmp_path / "root"
+@pytest.fixture(scope="module")
+def root(checkout, tmp_path_factory):
+    """A root in whose /usr Meson has installed the project."""
+    folder = tmp_path_factory.mktemp("meson")
+    build, root = folder / "build", folder / "root"
     run(*MESON, "setup", build, checkout, "--prefix=/usr", "-Dpython=disabled")
     run(*MESON, "compile", "-C", build)
     run(*MESON, "install", "-C", build, DESTDIR=str(root))
+    return root
+
+
+@pytest.mark.long
+def test_a_program_of_others_solves_a_state_with_the_installed_library(root, tmp_path):
+    if not shutil.which("pkg-config"):
+        pytest.skip("needs pkg-config")
+    (found,) = root.glob("usr/lib/**/snapin.pc")
+    flags = run("pkg-config", "--cflags", "--libs", "snapin", PKG_CONFIG_PATH=str(found.parent),
+                PKG_CONFIG_SYSROOT_DIR=str(root)).split()
+    run("gfortran", TOP / "examples/one_state.f90", *flags, "-o", tmp_path / "one_state")
+    said = run(tmp_path / "one_state")
+    assert said.startswith("converged: T, ")
+    gap, load = (float(number) for number in re.findall(r"(-?\d\.\d+E[-+]\d+)", said))
+    law = snapin.lennard_jones(hamaker=1e-20, z0=0.5e-9)
+    path = snapin.equilibrium_path(-1e-9, radius=1.5e-2, stiffness=1e10, law=law)
+    before = slice(0, int(np.argmax(path.h0 < 2e-9)) + 1)
+    # A uniform mesh of 800 nodes, and straight lines between the rows of a path.
+    for value, rows in ((load, path.load), (gap, path.h_centre)):
+        assert value == pytest.approx(np.interp(-2e-9, -path.h0[before], rows[before]), rel=1e-2)
+
+
+@pytest.mark.long
+def test_meson_installs_pages_and_completions_beside_the_program(root):
     program = root / "usr/bin/snapin"
     for name in PAGES:
         assert (root / "usr" / name).stat().st_size > 0

@@ -2,7 +2,6 @@
 
 import contextlib
 import re
-import runpy
 import shutil
 import subprocess
 import sys
@@ -15,11 +14,12 @@ from support.pictures import size_of
 from support.processes import HANG
 
 pytest.importorskip("matplotlib")
-from device_curve import draw_device_curve  # noqa: E402 (needs matplotlib)
-from drawing import scale, smooth  # noqa: E402 (needs matplotlib)
-from force_curve import Curve, draw_force_curve  # noqa: E402 (needs matplotlib)
-from force_law import OTHERS  # noqa: E402 (needs matplotlib)
-from profiles import draw_profiles  # noqa: E402 (needs matplotlib)
+from snapin.plots.device_curve import draw_device_curve  # noqa: E402 (needs matplotlib)
+from snapin.plots.drawing import scale, smooth  # noqa: E402 (needs matplotlib)
+from snapin.plots.force_curve import Curve, draw_force_curve  # noqa: E402 (needs matplotlib)
+from snapin.plots.force_law import OTHERS  # noqa: E402 (needs matplotlib)
+from snapin.plots.map import draw_map  # noqa: E402 (needs matplotlib)
+from snapin.plots.profiles import draw_profiles  # noqa: E402 (needs matplotlib)
 
 SCRIPTS = ROOT / "pywrap" / "plots"
 BODIES = "&bodies radius = 1.5e-2, stiffness = 1.0e10 /\n"
@@ -103,10 +103,8 @@ def test_sweeps_are_drawn_as_maps_and_curves(plot, results, tmp_path, args):
     assert size_of(tmp_path / "map.png") == (960, 690)
 
 
-def test_nothing_is_drawn_where_a_column_has_no_value(monkeypatch, tmp_path):
+def test_nothing_is_drawn_where_a_column_has_no_value(tmp_path):
     """Colours end at cases that have no value, and do not span them."""
-    monkeypatch.syspath_prepend(SCRIPTS)
-    draw_map = runpy.run_path(str(SCRIPTS / "map.py"))["draw_map"]
     rows = [f"{i},{j},1,{'nan' if 3 <= i <= 6 else i + j},\n" for i in range(10) for j in range(10)]
     (tmp_path / "sweep.csv").write_text(
         "# title: \na.x,a.y,converged,max_tension,failure\n" + "".join(rows))
@@ -286,10 +284,8 @@ def test_a_deck_that_cannot_be_read_has_no_picture_of_forces(plot, tmp_path, dec
     assert re.fullmatch(r"force_law.py: d.nml: .*\n", done.stderr), done.stderr
 
 
-def test_largest_tensions_at_an_end_are_no_pull_offs_in_pictures(monkeypatch, tmp_path):
+def test_largest_tensions_at_an_end_are_no_pull_offs_in_pictures(tmp_path):
     """They were part of the colours, of the curves and of quotients with JKR theory."""
-    monkeypatch.syspath_prepend(SCRIPTS)
-    draw_map = runpy.run_path(str(SCRIPTS / "map.py"))["draw_map"]
     head = "# title:\na.x,a.y,converged,jkr_pull_off,max_tension,max_tension_at_end,failure\n"
     (tmp_path / "summary.nml").write_text("&summary\n  converged = .true.\n/\n&cost\n/\n")
 

@@ -20,7 +20,7 @@ import numpy as np
 
 TOP = pathlib.Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(TOP / "tools" / "bench"), str(TOP / "tools"), str(TOP / "build" / "pywrap"),
-                str(TOP / "pywrap"), str(TOP / "pywrap" / "plots")]
+                str(TOP / "pywrap")]
 
 import methods_page  # noqa: E402 (found through the lines above)
 import pages  # noqa: E402

@@ -2,10 +2,9 @@
 
 import math
 
-import program  # noqa: F401 (makes drawing importable)
-from drawing import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILION
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullLocator
+from snapin.plots.drawing import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILION
 
 DARK = "#555555"
 MARKERS = ("o", "s", "^", "D", "v", "P", "X", "h")

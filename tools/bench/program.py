@@ -14,8 +14,6 @@ from gauge import Gauge
 from snapin import read_results
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-# The folder of the plots' colours.
-sys.path.insert(0, str(ROOT / "pywrap" / "plots"))
 
 # The three numbers whose errors are drawn.
 QUANTITIES = ("pull_off", "jump_in", "load")

@@ -4,7 +4,7 @@ import curves
 import draws
 import numpy as np
 import style
-from drawing import smooth
+from snapin.plots.drawing import smooth
 
 DECKS = ("fig08", "fig07_exact_sigma", "fig10c_paper")
 _Z0 = 0.5e-9

@@ -6,7 +6,6 @@ import json
 import os
 import pathlib
 import subprocess
-import sys
 import threading
 import time
 
@@ -17,9 +16,6 @@ from pages import ROOT
 from snapin.results import Result, read_results
 
 INPUTS = ROOT / "inputs"
-# The folder of the plots' curves and colours.
-sys.path.insert(0, str(ROOT / "pywrap" / "plots"))
-
 # After this number of seconds without a message, the running decks are named.
 _HEARTBEAT = 10.0
 

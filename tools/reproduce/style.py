@@ -8,10 +8,11 @@ import io
 
 import matplotlib
 import numpy as np
-from drawing import BLACK, BLUE, GREEN, ORANGE, PURPLE, SKY, VERMILION, arrow  # noqa: F401
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import BoundaryNorm, ListedColormap
 from matplotlib.figure import Figure
+from snapin.plots.drawing import (  # noqa: F401
+    BLACK, BLUE, GREEN, ORANGE, PURPLE, SKY, VERMILION, arrow)
 from matplotlib.lines import Line2D
 from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 from PIL import Image

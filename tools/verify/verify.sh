@@ -98,6 +98,14 @@ judge() { "$python" "$here/judge.py" --seed "${SEED:-1}"; }
 
 # Random relatives of decks whose numbers were once wrong, each judged by another solution.
 relatives() { "$python" "$here/relatives.py" --seed "${SEED:-1}"; }
+# The quick tests on a build in plain C11 and POSIX.1-2008, without locks of folders and without the
+# program's own path; the tests of these two cannot pass there.
+posix() {
+  builds build-posix -Dsystem=posix -Dpython=disabled || return
+  SNAPIN=$top/build-posix/snapin tests -p no:cacheprovider -m 'not slow and not long' \
+    tests/app/test_command_line.py tests/namelist tests/report/test_results.py tests/resume \
+    -k 'not one_run_at_a_time and not to_draw_it'
+}
 
 # Every system call on results fails, kills the run, or is the last before a power cut.
 faults() { OMP_NUM_THREADS=1 PYTHONPATH=tests "$python" -m support.faults; }
@@ -127,7 +135,7 @@ fuzz() {
 pages() { "$python" "$top/tools/pages.py"; }
 
 failed=
-stages='long traps memory coverage levels extremes faults judge relatives mutations mpi fuzz pages'
+stages='long traps memory coverage levels posix extremes faults judge relatives mutations mpi fuzz pages'
 for stage in ${*:-$stages}; do
   case " $stages " in
     *" $stage "*) ;;

@@ -1,14 +1,18 @@
 """Procedures that all figures share."""
 
 import argparse
+import dataclasses
 import pathlib
 import re
 import sys
 import textwrap
+from collections.abc import Callable
 
 import numpy as np
-from snapin.command import as_command
-from snapin.results import ResultsError
+from matplotlib.figure import Figure
+
+from ..command import as_command
+from ..results import ResultFiles, ResultsError
 
 # Okabe and Ito's colours, which colour-blind readers can distinguish.
 BLACK, ORANGE, SKY, GREEN = "#000000", "#E69F00", "#56B4E9", "#009E73"
@@ -120,23 +124,44 @@ def states_of(rows):
             for state in np.unique(rows["state"])]
 
 
-@as_command
-def run(draw, default_name, description, add_options=lambda parser: None):
-    """Run a plotting script: arguments, `draw(folder, **options)`, the picture, the exit status."""
-    parser = argparse.ArgumentParser(description=description)
-    parser.add_argument("folder", help="folder of results, such as results/first")
-    parser.add_argument("-o", "--output", help=f"picture to write; default: FOLDER/{default_name}")
+@dataclasses.dataclass(frozen=True)
+class Picture:
+    """A kind of picture of results: its name, `draw(folder, **options)`, the name of its file, what
+    it shows, whether `ResultFiles` allow it, and a procedure that adds its options to a parser."""
+
+    name: str
+    draw: Callable[..., Figure]
+    file: str
+    shows: str
+    allowed: Callable[[ResultFiles], bool]
+    add_options: Callable[[argparse.ArgumentParser], object] = lambda parser: None
+
+    @as_command
+    def main(self, arguments=None, program=None):
+        """Carry out a command: arguments, the picture, the exit status."""
+        parser = argparse.ArgumentParser(prog=program, description=self.shows)
+        parser.add_argument("folder", help="folder of results, such as results/first")
+        parser.add_argument("-o", "--output",
+                            help=f"picture to write; default: FOLDER/{self.file}")
+        add_dots(parser)
+        self.add_options(parser)
+        options = vars(parser.parse_args(arguments))
+        folder, dpi, output = (options.pop(name) for name in ("folder", "dpi", "output"))
+        try:
+            print(self.write(folder, output, dpi, **options))
+        except (ResultsError, OSError) as problem:
+            sys.exit(f"{parser.prog}: {problem}")
+
+    def write(self, folder, output, dpi, **options):
+        """Draw the picture of a folder into a file, by default in the folder; return its path."""
+        output = pathlib.Path(output or pathlib.Path(folder) / self.file)
+        save(self.draw(folder, **options), output, dpi)
+        return output
+
+
+def add_dots(parser):
+    """Add the option for the number of dots of a picture."""
     parser.add_argument("--dpi", type=float, default=150, help="dots per inch; default: 150")
-    add_options(parser)
-    options = vars(parser.parse_args())
-    folder, dpi = options.pop("folder"), options.pop("dpi")
-    output = pathlib.Path(options.pop("output") or pathlib.Path(folder) / default_name)
-    try:
-        figure = draw(folder, **options)
-        save(figure, output, dpi)
-    except (ResultsError, OSError) as problem:
-        sys.exit(f"{parser.prog}: {problem}")
-    print(output)
 
 
 def save(figure, output, dpi):
