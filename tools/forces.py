@@ -45,7 +45,7 @@ def variants(name, keys):
                 for n, m in ((9.0, 3.0), (12.0, 6.0))}
     if name == "morse":
         law = {"law": "lennard_jones", "exponents": [9.0, 3.0]}
-        same = {key: keys["morse"][key] for key in ("surface_energy", "z0")}
+        same = {key: keys["morse"][key] for key in ("work_of_adhesion", "z0")}
         return {"Lennard-Jones of the same energy": {"force": {**law, **same}}}
     return None
 

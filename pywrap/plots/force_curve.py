@@ -27,11 +27,13 @@ _THEORIES = {
     "dmt": ("DMT", {"color": GREEN, "linestyle": (0, (6, 2, 1, 2))}),
     "maugis_dugdale": (
         "Maugis-Dugdale", {"color": PURPLE, "linestyle": (0, (6, 1.5, 1, 1.5, 1, 1.5))}),
+    "hertz_layered": ("Hertz, layers", {"color": GREY, "linestyle": (0, (1, 1.5))}),
+    "jkr_layered": ("JKR, layers", {"color": VERMILION, "linestyle": (0, (6, 2))}),
 }
 # The abscissas.
-NAMES = {"displacement": "displacement $h(0) - h_0$", "h0": "$h_0$"}
-# In the theories bodies touch at separation 0, in the program at the gap at rest.
-_OF_THEORIES = "$h_0$; of theories $h_0$ + gap at rest"
+NAMES = {"displacement": "displacement $h(0) - h_0$", "h0": "approach $h_0$"}
+# Bodies that touch are at the equilibrium separation here; theories count from elsewhere.
+_OF_THEORIES = "approach $h_0$; theories touch at the equilibrium separation"
 # A piece of curve shorter than this [points] gets no arrow for its direction.
 _LONG_ENOUGH = 45
 _MOST_COLUMNS = 6
@@ -68,7 +70,7 @@ class Curve:
         if "classical.csv" in files.texts:
             self.theories = files.table("classical.csv")
             rest = self.summary.get("rest_gap", 0.0)
-            self.theories = dict(self.theories, h0=self.theories["h0"] + rest)
+            self.theories = dict(self.theories, h0=rest - self.theories["displacement"])
         self.lengths = {x: scale(self.table[x], "m") for x in NAMES}
         self.loads = scale(self.table["load"], "N")
         self.branches = [_Branch(name, self.table, self.summary)
