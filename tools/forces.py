@@ -27,7 +27,7 @@ DPI = 90
 # If a term is too small to be visible beside the whole law: limits of the first panel and, for the
 # secondary minimum of DLVO forces, of the second.
 VIEWS = {"steric": [{"xlim": (9.3, 12), "ylim": (-5, 12)}],
-         "double_layer": [{"xlim": (0, 8), "ylim": (-0.15, 0.45)},
+         "double_layer": [{"xlim": (0.3, 8), "ylim": (-0.15, 0.6)},
                           {"xlim": (15, 60), "ylim": (-0.012, 0.024)}]}
 
 

@@ -22,6 +22,8 @@ logged 'executing the notebook' "$venv/bin/python" tools/site/notebook.py build/
 logged 'laying out the pages' "$venv/bin/python" tools/site/lay_out.py pages build/pages
 logged 'making the pages of the sources' \
   "$venv/bin/ford" --quiet --output_dir "$top/build/pages/sources" tools/api.md
+logged 'giving these pages a style' \
+  "$venv/bin/python" tools/site/lay_out.py dress build/pages/sources
 logged 'building the site' "$venv/bin/mkdocs" build --quiet --strict -f tools/site/mkdocs.yml
 rm build/site/404.html  # its links need a server
 logged 'checking links' "$venv/bin/python" tools/site/lay_out.py links build/site

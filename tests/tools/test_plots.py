@@ -260,7 +260,7 @@ def test_a_drive_has_its_own_branches_and_units(tmp_path):
                "&numerics accuracy = 1e-3 /", out=tmp_path)
     figure = draw_force_curve(tmp_path)
     (legend,) = figure.legends
-    assert [text.get_text() for text in legend.get_texts()] == ["approach", "retreat"]
+    assert [text.get_text() for text in legend.get_texts()] == ["approach", "retract"]
     assert [axes.get_xlabel()[-5:] for axes in figure.axes] == [" [pm]", " [µm]"]
 
 

@@ -1,9 +1,12 @@
 """Lay out the pages of the site for MkDocs, and find dead links in what it builds.
 
     lay_out.py pages FOLDER   copies pages and what they link to, as in the repository
-    lay_out.py links FOLDER   checks every link between the files of a built site
+    lay_out.py dress FOLDER   gives the pages of FORD their style
+    lay_out.py links FOLDER   checks every link of a built site
 
-Links to sources of Fortran lead to the pages that FORD makes of them, in FOLDER/sources.
+Links to sources of Fortran lead to the pages that FORD makes of them, in FOLDER/sources; these get
+a style of their own, since that of FORD comes from a network. A link to the notebook leads to its
+page.
 """
 
 import ast
@@ -42,6 +45,8 @@ def laid_out(text, page):
         name = os.path.normpath(page.parent / path)
         if name.endswith(".f90"):
             path = os.path.relpath(source_page(name), page.parent)
+        elif name.endswith(".ipynb"):
+            path = f"{path.removesuffix('.ipynb')}.md"
         elif not name.endswith(".md"):
             wanted.add(name)
         return f"{match[1]}{path}{hash_}{anchor}{match[3]}"
@@ -80,10 +85,24 @@ def lay_out(folder):
         (folder / page).write_text(text, encoding="utf-8")
     for name in sorted(wanted):
         (folder / name).parent.mkdir(parents=True, exist_ok=True)
-        # The suffix lets browsers show decks and tables instead of downloading them.
         shutil.copy(ROOT / name, folder / name)
     (folder / "docs/python_api.md").write_text(api_page(), encoding="utf-8")
-    shutil.copy(ROOT / "tools/site/icon.svg", folder / "docs/icon.svg")
+    for name in ("icon.svg", "site.css"):
+        shutil.copy(ROOT / "tools/site" / name, folder / "docs" / name)
+
+
+# What FORD's pages load from a network: the style and scripts of Bootstrap, and MathJax.
+_FROM_NETWORK = re.compile(r"<(link|script)\b[^>]*(?:href|src)=[\"']https?://[^>]*>(?:\s*</script>)?")
+
+
+def dress(folder):
+    """Take what pages of FORD load from a network out of them, and give them a style."""
+    shutil.copy(ROOT / "tools/site/sources.css", folder / "css/sources.css")
+    for page in folder.rglob("*.html"):
+        style = os.path.relpath(folder / "css/sources.css", page.parent)
+        text = _FROM_NETWORK.sub("", page.read_text(encoding="utf-8"))
+        text = text.replace("</head>", f'<link href="{style}" rel="stylesheet"></head>', 1)
+        page.write_text(text, encoding="utf-8")
 
 
 class _Page(HTMLParser):
@@ -91,7 +110,7 @@ class _Page(HTMLParser):
 
     def __init__(self, text):
         super().__init__()
-        self.links, self.names = [], set()
+        self.links, self.names, self.loaded = [], set(), []
         self.feed(text)
 
     def handle_starttag(self, tag, attrs):
@@ -100,10 +119,13 @@ class _Page(HTMLParser):
                 self.names.add(value)
             elif key in ("href", "src") and value:
                 self.links.append(value)
+                if key == "src" or tag == "link":
+                    self.loaded.append(value)
 
 
 def dead_links(folder):
-    """Return "page: link" for every link that leads to no file, or to no place in its page."""
+    """Return "page: link" for every link that leads to no file or to no place in its page, and for
+    everything that a page would load from a network."""
     folder = folder.resolve()
     pages = {path: _Page(path.read_text(encoding="utf-8", errors="replace"))
              for path in sorted(folder.rglob("*.html"))}
@@ -112,6 +134,8 @@ def dead_links(folder):
         for link in page.links:
             parts = urllib.parse.urlsplit(link)
             if parts.scheme or parts.netloc:
+                if link in page.loaded and parts.scheme != "data":
+                    found.append(f"{path.relative_to(folder)}: {link}, from a network")
                 continue
             name = urllib.parse.unquote(parts.path)
             target = (path.parent / name).resolve() if name else path
@@ -123,11 +147,12 @@ def dead_links(folder):
 
 
 def main():
-    if len(sys.argv) != 3 or sys.argv[1] not in ("pages", "links"):
+    makers = {"pages": lay_out, "dress": dress}
+    if len(sys.argv) != 3 or sys.argv[1] not in (*makers, "links"):
         sys.exit(__doc__)
     folder = pathlib.Path(sys.argv[2])
-    if sys.argv[1] == "pages":
-        lay_out(folder)
+    if sys.argv[1] in makers:
+        makers[sys.argv[1]](folder)
         return
     dead = dead_links(folder)
     for line in dead:
