@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Renew the table of indentation of layers, the pictures and the table of prices of docs/layers.md:
-two minutes.
+"""Renew the table of indentation of layers, the pictures and the table of prices in
+docs/records/costs.md: two minutes.
 
     .venv/bin/python tools/layers.py            # all of them
     .venv/bin/python tools/layers.py --prices   # the table of prices alone, on an idle machine
@@ -26,7 +26,7 @@ from program import Program  # noqa: E402
 TABLE = pages.ROOT / "docs" / "layers_indentation.csv"
 PICTURE = pages.ROOT / "docs" / "layers.png"
 FILMS = pages.ROOT / "docs" / "layers_films.png"
-PAGE = pages.ROOT / "docs" / "layers.md"
+PAGE = pages.ROOT / "docs" / "records" / "costs.md"
 CHI = [0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.8, 1.0, 1.25, 1.5, 2.0]
 # Films on a rigid base by their Poisson's ratio; incompressible films on bases of Poisson's ratio
 # 0.5 by the ratio of moduli, film over base.

@@ -45,7 +45,8 @@ def draw_device_curve(folder):
         Line2D([], [], color=GREY, linewidth=2.6, alpha=0.55, label="retract"),
         Line2D([], [], color=GREY, linewidth=1.4, label="approach"),
         Line2D([], [], color=GREY, linewidth=0.7, linestyle=(0, (3, 2)), label="unstable"),
-        Line2D([], [], color=GREY, linewidth=1.0, linestyle=(0, (1, 1)), marker=">", label="snap-in, snap-off"),
+        Line2D([], [], color=GREY, linewidth=1.0, linestyle=(0, (1, 1)), marker=">",
+               label="snap-in, snap-off"),
     ], loc="outside lower center", ncols=4, frameon=False)
     return figure
 

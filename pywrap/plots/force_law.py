@@ -157,7 +157,7 @@ class _Mark:
 
 
 def _marks(deck, numbers, gap, values):
-    """Return the marks: equilibrium, largest tension, and outside them the barrier and the outer well."""
+    """Return the marks: equilibrium, largest tension, and outside them barrier and outer well."""
     marks = [
         _Mark(name, colour, at, deck)
         for name, colour, at in (("equilibrium", BLACK, numbers.rest_gap),

@@ -87,7 +87,7 @@ def lay_out(folder):
         (folder / name).parent.mkdir(parents=True, exist_ok=True)
         shutil.copy(ROOT / name, folder / name)
     (folder / "docs/python_api.md").write_text(api_page(), encoding="utf-8")
-    for name in ("icon.svg", "site.css"):
+    for name in ("icon.svg", "site.css", "iframe-worker.js"):
         shutil.copy(ROOT / "tools/site" / name, folder / "docs" / name)
 
 
@@ -101,6 +101,8 @@ def dress(folder):
     for page in folder.rglob("*.html"):
         style = os.path.relpath(folder / "css/sources.css", page.parent)
         text = _FROM_NETWORK.sub("", page.read_text(encoding="utf-8"))
+        # Places of procedures that FORD names, and does not make.
+        text = re.sub(r"#moduleprocedure-[^\"']*", "", text)
         text = text.replace("</head>", f'<link href="{style}" rel="stylesheet"></head>', 1)
         page.write_text(text, encoding="utf-8")
 
