@@ -11,11 +11,10 @@ from conftest import ROOT
 COMMON = ("bodies", "force", "equilibrium_path")
 BESIDE = {
     "unloading": ("loading",), "fluid": ("drive",), "viscoelastic": ("drive",),
-    "measurement": ("fit",), "fit": ("measurement",),
-    "born": ("van_der_waals",), "van_der_waals": ("born",)}
-WITH_REPULSION = ("hydration", "hydrophobic", "steric", "structural", "depletion", "capillary",
-                  "dugdale", "double_layer")
-IN_PLACE_OF_FORCE = (*WITH_REPULSION, "van_der_waals", "born", "morse", "tabulated")
+    "measurement": ("fit",), "fit": ("measurement",)}
+# Laws with a group of their own stand in place of &force; most need attraction and repulsion beside.
+LAWS = {path.stem for path in (ROOT / "src/model/laws").glob("*.f90")}
+ALONE = {"morse", "tabulated"}
 
 
 @pytest.fixture(scope="module")
@@ -34,10 +33,10 @@ def test_every_group_has_an_example(snapin, examples):
 def deck_for(group, examples):
     """A deck with the example of a group and what it needs, all of them examples."""
     groups = [name for name in COMMON
-              if name != group and not (name == "force" and group in IN_PLACE_OF_FORCE)
+              if name != group and not (name == "force" and group in LAWS)
               and not (name == "equilibrium_path" and (
                   group == "drive" or "drive" in BESIDE.get(group, ())))]
-    if group in WITH_REPULSION:
+    if group in LAWS - ALONE:
         groups += ["van_der_waals", "born"]
     return "\n".join(examples[name] for name in dict.fromkeys(
         [*groups, *BESIDE.get(group, ()), group])) + "\n"
