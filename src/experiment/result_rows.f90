@@ -52,6 +52,8 @@ module result_rows
       'strength of exponential repulsion, (39) of the paper at h0 = 0', always), &
     row_t('reduced_modulus', 'Pa', 'E* of the bodies without layers: 1/E* is the sum of ' // &
       '(1-nu^2)/E', always), &
+    row_t('plane_strain_modulus', 'Pa', 'E/(1-nu^2) of two identical bodies with this ' // &
+      'reduced_modulus, twice as large', always), &
     row_t('top_modulus', 'Pa', 'with &layer: E* of half-spaces of the top layers', layer), &
     row_t('bottom_modulus', 'Pa', 'with &layer: E* of the half-spaces below the layers', layer), &
     row_t('effective_modulus', 'Pa', 'with &layer and &classical: E* of half-spaces with the ' // &

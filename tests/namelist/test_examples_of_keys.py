@@ -12,7 +12,7 @@ COMMON = ("bodies", "force", "equilibrium_path")
 BESIDE = {
     "unloading": ("loading",), "fluid": ("drive",), "viscoelastic": ("drive",),
     "measurement": ("fit",), "fit": ("measurement",)}
-# Laws with a group of their own stand in place of &force; most need attraction and repulsion beside.
+# Laws with a group of their own stand in place of &force; most need attraction and repulsion.
 LAWS = {path.stem for path in (ROOT / "src/model/laws").glob("*.f90")}
 ALONE = {"morse", "tabulated"}
 

@@ -92,7 +92,12 @@ def lay_out(folder):
 
 
 # What FORD's pages load from a network: the style and scripts of Bootstrap, and MathJax.
-_FROM_NETWORK = re.compile(r"<(link|script)\b[^>]*(?:href|src)=[\"']https?://[^>]*>(?:\s*</script>)?")
+_FROM_NETWORK = re.compile(
+    r"<(link|script)\b[^>]*(?:href|src)=[\"']https?://[^>]*>(?:\s*</script>)?")
+
+
+_OF_BOOTSTRAP = re.compile(
+    r"<script>(?:(?!</script>).)*bootstrap\.(?:(?!</script>).)*</script>", re.S)
 
 
 def dress(folder):
@@ -103,6 +108,10 @@ def dress(folder):
         text = _FROM_NETWORK.sub("", page.read_text(encoding="utf-8"))
         # Places of procedures that FORD names, and does not make.
         text = re.sub(r"#moduleprocedure-[^\"']*", "", text)
+        text = _OF_BOOTSTRAP.sub("", text)
+        home = os.path.relpath(folder.parent / "index.html", page.parent)
+        text = re.sub(r"(<ul class=\"navbar-nav[^>]*>)", rf'\1<li><a href="{home}">Pages</a></li>',
+                      text, count=1)
         text = text.replace("</head>", f'<link href="{style}" rel="stylesheet"></head>', 1)
         page.write_text(text, encoding="utf-8")
 
