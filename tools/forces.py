@@ -25,7 +25,7 @@ DPI = 90
 # If a term is too small to be visible beside the whole law: limits of the first panel and, for the
 # secondary minimum of DLVO forces, of the second.
 VIEWS = {"steric": [{"xlim": (9.3, 12), "ylim": (-5, 12)}],
-         "double_layer": [{"xlim": (0, 8), "ylim": (-0.15, 0.45)},
+         "double_layer": [{"xlim": (0.3, 8), "ylim": (-0.15, 0.6)},
                           {"xlim": (15, 60), "ylim": (-0.012, 0.024)}]}
 
 
@@ -43,7 +43,7 @@ def variants(name, keys):
                 for n, m in ((9.0, 3.0), (12.0, 6.0))}
     if name == "morse":
         law = {"law": "lennard_jones", "exponents": [9.0, 3.0]}
-        same = {key: keys["morse"][key] for key in ("surface_energy", "z0")}
+        same = {key: keys["morse"][key] for key in ("work_of_adhesion", "z0")}
         return {"Lennard-Jones of the same energy": {"force": {**law, **same}}}
     return None
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Renew the table of indentation of layers, the pictures and the table of prices of docs/layers.md:
-two minutes.
+"""Renew the table of indentation of layers, the pictures and the table of prices in
+docs/records/costs.md: two minutes.
 
     .venv/bin/python tools/layers.py            # all of them
     .venv/bin/python tools/layers.py --prices   # the table of prices alone, on an idle machine
@@ -17,15 +17,16 @@ import pages
 import snapin
 from matplotlib.figure import Figure
 
-sys.path.append(str(pages.ROOT / "tools" / "bench"))
+sys.path += [str(pages.ROOT / "tools" / "bench"), str(pages.ROOT / "pywrap" / "plots")]
 
 import problems  # noqa: E402
+from drawing import plain  # noqa: E402
 from program import Program  # noqa: E402
 
 TABLE = pages.ROOT / "docs" / "layers_indentation.csv"
 PICTURE = pages.ROOT / "docs" / "layers.png"
 FILMS = pages.ROOT / "docs" / "layers_films.png"
-PAGE = pages.ROOT / "docs" / "layers.md"
+PAGE = pages.ROOT / "docs" / "records" / "costs.md"
 CHI = [0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.8, 1.0, 1.25, 1.5, 2.0]
 # Films on a rigid base by their Poisson's ratio; incompressible films on bases of Poisson's ratio
 # 0.5 by the ratio of moduli, film over base.
@@ -54,7 +55,7 @@ def film(thickness, nu, ratio, sigma, h0_end, **groups):
     return snapin.run({
         "bodies": bodies,
         "layer": {"thickness": thickness, "young": young, "poisson": nu, "partner": "rigid"},
-        "force": {"law": "lennard_jones", "surface_energy": sigma, "z0": 1.0},
+        "force": {"law": "lennard_jones", "work_of_adhesion": sigma, "z0": 1.0},
         "classical": {"h0_start": 20.0, "h0_end": h0_end, "count": 2}, **groups}).summary
 
 
@@ -95,13 +96,15 @@ def draw(table):
     """Draw load over Hertz's load, and pull-off against thickness."""
     figure = Figure((10, 4.2), layout="constrained")
     (left, right) = figure.subplots(1, 2)
+    plain(left)
+    plain(right)
     for nu in BONDED:
         left.plot(CHI, table[f"rigid_base_nu_{nu:g}"], label=f"rigid base, ν = {nu:g}")
     left.plot(CHI, table["dimitriadis_2002_nu_0.5"], "k--", label="Dimitriadis 2002, ν = 0.5")
     left.plot(CHI, table["garcia_2018_nu_0.5"], "k:", label="García 2018, ν = 0.5")
-    left.set(xlabel="χ = √(Rδ)/t", ylabel="load over Hertz's of the film", yscale="log",
+    left.set(xlabel="√(Rδ)/t, with indentation δ and thickness t", ylabel="load over Hertz's of the film", yscale="log",
              xlim=(0, 2), ylim=(1, 40))
-    left.legend(fontsize=8)
+    left.legend(fontsize=9, frameon=False)
     contact = (9 * math.pi * SIGMA) ** (1 / 3)
     parts = np.geomspace(0.1, 10, 40)
     for ratio in (0, 0.2, 1, 5):
@@ -114,8 +117,8 @@ def draw(table):
                  for part in solved]
         right.plot(solved, [one["max_tension"] / (math.pi * SIGMA) for one in found], "o",
                    color=line.get_color(), markersize=4)
-    right.set(xlabel="t/a₀", ylabel="JKR pull-off over πwR", xscale="log", ylim=(0.9, 2.5))
-    right.legend(fontsize=8, title="modulus, ν = 0.5")
+    right.set(xlabel="thickness over contact radius without load, t/a₀", ylabel="pull-off force over πwR", xscale="log", ylim=(0.9, 2.5))
+    right.legend(fontsize=9, frameon=False, title="modulus, ν = 0.5")
     figure.savefig(PICTURE, dpi=90)
 
 
@@ -124,6 +127,7 @@ def draw_films():
     paths, and JKR theory of layers."""
     figure = Figure((6.4, 4.4), layout="constrained")
     axes = figure.subplots()
+    plain(axes)
     axes.axhline(0, color="0.8", linewidth=0.8)
     for micrometres, thickness in ((0.5, 0.5e-6), (1, 1e-6), (2, 2e-6), (5, 5e-6), (None, None)):
         glass, rubber = {"young": 70e9, "poisson": 0.2}, {"young": 3e6, "poisson": 0.49}
@@ -134,16 +138,17 @@ def draw_films():
             layer = {}
         run = snapin.run({
             "bodies": bodies, **layer,
-            "force": {"law": "lennard_jones", "surface_energy": 0.02, "z0": 20e-9},
+            "force": {"law": "lennard_jones", "work_of_adhesion": 0.02, "z0": 20e-9},
             "equilibrium_path": {"h0_end": -200e-9}, "classical": {"h0_start": 400e-9}})
         label = f"film of {micrometres:g} µm" if thickness else "rubber half-space"
         path = run.curve[run.curve["branch"] == "path"]
         line, = axes.plot(-path["h0"] * 1e9, path["load"] * 1e6, label=label)
         theory = run.classical[run.classical["theory"] == ("jkr_layered" if thickness else "jkr")]
-        axes.plot(-theory["h0"] * 1e9, theory["load"] * 1e6, "--", color=line.get_color(),
-                  linewidth=1)
-    axes.set(xlabel="indentation, −h0 [nm]", ylabel="load [µN]", xlim=(-310, 205), ylim=(-16, 40))
-    axes.legend(fontsize=8, title="dashed: JKR theory of layers")
+        # Bodies of the theory touch at the equilibrium separation.
+        touching = run.summary["rest_gap"] - theory["displacement"]
+        axes.plot(-touching * 1e9, theory["load"] * 1e6, "--", color=line.get_color(), linewidth=1)
+    axes.set(xlabel="indentation $-h_0$ [nm]", ylabel="load [µN]", xlim=(-310, 205), ylim=(-16, 40))
+    axes.legend(fontsize=9, frameon=False, title="dashed: JKR theory of layers")
     figure.savefig(FILMS, dpi=90)
 
 

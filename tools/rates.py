@@ -18,9 +18,10 @@ import snapin
 from matplotlib.figure import Figure
 from snapin.command import as_command
 
-sys.path.append(str(pages.ROOT / "tools" / "bench"))
+sys.path += [str(pages.ROOT / "tools" / "bench"), str(pages.ROOT / "pywrap" / "plots")]
 
 import gauge  # noqa: E402
+from drawing import COLOURS, arrow, plain  # noqa: E402
 
 DOCS = pages.ROOT / "docs"
 # Instantaneous adhesion strength, and the velocities of the bell curve in law's lengths over the
@@ -37,7 +38,7 @@ def driven(ratio, velocity, accuracy=1e-3, **drive):
     retardation."""
     deck = {
         "bodies": {"radius": 1.0, "stiffness": 1.0},
-        "force": {"law": "lennard_jones", "surface_energy": SIGMA, "z0": 1.0},
+        "force": {"law": "lennard_jones", "work_of_adhesion": SIGMA, "z0": 1.0},
         "drive": {"velocity": velocity, "z_start": 20.0, "z_turn": -4.0, **drive},
         "numerics": {"accuracy": accuracy}}
     if ratio > 1:
@@ -49,7 +50,10 @@ def driven(ratio, velocity, accuracy=1e-3, **drive):
 def picture(name, panels=1, width=6.4):
     """The panels of a picture, which is written when they are drawn."""
     figure = Figure((width, 4.2), layout="constrained")
-    yield figure.subplots(1, panels)
+    axes = figure.subplots(1, panels)
+    for one in np.atleast_1d(axes):
+        plain(one)
+    yield axes
     figure.savefig(DOCS / name, dpi=110)
 
 
@@ -60,20 +64,31 @@ def draw_bell():
                        for v in SPEEDS]
             axes.semilogx(SPEEDS, tension, "o-", ms=3, label=f"$E_0/E_\\infty$ = {ratio:g}")
             print(ratio, " ".join(f"{t:.4f}" for t in tension))
-        axes.set(xlabel="velocity times retardation time over $z_0$",
-                 ylabel="largest tension over that of JKR theory")
-        axes.legend()
+        axes.set(xlabel=r"velocity $\times$ retardation time / $z_0$",
+                 ylabel="pull-off force over that of JKR theory")
+        axes.legend(frameon=False)
 
 
 def draw_cycles():
     with picture("rates_cycles.png") as axes:
         for velocity in (0.002, 0.2, 2.0, 20.0, 200.0, 2.0e5):
             curve = driven(10.0, velocity).curve
-            axes.plot(curve["h0"], curve["load"] / (math.pi * SIGMA), lw=1.2, label=f"{velocity:g}")
-        axes.set(xlabel="$h_0$ over $z_0$", ylabel="load over $\\pi R w$", xlim=(-4.2, 12),
+            line, = axes.plot(curve["h0"], curve["load"] / (math.pi * SIGMA), lw=1.2,
+                              label=f"{velocity:g}")
+            _direct(axes, curve, line.get_color())
+        axes.set(xlabel="approach $h_0/z_0$", ylabel="load $F/\\pi w R$", xlim=(-4.2, 12),
                  ylim=(-5, 6))
         axes.axhline(0, color="0.8", lw=0.8, zorder=0)
-        axes.legend(title="velocity $\\times\\,\\tau/z_0$")
+        axes.legend(frameon=False, title="velocity $\\times\\,\\tau/z_0$")
+
+
+def _direct(axes, curve, colour):
+    """Show with an arrow which way approach and retract go, in the middle of the picture."""
+    for branch, place in (("approach", -2.5), ("retreat", 1.0)):
+        rows = curve[curve["branch"] == branch]
+        k = np.clip(np.argmin(abs(rows["h0"] - place)), 1, len(rows) - 2)
+        ends = [(rows["h0"][i], rows["load"][i] / (math.pi * SIGMA)) for i in (k - 1, k + 1)]
+        arrow(axes, *ends, colour, linewidth=0.1)
 
 
 def off(found, exact):
@@ -96,7 +111,7 @@ def print_prices():
     for sigma, start, step in ((0.2, 20.0, 0.006), (8.7, 40.0, 0.011)):
         deck = {
             "bodies": {"radius": 1.0, "stiffness": 1.0},
-            "force": {"law": "lennard_jones", "surface_energy": sigma / 10, "z0": 1.0},
+            "force": {"law": "lennard_jones", "work_of_adhesion": sigma / 10, "z0": 1.0},
             "drive": {"velocity": 8.0, "z_start": start, "z_turn": -4.0, "time_step": step},
             "viscoelastic": {"stiffness_relaxed": 0.1, "retardation_time": 1.0},
             "numerics": {"accuracy": 1e-3}}
@@ -112,7 +127,7 @@ def print_prices():
 # A bead of 10 um and a flat in a viscous liquid, SI units.
 BEAD = {
     "bodies": {"radius": 1e-5, "stiffness": 7e10},
-    "force": {"law": "lennard_jones", "surface_energy": 5e-3, "z0": 3e-10}}
+    "force": {"law": "lennard_jones", "work_of_adhesion": 5e-3, "z0": 3e-10}}
 VISCOSITY, VELOCITY = 1e-2, 2e-5
 
 
@@ -131,7 +146,7 @@ def draw_drainage():
     Vinogradova."""
     h = np.logspace(-9.2, -6, 201)
     with picture("rates_drainage.png", 2, 9.6) as (left, right):
-        for slip, colour in ((0, "C0"), (5e-9, "C1"), (20e-9, "C2"), (100e-9, "C3")):
+        for slip, colour in zip((0, 5e-9, 20e-9, 100e-9), COLOURS):
             curve = drained(slip).curve
             approach, retreat = (curve[curve["branch"] == way] for way in ("approach", "retreat"))
             name = f"b = {slip * 1e9:g} nm" if slip else "no slip"
@@ -142,11 +157,15 @@ def draw_drainage():
                 film *= h / (3 * slip) * ((1 + h / (6 * slip)) * np.log1p(6 * slip / h) - 1)
             left.loglog(h * 1e9, film * 1e9, ":", color=colour)
             right.plot(approach["h0"] * 1e9, approach["load"] * 1e9, color=colour, lw=1)
-            right.plot(retreat["h0"] * 1e9, retreat["load"] * 1e9, color=colour, label=name)
-        left.set(xlabel="separation on the axis, nm", ylabel="load on approach, nN",
+            right.plot(retreat["h0"] * 1e9, retreat["load"] * 1e9, color=colour, lw=2)
+        left.set(xlabel="separation on the axis [nm]", ylabel="load on approach [nN]",
                  xlim=(0.5, 1e3), ylim=(0.1, 300))
-        right.set(xlabel="$h_0$, nm", ylabel="load, nN", xlim=(-1, 10), ylim=(-1500, 300))
-        left.legend()
+        right.set(xlabel="approach $h_0$ [nm]", ylabel="load [nN]", xlim=(-1, 10), ylim=(-1500, 300))
+        left.plot([], [], "k:", label="rigid bodies")
+        left.legend(frameon=False)
+        for width, way in ((1, "approach"), (2, "retract")):
+            right.plot([], [], "k-", lw=width, label=way)
+        right.legend(frameon=False)
 
 
 def print_drained():

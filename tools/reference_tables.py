@@ -25,6 +25,8 @@ class Section(NamedTuple):
     name: str
     note: str
     meaning: str
+    # A group in a deck that works, or ''.
+    example: str
     # For each item: the line that begins with its name, and its meaning.
     items: list
 
@@ -34,13 +36,15 @@ def sections_of(output):
     for block in output.strip("\n").split("\n\n"):
         title, meaning, *lines = block.split("\n")
         name, _, note = title.partition(" ")
-        items = []
+        items, example = [], ""
         for line in lines:
-            if line.startswith(" " * 26):
+            if line.startswith("    Example: "):
+                example = line.partition(": ")[2]
+            elif line.startswith(" " * 26):
                 items[-1][1] = line.strip()
             else:
                 items.append([line.strip(), ""])
-        sections.append(Section(name, note.strip("()"), meaning.strip(), items))
+        sections.append(Section(name, note.strip("()"), meaning.strip(), example, items))
     return sections
 
 
@@ -52,6 +56,7 @@ def keys_as_markdown(sections):
             continue
         required = "Required. " if group.note == "required" else ""
         text += f"### `{group.name}`\n\n{required}{_cell(group.meaning)}\n\n"
+        text += f"    {group.example}\n\n" if group.example else ""
         rows = [(f"`{key}`", value.strip(), meaning)
                 for line, meaning in group.items
                 for key, _, value in [line.partition(" ")]]

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Load against the position of the drive, behind each spring, from a deck with &device.
+"""Load against the position of the base, behind each spring, from a deck with &device.
 
     .venv/bin/python pywrap/plots/device_curve.py results/device
 """

@@ -1,5 +1,24 @@
 """snapin from Python: a deck in, arrays and dictionaries out, SI units, errors as exceptions.
 
+A first curve, and its pull-off force [N] with its error:
+
+    import snapin
+    result = snapin.run({
+        "bodies": {"radius": 1.5e-2, "stiffness": 1e10},                     # m, Pa
+        "force": {"law": "lennard_jones", "hamaker": 1e-20, "z0": 0.5e-9},   # J, m
+        "equilibrium_path": {"h0_end": -2e-9}})                              # m
+    result.summary["max_tension"], result.summary["max_tension_error"]
+    result.curve["h0"], result.curve["load"]                                 # m, N
+
+A group of a deck is a dictionary of its keys; `./run --keys GROUP` explains each, with an example.
+More of it:
+
+    snapin.run("inputs/first.nml", out="results/first")    # a deck's file; results are kept
+    snapin.read_results("results/first").curve             # later
+    snapin.fit(z, force, spring_constant=42.0, deck={...}, parameters=[...])   # a measured curve
+    snapin.contact_law.ContactLaw(1e-6, 5e9, 0.05, 3e-10)  # the solved contact, without a run
+    snapin.pull_off("jkr", radius=1e-6, stiffness=1e10, surface_energy=0.05)   # of a theory
+
 `run` computes any deck; `force_curve` and `equilibrium_path` write the deck themselves. The other
 functions are the pieces of a calculation, for a closer look and for tests. Each module here wraps
 one part of the library; this file has the names that users call. `snapin.plots` draws results.

@@ -57,7 +57,8 @@ contains
     if (base == ' ') unit = ''
   end function unit_in
 
-  !> A value and, unless it is NaN, its error in a unit; metres, newtons and pascals have a prefix.
+  !> A value and, unless it is NaN, its error in a unit; metres, newtons, pascals and m/V have a
+  !> prefix.
   pure function with_unit(value, error, unit) result(words)
     real(wp), intent(in) :: value, error
     character(len=*), intent(in) :: unit
@@ -69,7 +70,7 @@ contains
 
     prefix = plain
     largest = max(abs(value), merge(0.0_wp, error, ieee_is_nan(error)))
-    if (any(unit == [character(len=2) :: 'm', 'N', 'Pa']) .and. largest > 0 .and. &
+    if (any(unit == [character(len=3) :: 'm', 'N', 'Pa', 'm/V']) .and. largest > 0 .and. &
       largest < huge(largest)) &
       prefix = max(1, min(len(prefixes), plain + floor(log10(largest)/3)))
     scale = 10.0_wp**(3*(prefix - plain))

@@ -1,4 +1,4 @@
-!> Barriers: repulsion outside the contact, which bodies have to overcome to come into contact.
+!> Barriers: repulsion outside the contact, which bodies overcome before they come into contact.
 module barriers
   use kinds, only: wp, pi
   use dimensionless_problem, only: problem_t, coupling_over

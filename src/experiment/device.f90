@@ -1,4 +1,4 @@
-!> Bodies that a spring or a dead load drives towards each other and apart again: along the stable
+!> Approach and retract with a spring (cantilever) or a dead load: along the stable
 !> pieces of the equilibrium path, with a jump from the end of each piece to the next stable piece
 !> at the same position of the drive; and the energy that is dissipated.
 module device

@@ -1,5 +1,5 @@
-!> A part of a drive's motion with a fluid between the bodies. The fluid resists every motion, so no
-!> motion is instantaneous: where bodies jump together or apart, the time steps resolve the jump.
+!> Time steps over one way of a drive with a squeeze film between the bodies. The fluid resists
+!> every motion, so that no motion is instantaneous: the time steps resolve snap-in and snap-off.
 module drained_way
   use kinds, only: wp, pi
   use mesh_plan, only: approach

@@ -136,7 +136,7 @@ contains
       left(of_load) = left(of_load) + moved*abs(at(of_load))
       left(of_displacement) = left(of_displacement) + moved
       left(of_radius) = left(of_radius) + moved*at(of_radius)
-      ! A given value is exact. The contact radius is not stationary where D turns.
+      ! A given value is exact. The contact radius is not stationary where Q turns.
       if (place%turns()) left(of_radius) = left(of_radius) + &
         steps%options%place_error*at(of_radius)
       left(of_h0) = found

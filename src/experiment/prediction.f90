@@ -1,5 +1,5 @@
 !> The prediction of the next state: on a mesh fixed in space extrapolated from earlier states;
-!> along the path the state of the span, plus the extrapolated errors of the span at earlier states.
+!> along the path the polynomial of the path plus its extrapolated error at earlier states.
 module prediction
   use kinds, only: wp
   use dimensionless_problem, only: problem_t

@@ -45,24 +45,26 @@ module result_rows
     row_t('version', '', 'version of the program'), &
     row_t('converged', '', &
       'whether every equilibrium was solved to the tolerance (sweep.csv: 1 or 0)', always), &
-    row_t('sigma', '', 'strength of adhesion, (40) of the paper', always), &
-    row_t('tabor', '', 'Tabor''s parameter, (4 sigma^2)^(1/3); of a step beside a z0 with the ' // &
-      'range of the step', always), &
+    row_t('tabor', '', 'Tabor''s parameter; of a step beside a z0 with the range of the step', &
+      always), &
+    row_t('sigma', '', 'strength of adhesion, (40) of the paper: tabor^(3/2)/2', always), &
     row_t('big_lambda', '', &
       'strength of exponential repulsion, (39) of the paper at h0 = 0', always), &
     row_t('reduced_modulus', 'Pa', 'E* of the bodies without layers: 1/E* is the sum of ' // &
       '(1-nu^2)/E', always), &
+    row_t('plane_strain_modulus', 'Pa', 'E/(1-nu^2) of two identical bodies with this ' // &
+      'reduced_modulus, twice as large', always), &
     row_t('top_modulus', 'Pa', 'with &layer: E* of half-spaces of the top layers', layer), &
     row_t('bottom_modulus', 'Pa', 'with &layer: E* of the half-spaces below the layers', layer), &
     row_t('effective_modulus', 'Pa', 'with &layer and &classical: E* of half-spaces with the ' // &
       'load of hertz_layered by Hertz', layer), &
-    row_t('surface_energy', 'J/m^2', 'surface energy of the force law: the depth of its ' // &
-      'minimum, or its energy at contact', always), &
+    row_t('surface_energy', 'J/m^2', 'former name of work_of_adhesion: the depth of the ' // &
+      'law''s minimum, or its energy at contact', always), &
     row_t('work_of_adhesion', 'J/m^2', 'energy needed to separate unit area from contact; ' // &
       'negative: contact is metastable', forces), &
     row_t('table_error', '', 'estimated relative error of work_of_adhesion and pull-off from ' // &
       'the points of a table', tabulated), &
-    row_t('rest_gap', 'm', 'smallest separation without force', forces), &
+    row_t('rest_gap', 'm', 'equilibrium separation, the smallest without force', forces), &
     row_t('edge_gap', 'm', 'separation of largest tension', forces), &
     row_t('cohesive_stress', 'Pa', 'largest tension', forces), &
     row_t('cohesive_range', 'm', 'depth of the well of contact over cohesive_stress', forces), &
@@ -128,7 +130,7 @@ module result_rows
       '1.5 pi R', drive, place='effective_work', quantity=of_work, error=judged), &
     row_t('max_suction', 'Pa', 'largest suction of the draining fluid', fluid, &
       place='max_suction', quantity=of_suction, error=judged), &
-    row_t('sigma_relaxed', '', 'strength of adhesion of viscoelastic bodies at rest', &
+    row_t('sigma_relaxed', '', 'strength of adhesion of relaxed viscoelastic bodies', &
       viscoelastic), &
     row_t('time_steps', '', 'number of steps of a drive in time', drive), &
     row_t('path_traced_h0', 'm', &
@@ -137,13 +139,13 @@ module result_rows
       'h0 from which the bodies were taken as undeformed, down to path_traced_h0'), &
     row_t('device_stiffness', 'N/m', &
       'stiffness of each spring; 0: dead load; Infinity: h0 is prescribed', list=.true.), &
-    row_t('device_jump_in_z', 'm', 'position of the drive at the first jump of each approach', &
+    row_t('device_jump_in_z', 'm', 'position of the base at the first snap-in of each approach', &
       spring, list=.true., place='device_jump_in', quantity=of_position, error=judged), &
     row_t('device_jump_in_load', 'N', 'load just before this jump', spring, list=.true., &
       place='device_jump_in', quantity=of_load, error=judged), &
     row_t('device_jump_in_load_after', 'N', 'load just after this jump', spring, list=.true., &
       place='device_landing_in', quantity=of_load, error=judged), &
-    row_t('device_jump_out_z', 'm', 'position of the drive at the first jump of each retreat', &
+    row_t('device_jump_out_z', 'm', 'position of the base at the first snap-off of each retract', &
       spring, list=.true., place='device_jump_out', quantity=of_position, error=judged), &
     row_t('device_jump_out_load', 'N', 'load just before this jump', spring, list=.true., &
       place='device_jump_out', quantity=of_load, error=judged), &
@@ -152,7 +154,7 @@ module result_rows
     row_t('device_energy_lost', 'J', 'energy lost in all jumps of each cycle, bodies and spring', &
       spring, list=.true., place='device_energy', quantity=of_energy, error=judged), &
     row_t('device_cycle_energy', 'J', &
-      'the energy lost as the area between approach and retreat', list=.true., error=judged), &
+      'the energy lost as the area between approach and retract', list=.true., error=judged), &
     row_t('device_energy_uncertainty', 'J', 'difference of these two, or the error of either', &
       list=.true.), &
     row_t('fixed_load', 'N', 'loads whose equilibria were searched for', list=.true.), &
@@ -171,10 +173,10 @@ module result_rows
       'cubic polynomials with their slopes'), &
     row_t('regime_tabor', '', 'the same as tabor', regime), &
     row_t('regime_tabor_range', '', &
-      'Tabor''s parameter with the range, surface energy over largest tension', regime), &
+      'Tabor''s parameter with the range, work of adhesion over largest tension', regime), &
     row_t('regime_maugis_lambda', '', 'Maugis'' parameter', regime), &
     row_t('regime_load_number', '', &
-      'load of the last state over pi times surface energy times radius', regime, error=judged), &
+      'load of the last state over pi times work of adhesion times radius', regime, error=judged), &
     row_t('regime_error_hertz', '', 'errors of Hertz theory: pull-off, contact radius, ' // &
       'indentation over a^2/R', list=.true., error=judged), &
     row_t('regime_error_jkr', '', 'the same for JKR theory', list=.true., error=judged), &

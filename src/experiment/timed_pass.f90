@@ -1,5 +1,5 @@
 !> One pass of a drive through its motion, step by step, with its readings. The steps follow the
-!> change of the load and, of bodies with memory, the motion of the contact edge, or are those of
+!> change of the load and, of viscoelastic bodies, the motion of the contact edge, or are those of
 !> the deck; a pass after a complete one halves the steps of that pass.
 module timed_pass
   use kinds, only: wp, pi
@@ -18,7 +18,7 @@ module timed_pass
   public :: go_through
 
   !> Largest deviation of the load from a line in a step, over the unit of load; largest motion of
-  !> the contact edge in a step of bodies with memory, over the smallest feature there. Longest and
+  !> the contact edge in a step of viscoelastic bodies, over the smallest feature there. Longest and
   !> first step, as fractions of a way.
   real(wp), parameter :: bend = 8.0e-3_wp, edge_moves = 2, longest_part = 0.05_wp, &
     first_part = 1.0e-3_wp

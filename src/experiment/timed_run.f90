@@ -1,5 +1,5 @@
 !> A drive that moves in time, and its results. The motion is run in several passes, each with all
-!> steps halved and more nodes for the memory, until the numbers of two passes agree.
+!> steps halved and more nodes for the internal variables, until the numbers of two passes agree.
 module timed_run
   use kinds, only: wp
   use clock, only: seconds

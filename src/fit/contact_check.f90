@@ -1,4 +1,4 @@
-!> Whether there is a contact in a measured curve at all: something that is no straight line.
+!> Whether there is a contact in a measured curve at all: a departure from a straight line.
 module contact_check
   use kinds, only: wp
   use text, only: counted, rounded

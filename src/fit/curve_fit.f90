@@ -1,5 +1,5 @@
 !> The fit of a model to a measured curve: the best values of the unknowns, their errors, and which
-!> of them the data cannot tell apart.
+!> of them are correlated.
 module curve_fit
   use kinds, only: wp
   use fit_request, only: of_contact_point, free_of

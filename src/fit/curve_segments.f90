@@ -1,6 +1,6 @@
 !> The segments of a measured curve: which of its rows belong to the approach and which to the
-!> retreat. Labels in the file say so, or the position of the base, which goes to the other body and
-!> back, and rests in a pause.
+!> retract. Labels in the file say so, or the direction in which the position of the base changes;
+!> it rests in a pause.
 module curve_segments
   use kinds, only: wp
   use failure, only: failure_t, fail, bad_input

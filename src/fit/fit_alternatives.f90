@@ -1,4 +1,4 @@
-!> Other fits of data that the model does not describe: with another spring constant, of the retreat
+!> Other fits of data that the model does not describe: with another spring constant, of the retract
 !> alone, of the approach alone. One that describes its data tells what is wrong.
 module fit_alternatives
   use kinds, only: wp

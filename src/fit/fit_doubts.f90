@@ -1,5 +1,5 @@
-!> The doubts about a fit: a model that does not describe the data, unknowns that the data cannot
-!> tell apart, bounds that decide a value.
+!> Warnings about a fit: a model that does not describe the data, unknowns that are correlated or
+!> not determined, bounds that decide a value.
 module fit_doubts
   use kinds, only: wp
   use text, only: brief, rounded, rounded_to

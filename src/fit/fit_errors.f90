@@ -1,5 +1,5 @@
-!> The result of a fit, and the errors of its values: from the derivatives of the residuals, and,
-!> where these do not describe the residuals over a few standard errors, from the residuals there.
+!> The result of a fit, and the errors of its values: from the derivatives of the residuals, and
+!> from the profile likelihood where these do not describe the residuals over a few standard errors.
 module fit_errors
   use kinds, only: wp
   use linear_algebra, only: singular_values

@@ -8,7 +8,8 @@ module fit_run
   use dimensionless_problem, only: problem_t
   use variation, only: problem_family_t
   use experiment_request, only: numerics_t
-  use fit_request, only: fit_t, of_model, of_contact_point, is_at_end, farthest_off
+  use fit_request, only: fit_t, of_model, of_contact_point, of_sensitivity, &
+    is_at_end, farthest_off
   use measured_curve, only: measured_curve_t
   use measured_jumps, only: find_jump, find_far, off_baseline
   use measured_checks, only: check_measured
@@ -118,9 +119,15 @@ contains
     subroutine take_curve(trouble)
       character(len=:), allocatable, intent(out) :: trouble
       real(wp) :: slope
+      integer :: i
 
       curve%data%measured = measured
       curve%unknown = fit%unknown
+      do i = 1, size(fit%unknown)
+        ! A signal that is a force, or a deflection, has no volts.
+        if (fit%unknown(i)%role == of_sensitivity .and. scan(measured%signal_in, 'Nm') > 0) &
+          curve%unknown(i)%unit = 'm/' // measured%signal_in
+      end do
       ! A shift by the range of the force, or by a step of the base, is large.
       where (curve%unknown%role == of_contact_point) curve%unknown%scale = max(problem%length, &
         (maxval(measured%z) - minval(measured%z))/size(measured%z))

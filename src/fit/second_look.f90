@@ -1,6 +1,6 @@
-!> What the residuals of a fit tell: whether they are noise, since a wrong model leaves residuals of
-!> one sign over many neighbours, which means over blocks of samples reveal; and noise, outliers and
-!> jumps, which they show better than the curve itself.
+!> Analysis of the residuals of a fit: a test for systematic misfit by means over blocks of samples,
+!> and new estimates of noise, outliers and snap positions, which residuals show better than the
+!> curve itself.
 module second_look
   use kinds, only: wp
   use noise, only: noise_t, noise_of, white_noise, noise_of_steps, noise_of_residuals, &

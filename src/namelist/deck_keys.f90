@@ -19,13 +19,14 @@ module deck_keys
     character(len=24) :: group = ''
     character(len=24) :: key = ''
     integer :: kind = group_row
-    character(len=240) :: meaning = ''
+    character(len=224) :: meaning = ''
     character(len=8) :: unit = ''
     !> The value of a key that the deck does not give; blank if there is none.
     character(len=32) :: default = ''
     !> Meaning of a blank default in words ("as in &loading"); shown, never read.
     character(len=48) :: otherwise = ''
-    !> Blank-separated words that a `word_value` may be.
+    !> Blank-separated words that a `word_value` may be; for a group an example of it, from a deck
+    !> that works, which is shown and never read.
     character(len=80) :: choices = ''
     !> The bounds of a number: `low` and `high` are allowed, `above` and `below` are not.
     real(wp) :: low = -huge(1.0_wp), high = huge(1.0_wp), above = -huge(1.0_wp), &
@@ -113,7 +114,8 @@ contains
     end if
   end function default_text
 
-  !> The table as text: a line `&group` for each group, then two lines for each of its keys.
+  !> The table as text: lines `&group`, meaning and example for each group, then two lines for each
+  !> of its keys.
   pure function keys_text(specs) result(text)
     type(key_spec), intent(in) :: specs(:)
     character(len=:), allocatable :: text
@@ -128,6 +130,7 @@ contains
           text = text // nl // '&' // trim(spec%group) // &
             trim(merge(' (required)', '           ', spec%required)) // nl
           text = text // '    ' // trim(spec%meaning) // nl
+          if (spec%choices /= '') text = text // '    Example: ' // trim(spec%choices) // nl
         case (ignored_group)
           text = text // nl // '&' // trim(spec%group) // ' (skipped)' // nl
           text = text // '    ' // trim(spec%meaning) // nl

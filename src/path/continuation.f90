@@ -31,7 +31,7 @@ module continuation
   !> Relative error of slopes that serve only for predictions.
   real(wp), parameter :: slope_error = 1.0e-7_wp
   !> Distance between guess and state in h0 and load, and longest step, on a path whose points
-  !> define a smooth curve; small errors are foretold best from more states.
+  !> define a smooth curve; small errors are best predicted from more states.
   real(wp), parameter :: miss_of_curve = 1.0e-7_wp, step_of_curve = 0.12_wp
   integer, parameter :: states_of_curve = 4
   !> The least step for which steps are shortened so that they end on the mesh.

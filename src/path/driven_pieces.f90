@@ -1,8 +1,9 @@
-!> The pieces of the path that are stable under a drive, and the jumps from their ends.
+!> The stable branches (pieces) of the path under a drive (h0, a spring or a dead load), and the
+!> jumps from their ends.
 !>
-!> A state is stable at fixed D = a h0 - b F (`drives`) if no mode of the bodies is unstable at
+!> A state is stable at fixed Q = a h0 + b F (`drives`) if no mode of the bodies is unstable at
 !> fixed h0 and k - dF/dh0 > 0, the Schur complement of bodies and spring. On the path followed
-!> inward D decreases there.
+!> inward Q decreases there.
 module driven_pieces
   use kinds, only: wp, nan
   use interpolation, only: hermite_t
@@ -16,7 +17,7 @@ module driven_pieces
   public :: driven_pieces_t, driven_piece_t, jump_t, find_pieces, find_jumps, interval_with, &
     state_driven
 
-  !> A stable piece, from large separations inward; its ends are turning points of D, or the ends of
+  !> A stable piece, from large separations inward; its ends are turning points of Q, or the ends of
   !> the known path.
   type :: driven_piece_t
     type(path_state_t) :: first, last
@@ -41,7 +42,7 @@ module driven_pieces
 
   !> All stable pieces under a drive, from large separations inward; whole = .false.: a state was
   !> not solved, and its piece is missing. jump(k, 1), jump(k, 2): from the inner and from the
-  !> outer end of piece k, if D turns there.
+  !> outer end of piece k, if Q turns there.
   type :: driven_pieces_t
     type(drive_t) :: drive
     type(driven_piece_t), allocatable :: piece(:)
@@ -53,8 +54,8 @@ module driven_pieces
     procedure :: piece_with
   end type driven_pieces_t
 
-  !> Least relative decrease of D over a piece: where a turn is a state of the path on two meshes,
-  !> rounding leaves pieces over which D hardly decreases.
+  !> Least relative decrease of Q over a piece: where a turn is a state of the path on two meshes,
+  !> rounding leaves pieces over which Q hardly decreases.
   real(wp), parameter :: least_fall = 1.0e-9_wp
 
 contains
@@ -68,7 +69,7 @@ contains
     if (inward) end_of = self%last
   end function end_of
 
-  !> Whether D turns at the inner or outer end of a piece; otherwise the known path ends there.
+  !> Whether Q turns at the inner or outer end of a piece; otherwise the known path ends there.
   pure logical function turns(self, inward)
     class(driven_piece_t), intent(in) :: self
     logical, intent(in) :: inward
@@ -189,7 +190,7 @@ contains
     end do
   end function interval_with
 
-  !> The state of a piece at a value of D between those at the ends of the piece.
+  !> The state of a piece at a value of Q between those at the ends of the piece.
   subroutine state_driven(solver, path, drive, piece, wanted, state)
     class(solver_t), intent(inout) :: solver
     type(traced_path_t), intent(in) :: path
@@ -205,7 +206,7 @@ contains
     call state_where(solver, path, i, drive%weights, wanted, ends(1), ends(2), state)
   end subroutine state_driven
 
-  !> The jumps from all ends of pieces at which D turns.
+  !> The jumps from all ends of pieces at which Q turns.
   subroutine find_jumps(solver, path, pieces)
     class(solver_t), intent(inout) :: solver
     type(traced_path_t), intent(in) :: path

@@ -1,6 +1,6 @@
-!> Drives of the bodies. The drive is D = a h0 - b F: the position Z = h0 - F/k of the base of a
-!> spring of stiffness k (a = 1, b = 1/k), h0 itself (a = 1, b = 0), or a dead load -F (a = 0, b =
-!> 1).
+!> Drives, the controlled quantities Q = a h0 + b F: the position z = h0 - F/k of the base of a
+!> spring of stiffness k (a = 1, b = -1/k), h0 itself (a = 1, b = 0), or a dead load -F (a = 0, b =
+!> -1).
 module drives
   use kinds, only: wp
   use quadrature, only: gauss_legendre
@@ -11,7 +11,7 @@ module drives
   private
   public :: drive_t, through_spring
 
-  !> Weights of h0 and load in D (`path_tangent`).
+  !> Weights of h0 and load in Q (`path_tangent`).
   type :: drive_t
     real(wp) :: weights(2) = [1.0_wp, 0.0_wp]
   contains
@@ -37,7 +37,7 @@ contains
     end if
   end function through_spring
 
-  !> D at a state.
+  !> Q at a state.
   elemental real(wp) function position(self, state)
     class(drive_t), intent(in) :: self
     class(path_state_t), intent(in) :: state
@@ -45,9 +45,9 @@ contains
     position = self%weights(1)*state%h0 + self%weights(2)*state%load
   end function position
 
-  !> Energy of bodies and spring, or of bodies and dead load. At fixed D equilibria are stationary
-  !> points of this energy; a jump dissipates the difference. The derivative by D is minus the
-  !> conjugate of D.
+  !> Energy of bodies and spring, or of bodies and dead load. At fixed Q equilibria are stationary
+  !> points of this energy; a jump dissipates the difference. The derivative by Q is minus the
+  !> conjugate of Q.
   elemental real(wp) function energy(self, state)
     class(drive_t), intent(in) :: self
     class(path_state_t), intent(in) :: state
@@ -59,7 +59,7 @@ contains
     end if
   end function energy
 
-  !> The integral of the conjugate of D (the load; for a dead load h0) over D from one place to
+  !> The integral of the conjugate of Q (the load; for a dead load h0) over Q from one place to
   !> another place farther in.
   pure real(wp) function work_between(self, path, from, to) result(work)
     class(drive_t), intent(in) :: self

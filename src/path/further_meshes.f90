@@ -1,8 +1,8 @@
 !> Meshes that are inserted while the path is traced. A new mesh about the axis begins where the
 !> present one misses too much of the load, unless meshes are locked to the front of a step. Under a
-!> law with several minima of its energy, bodies may be in contact in an outer minimum before the
-!> contact proper. Such a contact has an edge of its own: there the tension outside the minimum is
-!> largest. While this edge moves faster than the axis, meshes are locked to it.
+!> law with several minima of its energy there is metastable contact in a secondary minimum. Its
+!> edge is where the tension outside the minimum is largest. While this edge moves faster than the
+!> axis, meshes are locked to it.
 module further_meshes
   use kinds, only: wp
   use force_law, only: force_law_t

@@ -1,8 +1,8 @@
 !> Refinement of meshes under laws and shapes with lengths of their own. A mesh is laid out for
 !> predicted gaps; the computed gaps are known once the path has reached the end of the mesh. If the
-!> nodes miss too much of the pressure of these gaps, the mesh is laid out anew for the seen gaps,
-!> and the path is traced again from its entry into that mesh. Gaps are smoother than pressures, so
-!> the gaps on a mesh that is too coarse are accurate enough to lay out a finer one.
+!> nodes miss too much of the pressure of these gaps, the mesh is laid out anew for the computed
+!> gaps, and the path is traced again from its entry into that mesh. Gaps are smoother than
+!> pressures, so the gaps on a mesh that is too coarse are accurate enough to lay out a finer one.
 module mending
   use kinds, only: wp
   use force_law, only: force_law_t

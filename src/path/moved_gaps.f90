@@ -1,5 +1,5 @@
-!> Gaps of neighbouring states of the path that move with an edge, foretold at constant distance
-!> from it, where they are smooth functions of the coordinate while the edge passes many nodes.
+!> Predictor in coordinates attached to the contact edge: at a constant distance from the edge, gaps
+!> are smooth functions of the path's coordinate while the edge passes many nodes.
 module moved_gaps
   use kinds, only: wp
   use shape, only: shape_t

@@ -1,5 +1,5 @@
-!> The mesh after that of an arc of the path: the radius that a state has on it, and its layout for
-!> the gaps with which the path comes to it.
+!> Construction of the next mesh of a path from its latest states: the radius of a state on it, and
+!> its layout for the gaps of these states.
 module next_mesh
   use kinds, only: wp
   use contact_scales, only: smallest_feature

@@ -1,8 +1,8 @@
 !> The coordinate s of the equilibrium path, in which the path has no folds and which increases
 !> inward. On meshes about the axis s is minus the logarithm of the gap on the axis, less nine
-!> tenths of the gap at rest; within the gap at rest, to which flat faces may be pressed, it goes on
-!> with the same slope and curvature, and far within it changes in proportion to the gap. On other
-!> meshes it is the logarithm of the radius of the edge or front to which they are locked
+!> tenths of the equilibrium separation; at smaller gaps, to which flat faces may be pressed, it
+!> goes on with the same slope and curvature, and far within it changes in proportion to the gap. On
+!> other meshes it is the logarithm of the radius of the edge or front to which they are locked
 !> (`mesh_plan`).
 module path_coordinate
   use kinds, only: wp

@@ -1,5 +1,5 @@
-!> Where a path ends: what is read from it decides how far it goes; it is given up where the contact
-!> is larger than any, and has no further states where bodies collapse.
+!> Stopping criteria of the continuation: the requested range is reached, the contact radius exceeds
+!> its limit, or the bodies collapse.
 !>
 !> A path for a contact at a given h0 ends there in the innermost stable state, within all barriers.
 !> Soft bodies may already be in contact outside a barrier: they repel each other at gaps beyond the
@@ -22,8 +22,8 @@ module path_end
   public :: demand_t, touches, outer_end, astray, collapsed
 
   !> What is read from a path: undeformed bodies fill the range from h0 = `farthest` to its start,
-  !> and at its end D = by_h0*h0 - by_load*load is at most `until`, for each element. If `closes`,
-  !> the bodies are also in contact within all barriers, and D is below all its earlier values, so
+  !> and at its end Q = by_h0*h0 - by_load*load is at most `until`, for each element. If `closes`,
+  !> the bodies are also in contact within all barriers, and Q is below all its earlier values, so
   !> that bodies that jump anywhere on the path land on it.
   type :: demand_t
     real(wp) :: farthest = 0
@@ -37,7 +37,7 @@ module path_end
   !> approach deform the bodies. (Where meshes are locked to the edge of an outer contact is a
   !> question of cost: `further_meshes`.)
   real(wp), parameter :: resting = 0.1_wp
-  !> Parts of an interval of the path at whose ends D is evaluated.
+  !> Parts of an interval of the path at whose ends Q is evaluated.
   integer, parameter :: looks = 4
   !> Contact radius, over the largest expected, that no path reaches.
   real(wp), parameter :: too_large = 5

@@ -5,7 +5,7 @@
 !> sense of turning in the plane of h0 and load (Maddocks, Arch. Rational Mech. Anal. 99, 1987):
 !> with primes for derivatives along the path, an eigenvalue of the operator increases through zero
 !> where h0'' F' > 0. At large separations no eigenvalue is negative. Alternating signs would be
-!> wrong: of the two folds after the jump into contact at large sigma, the first makes a second mode
+!> wrong: of the two folds after snap-in at large sigma, the first makes a second mode
 !> unstable.
 module path_growth
   use kinds, only: wp

@@ -18,7 +18,7 @@ module path_tangent
   private
   public :: tangent_t, tangent_along, of_h0, of_load
 
-  !> Weights of h0 and load in a combination D = weights(1) h0 + weights(2) load: h0 itself, the
+  !> Weights of h0 and load in a combination Q = weights(1) h0 + weights(2) load: h0 itself, the
   !> load, or the position of a spring's base (`driven_pieces`).
   real(wp), parameter :: of_h0(2) = [1, 0], of_load(2) = [0, 1]
 

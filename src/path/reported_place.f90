@@ -1,5 +1,5 @@
 !> Places at which numbers are reported, and the quantities there. A place is an equilibrium and its
-!> definition: D = drive(1) h0 + drive(2) load turns there along the path, or has a given value. The
+!> definition: Q = drive(1) h0 + drive(2) load turns there along the path, or has a given value. The
 !> module that finds the place sets its definition, and `located_places` the values.
 module reported_place
   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
@@ -35,9 +35,9 @@ module reported_place
     !> The equilibrium and its mesh; mesh 0: undeformed bodies.
     integer :: mesh = nowhere
     type(state_t) :: state
-    !> The weights of h0 and load in D; turn_of: the weights in the combination that turns here
-    !> along the path, which is D or h0, or zeros; after: the place in the table at which the jump
-    !> started that ended here at the same D.
+    !> The weights of h0 and load in Q; turn_of: the weights in the combination that turns here
+    !> along the path, which is Q or h0, or zeros; after: the place in the table at which the jump
+    !> started that ended here at the same Q.
     real(wp) :: drive(2) = [1.0_wp, 0.0_wp], turn_of(2) = 0
     integer :: after = 0
     !> Values at the place, and what the iteration and rounding leave of them as an error; both are
@@ -101,7 +101,7 @@ contains
     if (present(landing)) place%landing = landing
   end function point_of_path
 
-  !> A state of the path as a place whose D has the given weights.
+  !> A state of the path as a place whose Q has the given weights.
   pure type(place_t) function place_on_curve(state, weights) result(place)
     type(path_state_t), intent(in) :: state
     real(wp), intent(in) :: weights(2)
@@ -143,7 +143,7 @@ contains
 
     associate (value => self%at)
       all(:read_of_states) = value
-      ! At fixed D equilibria are stationary points of the energy of bodies and spring, or of that
+      ! At fixed Q equilibria are stationary points of the energy of bodies and spring, or of that
       ! of bodies and dead load.
       if (self%drive(1) > 0) then
         all(of_energy) = value(of_energy) - 0.5_wp*self%drive(2)*value(of_load)**2

@@ -62,20 +62,38 @@ contains
       words = with_unit(summary%number(key), summary%error_of(row_of(key), 1), unit)
     end function of
 
-    !> How far the nearest theory is off.
+    !> How far the nearest theory is off; each of them, if not all are known.
     subroutine compare()
       real(wp) :: off(size(keys))
+      character(len=:), allocatable :: each
       integer :: i
 
       off = [(summary%number(trim(keys(i)))/summary%number('max_tension') - 1, i=1, size(keys))]
       ! The theories are for bodies without memory, and without a fluid; states that are no
       ! equilibria are near to none.
       if (summary%has('time_steps') .or. .not. summary%is_true('converged')) return
-      if (all(ieee_is_nan(off))) return
-      i = minloc(abs(off), 1, mask=.not. ieee_is_nan(off))
-      call add('the nearest theory, ' // trim(names(i)) // ', has a pull-off force ' // &
-        rounded(100*abs(off(i))) // ' % ' // trim(merge('larger ', 'smaller', off(i) > 0)))
+      if (.not. any(ieee_is_nan(off))) then
+        i = minloc(abs(off), 1)
+        call add('the nearest theory, ' // trim(names(i)) // ', has a pull-off force ' // &
+          difference(off(i)))
+        return
+      end if
+      each = ''
+      do i = 1, size(keys)
+        if (ieee_is_nan(off(i))) cycle
+        if (each /= '') each = each // ', '
+        each = each // 'by ' // trim(names(i)) // ' theory ' // difference(off(i))
+      end do
+      if (each /= '') call add('pull-off force ' // each)
     end subroutine compare
+
+    !> A relative difference in words.
+    function difference(off) result(words)
+      real(wp), intent(in) :: off
+      character(len=:), allocatable :: words
+
+      words = rounded(100*abs(off)) // ' % ' // trim(merge('larger ', 'smaller', off > 0))
+    end function difference
 
   end function findings_of
 

@@ -1,6 +1,6 @@
 !> A fit in words, for the terminal.
 module fit_words
-  use kinds, only: wp
+  use kinds, only: wp, nan
   use units, only: with_unit
   use text, only: brief, rounded, rounded_to, counted
   use namelist_writer, only: line_t
@@ -26,7 +26,8 @@ contains
     allocate (lines(0))
     associate (curve => outcome%curve)
       line%text = counted(size(curve%data%sample), 'sample') // ', noise ' // &
-        rounded(curve%data%noise%deviation) // ', correlation of neighbours ' // &
+        with_unit(curve%data%noise%deviation, nan, trim(curve%data%measured%signal_in)) // &
+        ', correlation of neighbours ' // &
         rounded(curve%data%noise%correlation(1)) // ', ' // counted(count( &
         curve%data%measured%outlier()), 'outlier') // ' left out'
       lines = [lines, line]

@@ -58,7 +58,7 @@ contains
         call set('surface_energy', surface_energy(problem))
         call take_pull_offs()
       end if
-      ! Without a work of adhesion or a gap at rest, adhesion is only a scale of the law.
+      ! Without a work of adhesion or an equilibrium separation, adhesion is a scale of the law.
       if (.not. problem%rigid .and. (problem%law%work > 0 .or. problem%law%rest_gap > 0)) then
         call set('sigma', adhesion_strength(problem))
         if (problem%shape%exponent > 0) call set('tabor', tabor_parameter(problem))
@@ -66,8 +66,10 @@ contains
     else if (problem%law%coupling_name /= '' .and. .not. problem%rigid) then
       call set(trim(problem%law%coupling_name), problem%coupling)
     end if
-    if (.not. problem%rigid .and. problem%body%is_homogeneous()) &
+    if (.not. problem%rigid .and. problem%body%is_homogeneous()) then
       call set('reduced_modulus', 0.5_wp*problem%stiffness)
+      call set('plane_strain_modulus', problem%stiffness)
+    end if
     select type (body => problem%body)
     type is (layered_body_t)
       ! The top layer has the modulus for short waves, the base that for long waves.

@@ -99,7 +99,7 @@ module result_tables
     'load [N] negative: tension', &
     'contact_radius [m] ' // in_contact, &
     'stiffness [N/m] derivative of load by indentation; NaN at the start of a jump', &
-    'indentation_jkr [] over (pi^2 w^2 R/K^2)^(1/3), w surface energy, K = 4/3 E*', &
+    'indentation_jkr [] over (pi^2 w^2 R/K^2)^(1/3), w work of adhesion, K = 4/3 E*', &
     'load_jkr [] over pi w R', &
     'contact_radius_jkr [] over (pi w R^2/K)^(1/3)', &
     'stiffness_jkr [] derivative of load_jkr by indentation_jkr', &

@@ -35,7 +35,8 @@ contains
     type(key_spec), allocatable :: specs(:)
 
     specs = [ &
-      key_spec('scene', meaning='Name of the calculation.'), &
+      key_spec('scene', meaning='Name of the calculation.', &
+        choices='&scene title = ''Silica probe on a polymer'' /'), &
       key_spec('scene', 'title', text_value, 'Title, repeated in all files of results.', most=200, &
         otherwise='none'), &
       keys_of_model(), &
@@ -43,12 +44,14 @@ contains
       path_keys, &
       sensitivity_keys, &
       key_spec('regime', meaning='Which theory of contact describes the scene: parameters, ' // &
-        'and errors against the path; needs &equilibrium_path.'), &
+        'and errors against the path; needs &equilibrium_path.', &
+        choices='&regime /'), &
       rate_keys, &
       profiles_keys, &
       theory_keys(), &
       key_spec('stability', meaning='Stability of every equilibrium, by criterion and by ' // &
-        'smallest eigenvalue; needs &loading or &equilibrium_path.'), &
+        'smallest eigenvalue; needs &loading or &equilibrium_path.', &
+        choices='&stability /'), &
       measurement_keys, &
       fit_keys, &
       sweep_keys, &

@@ -19,20 +19,22 @@ contains
     type(key_spec), allocatable :: specs(:)
 
     specs = [ &
-      range_keys('approximations', 'Closed-form approximations for slow deformation.'), &
+      range_keys('approximations', 'Closed-form approximations for slow deformation.', &
+        '&approximations h0_start = 10e-9, h0_end = 3e-9 /'), &
       range_keys('classical', 'Hertz, JKR, DMT and Maugis-Dugdale beside the curve; Hertz ' // &
-        'and JKR for the shape that &shape gives.'), &
+        'and JKR for the shape that &shape gives.', &
+        '&classical theories = ''hertz'', ''jkr'', ''dmt'' /'), &
       key_spec('classical', 'theories', names_value, 'The theories to show, of ' // all_names() // &
         '.', most=size(theories), otherwise='hertz, jkr, dmt and maugis_dugdale')]
   end function theory_keys
 
   !> The rows of one of these groups.
-  pure function range_keys(name, meaning) result(specs)
-    character(len=*), intent(in) :: name, meaning
+  pure function range_keys(name, meaning, example) result(specs)
+    character(len=*), intent(in) :: name, meaning, example
     type(key_spec) :: specs(4)
 
     specs = [ &
-      key_spec(name, meaning=meaning), &
+      key_spec(name, meaning=meaning, choices=example), &
       key_spec(name, 'h0_start', real_value, 'Upper end of the range of h0.', 'm', &
         otherwise='as in &loading or &equilibrium_path'), &
       key_spec(name, 'h0_end', real_value, 'Lower end of the range of h0.', 'm', &

@@ -282,9 +282,12 @@ def test_sensitivity_and_spring_are_found_with_what_is_known_of_them(exact):
     assert found["standard_error"][3] <= 0.01
     sensitivity = fit_deck(LENNARD_JONES, exact("lennard_jones"),
                            [STRENGTH, POINT, "measurement.sensitivity"], FINE,
-                           {"sensitivity": 1.1 / SPRING}, numerics={"accuracy": 1e-8})
-    assert values_of(run(sensitivity))["measurement.sensitivity"] == pytest.approx(
-        1 / SPRING, rel=1e-6)
+                           {"sensitivity": 1.1 / SPRING, "units": ["m", "N"]},
+                           numerics={"accuracy": 1e-8})
+    found = run(sensitivity)
+    assert values_of(found)["measurement.sensitivity"] == pytest.approx(1 / SPRING, rel=1e-6)
+    # The signal is a force: the unit was m/V.
+    assert found.fitted["fit"]["units"][2] == "m/N"
 
 
 @pytest.mark.slow

@@ -24,6 +24,7 @@ def test_present_and_former_names_mean_the_same():
              for key in ("surface_energy", "work_of_adhesion")]
     assert present.summary["device_jump_in_z"] == former.summary["device_jump_in_z"]
     assert reduced.summary["reduced_modulus"] == former.summary["reduced_modulus"] == 5e9
+    assert reduced.summary["plane_strain_modulus"] == 1e10
     for a, b in ((present, former), (present, reduced), morse):
         assert np.array_equal(a.curve["load"], b.curve["load"])
 

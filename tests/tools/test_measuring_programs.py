@@ -78,7 +78,7 @@ def test_the_tables_of_methods_are_made_of_their_measurements(bench):
 
     rows, cycles = (tables.read(ROOT / "docs/bench" / name)
                     for name in ("methods.csv", "methods_cycles.csv"))
-    page = (ROOT / "docs/methods.md").read_text(encoding="utf-8")
+    page = (ROOT / "docs/records/ladder.md").read_text(encoding="utf-8")
     assert pages.replaced(page, "methods", methods_page.lines(rows, cycles)) == page
 
 

@@ -258,7 +258,7 @@ def test_a_drive_has_its_own_branches_and_units(tmp_path):
                "&numerics accuracy = 1e-3 /", out=tmp_path)
     figure = draw_force_curve(tmp_path)
     (legend,) = figure.legends
-    assert [text.get_text() for text in legend.get_texts()] == ["approach", "retreat"]
+    assert [text.get_text() for text in legend.get_texts()] == ["approach", "retract"]
     assert [axes.get_xlabel()[-5:] for axes in figure.axes] == [" [pm]", " [µm]"]
 
 
@@ -321,3 +321,23 @@ def test_a_curve_that_ends_before_its_pull_off_has_a_mark(tmp_path):
         figure = draw_force_curve(tmp_path / str(marked))
         texts = [text.get_text() for text in figure.legends[0].get_texts()]
         assert any("no pull-off" in text for text in texts) == marked
+
+
+def test_theories_touch_at_the_equilibrium_separation(tmp_path):
+    """Only those for the Lennard-Jones law did: others had its length added twice."""
+    for name, groups in (("lennard_jones", FORCE), (
+            "morse", "&morse work_of_adhesion = 8e-4, z0 = 2e-9, decay_length = 4e-10 /\n")):
+        snapin.run(BODIES + groups + "&equilibrium_path h0_end = -2e-9 /\n&classical /\n",
+                   out=tmp_path / name)
+        curve = Curve(tmp_path / name)
+        hertz = curve.theories["theory"] == "hertz"
+        touching = np.argmax(curve.theories["h0"][hertz])
+        assert curve.theories["load"][hertz][touching] < 1e-2*curve.theories["load"].max()
+        step = abs(np.diff(curve.theories["h0"][hertz])).max()
+        assert abs(curve.theories["h0"][hertz][touching] - curve.summary["rest_gap"]) <= step
+
+
+def test_theories_of_layers_are_drawn(tmp_path):
+    snapin.run((ROOT / "inputs/examples/layers.nml").read_text(), out=tmp_path)
+    names = {text.get_text() for text in draw_force_curve(tmp_path).legends[0].get_texts()}
+    assert {"Hertz, layers", "JKR, layers"} <= names

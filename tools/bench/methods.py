@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """The ladder of methods: what each iteration needs for a step of h0, and where it stops working.
 
-    tools/bench/methods.py          ten minutes; docs/bench/methods.*, the table of docs/methods.md
+    tools/bench/methods.py          ten minutes; docs/bench/methods.*, the table of docs/records/ladder.md
     tools/bench/methods.py --draw   picture and table again, from the present measurements
 
 Each state is solved from the state a tenth of a length before, at constant separation, as a step of
@@ -33,7 +33,7 @@ warnings.simplefilter("ignore", snapin.SnapinWarning)
 
 TABLE, CYCLES, PICTURE = (TOP / "docs" / "bench" / name for name in (
     "methods.csv", "methods_cycles.csv", "methods.png"))
-GUIDE = TOP / "docs" / "methods.md"
+GUIDE = TOP / "docs" / "records" / "ladder.md"
 
 SIGMAS = (0.0087, 0.087, 0.3, 0.87, 8.7, 100.0, 1000.0)
 LAMBDAS = (1.0, 1e2, 1e4)

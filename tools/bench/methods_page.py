@@ -19,7 +19,7 @@ _CYCLES = {"mixing": 0, "anderson_mixing, depth 5": 1, "anderson_mixing, 10": 2,
 
 
 def lines(rows, cycles):
-    """Return what stands between the marks of docs/methods.md."""
+    """Return what stands between the marks of docs/records/ladder.md."""
     return ["", *_table(rows), *_cycle_table(cycles), ""]
 
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Measures sweeps on threads and on processes, and renews the tables of docs/clusters.md.
+"""Measures sweeps on threads and on processes, and renews the tables of docs/records/clusters.md.
 
     tools/bench/ranks.py [--build build-openmpi] [--mpirun "mpirun.openmpi --oversubscribe"]
 
@@ -22,7 +22,7 @@ sys.path.append(str(ROOT / "tools"))
 
 import pages  # noqa: E402 (found through the line above)
 
-PAGE = ROOT / "docs/clusters.md"
+PAGE = ROOT / "docs/records/clusters.md"
 DECK = """&bodies radius = 1e-6, stiffness = 1e10 /
 &force law = 'lennard_jones', hamaker = 1e-19, z0 = 3e-10 /
 &equilibrium_path h0_end = -1e-9 /

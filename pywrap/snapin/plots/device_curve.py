@@ -1,4 +1,4 @@
-"""Load against the position of the drive, behind each spring, from a deck with &device.
+"""Load against the position of the base, behind each spring, from a deck with &device.
 
     snapin-plot device results/device
 """
@@ -9,10 +9,8 @@ from matplotlib.lines import Line2D
 
 from ..results import ResultFiles, ResultsError
 from .drawing import (
-    BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILION, Picture, arrow, dress, entitle, scale,
-    smooth, title_of)
+    COLOURS, GREY, Picture, arrow, dress, entitle, scale, smooth, title_of)
 
-_COLOURS = (BLUE, VERMILION, GREEN, PURPLE, ORANGE, SKY, BLACK)
 # Largest number of panels in a row.
 _A_ROW = 3
 
@@ -31,7 +29,7 @@ def draw_device_curve(folder):
     panels = figure.subplots(rows, columns, squeeze=False, sharey=True).ravel()
     driven = curve["load"][curve["direction"] != "path"]
     load, load_unit = scale(driven, "N")
-    for panel, stiffness, colour in zip(panels, springs, _COLOURS * len(springs)):
+    for panel, stiffness, colour in zip(panels, springs, COLOURS * len(springs)):
         _draw_spring(panel, stiffness, colour, curve, jumps, load, load_unit)
         if not panel.get_subplotspec().is_first_col():
             panel.set_ylabel("")
@@ -44,22 +42,23 @@ def draw_device_curve(folder):
         panels[0].set_ylim(1.15 * deepest, highest - 0.05 * deepest)
     entitle(figure, title_of(folder, summary))
     figure.legend(handles=[
-        Line2D([], [], color=GREY, linewidth=2.6, alpha=0.55, label="retreat"),
+        Line2D([], [], color=GREY, linewidth=2.6, alpha=0.55, label="retract"),
         Line2D([], [], color=GREY, linewidth=1.4, label="approach"),
         Line2D([], [], color=GREY, linewidth=0.7, linestyle=(0, (3, 2)), label="unstable"),
-        Line2D([], [], color=GREY, linewidth=1.0, linestyle=(0, (1, 1)), marker=">", label="jump"),
+        Line2D([], [], color=GREY, linewidth=1.0, linestyle=(0, (1, 1)), marker=">",
+               label="snap-in, snap-off"),
     ], loc="outside lower center", ncols=4, frameon=False)
     return figure
 
 
 def _draw_spring(panel, stiffness, colour, curve, jumps, load, load_unit):
-    """Draw approach and retreat behind one spring, and the path that the jumps leave out."""
+    """Draw approach and retract behind one spring, and the path that the jumps leave out."""
     own = curve["stiffness"] == stiffness
     # A dead load has no position: the load is driven.
     x = "h0" if stiffness == 0 else "z"
     driven = own & (curve["direction"] != "path")
     length, length_unit = scale(curve[x][driven], "m")
-    name = "$h_0$" if stiffness == 0 else "position of the drive $z$"
+    name = "approach $h_0$" if stiffness == 0 else "position of the base $z$"
     dress(panel, f"{name} [{length_unit}]", f"load [{load_unit}]")
     panel.set_title(_name_of(stiffness), color=colour, fontsize="medium")
     path = own & (curve["direction"] == "path")
@@ -102,5 +101,5 @@ def _name_of(stiffness):
 
 PICTURE = Picture(
     "device", draw_device_curve, "device_curve.png",
-    "Draw load against the position of the drive, from a folder of results with &device.",
+    "Draw load against the position of the base, from a folder of results with &device.",
     lambda files: "device.csv" in files.texts)

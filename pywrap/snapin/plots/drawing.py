@@ -17,6 +17,8 @@ from ..results import ResultFiles, ResultsError
 # Okabe and Ito's colours, which colour-blind readers can distinguish.
 BLACK, ORANGE, SKY, GREEN = "#000000", "#E69F00", "#56B4E9", "#009E73"
 BLUE, VERMILION, PURPLE, GREY = "#0072B2", "#D55E00", "#CC79A7", "#999999"
+#: The order in which curves of one kind have them.
+COLOURS = (BLUE, VERMILION, GREEN, ORANGE, PURPLE, SKY, BLACK)
 
 _PREFIXES = ((1e-12, "p"), (1e-9, "n"), (1e-6, "µ"), (1e-3, "m"), (1.0, ""), (1e3, "k"),
              (1e6, "M"), (1e9, "G"))
@@ -108,6 +110,12 @@ def dress(axes, x_name, y_name):
     axes.set_xlabel(x_name)
     axes.set_ylabel(y_name)
     axes.axhline(0, color=GREY, linewidth=0.6, zorder=0)
+    axes.spines[["top", "right"]].set_visible(False)
+
+
+def plain(axes):
+    """Give a panel of any curves the colours of all pictures, and a frame on two sides."""
+    axes.set_prop_cycle(color=COLOURS)
     axes.spines[["top", "right"]].set_visible(False)
 
 

@@ -14,24 +14,28 @@ from .drawing import (
     smooth, title_of)
 
 # Unloadings often coincide with each other and with the loading: later curves are thinner.
-_LOADING = {"color": BLUE, "linewidth": 1.5, "zorder": 5}
+_LOADING = {"color": BLUE, "linewidth": 2.6, "zorder": 5}
 _UNLOADING = (ORANGE, SKY, PURPLE, GREEN, VERMILION)
-_WIDEST, _THINNEST = 5.0, 2.2
+_WIDEST, _THINNEST = 6.5, 4.0
 # A drive in time; its branches differ from each other.
-_DRIVE = {"approach": _LOADING, "dwell": {"color": GREEN, "linewidth": 1.5, "zorder": 5},
-          "retreat": {"color": ORANGE, "linewidth": 1.5, "zorder": 4}}
-_PATH = {"color": BLACK, "linewidth": 1.1, "zorder": 6}
+_DRIVE = {"approach": ("approach", {"color": BLUE, "linewidth": 1.5, "zorder": 5}),
+          "dwell": ("dwell", {"color": GREEN, "linewidth": 1.5, "zorder": 5}),
+          "retreat": ("retract", {"color": ORANGE, "linewidth": 1.5, "zorder": 4})}
+_PATH = {"color": BLACK, "linewidth": 0.9, "zorder": 6}
 _THEORIES = {
     "hertz": ("Hertz", {"color": GREY, "linestyle": (0, (1, 1.5))}),
     "jkr": ("JKR", {"color": VERMILION, "linestyle": (0, (6, 2))}),
     "dmt": ("DMT", {"color": GREEN, "linestyle": (0, (6, 2, 1, 2))}),
     "maugis_dugdale": (
         "Maugis-Dugdale", {"color": PURPLE, "linestyle": (0, (6, 1.5, 1, 1.5, 1, 1.5))}),
+    "hertz_layered": ("Hertz, layers", {"color": GREY, "linestyle": (0, (1, 1.5))}),
+    "jkr_layered": ("JKR, layers", {"color": VERMILION, "linestyle": (0, (6, 2))}),
 }
 # The abscissas.
-NAMES = {"displacement": "displacement $h(0) - h_0$", "h0": "$h_0$"}
-# In the theories bodies touch at separation 0, in the program at the gap at rest.
-_OF_THEORIES = "$h_0$; of theories $h_0$ + gap at rest"
+NAMES = {"displacement": "displacement $h(0) - h_0$", "h0": "approach $h_0$"}
+# A drive whose separations on the axis span a larger ratio is drawn over their logarithm.
+_DECADES = 300.0
+_SEPARATION = "separation on the axis $h(0)$"
 # A piece of curve shorter than this [points] gets no arrow for its direction.
 _LONG_ENOUGH = 45
 _MOST_COLUMNS = 6
@@ -67,8 +71,14 @@ class Curve:
         self.theories = None
         if "classical.csv" in files.texts:
             self.theories = files.table("classical.csv")
+            # Bodies in contact have the equilibrium separation here; the rows count from elsewhere.
             rest = self.summary.get("rest_gap", 0.0)
-            self.theories = dict(self.theories, h0=self.theories["h0"] + rest)
+            self.theories = dict(self.theories, h0=rest - self.theories["displacement"])
+        gaps = self.table["h0"] + self.table["displacement"]
+        self.logarithmic = (self.table["branch"][0] in _DRIVE and gaps.min() > 0
+                            and gaps.max() > _DECADES*gaps.min())
+        if self.logarithmic:
+            self.table = dict(self.table, h0=gaps)
         self.lengths = {x: scale(self.table[x], "m") for x in NAMES}
         self.loads = scale(self.table["load"], "N")
         self.branches = [_Branch(name, self.table, self.summary)
@@ -77,7 +87,7 @@ class Curve:
     def draw(self, panel, x):
         """Draw the curve without arrows."""
         length, load = self.lengths[x][0], self.loads[0]
-        name = _OF_THEORIES if x == "h0" and self.theories else NAMES[x]
+        name = _SEPARATION if x == "h0" and self.logarithmic else NAMES[x]
         dress(panel, f"{name} [{self.lengths[x][1]}]", f"load [{self.loads[1]}]")
         for branch in self.branches:
             branch.draw(panel, x, length, load)
@@ -85,6 +95,9 @@ class Curve:
         if self.theories:
             _draw_theories(panel, self.theories, x, length, load)
         _frame(panel, self.table, self.theories, x, length, load)
+        if x == "h0" and self.logarithmic:
+            panel.set(xscale="log", xlim=np.array([0.8, 1.25])*[
+                self.table[x].min()/length, self.table[x].max()/length])
 
     def _draw_open_end(self, panel, x, length, load):
         """Mark the largest tension where it is that of a first or last row, and no pull-off."""
@@ -111,7 +124,7 @@ class _Branch:
         self.jumps = []
         self.pieces = [self.rows]
         if name in _DRIVE:
-            self.style, self.label = _DRIVE[name], name
+            self.label, self.style = _DRIVE[name]
         elif name != "path":
             self._split(*self._jump_of(summary))
             count = np.size(summary.get("unload_from", []))

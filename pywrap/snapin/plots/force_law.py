@@ -114,9 +114,9 @@ class Law:
         factor, short = scale([highest], UNITS[quantity])
         dress(panel, f"separation $h$ [{self.lengths[1]}]", f"{quantity} [{short}]")
         for label, style, deck in others:
-            alone = getattr(snapin.force_law(deck, self.gap), quantity)
+            gap, alone = _values(deck, quantity, self.gap)
             alone = np.where(abs(alone) < _BEYOND * highest, alone, np.nan)
-            panel.plot(self.gap / self.lengths[0], alone / factor, label=label, **style)
+            panel.plot(gap / self.lengths[0], alone / factor, label=label, **style)
         panel.plot(self.gap / self.lengths[0], values / factor, color=BLUE, linewidth=1.6,
                    label="sum" if others else None)
         if self.gap[0] > 0 and self.gap[-1] > _WIDE * self.gap[0]:
@@ -126,6 +126,14 @@ class Law:
         for mark in self.marks:
             panel.plot(mark.gap / self.lengths[0], getattr(mark, quantity) / factor, "o",
                        color=mark.colour, markersize=6, label=mark.name, zorder=5)
+
+
+def _values(deck, quantity, gap):
+    """Return separations at which a law has values, and these: laws of powers have none at 0."""
+    try:
+        return gap, getattr(snapin.force_law(deck, gap), quantity)
+    except ValueError:
+        return gap[gap > 0], getattr(snapin.force_law(deck, gap[gap > 0]), quantity)
 
 
 def _separations(deck, numbers):
@@ -158,10 +166,10 @@ class _Mark:
 
 
 def _marks(deck, numbers, gap, values):
-    """Return the marks: rest, largest tension, and outside them the barrier and the outer well."""
+    """Return the marks: equilibrium, largest tension, and outside them barrier and outer well."""
     marks = [
         _Mark(name, colour, at, deck)
-        for name, colour, at in (("rest", BLACK, numbers.rest_gap),
+        for name, colour, at in (("equilibrium", BLACK, numbers.rest_gap),
                                  ("largest tension", ORANGE, numbers.edge_gap))
         if math.isfinite(at)
     ]
@@ -179,7 +187,7 @@ def _marks(deck, numbers, gap, values):
         marks.append(_Mark("barrier", PURPLE, gap[top], deck))
     if wells:
         well = min(wells, key=lambda i: values.energy[i])
-        marks.append(_Mark("outer well", GREEN, gap[well], deck))
+        marks.append(_Mark("secondary minimum", GREEN, gap[well], deck))
     return marks
 
 

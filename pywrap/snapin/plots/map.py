@@ -21,11 +21,27 @@ from matplotlib.ticker import LogLocator, MaxNLocator
 from matplotlib.tri import Triangulation
 
 from ..results import ResultFiles, ResultsError
-from .drawing import (
-    BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILION, Picture, entitle, title_of,
-    units_of)
+from .drawing import COLOURS, GREY, VERMILION, Picture, entitle, title_of, units_of
 
-_COLOURS = (BLUE, VERMILION, GREEN, ORANGE, PURPLE, SKY, BLACK)
+# The field's words for columns.
+_TERMS = {
+    "max_tension": "pull-off force", "jkr_pull_off": "JKR's pull-off force",
+    "dmt_pull_off": "DMT's pull-off force", "maugis_pull_off": "Maugis-Dugdale pull-off force",
+    "tabor": r"Tabor's parameter $\mu$", "sigma": r"strength of adhesion $\sigma$",
+    "regime_maugis_lambda": r"Maugis' parameter $\lambda$",
+    "maugis_lambda": r"Maugis' parameter $\lambda$",
+    "regime_load_number": r"load number $F/\pi w R$",
+    "regime_worst_hertz": "largest error of Hertz theory",
+    "regime_worst_jkr": "largest error of JKR theory",
+    "regime_worst_dmt": "largest error of DMT theory",
+    "regime_worst_maugis": "largest error of Maugis-Dugdale theory",
+    "jump_in_h0": "approach $h_0$ at snap-in", "jump_out_h0": "approach $h_0$ at snap-off",
+    "jump_in_load": "load at snap-in", "jump_out_load": "load at snap-off",
+    "energy_lost": "energy lost in a cycle", "rest_gap": "equilibrium separation",
+    "layer.thickness": "thickness of the layer", "double_layer.debye_length": "Debye length",
+    "bodies.radius": "radius $R$", "bodies.reduced_modulus": "reduced modulus $E^*$",
+    "bodies.stiffness": "plane-strain modulus $E'$", "force.hamaker": "Hamaker constant",
+    "force.work_of_adhesion": "work of adhesion $w$"}
 # Cases whose largest tension is that of an end of a branch.
 _NO_PULL_OFF = {"color": GREY, "marker": "o", "markersize": 4, "fillstyle": "none",
                 "linestyle": "none",
@@ -198,7 +214,7 @@ def _draw_curves(axes, x, values, good, others, *, joined, at_end):
         order = np.argsort(x[mine])
         axes.plot(x[mine][order], values[mine][order],
                   "." if not joined else ".-" if few else "-",
-                  color=_COLOURS[i] if few else colormaps["viridis"](i / (len(of_each) - 1)),
+                  color=COLOURS[i] if few else colormaps["viridis"](i / (len(of_each) - 1)),
                   label=", ".join(word if isinstance(word, str) else f"{word:.3g}" for word in one)
                   if i in named else None)
     if at_end.any():
@@ -222,7 +238,7 @@ def _label(name, units):
 
 
 def _words(name):
-    return name if "." in name else name.replace("_", " ")
+    return _TERMS.get(name, name if "." in name else name.replace("_", " "))
 
 
 def _options(parser):

@@ -53,7 +53,7 @@ def draw_profiles(folder, branch=None):
     for panel, y, name, (factor, unit) in (
             (panels[0], "separation", "separation $h$", gaps),
             (panels[1], "pressure", "pressure $p$", pressures)):
-        dress(panel, f"$r$ [{radii[1]}]", f"{name} [{unit}]")
+        dress(panel, f"distance from the axis $r$ [{radii[1]}]", f"{name} [{unit}]")
         for state in states:
             # One more point, so that lines end at the frame.
             n = np.count_nonzero(state["seen"]) + 1
@@ -65,7 +65,7 @@ def draw_profiles(folder, branch=None):
     high = max(state["separation"][state["seen"]].max() for state in states) / gaps[0]
     panels[0].set_ylim(low - 0.02 * (high - low), high)
     bar = figure.colorbar(ScalarMappable(norm, colors), ax=panels, pad=0.02,
-                          label=f"$h_0$ [{lengths[1]}]")
+                          label=f"approach $h_0$ [{lengths[1]}]")
     if values.size <= _FEW:
         # Steps of h0 that end at 0 leave a rounding error.
         shown = np.where(abs(values) < 1e-9 * span, 0, values)

@@ -15,7 +15,8 @@ module capillary
   !> The rows of &capillary.
   type(key_spec), parameter :: keys(*) = [ &
     key_spec('capillary', meaning='Capillary bridge at equilibrium. Give kelvin_radius or ' // &
-      'humidity.'), &
+      'humidity.', &
+      choices='&capillary humidity = 0.6, contact_angle = 0.5 /'), &
     key_spec('capillary', 'surface_tension', real_value, 'Surface tension of the liquid.', 'N/m', &
       above=0.0_wp, default='0.0728'), &
     key_spec('capillary', 'contact_angle', real_list, 'Contact angles of the two surfaces, or ' // &
@@ -28,7 +29,7 @@ module capillary
       above=0.0_wp, default='1.807e-5'), &
     key_spec('capillary', 'temperature', real_value, 'Temperature.', 'K', above=0.0_wp, &
       default='293.15'), &
-    key_spec('capillary', 'smoothing', real_value, 'Length over which the attraction ends.', 'm', &
+    key_spec('capillary', 'smoothing', real_value, 'Width of the smoothed step.', 'm', &
       above=0.0_wp, otherwise='0.02 of its range')]
 
 contains

@@ -13,11 +13,12 @@ module dugdale
   !> The rows of &dugdale.
   type(key_spec), parameter :: keys(*) = [ &
     key_spec('dugdale', meaning='Constant attraction up to a separation; needs a repulsion ' // &
-      'beside it.'), &
+      'beside it.', &
+      choices='&dugdale stress = 2e7, range = 1.5e-9 /'), &
     key_spec('dugdale', 'stress', real_value, 'Attraction.', 'Pa', above=0.0_wp, required=.true.), &
     key_spec('dugdale', 'range', real_value, 'Separation at which the attraction ends.', 'm', &
       above=0.0_wp, required=.true.), &
-    key_spec('dugdale', 'smoothing', real_value, 'Length over which the attraction ends.', 'm', &
+    key_spec('dugdale', 'smoothing', real_value, 'Width of the smoothed step.', 'm', &
       above=0.0_wp, otherwise='0.02 of its range')]
 
 contains

@@ -1,0 +1,65 @@
+"""Claims about the site: every page is in it, dead links are found, gallery and notebook run."""
+
+import re
+import sys
+
+import pytest
+from conftest import ROOT
+
+sys.path += [str(ROOT / "tools/site")]
+import gallery  # noqa: E402
+import lay_out  # noqa: E402
+
+SETTINGS = (ROOT / "tools/site/mkdocs.yml").read_text(encoding="utf-8")
+MADE = {"docs/notebook.md", "docs/python_api.md", "docs/calculator.html", "sources/index.html"}
+
+
+def test_the_site_has_every_page_once():
+    listed = re.findall(r"^ +- .*: (\S+\.(?:md|html))$", SETTINGS.split("\nnav:")[1], re.M)
+    assert len(set(listed)) == len(listed)
+    assert {*listed} - MADE == {page.as_posix() for page in lay_out.page_names()}
+
+
+def test_every_page_is_laid_out_with_what_it_links_to(tmp_path):
+    lay_out.lay_out(tmp_path)
+    for name in ("README.md", "docs/decks.md", "docs/first.png", "inputs/examples/dlvo.nml"):
+        assert (tmp_path / name).is_file(), name
+    text = (tmp_path / "docs/equations.md").read_text()
+    assert "(../sources/module/classical.html)" in text and ".f90)" not in text
+    # A comment above a table would be part of its paragraph.
+    assert "<!-- measured" not in (tmp_path / "docs/forces.md").read_text()
+    api = (tmp_path / "docs/python_api.md").read_text()
+    assert "::: snapin.run\n" in api and "::: snapin.read_results\n" in api
+
+
+def test_dead_links_and_what_a_network_would_bring_are_found(tmp_path):
+    (tmp_path / "a").mkdir()
+    (tmp_path / "a/b.html").write_text('<h1 id="top">B</h1><a href="../index.html">up</a>')
+    (tmp_path / "index.html").write_text(
+        '<a href="a/b.html#top">good</a><a href="a/b.html#no">no place</a><a href="c.html">no '
+        'file</a><a href="https://example.org">elsewhere</a><a href="#here">no place</a>'
+        '<script src="https://example.org/x.js"></script><img src="data:image/png;base64,AA==">')
+    assert lay_out.dead_links(tmp_path) == [
+        "index.html: a/b.html#no", "index.html: c.html", "index.html: #here",
+        "index.html: https://example.org/x.js, from a network"]
+
+
+def test_the_gallery_has_a_picture_of_every_script():
+    found = gallery.entries()
+    scripts = {path.name for path in (ROOT / "pywrap/plots").glob("*.py")}
+    shown = {command[0].rpartition("/")[2] for _, _, command in found}
+    # Those of accuracy need many runs.
+    assert scripts - {"drawing.py", "accuracy.py"} == shown
+    assert "accuracy.py" in gallery.PAGE.read_text()
+    for picture, deck, _ in found:
+        assert (ROOT / "docs" / picture).is_file() and (ROOT / deck).is_file()
+
+
+def test_the_notebook_runs_and_gives_the_numbers_of_the_deck():
+    pytest.importorskip("nbclient")
+    import notebook
+    text, pictures = notebook.page_of(notebook.executed())
+    assert "pull-off force 60.717852 µN" in text
+    assert len(re.findall(r"^ .*N/m: \d+\.\d+ fJ lost", text, re.M)) == 3
+    assert len(pictures) == 2
+    assert all(picture.startswith(b"\x89PNG") for picture in pictures.values())

@@ -1,0 +1,175 @@
+"""Lay out the pages of the site for MkDocs, and find dead links in what it builds.
+
+    lay_out.py pages FOLDER   copies pages and what they link to, as in the repository
+    lay_out.py dress FOLDER   gives the pages of FORD their style
+    lay_out.py links FOLDER   checks every link of a built site
+
+Links to sources of Fortran lead to the pages that FORD makes of them, in FOLDER/sources; these get
+a style of their own, since that of FORD comes from a network. A link to the notebook leads to its
+page.
+"""
+
+import ast
+import os
+import pathlib
+import re
+import shutil
+import sys
+import urllib.parse
+from html.parser import HTMLParser
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
+_LINK = re.compile(r"(\]\()([^)\s]+)(\))")
+_CODE = re.compile(r"(^```.*?^```)", re.S | re.M)
+
+
+def page_names():
+    """Return the pages of the repository, as paths below its top."""
+    pages = [ROOT / name for name in ("README.md", "CONTRIBUTING.md", "CHANGELOG.md")]
+    return [page.relative_to(ROOT) for page in pages + sorted((ROOT / "docs").rglob("*.md"))]
+
+
+def source_page(name):
+    """Return the page of FORD for a file of Fortran, whose module has the name of the file."""
+    return f"sources/module/{pathlib.PurePosixPath(name).stem}.html"
+
+
+def laid_out(text, page):
+    """Return the text of a page for MkDocs, and the files below the top that it links to."""
+    wanted = set()
+
+    def link(match):
+        path, hash_, anchor = match[2].partition("#")
+        if not path or re.match(r"\w+:", path):
+            return match[0]
+        name = os.path.normpath(page.parent / path)
+        if name.endswith(".f90"):
+            path = os.path.relpath(source_page(name), page.parent)
+        elif name.endswith(".ipynb"):
+            path = f"{path.removesuffix('.ipynb')}.md"
+        elif not name.endswith(".md"):
+            wanted.add(name)
+        return f"{match[1]}{path}{hash_}{anchor}{match[3]}"
+
+    parts = _CODE.split(text)
+    for number in range(0, len(parts), 2):
+        # A comment above a table would be part of its paragraph.
+        parts[number] = _LINK.sub(link, re.sub(r"^<!--.*?-->$", "", parts[number], flags=re.M))
+    return "".join(parts), wanted
+
+
+def public_names():
+    """Return the names of the Python package, from its __all__."""
+    tree = ast.parse((ROOT / "pywrap/snapin/__init__.py").read_text(encoding="utf-8"))
+    (names,) = [ast.literal_eval(node.value) for node in tree.body if isinstance(node, ast.Assign)
+                and [target.id for target in node.targets] == ["__all__"]]
+    return names
+
+
+def api_page():
+    """Return the page of the Python API: a heading for each public name, its docstring below."""
+    lines = ["# Python API", "", "Every public name of `import snapin`, with its docstring. "
+             "[python.md](python.md) introduces them by examples.", ""]
+    for name in public_names():
+        lines += [f"::: snapin.{name}", ""]
+    return "\n".join(lines)
+
+
+def lay_out(folder):
+    """Copy pages and linked files into a folder."""
+    wanted = set()
+    for page in page_names():
+        text, links = laid_out((ROOT / page).read_text(encoding="utf-8"), page)
+        wanted |= links
+        (folder / page).parent.mkdir(parents=True, exist_ok=True)
+        (folder / page).write_text(text, encoding="utf-8")
+    for name in sorted(wanted):
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        shutil.copy(ROOT / name, folder / name)
+    (folder / "docs/python_api.md").write_text(api_page(), encoding="utf-8")
+    for name in ("icon.svg", "site.css", "iframe-worker.js"):
+        shutil.copy(ROOT / "tools/site" / name, folder / "docs" / name)
+
+
+# What FORD's pages load from a network: the style and scripts of Bootstrap, and MathJax.
+_FROM_NETWORK = re.compile(
+    r"<(link|script)\b[^>]*(?:href|src)=[\"']https?://[^>]*>(?:\s*</script>)?")
+
+
+_OF_BOOTSTRAP = re.compile(
+    r"<script>(?:(?!</script>).)*bootstrap\.(?:(?!</script>).)*</script>", re.S)
+
+
+def dress(folder):
+    """Take what pages of FORD load from a network out of them, and give them a style."""
+    shutil.copy(ROOT / "tools/site/sources.css", folder / "css/sources.css")
+    for page in folder.rglob("*.html"):
+        style = os.path.relpath(folder / "css/sources.css", page.parent)
+        text = _FROM_NETWORK.sub("", page.read_text(encoding="utf-8"))
+        # Places of procedures that FORD names, and does not make.
+        text = re.sub(r"#moduleprocedure-[^\"']*", "", text)
+        text = _OF_BOOTSTRAP.sub("", text)
+        home = os.path.relpath(folder.parent / "index.html", page.parent)
+        text = re.sub(r"(<ul class=\"navbar-nav[^>]*>)", rf'\1<li><a href="{home}">Pages</a></li>',
+                      text, count=1)
+        text = text.replace("</head>", f'<link href="{style}" rel="stylesheet"></head>', 1)
+        page.write_text(text, encoding="utf-8")
+
+
+class _Page(HTMLParser):
+    """The links of a page of HTML, and the names that links may lead to."""
+
+    def __init__(self, text):
+        super().__init__()
+        self.links, self.names, self.loaded = [], set(), []
+        self.feed(text)
+
+    def handle_starttag(self, tag, attrs):
+        for key, value in attrs:
+            if key in ("id", "name") and value:
+                self.names.add(value)
+            elif key in ("href", "src") and value:
+                self.links.append(value)
+                if key == "src" or tag == "link":
+                    self.loaded.append(value)
+
+
+def dead_links(folder):
+    """Return "page: link" for every link that leads to no file or to no place in its page, and for
+    everything that a page would load from a network."""
+    folder = folder.resolve()
+    pages = {path: _Page(path.read_text(encoding="utf-8", errors="replace"))
+             for path in sorted(folder.rglob("*.html"))}
+    found = []
+    for path, page in pages.items():
+        for link in page.links:
+            parts = urllib.parse.urlsplit(link)
+            if parts.scheme or parts.netloc:
+                if link in page.loaded and parts.scheme != "data":
+                    found.append(f"{path.relative_to(folder)}: {link}, from a network")
+                continue
+            name = urllib.parse.unquote(parts.path)
+            target = (path.parent / name).resolve() if name else path
+            place = urllib.parse.unquote(parts.fragment)
+            if name.startswith("/") or not target.is_file() or (
+                    place and target in pages and place not in pages[target].names):
+                found.append(f"{path.relative_to(folder)}: {link}")
+    return found
+
+
+def main():
+    makers = {"pages": lay_out, "dress": dress}
+    if len(sys.argv) != 3 or sys.argv[1] not in (*makers, "links"):
+        sys.exit(__doc__)
+    folder = pathlib.Path(sys.argv[2])
+    if sys.argv[1] in makers:
+        makers[sys.argv[1]](folder)
+        return
+    dead = dead_links(folder)
+    for line in dead:
+        print(f"dead link in {line}", file=sys.stderr)
+    sys.exit(bool(dead))
+
+
+if __name__ == "__main__":
+    main()
