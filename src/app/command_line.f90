@@ -4,7 +4,7 @@ module command_line
   use text, only: guess, printable
   implicit none
   private
-  public :: options_t, file_t, read_command_line, stem_of, help_text, write_usage
+  public :: options_t, file_t, read_command_line, stem_of, help_text, usage
 
   !> One file name.
   type :: file_t
@@ -211,14 +211,6 @@ contains
     allocate (character(len=length) :: argument)
     call get_command_argument(i, argument)
   end function argument_at
-
-  !> Prints the one-line usage.
-  subroutine write_usage(unit)
-    integer, intent(in) :: unit
-    integer :: status
-
-    write (unit, '(2a)', iostat=status) 'usage: ', usage
-  end subroutine write_usage
 
   !> A description of the program, its options and a deck to start from.
   function help_text() result(text)
