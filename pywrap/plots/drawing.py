@@ -16,6 +16,9 @@ BLUE, VERMILION, PURPLE, GREY = "#0072B2", "#D55E00", "#CC79A7", "#999999"
 _PREFIXES = ((1e-12, "p"), (1e-9, "n"), (1e-6, "µ"), (1e-3, "m"), (1.0, ""), (1e3, "k"),
              (1e6, "M"), (1e9, "G"))
 
+# What numbers raise that no run has written, in NumPy and Matplotlib.
+_OF_DAMAGE = ArithmeticError, AttributeError, LookupError, RuntimeError, TypeError, ValueError
+
 # Cosine of the largest angle between two steps that is drawn as a bend; a larger one is a corner.
 _GENTLE = 0.5
 # Characters of a title on an inch.
@@ -134,6 +137,9 @@ def run(draw, default_name, description, add_options=lambda parser: None):
         save(figure, output, dpi)
     except (ResultsError, OSError) as problem:
         sys.exit(f"{parser.prog}: {problem}")
+    except _OF_DAMAGE as problem:
+        sys.exit(f"{parser.prog}: the results in {folder} cannot be drawn ({problem}); if they are "
+                 "damaged, run the deck again")
     print(output)
 
 

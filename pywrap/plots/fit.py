@@ -4,8 +4,6 @@
     .venv/bin/python pywrap/plots/fit.py results/fit
 """
 
-
-import f90nml
 import numpy as np
 from drawing import BLUE, GREY, SKY, VERMILION, dress, entitle, run, scale, title_of
 from matplotlib.figure import Figure
@@ -30,8 +28,8 @@ def draw_fit(folder, whole=False):
     summary, table = files.summary(), files.table("fit.csv")
     force = table["measured"] - table["baseline"]
     lengths = scale(np.ptp(table["z"]), "m")
-    fit = f90nml.reads(files.text("fit.nml"))["fit"]
-    unit = fit.get("signal_unit")
+    fit = files.fit()
+    unit = fit.get("signal_unit", [None])[0]
     signals = _scale_of_signal(force, unit)
     lefts = _scale_of_signal(table["residual"][table["used"] == 1], unit)
     z = (table["z"] - table["z"].min()) / lengths[0]
@@ -74,12 +72,12 @@ def draw_fit(folder, whole=False):
 
 def _numbers_of(fit):
     """Return lines with the fitted values and what follows from them, of a group of fit.nml."""
-    names, values, errors, units = (np.atleast_1d(fit[key]) for key in (
+    names, values, errors, units = (fit[key] for key in (
         "parameters", "estimate", "standard_error", "units"))
     rows = [(name.split(".", 1)[1].replace("_", " "), *row)
             for name, *row in zip(names, values, errors, units)]
     # A work of adhesion or a modulus that is fitted itself is there once.
-    rows += [(words, fit[key], fit[key + "_error"], unit) for key, words, unit in _DERIVED
+    rows += [(words, fit[key][0], fit[key + "_error"][0], unit) for key, words, unit in _DERIVED
              if key in fit and not np.isclose(fit[key], values, rtol=1e-9, atol=0).any()]
     return [f"{name} {_with_error(value, error, unit)}" for name, value, error, unit in rows]
 
