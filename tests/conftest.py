@@ -30,9 +30,14 @@ LIMIT = 900
 
 def pytest_addoption(parser):
     parser.addoption("--long", action="store_true", help="also run tests that take minutes")
+    parser.addoption("--program", action="store_true", help="run only tests that run the program")
 
 
 def pytest_collection_modifyitems(config, items):
+    if config.getoption("--program"):
+        others = [item for item in items if "snapin_path" not in item.fixturenames]
+        items[:] = [item for item in items if "snapin_path" in item.fixturenames]
+        config.hook.pytest_deselected(items=others)
     if config.getoption("--long"):
         return
     for item in items:

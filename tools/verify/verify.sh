@@ -5,7 +5,8 @@
 # A stage is the function below with its name. Without a stage: all stages, about two hours on two
 # cores. Ends with status 1 if one fails. EXTREMES (200) is the number of random decks, FIRST (5000)
 # the first of them, FUZZ (240) the seconds of the search, SEED (1) that of the judge's decks and of the
-# changes of the sources, MUTATIONS (15) their number.
+# changes of the sources, MUTATIONS (15) their number. ROOMS (all), such as 'path rates', are the
+# rooms of tests/ that traps and sanitize run, and DECKS (all) their decks, files or patterns.
 set -u
 here=$(dirname -- "$(readlink -f -- "$0")")
 top=$(dirname -- "$(dirname -- "$here")")
@@ -22,13 +23,38 @@ long() { tests --long; }
 
 build_traps() { builds build-traps --buildtype=debug -Dtraps=true -Dpython=disabled; }
 
-# The tests that go through the program, on a build that stops at the first invalid operation,
-# overflow, index out of bounds or use of an unset real number.
+# The quick tests that run the program, and the decks, on a build that stops at the first invalid
+# operation, overflow, index out of bounds or use of an unset real number.
 traps() {
-  build_traps || return
-  # shellcheck disable=SC2046 # a list of files is meant
-  SNAPIN=$top/build-traps/snapin "$python" -m pytest -q --long \
-    $(grep -l 'snapin' tests/*/test_*.py | grep -v 'wrapper')
+  build_traps && checked build-traps
+}
+
+# The same on a build with AddressSanitizer and UndefinedBehaviorSanitizer, which finds accesses
+# beyond arrays and to memory that was freed in Fortran and C alike, leaks, and overflowing integers.
+# Without the tests of faults and of memory that is limited, in which the sanitizer's own memory and
+# its own library would be what fails.
+sanitize() {
+  builds build-sanitize --buildtype=debug -Doptimization=1 -Db_sanitize=address,undefined \
+    -Db_lundef=false -Dpython=disabled || return
+  ASAN_OPTIONS=detect_stack_use_after_return=0:strict_string_checks=1
+  UBSAN_OPTIONS=halt_on_error=1:print_stacktrace=1
+  LSAN_OPTIONS=suppressions=$here/leaks.txt:print_suppressions=0
+  export ASAN_OPTIONS UBSAN_OPTIONS LSAN_OPTIONS
+  checked build-sanitize
+}
+
+# checked FOLDER: tests and decks on this build. A deck that says that it did not converge ends with
+# status 1, as it should.
+checked() {
+  failed_tests=0
+  # shellcheck disable=SC2086 # a list of rooms is meant
+  SNAPIN=$top/$1/snapin tests --program -m 'not slow and not long' \
+    $(for room in ${ROOMS-}; do printf 'tests/%s ' "$room"; done) || failed_tests=1
+  scratch=$(mktemp -d)
+  # shellcheck disable=SC2086 # a list of files is meant
+  OMP_NUM_THREADS=1 "$python" "$here/run_decks.py" "$top/$1/snapin" "$scratch" ${DECKS-} || failed_tests=1
+  rm -rf "$scratch"
+  return $failed_tests
 }
 
 # valgrind over tools/verify/decks: no leak, no use of memory that was not set.
@@ -124,7 +150,7 @@ fuzz() {
 pages() { "$python" "$top/tools/pages.py"; }
 
 failed=
-stages='long traps memory coverage levels extremes faults judge mutations mpi fuzz pages'
+stages='long traps sanitize memory coverage levels extremes faults judge mutations mpi fuzz pages'
 for stage in ${*:-$stages}; do
   case " $stages " in
     *" $stage "*) ;;
