@@ -21,17 +21,22 @@ _WIDEST, _THINNEST = 5.0, 2.2
 _DRIVE = {"approach": _LOADING, "dwell": {"color": GREEN, "linewidth": 1.5, "zorder": 5},
           "retreat": {"color": ORANGE, "linewidth": 1.5, "zorder": 4}}
 _PATH = {"color": BLACK, "linewidth": 1.1, "zorder": 6}
+_HERTZ = {"color": GREY, "linestyle": (0, (1, 1.5))}
+_JKR = {"color": VERMILION, "linestyle": (0, (6, 2))}
 _THEORIES = {
-    "hertz": ("Hertz", {"color": GREY, "linestyle": (0, (1, 1.5))}),
-    "jkr": ("JKR", {"color": VERMILION, "linestyle": (0, (6, 2))}),
+    "hertz": ("Hertz", _HERTZ),
+    "hertz_layered": ("Hertz, layered", _HERTZ),
+    "jkr": ("JKR", _JKR),
+    "jkr_layered": ("JKR, layered", _JKR),
     "dmt": ("DMT", {"color": GREEN, "linestyle": (0, (6, 2, 1, 2))}),
     "maugis_dugdale": (
         "Maugis-Dugdale", {"color": PURPLE, "linestyle": (0, (6, 1.5, 1, 1.5, 1, 1.5))}),
 }
 # The abscissas.
 NAMES = {"displacement": "displacement $h(0) - h_0$", "h0": "$h_0$"}
-# In the theories bodies touch at separation 0, in the program at the gap at rest.
-_OF_THEORIES = "$h_0$; of theories $h_0$ + gap at rest"
+# In the theories bodies touch where the law's force is zero or infinite, in the program at the gap
+# at rest.
+_OF_THEORIES = "$h_0$; of theories with contact at the gap at rest"
 # A piece of curve shorter than this [points] gets no arrow for its direction.
 _LONG_ENOUGH = 45
 _MOST_COLUMNS = 6
@@ -66,9 +71,7 @@ class Curve:
             raise ResultsError(f"{folder}/curve.csv has no rows")
         self.theories = None
         if "classical.csv" in files.texts:
-            self.theories = files.table("classical.csv")
-            rest = self.summary.get("rest_gap", 0.0)
-            self.theories = dict(self.theories, h0=self.theories["h0"] + rest)
+            self.theories = _at_rest(files.table("classical.csv"), self.summary.get("rest_gap"))
         self.lengths = {x: scale(self.table[x], "m") for x in NAMES}
         self.loads = scale(self.table["load"], "N")
         self.branches = [_Branch(name, self.table, self.summary)
@@ -233,6 +236,15 @@ def _parabola(x, y, at):
     return sum(
         y[i] * np.prod([(at - x[j]) / (x[i] - x[j]) for j in range(3) if j != i]) for i in range(3)
     )
+
+
+def _at_rest(theories, rest):
+    """Return the theories with contact at the gap at rest; without a rest as they are."""
+    touching = theories["h0"] + theories["displacement"]
+    touching = touching[np.isfinite(touching)].min(initial=np.inf)
+    if rest is None or not np.isfinite(touching):
+        return theories
+    return dict(theories, h0=theories["h0"] + rest - touching)
 
 
 def _draw_theories(panel, theories, x, length, load):

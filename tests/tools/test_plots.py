@@ -323,3 +323,24 @@ def test_a_curve_that_ends_before_its_pull_off_has_a_mark(tmp_path):
         figure = draw_force_curve(tmp_path / str(marked))
         texts = [text.get_text() for text in figure.legends[0].get_texts()]
         assert any("no pull-off" in text for text in texts) == marked
+
+
+@pytest.mark.parametrize("groups, theories", [
+    ("&morse work_of_adhesion = 0.05, z0 = 3e-9, decay_length = 0.5e-9 /\n", ["JKR", "DMT"]),
+    (FORCE + "&layer thickness = 1e-7, young = 1e8, poisson = 0.4 /\n", ["JKR, layered"])])
+def test_theories_have_their_contact_at_the_gap_at_rest(snapin, tmp_path, groups, theories):
+    """Those of a Morse law were 2 nm off, since their contact is not at zero; and theories of
+    layered bodies were not drawn."""
+    (tmp_path / "d.nml").write_text(
+        "&bodies radius = 1e-6, young = 1e9, poisson = 0.4 /\n" + groups
+        + "&loading h0_start = 9e-9, h0_end = -9e-9, h0_step = 3e-9 /\n"
+        "&classical /\n")
+    assert snapin("--quiet", "--into", tmp_path / "r", tmp_path / "d.nml").returncode == 0
+    drawn = Curve(tmp_path / "r")
+    jkr = np.char.startswith(drawn.theories["theory"], "jkr")
+    gap = (drawn.theories["h0"] + drawn.theories["displacement"])[jkr]
+    assert gap.size > 5
+    assert gap == pytest.approx(drawn.summary["rest_gap"], rel=1e-6)
+    _, panel = draw_force_curve(tmp_path / "r").axes
+    labels = panel.get_legend_handles_labels()[1]
+    assert {*theories} <= {*labels}
