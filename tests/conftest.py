@@ -31,14 +31,17 @@ LIMIT = 900
 def pytest_addoption(parser):
     parser.addoption("--slow", action="store_true", help="also run tests that take seconds")
     parser.addoption("--long", action="store_true", help="run all tests, also those of minutes")
+    parser.addoption("--program", action="store_true", help="run only tests that run the program")
 
 
 def pytest_collection_modifyitems(config, items):
     """Slow and long tests are left out, unless an option asks for them or a test is named."""
-    if config.getoption("--long") or any("::" in argument for argument in config.args):
-        return
     names = ["long"] if config.getoption("--slow") else ["long", "slow"]
-    left_out = [item for item in items if any(map(item.get_closest_marker, names))]
+    if config.getoption("--long") or any("::" in argument for argument in config.args):
+        names = []
+    program = config.getoption("--program")
+    left_out = [item for item in items if any(map(item.get_closest_marker, names))
+                or (program and "snapin_path" not in item.fixturenames)]
     config.hook.pytest_deselected(items=left_out)
     items[:] = [item for item in items if item not in left_out]
 

@@ -1,5 +1,8 @@
 """The reader of the results of a run."""
 
+import contextlib
+import difflib
+import itertools
 import os
 import pathlib
 import re
@@ -21,10 +24,54 @@ _TRUTHS = {".true.": True, ".false.": False}
 _UNFINISHED = "unfinished"
 # Longest time [s] for which a set of results that is being replaced is waited for, and a pause.
 _PATIENCE, _PAUSE = 5.0, 0.005
+# Rows of a table whose cells are text at a time; as text they take several times their memory.
+_AT_ONCE = 4096
 
 
 class ResultsError(SnapinError):
     """A file of results is missing or wrong; the message says which."""
+
+
+class MissingEntry(ResultsError, KeyError):
+    """Results have no entry or column of this name; the message has similar names."""
+
+    def __str__(self):
+        return self.args[0]
+
+
+class Entries(dict):
+    """Entries of a summary, or columns of a table, by name: another name is a `MissingEntry`.
+
+    `what` says in its message what the entries are; `elsewhere`: names that are there instead,
+    and where.
+    """
+
+    def __init__(self, entries, what, elsewhere=((), "")):
+        super().__init__(entries)
+        self._what, self._elsewhere = what, elsewhere
+
+    def __missing__(self, name):
+        advice = ""
+        names, place = self._elsewhere
+        for known, where in ((self, ""), (names, place)):
+            near = difflib.get_close_matches(str(name), known, 1)
+            if near:
+                advice = f"; did you mean {near[0]!r}{where}?"
+                if near[0] == name:
+                    advice = f"; it is{where}"
+                    break
+        raise MissingEntry(f"no {name!r} in {self._what}{advice}")
+
+
+@contextlib.contextmanager
+def _reading(place):
+    """Whatever text of `place` cannot be understood is a ResultsError."""
+    try:
+        yield
+    except SnapinError:
+        raise
+    except (ValueError, LookupError, TypeError, ArithmeticError) as problem:
+        raise ResultsError(f"{place} is damaged ({problem}); run the deck again") from problem
 
 
 class Result:
@@ -83,6 +130,8 @@ class ResultFiles:
 
     def __init__(self, folder: Path) -> None:
         self.folder = pathlib.Path(folder)
+        if (self.folder / "summary.nml").exists() and not (self.folder / "summary.nml").is_file():
+            raise ResultsError(f"{self.folder / 'summary.nml'} is no file")
         patience = time.monotonic() + _PATIENCE
         while not self._have_been_read():
             if time.monotonic() > patience:
@@ -102,7 +151,12 @@ class ResultFiles:
             if any((self.folder / place / "summary.nml").is_file() for place in (_UNFINISHED, "")):
                 return False
             raise ResultsError(_absence(self.folder, "summary.nml")) from None
-        self.texts = {name: text.decode() for name, text in found.items()}
+        except OSError as problem:
+            raise ResultsError(f"{self.folder}: cannot be read: {problem}") from problem
+        self.texts = {}
+        for name in list(found):
+            with _reading(self.folder / name):
+                self.texts[name] = found.pop(name).decode()
         return whole
 
     def text(self, name: str) -> str:
@@ -111,17 +165,18 @@ class ResultFiles:
             raise ResultsError(_absence(self.folder, name))
         return self.texts[name]
 
-    def table(self, name: str) -> dict[str, np.ndarray]:
-        """Return the columns of a table as a dict of arrays, text for `_TEXT_COLUMNS`."""
+    def table(self, name: str) -> Entries:
+        """Return the columns of a table as `Entries` of arrays, text for `_TEXT_COLUMNS`."""
         return _columns(self.text(name), self.folder / name)
 
-    def summary(self) -> dict[str, Any]:
-        """Return the group &summary of summary.nml as a dict."""
-        return _summary_groups(self.text("summary.nml"), self.folder / "summary.nml")["summary"]
+    def summary(self) -> Entries:
+        """Return the group &summary of summary.nml as `Entries`."""
+        return _summary_groups(self.text("summary.nml"), self.folder / "summary.nml",
+                               self.texts.get("sweep.csv", ""))["summary"]
 
-    def fit(self) -> dict[str, Any]:
-        """Return the group &fit of fit.nml: lists of texts and arrays by key."""
-        return _fitted(self.text("fit.nml"))["fit"]
+    def fit(self) -> Entries:
+        """Return the group &fit of fit.nml, lists and arrays, as `Entries`."""
+        return _fitted(self.text("fit.nml"), self.folder / "fit.nml")["fit"]
 
 
 def _tables_in(folder):
@@ -133,33 +188,38 @@ def _tables_in(folder):
 
 
 def result_of(files: dict[str, str], place: Path) -> Result:
-    """Return the `Result` in texts of files by name; `place` names them in messages."""
-    groups = _summary_groups(files["summary.nml"], f"{place}/summary.nml")
+    """Return the `Result` in texts of files by name, which is emptied; `place` names them in
+    messages."""
+    groups = _summary_groups(files["summary.nml"], f"{place}/summary.nml",
+                             files.get("sweep.csv", ""))
     tables = {
-        name.removesuffix(".csv"): _structured(_columns(text, f"{place}/{name}"))
-        for name, text in sorted(files.items())
+        name.removesuffix(".csv"): _structured(_columns(files.pop(name), f"{place}/{name}"))
+        for name in sorted(files)
         if name.endswith(".csv")
     }
-    return Result(tables, groups["summary"], groups["cost"], _fitted(files.get("fit.nml", "")))
+    return Result(tables, groups["summary"], groups["cost"],
+                  _fitted(files.get("fit.nml", ""), f"{place}/fit.nml"))
 
 
-def _fitted(text):
+def _fitted(text, place):
     """Return the groups of fit.nml, with correlations as matrices; none without a fit."""
-    groups = {
-        name: {key: _as_list(values) for key, values in group.items() if key != "title"}
-        for name, group in _namelist(text).items()
-    }
-    for group in groups.values():
-        group["correlation"] = group["correlation"].reshape(2 * (len(group["parameters"]),))
+    with _reading(place):
+        groups = {
+            name: Entries(((key, _as_list(values)) for key, values in group.items()
+                           if key != "title"), f"&{name} of {place}")
+            for name, group in _namelist(text).items()
+        }
+        for group in groups.values():
+            group["correlation"] = group["correlation"].reshape(2 * (len(group["parameters"]),))
     return groups
 
 
 def _structured(columns):
-    """Return the columns as a structured array."""
+    """Return the columns, which are emptied, as a structured array."""
     kinds = [(name, column.dtype) for name, column in columns.items()]
     table = np.empty(len(next(iter(columns.values()))), kinds)
-    for name, column in columns.items():
-        table[name] = column
+    for name in list(columns):
+        table[name] = columns.pop(name)
     return table
 
 
@@ -204,49 +264,72 @@ def read_table(folder: Path, name: str) -> dict[str, np.ndarray]:
     path = pathlib.Path(folder) / name
     if not path.is_file():
         raise ResultsError(_absence(path.parent, name))
-    return _columns(path.read_text(encoding="utf-8"), path)
+    with _reading(path):
+        text = path.read_text(encoding="utf-8")
+    return _columns(text, path)
 
 
 def _columns(text, place):
     """Return the columns of a table's text."""
-    rows = [line.split(",") for line in text.splitlines() if not line.startswith("#")]
-    if not rows:
+    lines = (line for line in _lines(text) if not line.startswith("#"))
+    header = next(lines, "").split(",")
+    if header == [""]:
         raise ResultsError(f"{place}: no header line")
-    header, rows = rows[0], rows[1:]
-    for row in rows:
-        if len(row) != len(header):
-            raise ResultsError(f"{place}: {len(row)} cells in a row, {len(header)} in the header")
-    cells = list(zip(*rows)) or [()] * len(header)
-    try:
-        return {
-            column: np.array(cells[i], str if _has_text(column, cells[i]) else float)
-            for i, column in enumerate(header)
-        }
-    except ValueError as problem:
-        raise ResultsError(f"{place}: {problem}") from problem
+    if len(set(header)) < len(header):
+        raise ResultsError(f"{place}: two columns have one name")
+    pieces = [[np.array((), str if name in _TEXT_COLUMNS else float)] for name in header]
+    with _reading(place):
+        while rows := [line.split(",") for line in itertools.islice(lines, _AT_ONCE)]:
+            for row in rows:
+                if len(row) != len(header):
+                    raise ResultsError(
+                        f"{place}: {len(row)} cells in a row, {len(header)} in the header")
+            for name, piece, cells in zip(header, pieces, zip(*rows)):
+                # A swept key may have words.
+                has_text = name in _TEXT_COLUMNS or "." in name
+                piece.append(np.array(cells, str if has_text else float))
+        return Entries(((name, _joined(name, piece)) for name, piece in zip(header, pieces)),
+                       place)
 
 
-def _has_text(column, cells):
-    """Return whether a column has text: one of `_TEXT_COLUMNS`, or a swept key with words."""
-    return column in _TEXT_COLUMNS or ("." in column and any(cell[:1].isalpha() for cell in cells))
+def _lines(text):
+    """Yield the lines of a text, none of which is copied before its turn."""
+    start = 0
+    while start < len(text):
+        end = text.find("\n", start)
+        end = len(text) if end < 0 else end
+        yield text[start:end].removesuffix("\r")
+        start = end + 1
 
 
-def _summary_groups(text, place):
-    """Return &summary and &cost; a list stays a list, also with one value."""
+def _joined(name, pieces):
+    """Return a column in one piece: of a swept key text if it has words, otherwise numbers."""
+    column = np.concatenate(pieces[1:] or pieces)
+    pieces.clear()
+    if "." in name and not any(cell[:1].isalpha() for cell in column):
+        return column.astype(float)
+    return column
+
+
+def _summary_groups(text, place, sweep):
+    """Return &summary and &cost; a list stays a list, also with one value. sweep: the text of the
+    table with the numbers of a sweep's cases, or nothing."""
     # The deck follows these groups.
     results, found, _ = text.partition("\n&cost\n")
     if not found:
         raise ResultsError(f"{place}: no group &summary and &cost")
-    groups = _namelist(results + found + text[len(results + found):].partition("\n/\n")[0])
-    if "summary" not in groups:
-        raise ResultsError(f"{place}: no group &summary and &cost")
-    return {
-        name: {
-            key: _as_list(values) if _snapin.flat_deck.is_list(key) else values[0]
-            for key, values in groups[name].items()
+    header = next((line for line in _lines(sweep) if not line.startswith("#")), "")
+    elsewhere = header.split(","), " of the table sweep, which has the numbers of all cases"
+    with _reading(place):
+        groups = _namelist(results + found + text[len(results + found):].partition("\n/\n")[0])
+        if "summary" not in groups:
+            raise ResultsError(f"{place}: no group &summary and &cost")
+        return {
+            name: Entries(
+                ((key, _as_list(values) if _snapin.flat_deck.is_list(key) else values[0])
+                 for key, values in groups[name].items()), f"&{name} of {place}", elsewhere)
+            for name in ("summary", "cost")
         }
-        for name in ("summary", "cost")
-    }
 
 
 def _absence(folder, name):

@@ -5,7 +5,7 @@ module command_line
   use text, only: guess, printable
   implicit none
   private
-  public :: options_t, file_t, read_command_line, stem_of, help_text, write_usage
+  public :: options_t, file_t, read_command_line, stem_of, help_text, usage
 
   !> One file name.
   type :: file_t
@@ -213,14 +213,6 @@ contains
     call get_command_argument(i, argument)
     argument = with_slashes(argument)
   end function argument_at
-
-  !> Prints the one-line usage.
-  subroutine write_usage(unit)
-    integer, intent(in) :: unit
-    integer :: status
-
-    write (unit, '(2a)', iostat=status) 'usage: ', usage
-  end subroutine write_usage
 
   !> A description of the program, its options and a deck to start from.
   function help_text() result(text)

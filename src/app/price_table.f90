@@ -106,8 +106,9 @@ contains
     do i = 1, last - 1
       if (.not. good(i)) cycle
       do k = 1, size(keys)
-        if (index(keys(k), '_h0') > 0 .or. any(ieee_is_nan([row(i)%error(k), row(last)%error(k)])) &
-          .or. .not. abs(row(last)%value(k)) > 0) cycle
+        if (index(keys(k), '_h0') > 0 .or. any(ieee_is_nan([row(i)%error(k), row(last)%error(k), &
+          row(i)%value(k), row(last)%value(k)]))) cycle
+        if (.not. abs(row(last)%value(k)) > 0) cycle
         off = abs(row(i)%value(k)/row(last)%value(k) - 1)
         if (off > row(i)%error(k) + row(last)%error(k)) text = text//'note: '// &
           trim(names(k))//' at '//brief(row(i)%case%values(1))// &

@@ -98,7 +98,7 @@ contains
     class(destination_t), intent(in) :: self
     character(len=*), intent(in) :: text
 
-    if (.not. self%quiet) call write_stderr(self%folder//': '//text//new_line('a'))
+    if (.not. self%quiet) call write_stderr(self%folder//': '//text)
   end subroutine say
 
   !> The command that draws the sweep in a folder of results; empty if there is none.

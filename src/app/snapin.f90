@@ -2,17 +2,17 @@
 !> command line is wrong.
 program snapin
   use, intrinsic :: iso_c_binding, only: c_int
-  use, intrinsic :: iso_fortran_env, only: error_unit
   use failure, only: failure_t, fail, bad_input
   use text, only: lower, quoted, clip, guess
+  use deck_source, only: largest_deck
   use deck_keys, only: key_spec, keys_text, is_of, names_of
   use scene, only: scene_t, keys_of_scene, read_scene
   use c_library, only: c_prepare, c_end_with_parent
-  use files, only: read_standard_input, write_stdout
+  use files, only: read_standard_input, write_stdout, write_stderr
   use result_folder, only: to_stream
   use machine, only: begin_with_one_thread
   use result_tables, only: result_listing
-  use command_line, only: options_t, read_command_line, stem_of, help_text, write_usage
+  use command_line, only: options_t, read_command_line, stem_of, help_text, usage
   use launch, only: own_rank
   use simulation, only: run_scene
   use price, only: price_scene
@@ -43,9 +43,9 @@ program snapin
   call begin_with_one_thread()
   call read_command_line(options, error)
   if (allocated(error)) then
-    call print_line(error_unit, 'snapin: ' // error%message)
-    call write_usage(error_unit)
-    call print_line(error_unit, 'try "snapin --help"')
+    call write_stderr('snapin: ' // error%message)
+    call write_stderr('usage: ' // usage)
+    call write_stderr('try "snapin --help"')
     call leave(2)
   end if
   ! Of several processes the first answers.
@@ -80,7 +80,7 @@ contains
     do i = 1, size(options%decks)
       name = lower(options%decks(i)%name)
       if (.not. any(is_of(specs, name))) then
-        call print_line(error_unit, 'snapin: no group or key ' // quoted(clip(name)) // &
+        call write_stderr('snapin: no group or key ' // quoted(clip(name)) // &
           guess(name, names_of(specs, ''), ''))
         status = 2
       end if
@@ -105,7 +105,7 @@ contains
       any([(options%decks(i)%name == '-', i=1, size(options%decks))])) &
       call fail(trouble, bad_input, 'several processes cannot read one standard input; give files')
     if (allocated(trouble)) then
-      if (crew%rank == 0) call print_line(error_unit, 'snapin: ' // trouble%message)
+      if (crew%rank == 0) call write_stderr('snapin: ' // trouble%message)
       status = 2
       return
     end if
@@ -114,7 +114,8 @@ contains
     do i = 1, size(scenes)
       if (options%decks(i)%name == '-') then
         options%decks(i)%name = options%name
-        call read_scene(options%name, scenes(i), trouble, read_standard_input())
+        call read_scene(options%name, scenes(i), trouble, &
+          read_standard_input(largest_deck + 1))
       else
         call read_scene(options%decks(i)%name, scenes(i), trouble)
       end if
@@ -122,7 +123,7 @@ contains
         call check_inputs(scenes(i), options%decks(i)%name, folder_of(i), trouble)
       if (allocated(trouble)) then
         status = 2
-        if (crew%rank == 0) call print_line(error_unit, trouble%message)
+        if (crew%rank == 0) call write_stderr(trouble%message)
         said = trouble%message
       else if (options%check .and. crew%rank == 0) then
         written = max(written, status_of(options%decks(i)%name // ': ok' // nl))
@@ -131,7 +132,7 @@ contains
     end do
     ! A deck that one process cannot read stops all processes.
     first = crew%first_of(status /= 0)
-    if (first > 0 .and. first == crew%rank) call print_line(error_unit, said)
+    if (first > 0 .and. first == crew%rank) call write_stderr(said)
     if (first >= 0) status = 2
     if (status == 0) status = written
     if (options%check .or. status /= 0) return
@@ -142,7 +143,7 @@ contains
     do i = 1, size(scenes)
       if (options%price) then
         call price_scene(scenes(i), options%decks(i)%name, options%quiet, converged, trouble)
-        if (allocated(trouble)) call print_line(error_unit, options%decks(i)%name // ': ' // &
+        if (allocated(trouble)) call write_stderr(options%decks(i)%name // ': ' // &
           trouble%message)
         if (allocated(trouble)) then
           status = max(status, merge(2, 1, trouble%kind == bad_input))
@@ -154,7 +155,7 @@ contains
       folder = folder_of(i)
       call run_scene(scenes(i), folder, options%out == to_stream, options%quiet, &
         options%verbose, options%resume, crew, i, converged, trouble)
-      if (allocated(trouble)) call print_line(error_unit, folder // ': ' // trouble%message)
+      if (allocated(trouble)) call write_stderr(folder // ': ' // trouble%message)
       if (allocated(trouble) .or. .not. converged) status = 1
     end do
     call dismiss(crew)
@@ -184,7 +185,7 @@ contains
   subroutine print_note(name, text)
     character(len=*), intent(in) :: name, text
 
-    if (text /= '') call print_line(error_unit, 'snapin: ' // name // ': ' // text)
+    if (text /= '') call write_stderr('snapin: ' // name // ': ' // text)
   end subroutine print_note
 
   function folder_of(i) result(folder)
@@ -204,26 +205,14 @@ contains
     status = 0
     call write_stdout(text, trouble)
     if (.not. allocated(trouble)) return
-    call print_line(error_unit, 'snapin: ' // trouble%message)
+    call write_stderr('snapin: ' // trouble%message)
     status = 1
   end function status_of
 
-  !> Prints a line and ignores failures: a full disk behind a redirection must not end the program
-  !> with a runtime error.
-  subroutine print_line(unit, text)
-    integer, intent(in) :: unit
-    character(len=*), intent(in) :: text
-    integer :: status
-
-    write (unit, '(a)', iostat=status) text
-  end subroutine print_line
-
   subroutine leave(status)
     integer, intent(in) :: status
-    integer :: trouble
 
     call crew%end()
-    flush (error_unit, iostat=trouble)
     call c_exit(int(status, c_int))
   end subroutine leave
 

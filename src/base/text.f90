@@ -30,15 +30,24 @@ contains
   end function lower
 
   !> `text`, such as a file's name, on one line and without control sequences for the terminal:
-  !> control characters become question marks. Other characters stay.
-  pure function printable(text) result(clean)
+  !> control characters become question marks, also those of UTF-8 (U+0080 to U+009F). Other
+  !> characters stay, and with `lines` the ends of lines.
+  pure function printable(text, lines) result(clean)
     character(len=*), intent(in) :: text
+    logical, intent(in), optional :: lines
     character(len=len(text)) :: clean
+    logical :: on_one_line
     integer :: i
 
+    on_one_line = .true.
+    if (present(lines)) on_one_line = .not. lines
     clean = text
     do i = 1, len(text)
+      if (text(i:i) == new_line('a') .and. .not. on_one_line) cycle
       if (iachar(text(i:i)) < 32 .or. iachar(text(i:i)) == 127) clean(i:i) = '?'
+      if (i == 1) cycle
+      if (text(i - 1:i - 1) == char(194) .and. text(i:i) >= char(128) .and. &
+        text(i:i) <= char(159)) clean(i - 1:i) = '??'
     end do
   end function printable
 

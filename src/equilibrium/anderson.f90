@@ -143,7 +143,7 @@ contains
     now%f = now%g
     call solve(frozen%factors, now%f)
     length = step_length(now%z, now%f)
-    if (length > too_long*now%length .and. now%since_renewal > 0) then
+    if (length/too_long > now%length .and. now%since_renewal > 0) then
       equations%cost%rejected_steps = equations%cost%rejected_steps + 1
       now%rejections = now%rejections + 1
       if (now%rejections > most_rejections) return

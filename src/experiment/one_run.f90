@@ -2,6 +2,7 @@
 !> and its meshes to named numbers (the places of `experiment_result_t`), and to rows if they are
 !> wanted.
 module one_run
+  use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
   use kinds, only: wp, long
   use clock, only: seconds
   use machine, only: use_threads_for
@@ -251,7 +252,8 @@ contains
     type(place_t) :: place
 
     ! A path has its own energy. Without a jump no energy is lost, and NaN is not known.
-    if (places%has('energy_lost') .or. .not. abs(position%lost) > 0) return
+    if (places%has('energy_lost') .or. ieee_is_nan(position%lost)) return
+    if (.not. abs(position%lost) > 0) return
     if (unloading%ending%early() .or. .not. allocated(start%state%gap)) return
     if (abs(position%state%h0 - start%state%h0) > 0) then
       call steps%step_to(start%state%h0, position, event)

@@ -2,6 +2,7 @@
 !> a name, one or more elements, and for each element one place, or several places of which it is
 !> the sum, such as the energies before and after jumps.
 module places
+  use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
   use kinds, only: wp, nan
   use dimensionless_problem, only: problem_t
   use reported_place, only: place_t, point_of_path, values_of, units_of, rounding, quantities, &
@@ -74,11 +75,15 @@ contains
   !> numbers.
   pure logical function is_same(one, other)
     type(place_t), intent(in) :: one, other
+    real(wp) :: apart(of_load + size(one%drive) + size(one%turn_of))
 
     is_same = one%point == other%point .and. (one%landing .eqv. other%landing)
-    if (is_same .and. one%point == 0) is_same = one%mesh == other%mesh .and. one%after == &
-      other%after .and. all(abs([one%at(:of_load), one%drive, one%turn_of] - &
-      [other%at(:of_load), other%drive, other%turn_of]) <= 0)
+    if (.not. is_same .or. one%point /= 0) return
+    apart = [one%at(:of_load), one%drive, one%turn_of] - &
+      [other%at(:of_load), other%drive, other%turn_of]
+    is_same = one%mesh == other%mesh .and. one%after == other%after .and. &
+      .not. any(ieee_is_nan(apart))
+    if (is_same) is_same = all(abs(apart) <= 0)
   end function is_same
 
   !> Adds a term to an element of a number: `factor` times the quantity at a place. Without a place

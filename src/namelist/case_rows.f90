@@ -4,7 +4,7 @@ module case_rows
   use, intrinsic :: iso_c_binding, only: c_int, c_long
   use kinds, only: wp, long
   use failure, only: failure_t, fail, file_trouble
-  use c_library, only: c_open, c_read, c_close, explain, as_input, not_there, nul
+  use c_library, only: c_open, c_read, c_close, explain, as_data, not_there, nul
   use checksums, only: checksum
   use text, only: lower, printable, word_of
   use deck_number, only: parse_real
@@ -66,7 +66,7 @@ contains
 
     self%file = file
     self%names = ''
-    self%descriptor = c_open(file // nul, as_input)
+    self%descriptor = c_open(file // nul, as_data)
     if (self%descriptor < 0) then
       call explain(self%descriptor, sort, reason)
       if (sort == not_there) reason = 'no such file'

@@ -260,6 +260,8 @@ contains
     else
       what = 'text outside a group, after the "/" that closed the last one; ' // &
              'a group begins with "&name", a comment with "!"'
+      if (text(at - 1:at - 1) == '/') what = what // &
+        '; numbers have neither units nor fractions in a deck (42 N/m, 2/3)'
     end if
   end function stray
 

@@ -5,11 +5,11 @@
 module deck_source
   use, intrinsic :: iso_c_binding, only: c_int, c_long
   use failure, only: failure_t, fail, bad_input, file_trouble
-  use c_library, only: c_open, c_read, c_close, explain, as_input, not_there, nul
+  use c_library, only: c_open, c_read, c_close, explain, as_input, as_data, not_there, nul
   use text, only: brief, printable
   implicit none
   private
-  public :: source_t, load_source, take_source, unprintable
+  public :: source_t, load_source, take_source, unprintable, largest_deck
 
   character(len=*), parameter :: newline = new_line('a')
   !> Largest size of a deck; ten thousand sweep values take a quarter of it.
@@ -49,7 +49,8 @@ contains
       call fail(error, file_trouble, 'a deck needs a file name')
       return
     end if
-    descriptor = c_open(file // nul, as_input)
+    ! A deck may come through a pipe, a table may not.
+    descriptor = c_open(file // nul, merge(as_data, as_input, present(most)))
     if (descriptor < 0) then
       call explain(descriptor, sort, reason)
       reason = 'cannot be opened: ' // reason
@@ -257,7 +258,8 @@ contains
     character(len=:), allocatable :: what
     character(len=*), parameter :: e2 = char(226)//char(128), single(2) = [e2//char(152), &
       e2//char(153)], double(2) = [e2//char(156), e2//char(157)], minus(3) = &
-      [char(226)//char(136)//char(146), e2//char(147), e2//char(148)]
+      [char(226)//char(136)//char(146), e2//char(147), e2//char(148)], micro(2) = &
+      [char(194)//char(181), char(206)//char(188)]
     integer :: length
 
     length = max(1, bytes_of(text))
@@ -272,6 +274,8 @@ contains
       if (any(text(:3) == minus)) what = what // '; write a minus: -'
     else if (text(:length) == char(194) // char(160)) then
       what = 'a blank that does not break lines, which is not plain ASCII; write a blank'
+    else if (any(text(:length) == micro)) then
+      what = what // '; numbers have no units in a deck: 1e-6 for micro'
     end if
     what = what // '; only comments may hold such characters'
   end function unprintable

@@ -5,6 +5,7 @@ module deck_values
   use text, only: lower, quoted, unquoted, brief, full, guess, clip, word_count, word_of, &
     held_blank, spelled, replaced
   use deck_number, only: parse_real, parse_integer, parse_logical
+  use number_slips, only: unit_slip, comma_slip
   use deck_source, only: source_t
   use namelist_writer, only: add_item
   use deck_scan, only: span_t
@@ -53,7 +54,8 @@ contains
       value%text = ''
     else if (size(items) > 1) then
       at = items(2)%first
-      what = brief(size(items)) // ' values where one is expected'
+      what = slip(2)
+      if (what == '') what = brief(size(items)) // ' values where one is expected'
       return
     end if
     wanted = any(spec%kind == [word_value, text_value, names_value])
@@ -69,8 +71,30 @@ contains
         if (literal) token = unquoted(token)
         call convert(spec, token, value, what)
       end if
-      if (allocated(what)) return
+      if (.not. allocated(what)) cycle
+      if (slip(i) /= '') what = slip(i)
+      return
     end do
+
+  contains
+
+    !> What item i was probably meant to be, where a number is expected.
+    pure function slip(i) result(advice)
+      integer, intent(in) :: i
+      character(len=:), allocatable :: advice, before, token
+
+      advice = ''
+      if (all(spec%kind /= [real_value, real_list])) return
+      before = ''
+      if (i > 1) before = source%part(items(i - 1)%first, items(i - 1)%last)
+      token = source%part(items(i)%first, items(i)%last)
+      advice = unit_slip('', token, trim(spec%unit))
+      if (advice == '') advice = unit_slip(before, token, trim(spec%unit))
+      if (advice /= '' .or. size(items) /= 2 .or. i /= 2 .or. spec%kind /= real_value) return
+      if (items(2)%first == items(1)%last + 2 .and. source%part(items(1)%last + 1, &
+        items(1)%last + 1) == ',') advice = comma_slip(before, token)
+    end function slip
+
   end subroutine interpret
 
   !> Whether a token is a word or name of digits, for which quotes are optional.

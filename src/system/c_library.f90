@@ -12,11 +12,13 @@ module c_library
     c_remove_folder, c_beginning, c_free_disk, &
     c_is_terminal, c_prepare, c_end_with_parent, c_pause, c_openblas_threads, &
     c_openblas_end_threads, c_openblas_config, c_build_id, explain, check_status, nul, as_input, &
-    as_output, as_kept_output, as_folder, too_large, not_there, locked_elsewhere, not_regular
+    as_output, as_kept_output, as_folder, as_data, too_large, not_there, locked_elsewhere, &
+    not_regular
 
   !> How a path is opened: a file of any kind for reading; a regular file for reading and writing,
-  !> created or emptied; the same, unchanged; a folder.
-  integer(c_int), parameter :: as_input = 1, as_output = 2, as_kept_output = 3, as_folder = 4
+  !> created or emptied; the same, unchanged; a folder; a regular file for reading.
+  integer(c_int), parameter :: as_input = 1, as_output = 2, as_kept_output = 3, as_folder = 4, &
+    as_data = 5
 
   !> Failures with advice or treatment of their own.
   integer(c_int), parameter :: too_large = 1, disk_full = 2, in_the_way = 3, not_there = 4, &

@@ -1,9 +1,9 @@
 !> Folders, small files read whole, and the standard streams.
 module files
   use, intrinsic :: iso_c_binding, only: c_int, c_long
-  use, intrinsic :: iso_fortran_env, only: error_unit
   use kinds, only: wp, long
   use failure, only: failure_t, fail, file_trouble
+  use text, only: printable
   use c_library, only: c_make_folder, c_current_folder, c_own_path, c_same_file, c_free_disk, &
     c_is_absolute, c_use_slashes, c_is_terminal, c_write, c_open, c_read, c_sync, c_sync_above, &
     c_close, as_folder, &
@@ -117,18 +117,15 @@ contains
     if (status /= 0) deallocate (text)
   end subroutine read_file
 
-  !> All of standard input.
-  function read_standard_input() result(text)
+  !> Standard input, of which no more than `most` bytes are read: it may have no end.
+  function read_standard_input(most) result(text)
+    integer, intent(in) :: most
     character(len=:), allocatable :: text
-    character(len=65536) :: piece
     integer :: length
 
-    text = ''
-    do
-      length = int(max(c_read(standard_input, piece, len(piece, kind=c_long)), 0_c_long))
-      text = text // piece(:length)
-      if (length < len(piece)) return
-    end do
+    allocate (character(len=most) :: text)
+    length = int(max(c_read(standard_input, text, int(most, c_long)), 0_c_long))
+    text = text(:length)
   end function read_standard_input
 
   !> Whether the file or folder `path` exists.
@@ -151,28 +148,28 @@ contains
     is_terminal = c_is_terminal(standard_error) == 1
   end function is_terminal
 
-  !> Writes `text` unchanged to standard output.
+  !> Writes `text` to standard output, for readers: without control sequences that names may hold.
   subroutine write_stdout(text, error)
     character(len=*), intent(in) :: text
     type(failure_t), allocatable, intent(out) :: error
     character(len=:), allocatable :: reason
     integer(c_int) :: status, sort
 
-    status = c_write(standard_output, text, int(len(text), c_long))
+    status = c_write(standard_output, printable(text, lines=.true.), int(len(text), c_long))
     if (status >= 0) return
     call explain(status, sort, reason)
     call fail(error, file_trouble, 'cannot write to standard output: ' // reason)
   end subroutine write_stdout
 
-  !> Writes `text` unchanged to standard error; a Fortran unit would add the end of a line. A
-  !> failure to write is ignored.
+  !> Writes `text` and the end of a line to standard error, without control sequences that names and
+  !> files may hold. A failure to write, such as a full disk behind a redirection, is ignored.
   subroutine write_stderr(text)
     character(len=*), intent(in) :: text
     integer(c_int) :: sent
-    integer :: status
 
-    flush (error_unit, iostat=status)
-    sent = c_write(standard_error, text, int(len(text), c_long))
+    associate (line => printable(text, lines=.true.) // new_line('a'))
+      sent = c_write(standard_error, line, int(len(line), c_long))
+    end associate
   end subroutine write_stderr
 
 end module files

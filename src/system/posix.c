@@ -45,8 +45,27 @@ static int open_output(const char *path, int keep) {
   return status;
 }
 
+/* Data are read again by each case and each resumed run, which a pipe does not give; and opening or
+   reading one, or a device, could wait for ever. */
+static int open_data(const char *path) {
+  struct stat file;
+  int status, fd = open(path, O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
+  if (fd < 0)
+    return -errno;
+  if (fstat(fd, &file) != 0)
+    status = -errno;
+  else if (S_ISREG(file.st_mode))
+    return fd;
+  else
+    status = S_ISDIR(file.st_mode) ? -EISDIR : -not_regular;
+  close(fd);
+  return status;
+}
+
 int snapin_open(const char *path, int how) {
   switch (how) {
+  case as_data:
+    return open_data(path);
   case as_input:
     return status_of(open(path, O_RDONLY | O_CLOEXEC));
   case as_folder:

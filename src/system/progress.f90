@@ -5,6 +5,7 @@ module progress
   use, intrinsic :: iso_c_binding, only: c_char, c_double, c_int, c_long, c_ptr, c_null_ptr, &
     c_associated, nul => c_null_char
   use kinds, only: wp
+  use text, only: printable
   use files, only: is_terminal
   implicit none
   private
@@ -65,7 +66,7 @@ contains
     character(len=*), intent(in) :: name
     logical, intent(in) :: quiet
 
-    if (.not. quiet) self%heartbeat = begin_progress(name // nul, int(max(total, 0), c_long), &
+    if (.not. quiet) self%heartbeat = begin_progress(printable(name) // nul, int(max(total, 0), c_long), &
       merge(1_c_int, 0_c_int, is_terminal()))
   end subroutine start
 

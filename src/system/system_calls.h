@@ -9,7 +9,7 @@ enum { not_regular = 100000 };
 
 enum { too_large = 1, disk_full = 2, in_the_way = 3, not_there = 4, locked = 5 };
 
-enum { as_input = 1, as_output = 2, as_kept_output = 3, as_folder = 4 };
+enum { as_input = 1, as_output = 2, as_kept_output = 3, as_folder = 4, as_data = 5 };
 
 typedef void (*procedure)(void);
 

@@ -110,6 +110,7 @@ static int open_folder(const char *path) {
 int snapin_open(const char *path, int how) {
   switch (how) {
   case as_input:
+  case as_data:
     return descriptor(CreateFileA(path, GENERIC_READ, shared, NULL, OPEN_EXISTING, 0, NULL),
                       _O_RDONLY);
   case as_folder:

@@ -2,10 +2,12 @@
 
 import os
 import re
+import subprocess
 import threading
 
 import pytest
-from support.decks import GOOD, RUNTIME_ERROR
+from support.decks import BODIES, FORCE, GOOD, LOADING, RUNTIME_ERROR
+from support.processes import HANG
 
 # --- Files
 
@@ -40,6 +42,43 @@ def test_pipe_is_read(snapin, tmp_path):
     done = snapin("--check", "pipe", cwd=tmp_path)
     writer.join()
     assert (done.returncode, done.stdout) == (0, "pipe: ok\n")
+
+
+@pytest.mark.parametrize("name", ["/dev/zero", "pipe"])
+def test_a_table_is_a_file_since_a_pipe_is_read_once(snapin, tmp_path, name):
+    """A pipe without a writer was waited for, without a word."""
+    os.mkfifo(tmp_path / "pipe")
+    decks = {"force.nml": f"&tabulated file = '{name}', tail_exponent = 3 /\n",
+             "sweep.nml": f"{FORCE}&sweep file = '{name}' /\n"}
+    for deck, group in decks.items():
+        (tmp_path / deck).write_text(BODIES + group + LOADING)
+        done = snapin("--check", deck, cwd=tmp_path)
+        assert done.returncode == 2
+        assert f"{name}: " in done.stderr and "a pipe or a device" in done.stderr
+
+
+def test_a_deck_without_an_end_is_refused(snapin_path, tmp_path):
+    """Standard input was read for ever."""
+    with open("/dev/zero", "rb") as endless:
+        done = subprocess.run([snapin_path, "--check", "-"], stdin=endless, capture_output=True,
+                              text=True, cwd=tmp_path, timeout=HANG, check=False)
+    assert done.returncode == 2 and "larger than 1 MiB" in done.stderr
+
+
+def test_control_characters_of_files_and_names_never_reach_the_terminal(snapin, tmp_path):
+    name = "a\x1b[31mb\u009bc"
+    (tmp_path / "t.txt").write_text("1e-9 2\n2e-9 \x1b[31mred\n")
+    (tmp_path / f"{name}.nml").write_text(
+        BODIES + "&tabulated file = 't.txt', tail_exponent = 3 /\n" + LOADING)
+    (tmp_path / f"{name}2.nml").write_text(GOOD)
+    said = [snapin(*arguments, cwd=tmp_path) for arguments in (
+        (f"{name}.nml",), (f"{name}2.nml",), ("--check", f"{name}2.nml"),
+        ("--price", f"{name}2.nml"), (f"--{name}",), ("--keys", name), ("--name", name, "-"))]
+    assert [done.returncode for done in said] == [2, 0, 0, 0, 2, 2, 2]
+    for done in said:
+        text = done.stdout + done.stderr
+        assert len(text) > 10
+        assert not {"\x1b", "\u009b"} & set(text), done.args
 
 
 def test_what_stands_in_the_way_of_a_file_is_said(snapin, tmp_path):

@@ -5,7 +5,9 @@
 # A stage is the function below with its name. Without a stage: all stages, about two hours on two
 # cores. Ends with status 1 if one fails. EXTREMES (200) is the number of random decks, FIRST (5000)
 # the first of them, FUZZ (240) the seconds of the search, SEED (1) that of the judge's decks, of
-# the relatives and of the changes of the sources, MUTATIONS (15) their number.
+# the relatives and of the changes of the sources, MUTATIONS (15) their number. ROOMS (all), such as
+# 'path rates', are the rooms of tests/ that traps and sanitize run, and DECKS (all) their decks,
+# files or patterns.
 set -u
 here=$(dirname -- "$(readlink -f -- "$0")")
 top=$(dirname -- "$(dirname -- "$here")")
@@ -22,13 +24,39 @@ long() { tests --long; }
 
 build_traps() { builds build-traps --buildtype=debug -Dtraps=true -Dpython=disabled; }
 
-# The tests that go through the program, on a build that stops at the first invalid operation,
-# overflow, index out of bounds or use of an unset real number.
+# The quick tests that run the program, and the decks, on a build that stops at the first invalid
+# operation, overflow, index out of bounds or use of an unset real number.
 traps() {
-  build_traps || return
-  # shellcheck disable=SC2046 # a list of files is meant
-  SNAPIN=$top/build-traps/snapin "$python" -m pytest -q --long \
-    $(grep -l 'snapin' tests/*/test_*.py | grep -v 'wrapper')
+  build_traps && checked build-traps
+}
+
+# The same on a build with AddressSanitizer and UndefinedBehaviorSanitizer, which finds accesses
+# beyond arrays and to memory that was freed, in Fortran and C alike, leaks, and overflowing
+# integers. Not the rooms whose tests limit the memory of a process or replace the system's calls:
+# a sanitizer needs both for itself.
+sanitize() {
+  builds build-sanitize --buildtype=debug -Db_sanitize=address,undefined -Db_lundef=false \
+    -Dpython=disabled || return
+  ASAN_OPTIONS=detect_leaks=1
+  UBSAN_OPTIONS=halt_on_error=1:print_stacktrace=1
+  LSAN_OPTIONS=suppressions=$here/leaks.txt:print_suppressions=0
+  export ASAN_OPTIONS UBSAN_OPTIONS LSAN_OPTIONS
+  checked build-sanitize --ignore=tests/system --ignore=tests/resume --ignore=tests/wrapper
+}
+
+# checked FOLDER [PYTEST ARGUMENTS]: tests and decks on this build. Tests that measure memory or time
+# measure those of the usual build.
+checked() {
+  checked_build=$top/$1/snapin
+  shift
+  for room in ${ROOMS-}; do set -- "$@" "tests/$room"; done
+  SNAPIN=$checked_build tests --program -m 'not slow and not long and not alone' "$@"
+  tested=$?
+  scratch=$(mktemp -d)
+  # shellcheck disable=SC2086 # a list of files is meant
+  OMP_NUM_THREADS=1 "$python" "$here/run_decks.py" "$checked_build" "$scratch" ${DECKS-} || tested=1
+  rm -rf "$scratch"
+  return $tested
 }
 
 # valgrind over tools/verify/decks: no leak, no use of memory that was not set.
@@ -135,7 +163,7 @@ fuzz() {
 pages() { "$python" "$top/tools/pages.py"; }
 
 failed=
-stages='long traps memory coverage levels posix extremes faults judge relatives mutations mpi fuzz pages'
+stages='long traps sanitize memory coverage levels posix extremes faults judge relatives mutations mpi fuzz pages'
 for stage in ${*:-$stages}; do
   case " $stages " in
     *" $stage "*) ;;

@@ -23,6 +23,9 @@ COLOURS = (BLUE, VERMILION, GREEN, ORANGE, PURPLE, SKY, BLACK)
 _PREFIXES = ((1e-12, "p"), (1e-9, "n"), (1e-6, "µ"), (1e-3, "m"), (1.0, ""), (1e3, "k"),
              (1e6, "M"), (1e9, "G"))
 
+# What numbers raise that no run has written, in NumPy and Matplotlib.
+_OF_DAMAGE = ArithmeticError, AttributeError, LookupError, RuntimeError, TypeError, ValueError
+
 # Cosine of the largest angle between two steps that is drawn as a bend; a larger one is a corner.
 _GENTLE = 0.5
 # Characters of a title on an inch.
@@ -159,6 +162,9 @@ class Picture:
             print(self.write(folder, output, dpi, **options))
         except (ResultsError, OSError) as problem:
             sys.exit(f"{parser.prog}: {problem}")
+        except _OF_DAMAGE as problem:
+            sys.exit(f"{parser.prog}: the results in {folder} cannot be drawn ({problem}); if they "
+                     "are damaged, run the deck again")
 
     def write(self, folder, output, dpi, **options):
         """Draw the picture of a folder into a file, by default in the folder; return its path."""
