@@ -18,13 +18,21 @@ module sweep_case
   use case_columns, only: numbers_of
   use cost_columns, only: costs_of
   use mesh_store, only: mesh_store_t
+  use namelist_writer, only: line_t
+  use curve_index, only: curve_index_t
+  use fit_group, only: load_curve
+  use fit_run, only: fit_outcome_t
+  use fit_doubts, only: doubts_of
+  use fit_columns, only: numbers_of_fit, verdict_of, unreadable
+  use measured_fit, only: fit_measured
+  use problem_numbers, only: describe_problem
   use byte_record, only: byte_record_t
   implicit none
   private
-  public :: case_t, sweep_tally_t, pass_case, run_case
+  public :: case_t, sweep_tally_t, pass_case, pass_task, run_case
 
   !> Largest number of characters of a warning, or of the reason of a failure.
-  integer, parameter :: failure_width = 160
+  integer, parameter :: failure_width = 400
   !> A case whose cost is measured runs again until all its runs together take this time [s], at
   !> most so many times; the first run of a case is slower, since its memory is new.
   real(wp), parameter :: enough_seconds = 0.1_wp
@@ -34,10 +42,14 @@ module sweep_case
   type :: case_t
     !> Number of the case; 0: none.
     integer :: number = 0
-    !> Values of the sweep's keys.
+    !> Values of the sweep's keys; the text of the key that holds one.
     real(wp), allocatable :: values(:)
+    character(len=:), allocatable :: text
+    !> Of a fit: the values of another curve, from which it starts; empty: none. The verdict.
+    real(wp), allocatable :: like(:)
+    integer :: verdict = 0
     logical :: converged = .false.
-    !> Its numbers, as `numbers_of`.
+    !> Its numbers, as `numbers_of`, and behind them those of a fit, as `numbers_of_fit`.
     real(wp), allocatable :: numbers(:)
     !> Its row of costs.csv, as `costs_of`; empty if costs are not measured.
     real(wp), allocatable :: costs(:)
@@ -67,16 +79,20 @@ module sweep_case
 
 contains
 
-  !> Computes the case with the given number and values of the scene's sweep, on meshes that the
-  !> cases share. If costs are measured, the case has its own meshes, and one thread at a time
-  !> computes.
-  subroutine run_case(scene, progress, store, case)
+  !> Computes the case with the given number, values and text of the scene's sweep, on meshes that
+  !> the cases share. If costs are measured, the case has its own meshes, and one thread at a time
+  !> computes; fits make strings, and only one may be made at a time (compiler note 4). index: where
+  !> the curves of a file with several are, if the cases have fits.
+  subroutine run_case(scene, progress, store, index, case)
     type(scene_t), intent(in) :: scene
     type(progress_t), intent(in), target :: progress
     type(mesh_store_t), intent(inout) :: store
+    type(curve_index_t), intent(inout) :: index
     type(case_t), intent(inout) :: case
 
-    if (scene%sweep%costs) then
+    if (allocated(scene%fit)) then
+      call compute_fit(scene, progress, index, case)
+    else if (scene%sweep%costs) then
       !$omp critical (one_measured)
       call compute_case(scene, progress, case=case)
       !$omp end critical (one_measured)
@@ -107,7 +123,7 @@ contains
     took = nan
     ! Only one thread at a time makes strings: compiler note 4.
     !$omp critical (one_at_a_time)
-    call swept_scene(scene, scene%sweep%names, case%values, variant, error)
+    call swept_scene(scene, scene%sweep%names, case%values, variant, error, case%text)
     !$omp end critical (one_at_a_time)
     call summary%set('converged', .false.)
     if (.not. allocated(error)) then
@@ -162,6 +178,58 @@ contains
 
   end subroutine compute_case
 
+  !> Fits the case's curve. A curve that cannot be read or fitted has a row with the reason.
+  subroutine compute_fit(scene, progress, index, case)
+    type(scene_t), intent(in) :: scene
+    type(progress_t), intent(in), target :: progress
+    type(curve_index_t), intent(inout) :: index
+    type(case_t), intent(inout) :: case
+    type(case_observer_t) :: observer
+    type(scene_t) :: variant
+    type(problem_t) :: problem
+    type(experiment_result_t) :: result
+    type(fit_outcome_t) :: outcome
+    type(summary_t) :: summary
+    type(line_t), allocatable :: doubts(:)
+    type(failure_t), allocatable :: error
+
+    observer%case = case%number
+    observer%progress => progress
+    case%failure = ''
+    case%warning = ''
+    case%verdict = unreadable
+    allocate (doubts(0))
+    call summary%set('converged', .false.)
+    call swept_scene(scene, scene%sweep%names, case%values, variant, error, case%text)
+    if (.not. allocated(error)) call load_curve(variant, index, error)
+    if (.not. allocated(error)) then
+      problem = problem_of(variant)
+      call run_experiment(variant, problem, observer, result)
+      summary = summary_of(variant, problem, result)
+      if (size(case%like) > 0) then
+        call fit_measured(variant, problem, .false., observer, outcome, case%like)
+      else
+        call fit_measured(variant, problem, .false., observer, outcome)
+      end if
+      if (.not. allocated(outcome%trouble)) then
+        doubts = doubts_of(outcome)
+        if (allocated(outcome%problem)) call describe_problem(outcome%problem, summary)
+      end if
+      case%verdict = verdict_of(outcome, doubts)
+      if (size(doubts) > 0) case%warning = doubts(1)%text
+      if (allocated(summary%failure)) case%failure = summary%failure
+      if (allocated(outcome%trouble)) case%failure = outcome%trouble
+      if (case%failure /= '' .or. .not. outcome%fitted%found) call summary%set('converged', .false.)
+    else
+      case%failure = first_line(error%message)
+      outcome%trouble = ''
+    end if
+    case%converged = summary%is_true('converged')
+    case%numbers = [numbers_of(summary, scene), numbers_of_fit(scene, outcome, doubts)]
+    case%costs = [real(wp) ::]
+    case%cost = result%cost
+  end subroutine compute_fit
+
   !> Writes into a variable, since threads share the strings of expressions: compiler note 4.
   subroutine hear(self, what)
     class(case_observer_t), intent(inout) :: self
@@ -171,6 +239,17 @@ contains
     write (label, '(a, i0, 2a)') 'case ', self%case, ': ', what
     call self%progress%detail(label)
   end subroutine hear
+
+  !> Passes what a case is to be computed from to or from a record.
+  subroutine pass_task(record, case)
+    type(byte_record_t), intent(inout) :: record
+    type(case_t), intent(inout) :: case
+
+    call record%pass(case%number)
+    call record%pass(case%values)
+    call record%pass(case%text)
+    call record%pass(case%like)
+  end subroutine pass_task
 
   !> Passes a case to or from a record.
   subroutine pass_case(record, case)
@@ -184,6 +263,8 @@ contains
     call pass_text(case%warning)
     call pass_cost(case%cost)
     call record%pass(case%values)
+    call record%pass(case%text)
+    call record%pass(case%verdict)
     call record%pass(case%costs)
 
   contains

@@ -15,7 +15,7 @@ module fit_rows
   use fit_doubts, only: doubts_of
   implicit none
   private
-  public :: write_fit_rows, fit_text
+  public :: write_fit_rows, fit_text, most
 
   !> Half-width of a 95 % interval in standard deviations.
   real(wp), parameter :: most = 1.959964_wp
