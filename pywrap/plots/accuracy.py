@@ -18,9 +18,9 @@ import pathlib
 
 import numpy as np
 from drawing import (
-    BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILION, entitle, run, title_of, units_of)
+    BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILION, entitle, run, title_of)
 from matplotlib.figure import Figure
-from snapin.results import ResultFiles, ResultsError
+from snapin.results import ResultFiles, ResultsError, units_of
 
 _LOOKS = tuple(zip((BLUE, VERMILION, GREEN, ORANGE, PURPLE, SKY, BLACK), "os^Dv<>"))
 # The numbers whose errors are drawn, if the sweep has them.

@@ -2,7 +2,6 @@
 
 import argparse
 import pathlib
-import re
 import sys
 import textwrap
 
@@ -79,11 +78,6 @@ def smooth(points):
             + t**2 * (t - 1) * step * tangent[i + 1]
         )
     return np.vstack([*curve, points[-1:]])
-
-
-def units_of(text):
-    """Return the units of the columns of a table by name."""
-    return dict(re.findall(r"^# (\S+) \[(.*?)\]", text, re.MULTILINE))
 
 
 def scale(values, unit):

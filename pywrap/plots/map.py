@@ -16,13 +16,13 @@ import re
 
 import numpy as np
 from drawing import (
-    BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILION, entitle, run, title_of, units_of)
+    BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILION, entitle, run, title_of)
 from matplotlib import colormaps
 from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, MaxNLocator
 from matplotlib.tri import Triangulation
-from snapin.results import ResultFiles, ResultsError
+from snapin.results import ResultFiles, ResultsError, units_of
 
 _COLOURS = (BLUE, VERMILION, GREEN, ORANGE, PURPLE, SKY, BLACK)
 # Cases whose largest tension is that of an end of a branch.

@@ -1,5 +1,6 @@
 """The reader of the results of a run."""
 
+import csv
 import os
 import pathlib
 import re
@@ -10,7 +11,10 @@ import numpy as np
 
 from .arguments import SnapinError, folder_path
 
-_TEXT_COLUMNS = ("branch", "direction", "theory", "quantity", "parameter", "failure")
+_TEXT_COLUMNS = ("branch", "direction", "theory", "quantity", "parameter", "verdict", "warning",
+                 "failure")
+# What numbers may look like that begin with a letter.
+_NO_NUMBERS = ("NaN", "Infinity")
 # How the program's tables and its fits begin.
 _HEAD, _FIT_HEAD = b"# title:", b"! A fit by snapin"
 # A text in quotes, with quotes inside doubled, or another value.
@@ -36,8 +40,10 @@ class Result:
     a deck without &fit.
     """
 
-    def __init__(self, tables, summary, cost, fitted=None):
+    def __init__(self, tables, summary, cost, fitted=None, units=None):
         self.tables, self.summary, self.cost = tables, summary, cost
+        #: The units of the columns of each table by its name.
+        self.units = units or {}
         self.fitted = fitted or {}
 
     @property
@@ -127,7 +133,14 @@ def result_of(files, place):
         for name, text in sorted(files.items())
         if name.endswith(".csv")
     }
-    return Result(tables, groups["summary"], groups["cost"], _fitted(files.get("fit.nml", "")))
+    units = {name: units_of(files[f"{name}.csv"]) for name in tables}
+    return Result(tables, groups["summary"], groups["cost"], _fitted(files.get("fit.nml", "")),
+                  units)
+
+
+def units_of(text):
+    """Return the units of the columns of a table by name."""
+    return dict(re.findall(r"^# (\S+) \[(.*?)\]", text, re.MULTILINE))
 
 
 def _fitted(text):
@@ -196,7 +209,9 @@ def read_table(folder, name):
 
 def _columns(text, place):
     """Return the columns of a table's text."""
-    rows = [line.split(",") for line in text.splitlines() if not line.startswith("#")]
+    lines = [line for line in text.splitlines() if not line.startswith("#")]
+    # Only names of files with commas are in quotes.
+    rows = list(csv.reader(lines)) if '"' in text else [line.split(",") for line in lines]
     if not rows:
         raise ResultsError(f"{place}: no header line")
     header, rows = rows[0], rows[1:]
@@ -215,7 +230,8 @@ def _columns(text, place):
 
 def _has_text(column, cells):
     """Return whether a column has text: one of `_TEXT_COLUMNS`, or a swept key with words."""
-    return column in _TEXT_COLUMNS or ("." in column and any(cell[:1].isalpha() for cell in cells))
+    return column in _TEXT_COLUMNS or column.endswith(".file") or (
+        "." in column and any(cell[:1].isalpha() and cell not in _NO_NUMBERS for cell in cells))
 
 
 def _summary_groups(text, place):

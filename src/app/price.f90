@@ -14,7 +14,6 @@ module price
   use cost_columns, only: cost_columns_of
   use sweep_case, only: run_case
   use price_table, only: price_row_t, keys, head_of, text_of_row, conclusion_of
-  use curve_index, only: curve_index_t
   use mesh_store, only: mesh_store_t
   use preflight, only: check_room
   use files, only: write_stdout
@@ -47,7 +46,6 @@ contains
     type(scene_t) :: varied
     type(problem_t) :: problem
     type(price_row_t) :: row(rows)
-    type(curve_index_t) :: no_index
     type(mesh_store_t) :: unused
     type(progress_t) :: progress
     logical :: shown(size(keys))
@@ -67,7 +65,7 @@ contains
       row(i)%case%values = varied%sweep%values(i)
       call progress%start(0, name//', '//varied%sweep%names//' = '// &
         brief(row(i)%case%values(1))//' ('//brief(i)//' of '//brief(rows)//')', quiet)
-      call run_case(varied, progress, unused, no_index, row(i)%case)
+      call run_case(varied, progress, unused, row(i)%case)
       call progress%finish()
       call read_case(varied, problem, row(i))
       if (i == 1) then

@@ -39,6 +39,7 @@ module simulation
   use clock, only: seconds
   use namelist_writer, only: line_t
   use fit_run, only: fit_outcome_t
+  use fit_columns, only: verdicts
   use measured_fit, only: fit_measured
   use fit_doubts, only: doubts_of
   use fit_rows, only: write_fit_rows, fit_text
@@ -192,12 +193,26 @@ contains
         if (tally%warned > 0) call summary%warn(brief(tally%warned)//' of '// &
           counted(scene%sweep%cases(), 'case')//' gave a warning; the first, case '// &
           brief(tally%first_warned)//': '//trim(tally%warning))
+        if (allocated(scene%fit)) call summary%note(told_of(tally))
         if (left_out(scene) /= '') call summary%note('sweep: '//left_out(scene))
       else
         call results%progress%start(states_planned(scene), name, destination%quiet)
         call run_observed()
       end if
     end subroutine compute
+
+    !> How many fits of a sweep have each verdict.
+    function told_of(tally) result(text)
+      type(sweep_tally_t), intent(in) :: tally
+      character(len=:), allocatable :: text
+      integer :: i
+
+      text = counted(scene%sweep%cases(), 'curve') // ': '
+      do i = 1, size(verdicts)
+        if (i > 1) text = text // ', '
+        text = text // brief(tally%verdict(i)) // ' ' // trim(verdicts(i))
+      end do
+    end function told_of
 
     !> Runs the experiments. Each state goes into the results, with its eigenvalue if the scene asks
     !> for it.

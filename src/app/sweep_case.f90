@@ -18,18 +18,11 @@ module sweep_case
   use case_columns, only: numbers_of
   use cost_columns, only: costs_of
   use mesh_store, only: mesh_store_t
-  use namelist_writer, only: line_t
-  use curve_index, only: curve_index_t
-  use fit_group, only: load_curve
-  use fit_run, only: fit_outcome_t
-  use fit_doubts, only: doubts_of
-  use fit_columns, only: numbers_of_fit, verdict_of, unreadable
-  use measured_fit, only: fit_measured
-  use problem_numbers, only: describe_problem
+  use fit_columns, only: verdicts
   use byte_record, only: byte_record_t
   implicit none
   private
-  public :: case_t, sweep_tally_t, pass_case, pass_task, run_case
+  public :: case_t, case_observer_t, sweep_tally_t, pass_case, pass_task, run_case
 
   !> Largest number of characters of a warning, or of the reason of a failure.
   integer, parameter :: failure_width = 400
@@ -68,9 +61,9 @@ module sweep_case
   end type case_observer_t
 
   !> The number of cases that failed, and of those that gave a warning; number and warning of the
-  !> first of these; the total cost.
+  !> first of these; of fits, the number of each verdict; the total cost.
   type :: sweep_tally_t
-    integer :: failed = 0, warned = 0, first_warned = 0
+    integer :: failed = 0, warned = 0, first_warned = 0, verdict(size(verdicts)) = 0
     character(len=failure_width) :: warning = ''
     type(cost_t) :: cost
   contains
@@ -81,18 +74,14 @@ contains
 
   !> Computes the case with the given number, values and text of the scene's sweep, on meshes that
   !> the cases share. If costs are measured, the case has its own meshes, and one thread at a time
-  !> computes; fits make strings, and only one may be made at a time (compiler note 4). index: where
-  !> the curves of a file with several are, if the cases have fits.
-  subroutine run_case(scene, progress, store, index, case)
+  !> computes.
+  subroutine run_case(scene, progress, store, case)
     type(scene_t), intent(in) :: scene
     type(progress_t), intent(in), target :: progress
     type(mesh_store_t), intent(inout) :: store
-    type(curve_index_t), intent(inout) :: index
     type(case_t), intent(inout) :: case
 
-    if (allocated(scene%fit)) then
-      call compute_fit(scene, progress, index, case)
-    else if (scene%sweep%costs) then
+    if (scene%sweep%costs) then
       !$omp critical (one_measured)
       call compute_case(scene, progress, case=case)
       !$omp end critical (one_measured)
@@ -178,58 +167,6 @@ contains
 
   end subroutine compute_case
 
-  !> Fits the case's curve. A curve that cannot be read or fitted has a row with the reason.
-  subroutine compute_fit(scene, progress, index, case)
-    type(scene_t), intent(in) :: scene
-    type(progress_t), intent(in), target :: progress
-    type(curve_index_t), intent(inout) :: index
-    type(case_t), intent(inout) :: case
-    type(case_observer_t) :: observer
-    type(scene_t) :: variant
-    type(problem_t) :: problem
-    type(experiment_result_t) :: result
-    type(fit_outcome_t) :: outcome
-    type(summary_t) :: summary
-    type(line_t), allocatable :: doubts(:)
-    type(failure_t), allocatable :: error
-
-    observer%case = case%number
-    observer%progress => progress
-    case%failure = ''
-    case%warning = ''
-    case%verdict = unreadable
-    allocate (doubts(0))
-    call summary%set('converged', .false.)
-    call swept_scene(scene, scene%sweep%names, case%values, variant, error, case%text)
-    if (.not. allocated(error)) call load_curve(variant, index, error)
-    if (.not. allocated(error)) then
-      problem = problem_of(variant)
-      call run_experiment(variant, problem, observer, result)
-      summary = summary_of(variant, problem, result)
-      if (size(case%like) > 0) then
-        call fit_measured(variant, problem, .false., observer, outcome, case%like)
-      else
-        call fit_measured(variant, problem, .false., observer, outcome)
-      end if
-      if (.not. allocated(outcome%trouble)) then
-        doubts = doubts_of(outcome)
-        if (allocated(outcome%problem)) call describe_problem(outcome%problem, summary)
-      end if
-      case%verdict = verdict_of(outcome, doubts)
-      if (size(doubts) > 0) case%warning = doubts(1)%text
-      if (allocated(summary%failure)) case%failure = summary%failure
-      if (allocated(outcome%trouble)) case%failure = outcome%trouble
-      if (case%failure /= '' .or. .not. outcome%fitted%found) call summary%set('converged', .false.)
-    else
-      case%failure = first_line(error%message)
-      outcome%trouble = ''
-    end if
-    case%converged = summary%is_true('converged')
-    case%numbers = [numbers_of(summary, scene), numbers_of_fit(scene, outcome, doubts)]
-    case%costs = [real(wp) ::]
-    case%cost = result%cost
-  end subroutine compute_fit
-
   !> Writes into a variable, since threads share the strings of expressions: compiler note 4.
   subroutine hear(self, what)
     class(case_observer_t), intent(inout) :: self
@@ -297,6 +234,7 @@ contains
 
     self%cost = sum_of(self%cost, case%cost)
     if (.not. case%converged) self%failed = self%failed + 1
+    if (case%verdict > 0) self%verdict(case%verdict) = self%verdict(case%verdict) + 1
     if (case%warning == '') return
     self%warned = self%warned + 1
     if (self%warned > 1) return

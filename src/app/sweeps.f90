@@ -6,6 +6,7 @@ module sweeps
   use linear_algebra, only: claim_buffers
   use scene_groups, only: scene_t
   use sweep_case, only: case_t, sweep_tally_t, pass_case, pass_task, run_case
+  use case_fit, only: run_fit_case
   use case_queue, only: case_queue_t
   use progress, only: progress_t
   use case_columns, only: columns_of
@@ -115,7 +116,11 @@ contains
       call queue%next(case, found)
       !$omp end critical (one_at_a_time)
       if (.not. found) exit
-      call run_case(queue%scene, queue%results%progress, store, index, case)
+      if (allocated(queue%scene%fit)) then
+        call run_fit_case(queue%scene, queue%results%progress, index, case)
+      else
+        call run_case(queue%scene, queue%results%progress, store, case)
+      end if
       !$omp critical (one_at_a_time)
       call queue%enter(case)
       !$omp end critical (one_at_a_time)
@@ -156,7 +161,11 @@ contains
     seconds = clock_now()
     !$omp parallel do schedule(dynamic, 1) if(.not. allocated(self%scenes(job)%fit))
     do i = 1, cases
-      call run_case(self%scenes(job), unseen, self%store, self%index, of_batch(i))
+      if (allocated(self%scenes(job)%fit)) then
+        call run_fit_case(self%scenes(job), unseen, self%index, of_batch(i))
+      else
+        call run_case(self%scenes(job), unseen, self%store, of_batch(i))
+      end if
     end do
     !$omp end parallel do
     seconds = clock_now() - seconds

@@ -33,8 +33,8 @@ module curve_rows
 
 contains
 
-  !> Takes the columns of a measurement from the text of its file: position and signal; these and the segment; or position and
-  !> signal of the approach and of the retreat, side by side.
+  !> Takes the columns of a measurement from the text of its file: position and signal; these and
+  !> the segment; or position and signal of the approach and of the retreat, side by side.
   subroutine read_curve_rows(measurement, source, rows, error)
     type(measurement_t), intent(in) :: measurement
     type(source_t), intent(in) :: source

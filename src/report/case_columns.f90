@@ -60,9 +60,7 @@ contains
         end associate
       end do
       if (allocated(scene%fit)) then
-        columns(keys + size(numbers) + 1:size(columns) - 1 - size(text_columns)) = &
-          columns_of_fit(scene)
-        columns(size(columns) - size(text_columns):size(columns) - 1) = text_columns
+        columns(keys + size(numbers) + 1:size(columns) - 1) = columns_of_fit(scene)
       end if
     end associate
     columns(size(columns)) = failure_column
@@ -99,7 +97,7 @@ contains
 
     column_count = size(scene%sweep%words) + size(chosen_numbers(scene)) + 1
     if (allocated(scene%fit)) column_count = column_count + count_of_fit(scene) + &
-      size(text_columns)
+      text_columns
   end function column_count
 
   !> What a sweep of the scene leaves out, for a message; empty if nothing but the curves.

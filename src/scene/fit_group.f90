@@ -64,20 +64,24 @@ contains
   end subroutine take_fit
 
   !> Reads the curve of a scene with a fit, whose file becomes a part of the deck's checksums.
-  !> index: where the curves of a file with several are; it is made unless it is of this file.
-  !> trouble: why the curve cannot be read.
-  subroutine load_curve(scene, index, trouble)
+  !> trouble: why the curve cannot be read. index: where the curves of a file with several are; it
+  !> is made unless it is of this file.
+  subroutine load_curve(scene, trouble, index)
     type(scene_t), intent(inout) :: scene
-    type(curve_index_t), intent(inout) :: index
     type(failure_t), allocatable, intent(out) :: trouble
+    type(curve_index_t), intent(inout), optional, target :: index
+    type(curve_index_t), target :: own
+    type(curve_index_t), pointer :: curves
     type(source_t) :: source
     integer(long) :: digest
 
+    curves => own
+    if (present(index)) curves => index
     associate (measured => scene%measured)
       if (allocated(measured%curves)) then
-        call index%find_curves(measured%file, measured%curves, measured%skip_lines, trouble)
-        if (.not. allocated(trouble)) call index%load(measured%curve, source, trouble)
-        digest = index%digest
+        call curves%find_curves(measured%file, measured%curves, measured%skip_lines, trouble)
+        if (.not. allocated(trouble)) call curves%load(measured%curve, source, trouble)
+        digest = curves%digest
       else
         call load_source(measured%file, source, trouble, largest_table)
         digest = 0

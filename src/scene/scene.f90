@@ -17,7 +17,6 @@ module scene
   use theory_groups, only: theory_keys, take_theories
   use sweep_group, only: sweep_keys, take_sweep
   use fit_group, only: fit_keys, take_fit, load_curve
-  use curve_index, only: curve_index_t
   use measurement_group, only: measurement_keys
   use numerics_group, only: numerics_keys, take_numerics
   use scene_checks, only: check_derived, check_shape
@@ -67,7 +66,6 @@ contains
     type(failure_t), allocatable, intent(out) :: error
     character(len=*), intent(in), optional :: text
     type(failure_t), allocatable :: trouble
-    type(curve_index_t) :: index
     type(deck_t) :: deck
 
     call read_deck(file, keys_of_scene(), deck, text)
@@ -75,7 +73,7 @@ contains
     if (allocated(scene%sweep)) then
       if (.not. allocated(scene%deck%error)) call check_sweep(scene)
     else if (allocated(scene%fit) .and. .not. allocated(scene%deck%error)) then
-      call load_curve(scene, index, trouble)
+      call load_curve(scene, trouble)
       if (allocated(trouble)) call scene%deck%mistake('measurement', 'file', trouble%message)
     end if
     call move_alloc(scene%deck%error, error)

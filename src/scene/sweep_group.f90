@@ -67,7 +67,8 @@ contains
     end do
     call take_cases(scene)
     if (allocated(scene%deck%error)) return
-    scene%sweep%costs = .not. scene%deck%has_group('fit') .and. index(' ' // lower(scene%sweep%names), ' numerics.') > 0
+    scene%sweep%costs = .not. scene%deck%has_group('fit') .and. &
+      index(' ' // lower(scene%sweep%names), ' numerics.') > 0
     if (scene%deck%is_set('sweep', 'costs')) &
       call scene%deck%get('sweep', 'costs', scene%sweep%costs)
     if (scene%sweep%costs .and. scene%deck%has_group('fit')) call scene%deck%mistake('sweep', &

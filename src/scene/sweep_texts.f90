@@ -84,13 +84,14 @@ contains
     subroutine note_files()
       integer(long) :: digest(size(sweep%texts), 2)
       character(len=8) :: number
-      integer :: i
+      integer :: row, i
 
       do i = 1, size(sweep%texts)
         digest(i, :) = [checksum(sweep%texts(i)%text), bytes_of(whole(sweep%texts(i)%text))]
       end do
       write (number, '(z8.8)') checksum(reshape(digest, [size(digest)]))
-      deck%values(deck%row_of('sweep', 'words'))%remark = 'checksum ' // number
+      row = deck%row_of('sweep', 'words')
+      deck%values(row)%remark = 'checksum ' // number
     end subroutine note_files
 
   end subroutine take_texts

@@ -11,12 +11,22 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-/* Most processes that are waited for at once. */
-enum { most = 1024 };
+/* Most processes that are waited for at once; most descriptors that are looked at. */
+enum { most = 1024, most_open = 65536 };
 
 /* A process that is forked must not hold the pipes of the ones before it, whose end would not be
-   seen. */
-int snapin_fork(const int *held, int count, int *reading, int *writing) {
+   seen, nor the lock of a folder. */
+static void close_others(int reading, int writing) {
+  long limit = sysconf(_SC_OPEN_MAX);
+  int fd;
+  if (limit < 0 || limit > most_open)
+    limit = most_open;
+  for (fd = STDERR_FILENO + 1; fd < limit; fd++)
+    if (fd != reading && fd != writing)
+      close(fd);
+}
+
+int snapin_fork(int *reading, int *writing) {
   int to[2], from[2], status, i;
   pid_t parent = getpid(), child;
   if (pipe(to) != 0)
@@ -39,12 +49,12 @@ int snapin_fork(const int *held, int count, int *reading, int *writing) {
   }
   *reading = child == 0 ? to[0] : from[0];
   *writing = child == 0 ? from[1] : to[1];
-  close(child == 0 ? to[1] : to[0]);
-  close(child == 0 ? from[0] : from[1]);
-  if (child > 0)
+  if (child > 0) {
+    close(to[0]);
+    close(from[1]);
     return (int)child;
-  for (i = 0; i < count; i++)
-    close(held[i]);
+  }
+  close_others(*reading, *writing);
 #ifdef PR_SET_PDEATHSIG
   prctl(PR_SET_PDEATHSIG, SIGKILL);
 #endif

@@ -28,12 +28,10 @@ module forks
   end type forked_team_t
 
   interface
-    !> Forks a process, in which the result is 0, and closes the descriptors `held` there; otherwise
-    !> the result is its number. reading, writing: the pipes between both.
-    integer(c_int) function c_fork(held, count, reading, writing) bind(c, name='snapin_fork')
+    !> Forks a process, in which the result is 0 and no other file is open than the standard
+    !> streams; otherwise the result is its number. reading, writing: the pipes between both.
+    integer(c_int) function c_fork(reading, writing) bind(c, name='snapin_fork')
       import :: c_int
-      integer(c_int), intent(in) :: held(*)
-      integer(c_int), value :: count
       integer(c_int), intent(out) :: reading, writing
     end function c_fork
 
@@ -67,8 +65,7 @@ contains
 
     allocate (self%reading(0), self%writing(0), self%child(0))
     do i = 1, min(count, most_forks)
-      child = c_fork([self%reading, self%writing], 2*size(self%reading, kind=c_int), reading, &
-        writing)
+      child = c_fork(reading, writing)
       call check_status('cannot start a process', child, error)
       if (allocated(error)) return
       if (child == 0) then
