@@ -30,8 +30,8 @@ if hasattr(os, "register_at_fork"):
 __all__ = [
     "DeckError", "EquilibriumPath", "Fit", "ForceCurve", "Result", "SnapinError",
     "SnapinWarning", "approximation_rows", "cohesive_zone", "contact_curve", "contact_law",
-    "contact_radius", "deck_text", "equilibrium", "equilibrium_path", "exponential", "fit", "fit_many",
-    "force_curve", "force_law", "gauss_rule", "jump_estimates", "kernel",
+    "contact_radius", "deck_text", "equilibrium", "equilibrium_path", "exponential", "fit",
+    "fit_many", "force_curve", "force_law", "gauss_rule", "jump_estimates", "kernel",
     "kernel_log_coefficient", "law_numbers", "lennard_jones", "load_at_displacement",
     "panel_mesh", "panel_weights", "profile", "pull_off", "read_results", "run",
     "slow_deformation", "turning_intervals", "uniform_mesh"]

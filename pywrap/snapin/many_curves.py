@@ -68,6 +68,14 @@ class Fits:
         excess of their residuals."""
         return worst_of(self.table, count)
 
+    def draw_maps(self, values=None, *, columns=None):
+        """Return a figure of Matplotlib with maps of columns of the table, by default of work of
+        adhesion, modulus, contact height, Tabor's parameter and verdict, over the places of the
+        curves or, with so many `columns`, their order."""
+        from .curve_maps import draw_maps
+
+        return draw_maps(self.table, self.units, values, columns=columns)
+
     def to_xarray(self):
         """Return an `xarray.Dataset` with units as attributes. Its dimensions are y and x if the
         places of the curves are all points of a grid, else `curve`."""

@@ -117,8 +117,8 @@ contains
   end subroutine open_rows
 
   !> The values of the next row; a word counts as its number, a text as the number of the row.
-  !> found = .false. after the last row; the file is then closed. error: the mistake in the row, with
-  !> file and line.
+  !> found = .false. after the last row; the file is then closed. error: the mistake in the row,
+  !> with file and line.
   subroutine next(self, values, found, error)
     class(case_rows_t), intent(inout) :: self
     real(wp), allocatable, intent(inout) :: values(:)
