@@ -12,9 +12,9 @@ VERDICTS = {"described": "#009E73", "warned": "#56B4E9", "not_described": "#E69F
 _GREY = "#BBBBBB"
 # What is drawn without being asked for, as far as a sweep has it.
 USUAL = ("fitted_work_of_adhesion", "fitted_reduced_modulus", "contact_height", "tabor", "verdict")
-# Values farther from the median than this many times the distance between the quartiles are
-# outliers, of a normal distribution one in a million. Positive values whose quartiles are as far
-# apart as this are compared by their logarithms, and drawn so.
+# Values farther from the median of their neighbours than this many times the distance between the
+# quartiles of all are outliers, of a normal distribution one in a hundred thousand. Positive values
+# whose quartiles are as far apart as this factor are compared by their logarithms, and drawn so.
 _FAR, _WIDE = 3.3, 1.5
 # Colours cover these parts of the values that are no outliers.
 _ENDS = (0.01, 0.99)
@@ -48,13 +48,14 @@ def draw_maps(table, units=None, values=None, places=None, columns=None):
         else:
             _draw_numbers(figure, panel, cells, table, name, (units or {}).get(name))
         panel.set(title=_words(name), xlabel=f"x{unit}", ylabel=f"y{unit}")
-        panel.set_aspect("equal" if unit else "auto")
+        panel.set_aspect("equal")
     return figure
 
 
-def colours_of(table, name):
+def colours_of(table, name, cells=(None, None)):
     """Return which curves are in colour: those that are described, without outliers; and whether
-    the values are compared by their logarithms."""
+    the values are compared by their logarithms. A hill is no outlier: where the cells are those of
+    a grid, a value is compared with the eight about it."""
     values = table[name]
     good = np.isfinite(values) & np.isin(table["verdict"], ("described", "warned"))
     if not good.any():
@@ -63,8 +64,23 @@ def colours_of(table, name):
     logarithmic = bool(values[good].min() > 0 and high > _WIDE * low)
     x = np.log(np.where(good, values, 1)) if logarithmic else values
     low, middle, high = np.quantile(x[good], [0.25, 0.5, 0.75])
+    middle = _about(np.where(good, x, np.nan), cells, middle)
     with np.errstate(invalid="ignore"):
         return good & (np.abs(x - middle) <= _FAR * max(high - low, 1e-300)), logarithmic
+
+
+def _about(values, cells, otherwise):
+    """Return for each curve the median of the values about it on a grid."""
+    if cells[0] is None:
+        return np.full(len(values), otherwise)
+    shape, order = cells[1]
+    wide = np.pad(values[order].reshape(shape), 1, constant_values=np.nan)
+    near = np.stack([wide[1 + j:1 + j + shape[0], 1 + i:1 + i + shape[1]]
+                     for j in (-1, 0, 1) for i in (-1, 0, 1) if i or j])
+    near = np.where(np.isfinite(near).any(axis=0), near, otherwise)
+    found = np.empty(len(values))
+    found[order] = np.nanmedian(near, axis=0).ravel()
+    return found
 
 
 def _places(table, places, columns):
@@ -119,7 +135,7 @@ def _show(panel, cells, values, **colours):
 def _draw_numbers(figure, panel, cells, table, name, unit):
     from matplotlib.colors import ListedColormap, LogNorm, Normalize
 
-    good, logarithmic = colours_of(table, name)
+    good, logarithmic = colours_of(table, name, cells)
     grey = np.where(good, np.nan, 0.0)
     if not good.all():
         _show(panel, cells, grey, cmap=ListedColormap([_GREY]), vmin=0, vmax=1)
@@ -160,9 +176,9 @@ def _draw_words(panel, cells, words):
           norm=BoundaryNorm(np.arange(len(names) + 1) - 0.5, len(names)))
     panel.legend(handles=[
         Patch(color=colour, label=f"{_words(name)}: {np.count_nonzero(words == name)}")
-        for name, colour in zip(names, colours)], fontsize="x-small", loc="upper left",
-        bbox_to_anchor=(1.0, 1.0), frameon=False)
+        for name, colour in zip(names, colours)], fontsize="x-small", loc="upper center",
+        bbox_to_anchor=(0.5, -0.2), frameon=False, ncols=2)
 
 
 def _words(name):
-    return name.replace("fitted_", "").replace("_", " ")
+    return "Tabor's parameter" if name == "tabor" else name.replace("fitted_", "").replace("_", " ")

@@ -109,15 +109,13 @@ contains
     integer, intent(in) :: sample(:)
     integer, intent(in), optional :: side
     real(wp) :: signal(size(sample))
-    type(load_at_t) :: load
     integer :: i, n, on_side
 
     do n = 1, size(sample)
       i = sample(n)
       on_side = max(self%data%side(i), 0)
       if (present(side)) on_side = side
-      load = self%response%load_on(self%data%way(i), on_side, self%position_of(value, i))
-      signal(n) = load%load
+      signal(n) = self%response%value_on(self%data%way(i), on_side, self%position_of(value, i))
     end do
     signal = signal/self%newtons(value)
   end function signal_of
