@@ -36,6 +36,7 @@ from .classical import (
 from .curve_fit import Fit, fit
 from .deck import deck_text, exponential, lennard_jones
 from .experiment import EquilibriumPath, ForceCurve, equilibrium_path, force_curve, run
+from .many_curves import fit_many
 from .numerics import (
     equilibrium, force_law, gauss_rule, kernel, kernel_log_coefficient, law_numbers, panel_mesh,
     panel_weights, turning_intervals, uniform_mesh)
@@ -52,7 +53,7 @@ __all__ = [
     "DeckError", "EquilibriumPath", "Fit", "ForceCurve", "Result", "SnapinError",
     "SnapinWarning", "approximation_rows", "cohesive_zone", "contact_curve", "contact_law",
     "contact_radius", "deck_text", "equilibrium", "equilibrium_path", "exponential", "fit",
-    "force_curve", "force_law", "gauss_rule", "jump_estimates", "kernel",
+    "fit_many", "force_curve", "force_law", "gauss_rule", "jump_estimates", "kernel",
     "kernel_log_coefficient", "law_numbers", "lennard_jones", "load_at_displacement",
     "panel_mesh", "panel_weights", "profile", "pull_off", "read_results", "run",
     "slow_deformation", "turning_intervals", "uniform_mesh"]

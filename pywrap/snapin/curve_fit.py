@@ -15,8 +15,8 @@ from .deck import Deck, deck_of, deck_text
 from .experiment import run
 from .results import Result
 
-# Keys of &measurement and &fit that are arguments of `fit`.
-_OWN = ("measurement", "fit")
+# The columns of a file of curves, of which the last may be missing.
+_COLUMNS = ("z", "force", "segment")
 
 
 class Fit(NamedTuple):
@@ -58,6 +58,23 @@ def fit(z: ArrayLike, force: ArrayLike, *, spring_constant: float, deck: Deck,
     Samples without a finite z and force do not count. A wrong deck raises `DeckError`, a curve that
     cannot be fitted `SnapinError` with the reason.
     """
+    columns = columns_of(z, force, segment)
+    with tempfile.TemporaryDirectory() as folder:
+        file = pathlib.Path(folder, "curve.csv")
+        np.savetxt(file, np.column_stack(columns), "%.17g", ",",
+                   header=",".join(_COLUMNS[:len(columns)]), comments="")
+        groups = fit_groups(
+            file, len(columns) == 3, spring_constant=spring_constant, parameters=parameters,
+            sensitivity=sensitivity, contact_point=contact_point, branches=branches, lower=lower,
+            upper=upper, prior=prior, noise=noise)
+        with warnings.catch_warnings(record=True) as said:
+            warnings.simplefilter("always", SnapinWarning)
+            result = run(with_groups(deck, groups, "fit"))
+    return _fit_of(result, [str(one.message) for one in said])
+
+
+def columns_of(z, force, segment=None):
+    """Return position, signal and, if there are any, segments of a curve as arrays."""
     columns = [np.asarray(z, float), np.asarray(force, float)]
     for name, column in zip(("z", "force"), columns):
         if column.ndim != 1:
@@ -67,30 +84,28 @@ def fit(z: ArrayLike, force: ArrayLike, *, spring_constant: float, deck: Deck,
     if len({len(column) for column in columns}) > 1:
         raise ValueError("z, force and segment: " + ", ".join(str(len(c)) for c in columns)
                          + " values; the numbers must be equal")
-    with tempfile.TemporaryDirectory() as folder:
-        file = pathlib.Path(folder, "curve.csv")
-        np.savetxt(file, np.column_stack(columns), "%.17g", ",",
-                   header="z,force,segment" if segment is not None else "z,force", comments="")
-        groups = {
-            "measurement": {
-                "file": os.fspath(file),
-                "columns": ["z", "force", "segment"][:len(columns)],
-                "spring_constant": spring_constant, "sensitivity": sensitivity,
-                "contact_point": contact_point, "segment": branches},
-            "fit": {"parameters": [parameters] if isinstance(parameters, str) else list(parameters),
-                    "lower": lower, "upper": upper, "prior": prior, "noise": noise}}
-        with warnings.catch_warnings(record=True) as said:
-            warnings.simplefilter("always", SnapinWarning)
-            result = run(_with(deck, groups))
-    return _fit_of(result, [str(one.message) for one in said])
+    return columns
 
 
-def _with(deck, groups):
-    """Return the text of a deck and further groups."""
+def fit_groups(file, segments, *, spring_constant, parameters, sensitivity=None, contact_point=None,
+               branches=None, lower=None, upper=None, prior=None, noise=None):
+    """Return the groups &measurement and &fit of a deck for a file of curves."""
+    return {
+        "measurement": {
+            "file": os.fspath(pathlib.Path(file).absolute()),
+            "columns": list(_COLUMNS[:3 if segments else 2]),
+            "spring_constant": spring_constant, "sensitivity": sensitivity,
+            "contact_point": contact_point, "segment": branches},
+        "fit": {"parameters": [parameters] if isinstance(parameters, str) else list(parameters),
+                "lower": lower, "upper": upper, "prior": prior, "noise": noise}}
+
+
+def with_groups(deck, groups, asker):
+    """Return the text of a deck and of further groups, which the function `asker` makes."""
     if isinstance(deck, Mapping):
-        for name in _OWN:
+        for name in groups:
             if deck.get(name) is not None:
-                raise DeckError(f"deck: &{name} is made of the arguments of fit")
+                raise DeckError(f"deck: &{name} is made of the arguments of {asker}")
         return deck_text({**deck, **groups})
     return deck_of(deck)[1].decode() + "\n" + deck_text(groups)
 

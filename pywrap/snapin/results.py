@@ -1,6 +1,7 @@
 """The reader of the results of a run."""
 
 import contextlib
+import csv
 import difflib
 import itertools
 import os
@@ -14,7 +15,10 @@ import numpy as np
 
 from .arguments import Path, SnapinError, folder_path
 
-_TEXT_COLUMNS = ("branch", "direction", "theory", "quantity", "parameter", "failure")
+_TEXT_COLUMNS = ("branch", "direction", "theory", "quantity", "parameter", "verdict", "warning",
+                 "failure")
+# What numbers may look like that begin with a letter.
+_NO_NUMBERS = ("NaN", "Infinity")
 # How the program's tables and its fits begin.
 _HEAD, _FIT_HEAD = b"# title:", b"! A fit by snapin"
 # A text in quotes, with quotes inside doubled, or another value.
@@ -88,10 +92,14 @@ class Result:
     summary: dict[str, Any]
     cost: dict[str, Any]
     fitted: dict[str, dict[str, Any]]
+    units: dict[str, dict[str, str]]
 
     def __init__(self, tables: dict[str, np.ndarray], summary: dict[str, Any],
-                 cost: dict[str, Any], fitted: Optional[dict[str, dict[str, Any]]] = None) -> None:
+                 cost: dict[str, Any], fitted: Optional[dict[str, dict[str, Any]]] = None,
+                 units: Optional[dict[str, dict[str, str]]] = None) -> None:
         self.tables, self.summary, self.cost = tables, summary, cost
+        #: The units of the columns of each table by its name.
+        self.units = units or {}
         self.fitted = fitted or {}
 
     @property
@@ -192,13 +200,20 @@ def result_of(files: dict[str, str], place: Path) -> Result:
     messages."""
     groups = _summary_groups(files["summary.nml"], f"{place}/summary.nml",
                              files.get("sweep.csv", ""))
+    units = {name.removesuffix(".csv"): units_of(text) for name, text in files.items()
+             if name.endswith(".csv")}
     tables = {
         name.removesuffix(".csv"): _structured(_columns(files.pop(name), f"{place}/{name}"))
         for name in sorted(files)
         if name.endswith(".csv")
     }
     return Result(tables, groups["summary"], groups["cost"],
-                  _fitted(files.get("fit.nml", ""), f"{place}/fit.nml"))
+                  _fitted(files.get("fit.nml", ""), f"{place}/fit.nml"), units)
+
+
+def units_of(text: str) -> dict[str, str]:
+    """Return the units of the columns of a table by name."""
+    return dict(re.findall(r"^# (\S+) \[(.*?)\]", text, re.MULTILINE))
 
 
 def _fitted(text, place):
@@ -272,14 +287,16 @@ def read_table(folder: Path, name: str) -> dict[str, np.ndarray]:
 def _columns(text, place):
     """Return the columns of a table's text."""
     lines = (line for line in _lines(text) if not line.startswith("#"))
-    header = next(lines, "").split(",")
+    # Only names of files with commas are in quotes.
+    table = csv.reader(lines) if '"' in text else (line.split(",") for line in lines)
+    header = next(table, [""])
     if header == [""]:
         raise ResultsError(f"{place}: no header line")
     if len(set(header)) < len(header):
         raise ResultsError(f"{place}: two columns have one name")
     pieces = [[np.array((), str if name in _TEXT_COLUMNS else float)] for name in header]
     with _reading(place):
-        while rows := [line.split(",") for line in itertools.islice(lines, _AT_ONCE)]:
+        while rows := list(itertools.islice(table, _AT_ONCE)):
             for row in rows:
                 if len(row) != len(header):
                     raise ResultsError(
@@ -303,10 +320,12 @@ def _lines(text):
 
 
 def _joined(name, pieces):
-    """Return a column in one piece: of a swept key text if it has words, otherwise numbers."""
+    """Return a column in one piece: of a swept key text if it has words or names files, otherwise
+    numbers."""
     column = np.concatenate(pieces[1:] or pieces)
     pieces.clear()
-    if "." in name and not any(cell[:1].isalpha() for cell in column):
+    if "." in name and not name.endswith(".file") and not any(
+            cell[:1].isalpha() and cell not in _NO_NUMBERS for cell in column):
         return column.astype(float)
     return column
 

@@ -4,7 +4,8 @@ module case_queue
   use kinds, only: wp
   use failure, only: failure_t, fail, bad_input, file_trouble
   use scene_groups, only: scene_t
-  use sweep_case, only: case_t, sweep_tally_t, pass_case
+  use sweep_case, only: case_t, sweep_tally_t, pass_case, pass_task
+  use fit_columns, only: values_of_fit, count_of_fit, verdicts, described
   use case_rows, only: case_rows_t
   use case_columns, only: column_width
   use byte_record, only: byte_record_t
@@ -13,6 +14,9 @@ module case_queue
   implicit none
   private
   public :: case_queue_t
+
+  !> The first cases of a sweep of fits, of which one shows the others where to start.
+  integer, parameter :: most_first = 5
 
   !> The cases of a sweep: number of cases handed out, cases that wait for the rows before theirs,
   !> number of rows written, and the tally of these. `waiting` has a case at its number modulo the
@@ -26,6 +30,8 @@ module case_queue
     type(case_t), allocatable :: waiting(:)
     integer :: handed_out = 0, written = 0
     type(sweep_tally_t) :: tally
+    !> The fitted values of the first curve that its model describes, from which later ones start.
+    real(wp), allocatable :: like(:)
   contains
     procedure :: next
     procedure :: put_next
@@ -33,6 +39,7 @@ module case_queue
     procedure :: enter
     procedure :: begin
     procedure, private :: next_row
+    procedure, private :: waits
     procedure, private :: has
     procedure, private :: add
   end type case_queue_t
@@ -50,14 +57,17 @@ contains
 
     found = .false.
     if (allocated(self%results%trouble) .or. allocated(self%results%folder%journal%trouble)) return
+    if (self%waits()) return
     associate (sweep => self%scene%sweep)
       do while (.not. found .and. self%handed_out < sweep%cases())
         self%handed_out = self%handed_out + 1
         case%number = self%handed_out
         if (allocated(sweep%file)) then
           call self%next_row(case%values, .false., error)
+          case%text = self%rows%text
         else
           case%values = sweep%values(case%number)
+          case%text = sweep%text_of(case%values)
         end if
         if (allocated(error)) then
           found = .false.
@@ -66,10 +76,21 @@ contains
         end if
         found = .not. self%has(case%number)
       end do
+      case%like = [real(wp) ::]
+      if (allocated(self%like)) case%like = self%like
       if (.not. found .and. allocated(sweep%file)) &
         call self%next_row(rest, .true., self%results%trouble)
     end associate
   end subroutine next
+
+  !> Whether the next case has to wait: the first fits are made one by one until the model describes
+  !> a curve. Then no result depends on how many are made at once.
+  pure logical function waits(self)
+    class(case_queue_t), intent(in) :: self
+
+    waits = allocated(self%scene%fit) .and. .not. allocated(self%like) .and. &
+      self%handed_out < most_first .and. self%written < self%handed_out
+  end function waits
 
   !> Reads the row of the next case from the file, or, if all are `given`, what is after the last.
   !> The file was read before without a mistake, and all of its lines are compared with that
@@ -104,8 +125,7 @@ contains
 
     call self%next(case, found)
     if (.not. found) return
-    call batch%pass(case%number)
-    call batch%pass(case%values)
+    call pass_task(batch, case)
   end subroutine put_next
 
   subroutine take_answer(self, answers)
@@ -165,17 +185,36 @@ contains
     do
       associate (first => self%waiting(mod(self%written + 1, size(self%waiting))))
         if (first%number /= self%written + 1) exit
-        call self%results%take_case(self%columns, self%scene%sweep%words, first%values, &
-          first%numbers, first%failure)
-        if (self%scene%sweep%costs) call self%results%take_costs(self%cost_columns, &
-          self%scene%sweep%words, first%values, first%costs)
+        call write_case(self, first)
+        if (allocated(self%scene%fit) .and. .not. allocated(self%like) .and. first%number <= &
+          most_first .and. first%verdict == described) self%like = &
+          values_of_fit(first%numbers(size(first%numbers) - count_of_fit(self%scene) + 1:), &
+          size(self%scene%fit%unknown))
         call self%tally%add(first)
         first%number = 0
-        deallocate (first%numbers, first%values, first%costs)
+        deallocate (first%numbers, first%values, first%costs, first%text)
       end associate
       self%written = self%written + 1
     end do
   end subroutine add
+
+  !> Writes the row of a case.
+  subroutine write_case(self, case)
+    class(case_queue_t), intent(inout) :: self
+    type(case_t), intent(in) :: case
+    character(len=len(case%failure)) :: texts(3)
+
+    texts = ''
+    if (case%verdict > 0) texts(1) = verdicts(case%verdict)
+    texts(2) = case%warning
+    texts(3) = case%failure
+    associate (sweep => self%scene%sweep)
+      call self%results%take_case(self%columns, sweep, case%values, case%text, case%numbers, &
+        texts(merge(1, 3, allocated(self%scene%fit)):))
+      if (sweep%costs) call self%results%take_costs(self%cost_columns, sweep, case%values, &
+        case%text, case%costs)
+    end associate
+  end subroutine write_case
 
   !> Makes room for a case that is `ahead` cases after the last one written.
   subroutine make_room(waiting, ahead)

@@ -3,7 +3,7 @@
 module dispatch
   use kinds, only: wp
   use byte_record, only: byte_record_t
-  use ranks, only: crew_t
+  use teams, only: team_t
   implicit none
   private
   public :: foreman_t, worker_t, hand_out, work_through, dismiss
@@ -56,26 +56,36 @@ module dispatch
 
 contains
 
-  !> Has the workers of a crew compute all cases of a job, which has a number above 0. threads: the
-  !> number of cases that a worker computes at once. messages: the number of messages sent.
-  subroutine hand_out(crew, job, foreman, threads, messages)
-    type(crew_t), intent(in) :: crew
+  !> Has the workers of a team compute all cases of a job, which has a number above 0. threads: the
+  !> number of cases that a worker computes at once. messages: the number of messages sent. lost: a
+  !> worker is gone, and not all cases have an answer.
+  subroutine hand_out(team, job, foreman, threads, messages, lost)
+    class(team_t), intent(inout) :: team
     integer, intent(in) :: job, threads
     class(foreman_t), intent(inout) :: foreman
     integer, intent(out), optional :: messages
+    logical, intent(out), optional :: lost
     type(byte_record_t) :: answers
     real(wp) :: seconds
-    integer :: goal(crew%workers), from, cases, busy, sent, i
+    logical :: idle(team%workers)
+    integer :: goal(team%workers), from, cases, sent, i
 
-    busy = 0
+    if (present(lost)) lost = .false.
     sent = 0
     goal = threads
-    do from = 1, crew%workers
-      call give(from)
-    end do
-    do while (busy > 0)
-      call crew%receive(answers, from)
-      busy = busy - 1
+    idle = .true.
+    do
+      ! An answer may free more cases than one.
+      do i = 1, team%workers
+        if (idle(i)) call give(i)
+      end do
+      if (all(idle)) exit
+      call team%receive(answers, from)
+      if (from < 1) then
+        if (present(lost)) lost = .true.
+        exit
+      end if
+      idle(from) = .true.
       call answers%pass(cases)
       call answers%pass(seconds)
       do i = 1, cases
@@ -84,7 +94,6 @@ contains
       ! At most twice as many cases as in the last batch, since cases differ.
       goal(from) = max(threads, min(2*goal(from), most_cases, &
         nint(min(batch_seconds*cases/max(seconds, 1.0e-9_wp), real(most_cases, wp)))))
-      call give(from)
     end do
     if (present(messages)) messages = sent
 
@@ -105,23 +114,24 @@ contains
       call message%pass(job)
       call message%pass(held)
       call message%add(batch%words(:batch%held))
-      call crew%send(message, to)
-      busy = busy + 1
+      call team%send(message, to)
+      idle(to) = .false.
       sent = sent + 1
     end subroutine give
 
   end subroutine hand_out
 
   !> Computes batches until there are no more.
-  subroutine work_through(crew, worker)
-    type(crew_t), intent(in) :: crew
+  subroutine work_through(team, worker)
+    class(team_t), intent(inout) :: team
     class(worker_t), intent(inout) :: worker
     type(byte_record_t) :: batch, answers, message
     real(wp) :: seconds
     integer :: job, cases, from
 
     do
-      call crew%receive(batch, from)
+      call team%receive(batch, from)
+      if (from < 0) return
       call batch%pass(job)
       if (job == no_job) return
       call batch%pass(cases)
@@ -131,19 +141,19 @@ contains
       call message%pass(cases)
       call message%pass(seconds)
       call message%add(answers%words(:answers%held))
-      call crew%send(message, from)
+      call team%send(message, from)
     end do
   end subroutine work_through
 
-  !> Tells the workers of a crew that there is no more work.
-  subroutine dismiss(crew)
-    type(crew_t), intent(in) :: crew
+  !> Tells the workers of a team that there is no more work.
+  subroutine dismiss(team)
+    class(team_t), intent(in) :: team
     type(byte_record_t) :: message
     integer :: to
 
     call message%pass(no_job)
-    do to = 1, crew%workers
-      call crew%send(message, to)
+    do to = 1, team%workers
+      call team%send(message, to)
     end do
   end subroutine dismiss
 

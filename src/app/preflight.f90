@@ -5,6 +5,7 @@ module preflight
   use kinds, only: wp
   use failure, only: failure_t, fail, bad_input, no_room
   use text, only: brief
+  use deck_keys, only: text_value
   use scene_groups, only: scene_t
   use dimensionless_problem, only: problem_t
   use numerics_choice, only: choice_t, choose, with_fewer_nodes
@@ -49,7 +50,7 @@ contains
     call check(name, scene%deck%has_group('summary'))
     associate (deck => scene%deck)
       do i = 1, size(deck%specs)
-        if (allocated(deck%values(i)%remark)) &
+        if (allocated(deck%values(i)%remark) .and. deck%specs(i)%kind == text_value) &
           call check(deck%path_of(trim(deck%specs(i)%group), trim(deck%specs(i)%key)), .false.)
       end do
     end associate

@@ -72,8 +72,10 @@ contains
     if (allocated(scene%sweep)) then
       command = ''
       if (.not. destination%to_stream) then
-        command = drawing_of(destination%folder, trim(merge('accuracy.py', 'map.py     ', &
-          scene%sweep%costs)))
+        command = 'map.py'
+        if (scene%sweep%costs) command = 'accuracy.py'
+        if (allocated(scene%fit)) command = 'curve_map.py'
+        command = drawing_of(destination%folder, command)
         if (command /= '') command = '; to draw it: '//command
         if (scene%sweep%costs) command = ' and costs.csv'//command
         command = ': '//destination%folder//'/sweep.csv'//command

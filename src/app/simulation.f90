@@ -38,9 +38,9 @@ module simulation
   use files, only: file_exists
   use clock, only: seconds
   use namelist_writer, only: line_t
-  use deck_family, only: deck_family_t, widened
-  use fit_group, only: family_of_fit
-  use fit_run, only: run_fit, fit_outcome_t
+  use fit_run, only: fit_outcome_t
+  use fit_columns, only: verdicts
+  use measured_fit, only: fit_measured
   use fit_doubts, only: doubts_of
   use fit_rows, only: write_fit_rows, fit_text
   use fit_words, only: words_of_fit
@@ -61,7 +61,7 @@ contains
     type(scene_t), intent(in) :: scene
     character(len=*), intent(in) :: out_dir
     logical, intent(in) :: handed_over, quiet, verbose, resume
-    type(crew_t), intent(in) :: crew
+    type(crew_t), intent(inout) :: crew
     integer, intent(in) :: job
     logical, intent(out) :: converged
     type(failure_t), allocatable, intent(out) :: error
@@ -92,7 +92,7 @@ contains
     call compute()
     ! A table of the deck's own numbers would belong to no case of a sweep.
     if (.not. allocated(scene%sweep)) call write_theories()
-    if (allocated(scene%fit)) call fit_measured()
+    if (allocated(scene%fit) .and. .not. allocated(scene%sweep)) call report_fit()
     call summary%set('version', version)
     call summary%set('compiler', compiler)
     call summary%set('blas', blas)
@@ -193,12 +193,26 @@ contains
         if (tally%warned > 0) call summary%warn(brief(tally%warned)//' of '// &
           counted(scene%sweep%cases(), 'case')//' gave a warning; the first, case '// &
           brief(tally%first_warned)//': '//trim(tally%warning))
+        if (allocated(scene%fit)) call summary%note(told_of(tally))
         if (left_out(scene) /= '') call summary%note('sweep: '//left_out(scene))
       else
         call results%progress%start(states_planned(scene), name, destination%quiet)
         call run_observed()
       end if
     end subroutine compute
+
+    !> How many fits of a sweep have each verdict.
+    function told_of(tally) result(text)
+      type(sweep_tally_t), intent(in) :: tally
+      character(len=:), allocatable :: text
+      integer :: i
+
+      text = counted(scene%sweep%cases(), 'curve') // ': '
+      do i = 1, size(verdicts)
+        if (i > 1) text = text // ', '
+        text = text // brief(tally%verdict(i)) // ' ' // trim(verdicts(i))
+      end do
+    end function told_of
 
     !> Runs the experiments. Each state goes into the results, with its eigenvalue if the scene asks
     !> for it.
@@ -236,17 +250,13 @@ contains
     end subroutine write_theories
 
     !> Makes the fit of &fit, its files and messages; without a fit the summary says why.
-    subroutine fit_measured()
-      type(deck_family_t) :: family
+    subroutine report_fit()
       type(fit_outcome_t) :: outcome
-      type(failure_t), allocatable :: error
       type(line_t), allocatable :: lines(:)
       integer :: i
 
       call destination%say('fit: ' // scene%measured%understood)
-      call family_of_fit(scene%deck, family, error)
-      call run_fit(scene%measured, scene%fit, scene%numerics, family, &
-        widened(family), problem, results, outcome)
+      call fit_measured(scene, problem, .true., results, outcome)
       call results%progress%finish()
       if (allocated(outcome%trouble)) then
         call summary%fail_with('no fit: ' // outcome%trouble)
@@ -265,7 +275,7 @@ contains
       do i = 1, size(lines)
         call destination%say('fit: ' // lines(i)%text)
       end do
-    end subroutine fit_measured
+    end subroutine report_fit
 
   end subroutine run_scene
 

@@ -18,13 +18,14 @@ module sweep_case
   use case_columns, only: numbers_of
   use cost_columns, only: costs_of
   use mesh_store, only: mesh_store_t
+  use fit_columns, only: verdicts
   use byte_record, only: byte_record_t
   implicit none
   private
-  public :: case_t, sweep_tally_t, pass_case, run_case
+  public :: case_t, case_observer_t, sweep_tally_t, pass_case, pass_task, run_case
 
   !> Largest number of characters of a warning, or of the reason of a failure.
-  integer, parameter :: failure_width = 160
+  integer, parameter :: failure_width = 400
   !> A case whose cost is measured runs again until all its runs together take this time [s], at
   !> most so many times; the first run of a case is slower, since its memory is new.
   real(wp), parameter :: enough_seconds = 0.1_wp
@@ -34,10 +35,14 @@ module sweep_case
   type :: case_t
     !> Number of the case; 0: none.
     integer :: number = 0
-    !> Values of the sweep's keys.
+    !> Values of the sweep's keys; the text of the key that holds one.
     real(wp), allocatable :: values(:)
+    character(len=:), allocatable :: text
+    !> Of a fit: the values of another curve, from which it starts; empty: none. The verdict.
+    real(wp), allocatable :: like(:)
+    integer :: verdict = 0
     logical :: converged = .false.
-    !> Its numbers, as `numbers_of`.
+    !> Its numbers, as `numbers_of`, and behind them those of a fit, as `numbers_of_fit`.
     real(wp), allocatable :: numbers(:)
     !> Its row of costs.csv, as `costs_of`; empty if costs are not measured.
     real(wp), allocatable :: costs(:)
@@ -56,9 +61,9 @@ module sweep_case
   end type case_observer_t
 
   !> The number of cases that failed, and of those that gave a warning; number and warning of the
-  !> first of these; the total cost.
+  !> first of these; of fits, the number of each verdict; the total cost.
   type :: sweep_tally_t
-    integer :: failed = 0, warned = 0, first_warned = 0
+    integer :: failed = 0, warned = 0, first_warned = 0, verdict(size(verdicts)) = 0
     character(len=failure_width) :: warning = ''
     type(cost_t) :: cost
   contains
@@ -67,8 +72,8 @@ module sweep_case
 
 contains
 
-  !> Computes the case with the given number and values of the scene's sweep, on meshes that the
-  !> cases share. If costs are measured, the case has its own meshes, and one thread at a time
+  !> Computes the case with the given number, values and text of the scene's sweep, on meshes that
+  !> the cases share. If costs are measured, the case has its own meshes, and one thread at a time
   !> computes.
   subroutine run_case(scene, progress, store, case)
     type(scene_t), intent(in) :: scene
@@ -107,7 +112,7 @@ contains
     took = nan
     ! Only one thread at a time makes strings: compiler note 4.
     !$omp critical (one_at_a_time)
-    call swept_scene(scene, scene%sweep%names, case%values, variant, error)
+    call swept_scene(scene, scene%sweep%names, case%values, variant, error, case%text)
     !$omp end critical (one_at_a_time)
     call summary%set('converged', .false.)
     if (.not. allocated(error)) then
@@ -172,6 +177,17 @@ contains
     call self%progress%detail(label)
   end subroutine hear
 
+  !> Passes what a case is to be computed from to or from a record.
+  subroutine pass_task(record, case)
+    type(byte_record_t), intent(inout) :: record
+    type(case_t), intent(inout) :: case
+
+    call record%pass(case%number)
+    call record%pass(case%values)
+    call record%pass(case%text)
+    call record%pass(case%like)
+  end subroutine pass_task
+
   !> Passes a case to or from a record.
   subroutine pass_case(record, case)
     type(byte_record_t), intent(inout) :: record
@@ -184,6 +200,8 @@ contains
     call pass_text(case%warning)
     call pass_cost(case%cost)
     call record%pass(case%values)
+    call record%pass(case%text)
+    call record%pass(case%verdict)
     call record%pass(case%costs)
 
   contains
@@ -216,6 +234,7 @@ contains
 
     self%cost = sum_of(self%cost, case%cost)
     if (.not. case%converged) self%failed = self%failed + 1
+    if (case%verdict > 0) self%verdict(case%verdict) = self%verdict(case%verdict) + 1
     if (case%warning == '') return
     self%warned = self%warned + 1
     if (self%warned > 1) return

@@ -1,17 +1,20 @@
 !> A sweep: its cases (`case_queue`), distributed over the cores, or over the processes of a crew.
 module sweeps
   use kinds, only: wp
-  use failure, only: failure_t
+  use failure, only: failure_t, fail, file_trouble
   use clock, only: clock_now => seconds
   use linear_algebra, only: claim_buffers
   use scene_groups, only: scene_t
-  use sweep_case, only: case_t, sweep_tally_t, pass_case, run_case
+  use sweep_case, only: case_t, sweep_tally_t, pass_case, pass_task, run_case
+  use case_fit, only: run_fit_case
   use case_queue, only: case_queue_t
   use progress, only: progress_t
   use case_columns, only: columns_of
   use cost_columns, only: cost_columns_of
   use mesh_store, only: mesh_store_t
   use byte_record, only: byte_record_t
+  use curve_index, only: curve_index_t
+  use forks, only: forked_team_t
   use results, only: results_t
   use machine, only: thread_count
   use ranks, only: crew_t
@@ -24,8 +27,9 @@ module sweeps
   type, extends(worker_t) :: sweep_worker_t
     type(scene_t), pointer :: scenes(:) => null()
     integer :: job = 0
-    !> The meshes of the present job.
+    !> The meshes of the present job, and the curves of its file.
     type(mesh_store_t), allocatable :: store
+    type(curve_index_t) :: index
   contains
     procedure :: work
   end type sweep_worker_t
@@ -39,7 +43,7 @@ contains
   !> no case begins.
   subroutine run_sweep(scene, crew, job, results, tally)
     type(scene_t), intent(in), target :: scene
-    type(crew_t), intent(in) :: crew
+    type(crew_t), intent(inout) :: crew
     integer, intent(in) :: job
     type(results_t), intent(inout), target :: results
     type(sweep_tally_t), intent(out) :: tally
@@ -56,7 +60,12 @@ contains
     if (allocated(error)) then
       call move_alloc(error, results%trouble)
     else if (crew%workers > 0) then
-      call hand_out(crew, job, queue, thread_count())
+      ! A process fits one curve at a time.
+      call hand_out(crew, job, queue, merge(1, thread_count(), allocated(scene%fit)))
+    else if (allocated(scene%fit) .and. min(thread_count(), scene%sweep%cases()) > 1) then
+      call fit_in_processes(scene, queue, results%trouble)
+    else if (allocated(scene%fit)) then
+      call complete_cases(queue, store)
     else
       ! Each case has one thread, also for its kernels and its linear algebra.
       !$omp parallel
@@ -66,19 +75,52 @@ contains
     tally = queue%tally
   end subroutine run_sweep
 
+  !> Fits curves in as many processes as there would be threads, which may not make strings at the
+  !> same time.
+  subroutine fit_in_processes(scene, queue, trouble)
+    type(scene_t), intent(in) :: scene
+    type(case_queue_t), intent(inout) :: queue
+    type(failure_t), allocatable, intent(inout) :: trouble
+    type(forked_team_t) :: team
+    type(sweep_worker_t) :: worker
+    type(failure_t), allocatable :: error
+    type(scene_t), allocatable, target :: scenes(:)
+    logical :: lost
+
+    allocate (scenes(1))
+    scenes(1) = scene
+    call team%fork(min(thread_count(), scene%sweep%cases()), error)
+    if (team%rank > 0) then
+      worker%scenes => scenes
+      call work_through(team, worker)
+      call team%leave()
+    end if
+    lost = .false.
+    if (.not. allocated(error)) call hand_out(team, 1, queue, 1, lost=lost)
+    call team%leave()
+    if (lost) call fail(error, file_trouble, 'a process that fitted curves has been ended')
+    if (allocated(error) .and. .not. allocated(trouble)) call move_alloc(error, trouble)
+  end subroutine fit_in_processes
+
   !> Computes cases until there are no more; several threads do this at once.
   subroutine complete_cases(queue, store)
     type(case_queue_t), intent(inout) :: queue
     type(mesh_store_t), intent(inout) :: store
     type(case_t) :: case
+    type(curve_index_t) :: index
     logical :: found
 
+    if (allocated(queue%scene%fit)) index = queue%scene%sweep%index
     do
       !$omp critical (one_at_a_time)
       call queue%next(case, found)
       !$omp end critical (one_at_a_time)
       if (.not. found) exit
-      call run_case(queue%scene, queue%results%progress, store, case)
+      if (allocated(queue%scene%fit)) then
+        call run_fit_case(queue%scene, queue%results%progress, index, case)
+      else
+        call run_case(queue%scene, queue%results%progress, store, case)
+      end if
       !$omp critical (one_at_a_time)
       call queue%enter(case)
       !$omp end critical (one_at_a_time)
@@ -87,7 +129,7 @@ contains
 
   !> Computes the batches that a crew's first process hands out from the sweeps of `scenes`.
   subroutine work_on_sweeps(crew, scenes)
-    type(crew_t), intent(in) :: crew
+    type(crew_t), intent(inout) :: crew
     type(scene_t), intent(in), target :: scenes(:)
     type(sweep_worker_t) :: worker
 
@@ -107,17 +149,23 @@ contains
     integer :: i
 
     if (job /= self%job .and. allocated(self%store)) deallocate (self%store)
-    if (.not. allocated(self%store)) allocate (self%store)
+    if (.not. allocated(self%store)) then
+      allocate (self%store)
+      self%index = self%scenes(job)%sweep%index
+    end if
     self%job = job
     allocate (of_batch(cases))
     do i = 1, cases
-      call batch%pass(of_batch(i)%number)
-      call batch%pass(of_batch(i)%values)
+      call pass_task(batch, of_batch(i))
     end do
     seconds = clock_now()
-    !$omp parallel do schedule(dynamic, 1)
+    !$omp parallel do schedule(dynamic, 1) if(.not. allocated(self%scenes(job)%fit))
     do i = 1, cases
-      call run_case(self%scenes(job), unseen, self%store, of_batch(i))
+      if (allocated(self%scenes(job)%fit)) then
+        call run_fit_case(self%scenes(job), unseen, self%index, of_batch(i))
+      else
+        call run_case(self%scenes(job), unseen, self%store, of_batch(i))
+      end if
     end do
     !$omp end parallel do
     seconds = clock_now() - seconds

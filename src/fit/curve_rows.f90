@@ -3,7 +3,8 @@ module curve_rows
   use kinds, only: wp
   use failure, only: failure_t, fail, bad_input
   use text, only: counted, quoted, rounded
-  use data_table, only: data_table_t, style_t, read_data_table
+  use deck_source, only: source_t
+  use data_table, only: data_table_t, style_t, take_data_table
   use fit_request, only: measurement_t
   use units, only: find_unit
   implicit none
@@ -32,10 +33,11 @@ module curve_rows
 
 contains
 
-  !> Reads the columns of a measurement: position and signal; these and the segment; or position and
-  !> signal of the approach and of the retreat, side by side.
-  subroutine read_curve_rows(measurement, rows, error)
+  !> Takes the columns of a measurement from the text of its file: position and signal; these and
+  !> the segment; or position and signal of the approach and of the retreat, side by side.
+  subroutine read_curve_rows(measurement, source, rows, error)
     type(measurement_t), intent(in) :: measurement
+    type(source_t), intent(in) :: source
     type(curve_rows_t), intent(out) :: rows
     type(failure_t), allocatable, intent(out) :: error
     type(data_table_t) :: table
@@ -48,7 +50,7 @@ contains
     style%skip_lines = measurement%skip_lines
     n = size(measurement%columns)
     if (n == 3) style%labels = 3
-    call read_data_table(measurement%file, measurement%columns, style, table, error)
+    call take_data_table(source, measurement%columns, style, table, error)
     if (allocated(error)) return
     rows%file = table%source%file
     if (size(table%place) == 0) then

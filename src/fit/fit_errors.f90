@@ -8,7 +8,10 @@ module fit_errors
   use second_look, only: lack_t, lack_in
   implicit none
   private
-  public :: fitted_t, judge, widen, least_effect
+  public :: fitted_t, judge, widen, least_effect, within_95
+
+  !> Half-width of a 95 % interval in standard deviations.
+  real(wp), parameter :: within_95 = 1.959964_wp
 
   !> An unknown has no effect if a change of its fitted number (`fit_request`) by 1 makes fewer
   !> standard deviations of all data than this.

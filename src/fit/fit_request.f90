@@ -15,6 +15,9 @@ module fit_request
   type :: measurement_t
     character(len=:), allocatable :: file, segment
     character(len=64), allocatable :: columns(:)
+    !> The column that numbers the curves of a file with several, and the number of the curve.
+    character(len=:), allocatable :: curves
+    integer, allocatable :: curve
     !> Labels of the approach and of the retreat in the column of segments, in lower case; not
     !> allocated: those that are known, or what the position does.
     character(len=64), allocatable :: approach(:), retreat(:)

@@ -8,7 +8,7 @@ module fit_run
   use dimensionless_problem, only: problem_t
   use variation, only: problem_family_t
   use experiment_request, only: numerics_t
-  use fit_request, only: fit_t, of_model, of_contact_point, of_sensitivity, &
+  use fit_request, only: fit_t, unknown_t, of_model, of_contact_point, of_sensitivity, &
     is_at_end, farthest_off
   use measured_curve, only: measured_curve_t
   use measured_jumps, only: find_jump, find_far, off_baseline
@@ -64,15 +64,19 @@ contains
 
   !> Runs the fit. family: the problems, whose parameters are the unknowns of the model. wider: the
   !> same family with the fixed numbers of the deck as further parameters. problem: the problem with
-  !> the deck's values.
-  subroutine run_fit(measured, fit, numerics, family, wider, problem, listener, outcome)
+  !> the deck's values. theories: whether the classical theories are fitted too. like: values of the
+  !> unknowns for a similar curve; if a search from them describes the data, there is no other.
+  subroutine run_fit(measured, fit, numerics, family, wider, problem, theories, listener, outcome, &
+    like)
     type(measured_curve_t), intent(in) :: measured
     type(fit_t), intent(in) :: fit
     type(numerics_t), intent(in) :: numerics
     class(problem_family_t), intent(in) :: family, wider
     type(problem_t), intent(in) :: problem
+    logical, intent(in) :: theories
     class(listener_t), intent(inout) :: listener
     type(fit_outcome_t), intent(out) :: outcome
+    real(wp), intent(in), optional :: like(:)
     type(curve_models_t), target :: models
     class(force_model_t), pointer :: model
     type(modelled_curve_t) :: curve
@@ -85,8 +89,11 @@ contains
     if (allocated(outcome%trouble)) return
     call listener%hear('fitting the path')
     call models%set(family, numerics, problem%law%adhesion > 0, model)
-    call find_starts()
-    call fit_curve(curve, model, start, .true., outcome%fitted)
+    suggestion = ''
+    if (.not. is_like()) then
+      call find_starts()
+      call fit_curve(curve, model, start, .true., outcome%fitted)
+    end if
     outcome%resolved = models%path%left_out <= too_much*numerics%accuracy
     outcome%curve = curve
     call check_fit(outcome%trouble)
@@ -101,7 +108,7 @@ contains
       call find_alternative(family, problem, curve, model, asked_most(outcome%held) == &
         'measurement.spring_constant', outcome%fitted, outcome%alternative)
     end if
-    call listener%hear('fitting classical theories')
+    if (theories) call listener%hear('fitting classical theories')
     allocate (outcome%theory(0), outcome%derived(0), outcome%problem)
     call family%pose(pack(outcome%fitted%value, curve%unknown%role == of_model), outcome%problem, &
       error)
@@ -111,7 +118,8 @@ contains
     end if
     call derive_numbers(family, fit, curve%unknown, outcome%fitted, outcome%problem, &
       outcome%derived)
-    call fit_theories(curve, outcome%fitted, family, outcome%problem, outcome%theory)
+    if (theories) &
+      call fit_theories(curve, outcome%fitted, family, outcome%problem, outcome%theory)
 
   contains
 
@@ -162,26 +170,53 @@ contains
         trouble = 'too few samples for so many parameters'
     end subroutine take_curve
 
+    !> Whether a search from the values of a similar curve describes the data. Its ends are about
+    !> these values too.
+    logical function is_like() result(found)
+      type(modelled_curve_t) :: trial
+      integer :: i
+
+      found = .false.
+      if (.not. present(like)) return
+      trial = curve
+      do i = 1, size(trial%unknown)
+        call reach_for(trial%unknown(i), like(i))
+      end do
+      call fit_curve(trial, model, reshape(like, [size(like), 1]), .true., outcome%fitted)
+      associate (fitted => outcome%fitted)
+        if (.not. (fitted%found .and. allocated(fitted%effect))) return
+        found = fitted%lack%is_noise() .and. all(fitted%effect > least_effect) .and. &
+          .not. any(is_at_end(trial%unknown, fitted%value))
+      end associate
+      if (found) curve = trial
+    end function is_like
+
+    !> Moves the ends of a search, which are about the deck's value, so that they are about another
+    !> value too.
+    subroutine reach_for(unknown, value)
+      type(unknown_t), intent(inout) :: unknown
+      real(wp), intent(in) :: value
+      real(wp) :: off
+
+      if (.not. unknown%in_log) return
+      off = log(value/unknown%value)
+      unknown%farthest = max(unknown%farthest, farthest_off + [-off, off])
+    end subroutine reach_for
+
     !> Sets the starting values, and the ends of the search, which are about the deck's values and
     !> about those that the data suggest.
     subroutine find_starts()
       type(character_t), allocatable :: likely(:)
       type(character_t) :: new
-      real(wp) :: off
       integer :: i, k
 
       likely = suggested_characters(curve, problem)
-      suggestion = ''
       call starts_like(likely, family, curve%unknown, start)
       if (size(start, 2) > 1) suggestion = '; the data suggest ' // values_of(start(:, 2))
       do i = 1, size(curve%unknown)
-        associate (unknown => curve%unknown(i))
-          if (.not. unknown%in_log) cycle
-          do k = 1, size(start, 2)
-            off = log(start(i, k)/unknown%value)
-            unknown%farthest = max(unknown%farthest, farthest_off + [-off, off])
-          end do
-        end associate
+        do k = 1, size(start, 2)
+          call reach_for(curve%unknown(i), start(i, k))
+        end do
       end do
       if (.not. problem%law%adhesion > 0) return
       do k = 1, size(works)

@@ -41,6 +41,7 @@ module force_model
   contains
     procedure :: close
     procedure :: at
+    procedure :: value_at
     procedure :: end_of
     procedure, private :: position_rate
   end type force_branch_t
@@ -70,6 +71,8 @@ module force_model
     type(way_t) :: way(2)
   contains
     procedure :: load_on
+    procedure :: value_on
+    procedure, private :: branch_on
     procedure :: largest_tension
     procedure :: jump_from
   end type response_t
@@ -102,6 +105,24 @@ contains
     class(response_t), intent(in) :: self
     integer, intent(in) :: way, side
     real(wp), intent(in) :: position
+
+    found = self%branch(self%branch_on(way, side, position))%at(position)
+  end function load_on
+
+  !> The same load without derivatives, for trials of many contact points.
+  pure real(wp) function value_on(self, way, side, position) result(load)
+    class(response_t), intent(in) :: self
+    integer, intent(in) :: way, side
+    real(wp), intent(in) :: position
+
+    load = self%branch(self%branch_on(way, side, position))%value_at(position)
+  end function value_on
+
+  !> The branch of a position on a way, as for `load_on`.
+  pure integer function branch_on(self, way, side, position) result(branch)
+    class(response_t), intent(in) :: self
+    integer, intent(in) :: way, side
+    real(wp), intent(in) :: position
     integer :: i, first, last
 
     associate (legs => self%way(way))
@@ -113,9 +134,9 @@ contains
         if (way == inward .and. position >= legs%leaves_at(i)) exit
         if (way == outward .and. position <= legs%leaves_at(i)) exit
       end do
-      found = self%branch(legs%branch(i))%at(position)
+      branch = legs%branch(i)
     end associate
-  end function load_on
+  end function branch_on
 
   !> The start of the main jump of a way: position of the drive, its derivatives by the unknowns,
   !> and the load there.
@@ -206,6 +227,25 @@ contains
       found = on_panel(self, i, place_on(self, i, position))
     end if
   end function at
+
+  !> The load at a position, as `at`, without derivatives.
+  pure real(wp) function value_at(self, position) result(load)
+    class(force_branch_t), intent(in) :: self
+    real(wp), intent(in) :: position
+    type(load_at_t) :: there
+    integer :: i, n
+
+    n = size(self%panel)
+    if (position >= self%position(1)) then
+      load = self%panel(1)%load_curve%value(self%panel(1)%ends(1))
+    else if (position <= self%position(n + 1)) then
+      there = self%at(position)
+      load = there%load
+    else
+      i = interval_of(self%ascending(:n), -position)
+      load = self%panel(i)%load_curve%value(place_on(self, i, position))
+    end if
+  end function value_at
 
   !> The coordinate of a position on panel i, over which the position falls.
   pure real(wp) function place_on(self, i, position) result(x)

@@ -5,6 +5,7 @@ module measured_curve
   use order_statistics, only: median_of
   use failure, only: failure_t, fail, bad_input
   use text, only: counted
+  use deck_source, only: source_t
   use curve_rows, only: curve_rows_t, read_curve_rows, fewest, of_approach, of_retreat, of_pause
   use curve_segments, only: find_segments
   use fit_request, only: measurement_t
@@ -48,15 +49,16 @@ contains
     outlier = .not. (self%usable .or. self%skipped)
   end function outlier
 
-  !> Reads the samples of a curve from its file.
-  subroutine read_measured(measured, error)
+  !> Reads the samples of a curve from the text of its file.
+  subroutine read_measured(measured, source, error)
     type(measured_curve_t), intent(inout) :: measured
+    type(source_t), intent(in) :: source
     type(failure_t), allocatable, intent(out) :: error
     type(curve_rows_t) :: rows
     logical, allocatable :: wanted(:), repeated(:)
     integer :: i
 
-    call read_curve_rows(measured%measurement_t, rows, error)
+    call read_curve_rows(measured%measurement_t, source, rows, error)
     if (allocated(error)) return
     call check_columns(rows%file, rows%z, rows%signal, error)
     if (allocated(error)) return

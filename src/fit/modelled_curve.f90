@@ -47,6 +47,7 @@ module modelled_curve
     procedure :: jump_rates
     procedure :: split
     procedure :: reach
+    procedure :: contact_height
     procedure, private :: number_of, position_of, newtons
   end type modelled_curve_t
 
@@ -108,15 +109,13 @@ contains
     integer, intent(in) :: sample(:)
     integer, intent(in), optional :: side
     real(wp) :: signal(size(sample))
-    type(load_at_t) :: load
     integer :: i, n, on_side
 
     do n = 1, size(sample)
       i = sample(n)
       on_side = max(self%data%side(i), 0)
       if (present(side)) on_side = side
-      load = self%response%load_on(self%data%way(i), on_side, self%position_of(value, i))
-      signal(n) = load%load
+      signal(n) = self%response%value_on(self%data%way(i), on_side, self%position_of(value, i))
     end do
     signal = signal/self%newtons(value)
   end function signal_of
@@ -227,6 +226,14 @@ contains
     ! Z = facing (z - contact point), solved for the contact point.
     ends = self%data%measured%facing*(nearest - [inner, outer, outer + travel])
   end subroutine reach
+
+  !> The contact point, whether it is fitted or given.
+  pure real(wp) function contact_height(self, value)
+    class(modelled_curve_t), intent(in) :: self
+    real(wp), intent(in) :: value(:)
+
+    contact_height = self%number_of(value, of_contact_point, self%contact_point)
+  end function contact_height
 
   !> Position of the drive at a sample.
   pure real(wp) function position_of(self, value, i) result(position)

@@ -35,6 +35,8 @@ module path_model
     type(driven_t), private :: driven
     real(wp), private :: stiffness = 0, farthest = 0, largest = 0
     logical, private :: solved = .false.
+    !> Derivatives of its curve, once they were asked for.
+    type(rate_t), allocatable, private :: rate(:, :)
     !> The part of the load that its meshes leave out (`mending`).
     real(wp) :: left_out = 0
   contains
@@ -59,8 +61,13 @@ contains
     found = self%solved
     if (.not. found) return
     allocate (rate(merge(size(value), 0, with_rates), self%steps%known%path%last))
-    if (size(rate) > 0) call find_rates(self, rate, found)
-    if (.not. found) return
+    if (size(rate) > 0 .and. allocated(self%rate)) then
+      rate = self%rate
+    else if (size(rate) > 0) then
+      call find_rates(self, rate, found)
+      if (.not. found) return
+      self%rate = rate
+    end if
     allocate (response%branch(size(self%driven%piece)))
     do i = 1, size(response%branch)
       call make_branch(self%steps%problem, self%steps%known%path, self%driven%piece(i), rate, &
@@ -87,6 +94,7 @@ contains
     self%largest = largest
     self%farthest = farthest
     self%solved = .false.
+    if (allocated(self%rate)) deallocate (self%rate)
     self%steps = fresh
     call self%family%pose(value, problem, error)
     if (allocated(error)) return

@@ -8,7 +8,7 @@ module case_rows
   use checksums, only: checksum
   use text, only: lower, printable, word_of
   use deck_number, only: parse_real
-  use deck_numbers, only: words_of, number_of_word
+  use deck_numbers, only: words_of, number_of_word, holds_text
   use deck_scan, only: span_t
   use deck_source, only: source_t, take_source
   use deck_store, only: deck_t
@@ -28,6 +28,9 @@ module case_rows
     character(len=:), allocatable :: names
     !> For each column the words that it may hold, as `words_of`.
     character(len=80), allocatable :: words(:)
+    !> The column whose cells are texts, and the cell of the present row; 0 and '': none.
+    integer :: text_column = 0
+    character(len=:), allocatable :: text
     !> Checksum of the lines read so far.
     integer(long) :: digest = 0
     character(len=:), allocatable, private :: file
@@ -38,7 +41,7 @@ module case_rows
     !> The present line and its cells.
     type(source_t), private :: line
     type(span_t), allocatable, private :: cells(:)
-    integer, private :: lines = 0
+    integer, private :: lines = 0, rows = 0
     !> Whether the present line is a row that `next` has not returned yet.
     logical, private :: waiting = .false.
   contains
@@ -66,6 +69,7 @@ contains
 
     self%file = file
     self%names = ''
+    self%text = ''
     self%descriptor = c_open(file // nul, as_data)
     if (self%descriptor < 0) then
       call explain(self%descriptor, sort, reason)
@@ -103,11 +107,18 @@ contains
       if (k > 1) self%names = self%names // ' '
       self%names = self%names // lower(named%part(names(k)%first, names(k)%last))
       self%words(k) = words_of(deck, word_of(self%names, k))
+      if (.not. holds_text(deck, word_of(self%names, k))) cycle
+      if (self%text_column > 0) then
+        call named%complain(names(k)%first, 'only one column may hold texts', error)
+        return
+      end if
+      self%text_column = k
     end do
   end subroutine open_rows
 
-  !> The values of the next row; a word counts as its number. found = .false. after the last row;
-  !> the file is then closed. error: the mistake in the row, with file and line.
+  !> The values of the next row; a word counts as its number, a text as the number of the row.
+  !> found = .false. after the last row; the file is then closed. error: the mistake in the row,
+  !> with file and line.
   subroutine next(self, values, found, error)
     class(case_rows_t), intent(inout) :: self
     real(wp), allocatable, intent(inout) :: values(:)
@@ -132,10 +143,14 @@ contains
         error)
       return
     end if
+    self%rows = self%rows + 1
     if (.not. allocated(values)) allocate (values(size(self%words)))
     do k = 1, size(self%words)
       associate (first => self%cells(k)%first, last => self%cells(k)%last)
-        if (self%words(k) == '') then
+        if (k == self%text_column) then
+          self%text = self%line%text(first:last)
+          values(k) = self%rows
+        else if (self%words(k) == '') then
           call parse_real(self%line%text(first:last), values(k), what)
         else
           call number_of_word(self%line%text(first:last), self%words(k), values(k), what)

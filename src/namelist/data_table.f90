@@ -16,7 +16,8 @@ module data_table
   use units, only: unit_in
   implicit none
   private
-  public :: data_table_t, style_t, read_data_table, largest_table, read_columns, plain_label
+  public :: data_table_t, style_t, read_data_table, take_data_table, largest_table, &
+    read_columns, plain_label
 
   !> How a file is read. skip_lines: number of lines at its begin that do not count. of_instrument:
   !> whether lines may stand before the names, words beside the numbers, and cells be empty.
@@ -53,6 +54,19 @@ contains
     type(style_t), intent(in) :: style
     type(data_table_t), intent(out) :: table
     type(failure_t), allocatable, intent(out) :: error
+    type(source_t) :: source
+
+    call load_source(file, source, error, largest_table)
+    if (.not. allocated(error)) call take_data_table(source, wanted, style, table, error)
+  end subroutine read_data_table
+
+  !> Takes the columns from the text of a file.
+  subroutine take_data_table(source, wanted, style, table, error)
+    type(source_t), intent(in) :: source
+    character(len=*), intent(in) :: wanted(:)
+    type(style_t), intent(in) :: style
+    type(data_table_t), intent(out) :: table
+    type(failure_t), allocatable, intent(out) :: error
     type(layout_t) :: layout
     type(span_t), allocatable :: cells(:)
     character(len=:), allocatable :: line
@@ -60,8 +74,7 @@ contains
     logical, allocatable :: turned(:)
     integer :: first, next, n, unused, i
 
-    call load_source(file, table%source, error, largest_table)
-    if (allocated(error)) return
+    table%source = source
     call point_decimals(table%source%text)
     n = count([(table%source%text(i:i) == newline, i=1, len(table%source%text))]) + 1
     allocate (table%place(n), table%value(n, size(wanted)), table%missing(n, size(wanted)), &
@@ -159,7 +172,7 @@ contains
       number = i
     end subroutine take_label
 
-  end subroutine read_data_table
+  end subroutine take_data_table
 
   !> A label in lower case, or a number with no more digits than it needs.
   pure function plain_label(cell) result(label)

@@ -1,15 +1,17 @@
 !> The numbers of a deck by their names, "group.key" or "group.key(2)", which sweeps, sensitivities
-!> and fits vary. A sweep may also vary a word, by its number, from 1, among the words of its key.
+!> and fits vary. A sweep may also vary a word, by its number, from 1, among the words of its key,
+!> and a text, such as the name of a file.
 module deck_numbers
   use kinds, only: wp
   use failure, only: failure_t, fail, bad_input
   use text, only: lower, quoted, brief, guess, listing, clip, word_count, word_of
-  use deck_keys, only: real_value, real_list, integer_value, word_value, allowed
+  use deck_keys, only: real_value, real_list, integer_value, word_value, text_value, allowed
   use deck_values, only: value_t, given, outside
   use deck_store, only: deck_t
   implicit none
   private
-  public :: find_number, present_name, set_number, guess_number, words_of, number_of_word
+  public :: find_number, present_name, set_number, set_text, guess_number, words_of, &
+    number_of_word, holds_text
 
   !> Kinds of keys that hold numbers.
   integer, parameter :: numeric(3) = [real_value, real_list, integer_value]
@@ -19,7 +21,7 @@ contains
   !> Row of the key `path` ("force.hamaker"), and the number of the list element that it names
   !> ("hydration.pressure(2)"); 0: none. Fails if the table has no such key, if the key does not
   !> hold numbers or not as many, or if the deck lacks its group. `error` then has no position in
-  !> the file; the caller adds it. words: whether the key may also hold words.
+  !> the file; the caller adds it. words: whether the key may also hold words, or a text.
   subroutine find_number(deck, path, row, term, error, words)
     type(deck_t), intent(in) :: deck
     character(len=*), intent(in) :: path
@@ -38,7 +40,8 @@ contains
     if (dot < len(name)) row = deck%row_of(group, name(dot + 1:))
     if (row > 0) then
       fits = any(deck%specs(row)%kind == numeric)
-      if (present(words)) fits = fits .or. (words .and. deck%specs(row)%kind == word_value)
+      if (present(words)) fits = fits .or. (words .and. &
+        any(deck%specs(row)%kind == [word_value, text_value]))
       if (.not. fits) row = 0
     end if
     if (row == 0) then
@@ -110,6 +113,18 @@ contains
       words = deck%specs(i)%choices
     end do
   end function words_of
+
+  !> Whether the key `path` holds a text.
+  pure logical function holds_text(deck, path)
+    type(deck_t), intent(in) :: deck
+    character(len=*), intent(in) :: path
+    integer :: dot, row
+
+    dot = index(path, '.')
+    row = deck%row_of(lower(path(:dot - 1)), lower(path(dot + 1:)))
+    holds_text = row > 0
+    if (holds_text) holds_text = deck%specs(row)%kind == text_value
+  end function holds_text
 
   !> The number of a word among the blank-separated `words`. what: the mistake, if it is not there.
   subroutine number_of_word(word, words, number, what)
@@ -185,5 +200,22 @@ contains
       stored%status = given
     end associate
   end subroutine set_number
+
+  !> Gives the key `path`, which holds a text, a new one, as if it came from the deck.
+  subroutine set_text(deck, path, text, error)
+    type(deck_t), intent(inout) :: deck
+    character(len=*), intent(in) :: path, text
+    type(failure_t), allocatable, intent(out) :: error
+    integer :: row, term
+
+    call find_number(deck, path, row, term, error, words=.true.)
+    if (allocated(error)) return
+    if (len(text) > deck%specs(row)%most) then
+      call fail(error, bad_input, 'the text is too long for ' // quoted(path))
+      return
+    end if
+    deck%values(row)%text = text
+    deck%values(row)%status = given
+  end subroutine set_text
 
 end module deck_numbers

@@ -11,6 +11,7 @@ module case_columns
   use classical, only: carpick, pietrement_troyon
   use scene_groups, only: scene_t
   use summary, only: summary_t
+  use fit_columns, only: columns_of_fit, count_of_fit, text_columns
   implicit none
   private
   public :: columns_of, numbers_of, column_count, left_out, column_width
@@ -21,6 +22,9 @@ module case_columns
   !> The last column.
   character(len=*), parameter :: failure_column = &
     'failure [] why results of the case are missing; blank if none is'
+  !> The rows of a sweep of fits alone.
+  character(len=*), parameter :: of_problem(*) = [character(len=15) :: 'converged', 'sigma', &
+    'tabor', 'reduced_modulus', 'surface_energy', 'jkr_pull_off', 'dmt_pull_off']
   !> The groups with a list, each element of which has its columns.
   character(len=*), parameter :: with_list(*) = [character(len=10) :: turning, spring, given_load]
   !> Groups with numbers in sweep.csv and tables, and these tables, which a sweep does not write.
@@ -38,7 +42,7 @@ module case_columns
 contains
 
   !> The columns of this scene's sweep, each described as 'name [unit] meaning': the keys, numbers,
-  !> and `failure`.
+  !> those of a fit, and `failure`.
   function columns_of(scene) result(columns)
     type(scene_t), intent(in) :: scene
     character(len=column_width), allocatable :: columns(:)
@@ -47,7 +51,7 @@ contains
 
     numbers = chosen_numbers(scene)
     associate (keys => size(scene%sweep%words))
-      allocate (columns(keys + size(numbers) + 1))
+      allocate (columns(column_count(scene)))
       columns(:keys) = key_columns(scene)
       ! Filled item by item: compiler note 2.
       do i = 1, size(numbers)
@@ -55,6 +59,9 @@ contains
           columns(keys + i) = numbers(i)%name() // ' [' // trim(row%unit) // '] ' // row%meaning
         end associate
       end do
+      if (allocated(scene%fit)) then
+        columns(keys + size(numbers) + 1:size(columns) - 1) = columns_of_fit(scene)
+      end if
     end associate
     columns(size(columns)) = failure_column
   end function columns_of
@@ -89,6 +96,8 @@ contains
     type(scene_t), intent(in) :: scene
 
     column_count = size(scene%sweep%words) + size(chosen_numbers(scene)) + 1
+    if (allocated(scene%fit)) column_count = column_count + count_of_fit(scene) + &
+      text_columns
   end function column_count
 
   !> What a sweep of the scene leaves out, for a message; empty if nothing but the curves.
@@ -107,7 +116,7 @@ contains
       listing(text(2:), '', '') // '; run a case alone for these'
   end function left_out
 
-  !> The numbers of a case's summary, one for each of `columns_of(scene)` between keys and failure;
+  !> The numbers of a case's summary, one for each of the columns between keys and fit or failure;
   !> NaN for a number that does not exist.
   pure function numbers_of(summary, scene) result(values)
     type(summary_t), intent(in) :: summary
@@ -131,7 +140,7 @@ contains
     integer :: i, k, n
     integer, allocatable :: single(:), of_list(:)
 
-    single = [pack([(i, i=1, size(rows))], rows%sweep == 'always'), &
+    single = [pack([(i, i=1, size(rows))], [(comes_always(rows(i)), i=1, size(rows))]), &
       pack([(i, i=1, size(rows))], [(comes_with_group(rows(i)), i=1, size(rows))])]
     if (scene%law%terms > 1 .or. scene%law%group /= 'force') &
       single = [single, pack([(i, i=1, size(rows))], rows%sweep == '(forces)')]
@@ -145,6 +154,15 @@ contains
     end do
 
   contains
+
+    !> A sweep of fits alone has no numbers of curves and their places.
+    pure logical function comes_always(row)
+      type(row_t), intent(in) :: row
+
+      comes_always = row%sweep == 'always'
+      if (comes_always .and. allocated(scene%fit) .and. .not. scene%finds_states()) &
+        comes_always = any(row%key == of_problem)
+    end function comes_always
 
     !> Looks into the deck only if the row names a group, since each case calls this for all rows.
     pure logical function comes_with_group(row)

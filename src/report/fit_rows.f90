@@ -7,7 +7,7 @@ module fit_rows
   use tables, only: direction_of
   use fit_request, only: unknown_t
   use measured_jumps, only: measured_jump_t
-  use fit_errors, only: fitted_t
+  use fit_errors, only: fitted_t, within_95
   use held_numbers, only: held_t
   use baseline_test, only: lacking_t
   use fit_alternatives, only: alternative_t
@@ -17,8 +17,6 @@ module fit_rows
   private
   public :: write_fit_rows, fit_text
 
-  !> Half-width of a 95 % interval in standard deviations.
-  real(wp), parameter :: most = 1.959964_wp
   character(len=1), parameter :: nl = new_line('a')
 
 contains
@@ -113,8 +111,10 @@ contains
     text = text // numbers('lower_68', &
       [(fitted%end_of(i, unknown(i), -1.0_wp), i=1, size(unknown))])
     text = text // numbers('upper_68', [(fitted%end_of(i, unknown(i), 1.0_wp), i=1, size(unknown))])
-    text = text // numbers('lower_95', [(fitted%end_of(i, unknown(i), -most), i=1, size(unknown))])
-    text = text // numbers('upper_95', [(fitted%end_of(i, unknown(i), most), i=1, size(unknown))])
+    text = text // numbers('lower_95', &
+      [(fitted%end_of(i, unknown(i), -within_95), i=1, size(unknown))])
+    text = text // numbers('upper_95', &
+      [(fitted%end_of(i, unknown(i), within_95), i=1, size(unknown))])
     text = text // numbers('correlation', reshape(fitted%correlation, [size(fitted%correlation)]))
     text = text // numbers('identifiable', [fitted%identifiable])
     text = text // numbers('chi_squared', [fitted%chi_squared])

@@ -132,7 +132,30 @@ module result_tables
     '= fit.nml | with &fit | A namelist: &fit, the values found, and a group for each ' // &
       'classical theory, fitted to the same samples.', &
     '= sweep.csv | with &sweep | One row for each case: the values of the keys, then the ' // &
-      'entries of &summary marked "in sweep.csv", and failure: why some of them are missing.', &
+      'entries of &summary marked "in sweep.csv", and failure: why some are missing.', &
+    '+ with &fit, for each parameter', &
+    'KEY_estimate [] fitted value, in the unit of the key', &
+    'KEY_standard_error [] its standard error', &
+    'KEY_lower_95 [] lower end of the 95 % interval', &
+    'KEY_upper_95 [] upper end of the 95 % interval', &
+    '+ with &fit', &
+    'fitted_work_of_adhesion [J/m^2] from the fitted values', &
+    'fitted_work_of_adhesion_error [J/m^2] its standard error', &
+    'fitted_reduced_modulus [Pa] from the fitted values', &
+    'fitted_reduced_modulus_error [Pa] its standard error', &
+    'fitted_young_of_sample [Pa] from the fitted values', &
+    'fitted_young_of_sample_error [Pa] its standard error', &
+    'contact_height [m] contact point: position of the base where undeformed bodies touch', &
+    'chi_squared [] sum of the squared residuals over the noise', &
+    'degrees_of_freedom []', &
+    'excess [] standard deviations by which the residuals exceed the noise', &
+    'identifiable [] 1: the data tell all parameters apart; 0: they do not', &
+    'noise [] standard deviation of the signal', &
+    'samples [] in the fit', &
+    'outliers [] left out', &
+    'warnings [] number of warnings about the fit', &
+    'verdict [] of the fit: described, warned, not_described, refused or unreadable', &
+    'warning [] the first warning about the fit; blank if there is none', &
     '= costs.csv | with costs in &sweep, or over &numerics | One row for each case: the ' // &
       'values of the keys, time and work, and the estimated errors of numbers in sweep.csv.', &
     'seconds [s] processor time without files; of a short case the least of several runs', &

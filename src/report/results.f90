@@ -7,7 +7,7 @@ module results
   use discretisation, only: discretisation_t
   use contact_state, only: state_t
   use records, only: record_t, observer_t
-  use scene_groups, only: scene_t
+  use scene_groups, only: scene_t, sweep_t
   use deck, only: deck_t
   use publication, only: summary_name
   use text_file, only: output_t
@@ -115,50 +115,76 @@ contains
       record, self%states, problem, grid, state, self%trouble)
   end subroutine take
 
-  !> Adds a case of a sweep to `sweep.csv`: the values of its keys, its numbers, and why it failed,
-  !> blank if it did not. `columns` has the columns of keys and numbers; if words(k) is not blank,
-  !> value k is the number of one of these words.
-  subroutine take_case(self, columns, words, values, numbers, failure)
+  !> Adds a case of a sweep to `sweep.csv`: the values of its keys, of which one may be the text
+  !> `of_case`, its numbers, and texts, as the last of which why it failed, blank if it did not.
+  !> `columns` describes the columns.
+  subroutine take_case(self, columns, sweep, values, of_case, numbers, texts)
     class(results_t), intent(inout) :: self
-    character(len=*), intent(in) :: columns(:), words(:), failure
+    character(len=*), intent(in) :: columns(:), of_case, texts(:)
+    type(sweep_t), intent(in) :: sweep
     real(wp), intent(in) :: values(:), numbers(:)
+    character(len=:), allocatable :: line
+    integer :: i
 
     if (allocated(self%trouble)) return
     if (.not. self%cases%is_open()) call self%begin(self%cases, 'sweep.csv', columns, self%trouble)
-    if (.not. allocated(self%trouble)) call self%cases%line(key_cells(words, values) // &
-      cells(numbers) // ',' // trim(without_commas(failure)), self%trouble)
+    line = key_cells(sweep, values, of_case) // cells(numbers)
+    do i = 1, size(texts)
+      line = line // ',' // trim(without_commas(texts(i)))
+    end do
+    if (.not. allocated(self%trouble)) call self%cases%line(line, self%trouble)
     if (.not. allocated(self%trouble)) call self%cases%flush(self%trouble)
   end subroutine take_case
 
   !> Adds the cost of a case of a sweep to `costs.csv`; the arguments are like those of `take_case`.
-  subroutine take_costs(self, columns, words, values, numbers)
+  subroutine take_costs(self, columns, sweep, values, of_case, numbers)
     class(results_t), intent(inout) :: self
-    character(len=*), intent(in) :: columns(:), words(:)
+    character(len=*), intent(in) :: columns(:), of_case
+    type(sweep_t), intent(in) :: sweep
     real(wp), intent(in) :: values(:), numbers(:)
 
     if (allocated(self%trouble)) return
     if (.not. self%costs%is_open()) call self%begin(self%costs, 'costs.csv', columns, self%trouble)
-    if (.not. allocated(self%trouble)) call self%costs%line(key_cells(words, values) // &
-      cells(numbers), self%trouble)
+    if (.not. allocated(self%trouble)) call self%costs%line(key_cells(sweep, values, &
+      of_case) // cells(numbers), self%trouble)
     if (.not. allocated(self%trouble)) call self%costs%flush(self%trouble)
   end subroutine take_costs
 
   !> The values of a sweep's keys as cells, each with a comma after it.
-  pure function key_cells(words, values) result(line)
-    character(len=*), intent(in) :: words(:)
+  pure function key_cells(sweep, values, of_case) result(line)
+    type(sweep_t), intent(in) :: sweep
     real(wp), intent(in) :: values(:)
+    character(len=*), intent(in) :: of_case
     character(len=:), allocatable :: line
     integer :: k
 
     line = ''
     do k = 1, size(values)
-      if (words(k) == '') then
+      if (k == sweep%text_key) then
+        line = line // quoted_cell(of_case) // ','
+      else if (sweep%words(k) == '') then
         line = line // cells(values(k:k)) // ','
       else
-        line = line // word_of(words(k), nint(values(k))) // ','
+        line = line // word_of(sweep%words(k), nint(values(k))) // ','
       end if
     end do
   end function key_cells
+
+  !> A text as a cell of a table: in double quotes if it has a comma or a quote.
+  pure function quoted_cell(text) result(cell)
+    character(len=*), intent(in) :: text
+    character(len=:), allocatable :: cell
+    integer :: i
+
+    cell = text
+    if (scan(text, ',"') == 0) return
+    cell = '"'
+    do i = 1, len(text)
+      cell = cell // text(i:i)
+      if (text(i:i) == '"') cell = cell // '"'
+    end do
+    cell = cell // '"'
+  end function quoted_cell
 
   !> A text as a cell of a table: without commas and control characters.
   pure function without_commas(text) result(cell)

@@ -1,19 +1,23 @@
 !> &fit: the keys of the deck that are fitted to a measured force curve.
 module fit_group
-  use kinds, only: wp
+  use kinds, only: wp, long
+  use checksums, only: checksum
   use failure, only: failure_t
   use text, only: lower, quoted, rounded, word_count, word_of
   use deck, only: deck_t
   use deck_numbers, only: find_number, present_name
   use deck_keys, only: key_spec, real_value, real_list, names_value
   use fit_request, only: unknown_t, of_contact_point, of_sensitivity, of_spring
+  use deck_source, only: source_t, load_source
+  use data_table, only: largest_table
+  use curve_index, only: curve_index_t
   use measured_curve, only: read_measured
   use measurement_group, only: take_measurement
   use scene_groups, only: scene_t
   use deck_family, only: deck_family_t, new_deck_family
   implicit none
   private
-  public :: fit_keys, take_fit, family_of_fit
+  public :: fit_keys, take_fit, load_curve, family_of_fit
 
   integer, parameter :: most_unknowns = 20
 
@@ -39,7 +43,6 @@ contains
   !> Reads &measurement and &fit.
   subroutine take_fit(scene)
     type(scene_t), intent(inout) :: scene
-    type(failure_t), allocatable :: trouble
 
     associate (deck => scene%deck)
       if (deck%has_group('measurement') .and. .not. deck%has_group('fit')) &
@@ -50,7 +53,6 @@ contains
         call deck%mistake('fit', '', 'needs &measurement')
         return
       end if
-      if (deck%has_group('sweep')) call deck%mistake('fit', '', 'not together with &sweep')
       if (scene%bodies%rigid) call deck%mistake('fit', '', 'needs elastic bodies' // &
         stiff_enough(scene))
     end associate
@@ -59,11 +61,38 @@ contains
     if (allocated(scene%bodies%poisson)) scene%fit%poisson = scene%bodies%poisson
     call take_measurement(scene)
     if (.not. allocated(scene%deck%error)) call take_unknowns(scene)
-    if (allocated(scene%deck%error)) return
-    call read_measured(scene%measured, trouble)
-    if (allocated(trouble)) call scene%deck%mistake('measurement', 'file', &
-      'the curve cannot be used: ' // trouble%message)
   end subroutine take_fit
+
+  !> Reads the curve of a scene with a fit, whose file becomes a part of the deck's checksums.
+  !> trouble: why the curve cannot be read. index: where the curves of a file with several are; it
+  !> is made unless it is of this file.
+  subroutine load_curve(scene, trouble, index)
+    type(scene_t), intent(inout) :: scene
+    type(failure_t), allocatable, intent(out) :: trouble
+    type(curve_index_t), intent(inout), optional, target :: index
+    type(curve_index_t), target :: own
+    type(curve_index_t), pointer :: curves
+    type(source_t) :: source
+    integer(long) :: digest
+
+    curves => own
+    if (present(index)) curves => index
+    associate (measured => scene%measured)
+      if (allocated(measured%curves)) then
+        call curves%find_curves(measured%file, measured%curves, measured%skip_lines, trouble)
+        if (.not. allocated(trouble)) call curves%load(measured%curve, source, trouble)
+        digest = curves%digest
+      else
+        call load_source(measured%file, source, trouble, largest_table)
+        digest = 0
+        if (.not. allocated(trouble)) digest = checksum(source%text)
+      end if
+      if (allocated(trouble)) return
+      call scene%deck%note_file('measurement', 'file', digest)
+      call read_measured(measured, source, trouble)
+      if (allocated(trouble)) trouble%message = 'the curve cannot be used: ' // trouble%message
+    end associate
+  end subroutine load_curve
 
   !> ', such as ...' with a stiffness above which it does not matter for rigid bodies: the strength
   !> of adhesion or, without attraction, the deformation under the law's own pressure is so small

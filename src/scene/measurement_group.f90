@@ -1,12 +1,9 @@
 !> &measurement: a measured force curve.
 module measurement_group
   use kinds, only: wp
-  use checksums, only: checksum
-  use failure, only: failure_t
   use text, only: quoted, spelled, word_count, word_of
   use deck, only: deck_t
-  use deck_source, only: source_t, load_source
-  use data_table, only: largest_table, plain_label
+  use data_table, only: plain_label
   use deck_keys, only: key_spec, real_value, real_list, integer_value, logical_value, word_value, &
     text_value, names_value
   use baseline, only: baseline_t
@@ -26,7 +23,17 @@ module measurement_group
       choices='&measurement file = ''curve.csv'', spring_constant = 40 /'), &
     key_spec('measurement', 'file', text_value, 'File of the curve: a table of numbers, # ' // &
       'before comments, perhaps a line of names; a relative path begins at the deck''s folder.', &
-      most=1000, required=.true.), &
+      most=1000, otherwise='required, unless &sweep gives it'), &
+    key_spec('measurement', 'curves', names_value, 'Name or number of the column that numbers ' // &
+      'the curves, if the file has several; the rows of a curve are together.', &
+      otherwise='the file has one', spaced=.true.), &
+    key_spec('measurement', 'curve', integer_value, 'The number of the curve, in this column; ' // &
+      'a &sweep over it without values takes all.', low=-1.0e9_wp, high=1.0e9_wp, &
+      otherwise='required with curves'), &
+    key_spec('measurement', 'x', real_value, 'Place of the curve on the sample, repeated in ' // &
+      'results, for maps.', 'm', otherwise='none'), &
+    key_spec('measurement', 'y', real_value, 'The same in the other direction.', 'm', &
+      otherwise='none'), &
     key_spec('measurement', 'columns', names_value, 'Name or number of the columns of the ' // &
       'base''s position, the signal (force, positive: repulsion, or deflection) and, if there ' // &
       'is one, the segment; or position and signal of approach and of retreat. A minus ' // &
@@ -64,22 +71,19 @@ module measurement_group
 
 contains
 
-  !> Reads &measurement.
+  !> Reads &measurement, without the file.
   subroutine take_measurement(scene)
     type(scene_t), intent(inout) :: scene
-    type(source_t) :: source
-    type(failure_t), allocatable :: trouble
     character(len=:), allocatable :: names
     integer :: i
 
     associate (deck => scene%deck, measurement => scene%measured)
-      measurement%file = deck%path_of('measurement', 'file')
-      call load_source(measurement%file, source, trouble, largest_table)
-      if (allocated(trouble)) then
-        call deck%mistake('measurement', 'file', trouble%message)
+      if (.not. (deck%is_set('measurement', 'file') .or. scene%sweeps('measurement.file'))) then
+        call deck%mistake('measurement', 'file', 'missing; the file of the curve')
         return
       end if
-      call deck%note_file('measurement', 'file', checksum(source%text))
+      measurement%file = deck%path_of('measurement', 'file')
+      call take_number(scene)
       call deck%assume('measurement', 'columns', '1 2')
       call deck%get('measurement', 'columns', names)
       if (word_count(names) < 2) then
@@ -115,6 +119,25 @@ contains
       call deck%get_optional('fit', 'noise', scene%fit%noise)
     end associate
   end subroutine take_measurement
+
+  !> Reads which curve of the file is meant.
+  subroutine take_number(scene)
+    type(scene_t), intent(inout) :: scene
+    character(len=:), allocatable :: names
+
+    associate (deck => scene%deck)
+      call deck%get('measurement', 'curves', names)
+      if (word_count(names) > 0) scene%measured%curves = spelled(word_of(names, 1))
+      call deck%get_optional('measurement', 'curve', scene%measured%curve)
+      if (scene%sweeps('measurement.curve')) scene%measured%curve = 0
+      if (allocated(scene%measured%curve) .and. .not. allocated(scene%measured%curves)) then
+        call deck%mistake('measurement', 'curve', 'needs curves, the column of these numbers')
+      else if (allocated(scene%measured%curves) .and. .not. allocated(scene%measured%curve)) then
+        call deck%mistake('measurement', 'curves', 'needs curve, the number of the curve, or a ' &
+          // '&sweep over it')
+      end if
+    end associate
+  end subroutine take_number
 
   !> Reads labels of segments; numbers without superfluous digits.
   subroutine take_labels(deck, key, labels)

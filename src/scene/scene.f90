@@ -6,7 +6,7 @@ module scene
   use text, only: brief, quoted, listing, first_line, word_count, word_of
   use failure, only: failure_t, fail, bad_input
   use deck, only: deck_t, read_deck
-  use deck_numbers, only: find_number, set_number
+  use deck_numbers, only: find_number, set_number, set_text
   use deck_keys, only: key_spec, ignored_group, text_value
   use scene_groups, only: scene_t
   use scene_problem, only: keys_of_model, take_model
@@ -16,7 +16,7 @@ module scene
   use rate_groups, only: rate_keys, take_rates
   use theory_groups, only: theory_keys, take_theories
   use sweep_group, only: sweep_keys, take_sweep
-  use fit_group, only: fit_keys, take_fit
+  use fit_group, only: fit_keys, take_fit, load_curve
   use measurement_group, only: measurement_keys
   use numerics_group, only: numerics_keys, take_numerics
   use scene_checks, only: check_derived, check_shape
@@ -68,11 +68,17 @@ contains
     type(scene_t), intent(out) :: scene
     type(failure_t), allocatable, intent(out) :: error
     character(len=*), intent(in), optional :: text
+    type(failure_t), allocatable :: trouble
     type(deck_t) :: deck
 
     call read_deck(file, keys_of_scene(), deck, text)
     call make_scene(deck, scene)
-    if (allocated(scene%sweep) .and. .not. allocated(scene%deck%error)) call check_sweep(scene)
+    if (allocated(scene%sweep)) then
+      if (.not. allocated(scene%deck%error)) call check_sweep(scene)
+    else if (allocated(scene%fit) .and. .not. allocated(scene%deck%error)) then
+      call load_curve(scene, trouble)
+      if (allocated(trouble)) call scene%deck%mistake('measurement', 'file', trouble%message)
+    end if
     call move_alloc(scene%deck%error, error)
   end subroutine read_scene
 
@@ -111,21 +117,29 @@ contains
   end subroutine make_scene
 
   !> The scene with the keys `names`, blank-separated, set to `values`, and without &sweep and
-  !> &sensitivity.
-  subroutine swept_scene(scene, names, values, variant, error)
+  !> &sensitivity. text: that of the key that holds one; without it this key stays as it is. The
+  !> measured curve of a fit is not read (`load_curve`).
+  subroutine swept_scene(scene, names, values, variant, error, text)
     type(scene_t), intent(in) :: scene
     character(len=*), intent(in) :: names
     real(wp), intent(in) :: values(:)
     type(scene_t), intent(out) :: variant
     type(failure_t), allocatable, intent(out) :: error
+    character(len=*), intent(in), optional :: text
     type(deck_t) :: deck
-    integer :: k
+    integer :: k, text_key
 
     deck = scene%deck
+    text_key = 0
+    if (allocated(scene%sweep)) text_key = scene%sweep%text_key
     call deck%drop_group('sweep')
     call deck%drop_group('sensitivity')
     do k = 1, size(values)
-      call set_number(deck, word_of(names, k), values(k), error)
+      if (k /= text_key) then
+        call set_number(deck, word_of(names, k), values(k), error)
+      else if (present(text)) then
+        call set_text(deck, word_of(names, k), text, error)
+      end if
       if (allocated(error)) return
     end do
     call make_scene(deck, variant)
@@ -155,7 +169,9 @@ contains
           trouble%message)
         return
       end if
-      if (allocated(scene%sweep%file)) then
+      if (k == scene%sweep%text_key) then
+        cycle
+      else if (allocated(scene%sweep%file)) then
         call try_values(scene, trial, k, scene%sweep%file%telling(:, k), 'file')
       else
         key = 'from'
@@ -193,7 +209,7 @@ contains
     type(scene_t), intent(inout) :: scene
     type(failure_t), allocatable :: trouble
     type(scene_t) :: variant
-    character(len=:), allocatable :: key, said
+    character(len=:), allocatable :: key, said, text
     real(wp), allocatable :: values(:)
     integer :: i, k
 
@@ -206,16 +222,19 @@ contains
         if (allocated(sweep%file)) then
           values = sweep%file%first
           if (i == 2) values = sweep%file%last
+          text = sweep%file%first_text
+          if (i == 2) text = sweep%file%last_text
         else
           values = [(merge(minval(sweep%axis(k)%values), maxval(sweep%axis(k)%values), i == 1), &
             k=1, size(sweep%axis))]
+          text = sweep%text_of(values)
         end if
-        call swept_scene(scene, sweep%names, values, variant, trouble)
+        call swept_scene(scene, sweep%names, values, variant, trouble, text)
         if (.not. allocated(trouble)) cycle
         said = 'with '
         do k = 1, size(values)
           if (k > 1) said = said // ', '
-          said = said // word_of(sweep%names, k) // ' = ' // sweep%shown(k, values(k))
+          said = said // word_of(sweep%names, k) // ' = ' // sweep%shown(k, values(k), text)
         end do
         call scene%deck%mistake('sweep', key, said // ' the deck is wrong: ' // &
           first_line(trouble%message))

@@ -2,13 +2,15 @@
 !> `experiment_request`. Optional groups and keys are allocatable.
 module scene_groups
   use kinds, only: wp, long
-  use text, only: brief, word_of
+  use text, only: brief, lower, word_of
   use deck, only: deck_t
+  use namelist_writer, only: line_t
   use experiment_request, only: request_t
   use force_law, only: force_law_t
   use shape, only: shape_t
   use layered_surface, only: layered_surface_t
   use fit_request, only: fit_t
+  use curve_index, only: curve_index_t
   use measured_curve, only: measured_curve_t
   use classical, only: theories, usual
   implicit none
@@ -52,24 +54,32 @@ module scene_groups
     integer :: cases = 0
     integer(long) :: digest = 0
     real(wp), allocatable :: first(:), last(:), telling(:, :)
+    character(len=:), allocatable :: first_text, last_text
     integer, allocatable :: of_case(:, :)
   end type case_file_t
 
   !> &sweep: blank-separated keys as 'group.key', and either the values of each key, every
   !> combination of which is a case (the last key varies fastest), or a file with one case a row.
   !> words: the words that a key may hold; its value is the number of one of them. Blank for
-  !> numbers.
+  !> numbers. text_key: the number of the key that holds a text, such as the name of a file; 0:
+  !> none. Its value is the number of one of `texts`, or, with a file, that of the row.
   type :: sweep_t
     character(len=:), allocatable :: names
     character(len=80), allocatable :: words(:)
+    integer :: text_key = 0
+    type(line_t), allocatable :: texts(:)
     type(axis_t), allocatable :: axis(:)
     type(case_file_t), allocatable :: file
+    !> The curves of a file with several, once they are known.
+    type(curve_index_t) :: index
     !> Whether the cost of each case is measured.
     logical :: costs = .false.
   contains
     procedure :: cases
     procedure :: values
     procedure :: last
+    procedure :: text_of
+    procedure :: varies
     procedure :: shown
   end type sweep_t
 
@@ -91,6 +101,7 @@ module scene_groups
     type(fit_t), allocatable :: fit
   contains
     procedure :: has_curve
+    procedure :: sweeps
     procedure :: has_eigenvalues
     procedure :: drive_columns
   end type scene_t
@@ -145,19 +156,50 @@ contains
     end if
   end function last
 
-  !> A value of key k as text for a message.
-  pure function shown(self, k, value) result(text)
+  !> The text of a case with these values, if a key holds one and no file has it; else ''.
+  pure function text_of(self, values) result(text)
+    class(sweep_t), intent(in) :: self
+    real(wp), intent(in) :: values(:)
+    character(len=:), allocatable :: text
+
+    text = ''
+    if (self%text_key == 0 .or. .not. allocated(self%texts)) return
+    text = self%texts(nint(values(self%text_key)))%text
+  end function text_of
+
+  !> Whether the sweep varies a key.
+  pure logical function varies(self, key)
+    class(sweep_t), intent(in) :: self
+    character(len=*), intent(in) :: key
+
+    varies = index(' ' // lower(self%names) // ' ', ' ' // key // ' ') > 0
+  end function varies
+
+  !> A value of key k as text for a message; `of_case` is the text of its case.
+  pure function shown(self, k, value, of_case) result(text)
     class(sweep_t), intent(in) :: self
     integer, intent(in) :: k
     real(wp), intent(in) :: value
+    character(len=*), intent(in) :: of_case
     character(len=:), allocatable :: text
 
-    if (self%words(k) == '') then
+    if (k == self%text_key) then
+      text = of_case
+    else if (self%words(k) == '') then
       text = brief(value)
     else
       text = word_of(self%words(k), nint(value))
     end if
   end function shown
+
+  !> Whether a sweep of the scene varies a key.
+  pure logical function sweeps(self, key)
+    class(scene_t), intent(in) :: self
+    character(len=*), intent(in) :: key
+
+    sweeps = allocated(self%sweep)
+    if (sweeps) sweeps = self%sweep%varies(key)
+  end function sweeps
 
   !> Whether the states of a curve are written; a sweep writes only numbers of its curves.
   pure logical function has_curve(self)

@@ -3,19 +3,20 @@
 module sweep_group
   use kinds, only: wp
   use failure, only: failure_t
-  use text, only: brief, lower, quoted, word_count, word_of
+  use text, only: brief, lower, quoted, spelled, word_count, word_of
   use deck, only: deck_t
-  use deck_numbers, only: words_of, number_of_word
+  use deck_numbers, only: words_of, number_of_word, holds_text
   use case_rows, only: case_rows_t
   use deck_keys, only: key_spec, real_list, logical_value, text_value, names_value
   use scene_groups, only: scene_t, sweep_t, case_file_t
   use sweep_ranges, only: take_ranges
+  use sweep_texts, only: take_texts
   implicit none
   private
   public :: sweep_keys, take_sweep
 
-  !> Largest number of keys of a sweep; of values of one key; of words; of cases.
-  integer, parameter :: most_keys = 8, most_values = 10000, most_words = 100
+  !> Largest number of keys of a sweep; of values of one key; of words in the deck; of cases.
+  integer, parameter :: most_keys = 8, most_values = 10000, most_words = 10000
   real(wp), parameter :: most_cases = 1.0e7_wp
   character(len=*), parameter :: of_range(4) = ['from ', 'to   ', 'count', 'scale']
 
@@ -40,8 +41,9 @@ module sweep_group
       'each, or one for all.', most=most_keys, otherwise='linear'), &
     key_spec('sweep', 'values', real_list, 'The values of one key, one by one.', &
       most=most_values), &
-    key_spec('sweep', 'words', names_value, 'The words of one key that holds a word.', &
-      most=most_words, otherwise='none'), &
+    key_spec('sweep', 'words', names_value, 'The words of one key that holds a word or a ' // &
+      'text; of a key that names a file also patterns: ''map/*.csv''.', most=most_words, &
+      otherwise='none', spaced=.true.), &
     key_spec('sweep', 'file', text_value, 'A table of cases: a line of names as ' // &
       '''group.key'', then one case a row; a relative path begins at the deck''s folder.', &
       most=1000), &
@@ -66,9 +68,12 @@ contains
     end do
     call take_cases(scene)
     if (allocated(scene%deck%error)) return
-    scene%sweep%costs = index(' ' // lower(scene%sweep%names), ' numerics.') > 0
+    scene%sweep%costs = .not. scene%deck%has_group('fit') .and. &
+      index(' ' // lower(scene%sweep%names), ' numerics.') > 0
     if (scene%deck%is_set('sweep', 'costs')) &
       call scene%deck%get('sweep', 'costs', scene%sweep%costs)
+    if (scene%sweep%costs .and. scene%deck%has_group('fit')) call scene%deck%mistake('sweep', &
+      'costs', 'not of fits')
   end subroutine take_sweep
 
   !> Reads the cases: a file, or keys with values or ranges.
@@ -100,7 +105,7 @@ contains
     end associate
   end subroutine take_cases
 
-  !> Finds for each key the words that it may hold.
+  !> Finds for each key the words that it may hold, and the key that holds a text.
   subroutine find_words(deck, sweep)
     type(deck_t), intent(in) :: deck
     type(sweep_t), intent(inout) :: sweep
@@ -109,10 +114,11 @@ contains
     allocate (sweep%words(word_count(sweep%names)))
     do i = 1, size(sweep%words)
       sweep%words(i) = words_of(deck, word_of(sweep%names, i))
+      if (sweep%text_key == 0 .and. holds_text(deck, word_of(sweep%names, i))) sweep%text_key = i
     end do
   end subroutine find_words
 
-  !> Reads the words of the key that holds a word.
+  !> Reads the words of the key that holds a word or a text.
   subroutine take_words(deck, sweep)
     type(deck_t), intent(inout) :: deck
     type(sweep_t), intent(inout) :: sweep
@@ -120,8 +126,8 @@ contains
     integer :: i, k
 
     call deck%get('sweep', 'words', words)
-    k = findloc(sweep%words /= '', .true., dim=1)
-    if (count(sweep%words /= '') > 1) then
+    k = findloc([(is_wordy(sweep, i), i=1, size(sweep%words))], .true., dim=1)
+    if (count([(is_wordy(sweep, i), i=1, size(sweep%words))]) > 1) then
       call deck%mistake('sweep', 'key', 'only one of the keys may hold a word; for more give ' // &
         'a file')
     else if (k == 0) then
@@ -129,7 +135,9 @@ contains
         quoted(sweep%names) // ' does not hold a word')
     else if (word_count(words) == 0) then
       call deck%mistake('sweep', 'words', 'missing; ' // quoted(word_of(sweep%names, k)) // &
-        ' holds a word')
+        ' holds a ' // trim(merge('text', 'word', k == sweep%text_key)))
+    else if (k == sweep%text_key) then
+      call take_texts(deck, sweep)
     else
       allocate (sweep%axis(k)%values(word_count(words)))
       do i = 1, word_count(words)
@@ -140,6 +148,14 @@ contains
     end if
   end subroutine take_words
 
+  !> Whether key k holds a word or a text.
+  pure logical function is_wordy(sweep, k)
+    type(sweep_t), intent(in) :: sweep
+    integer, intent(in) :: k
+
+    is_wordy = sweep%words(k) /= '' .or. k == sweep%text_key
+  end function is_wordy
+
   !> Reads the values of the keys that hold numbers: a list for one key, or ranges.
   subroutine take_numbers(deck, sweep)
     type(deck_t), intent(inout) :: deck
@@ -148,10 +164,14 @@ contains
     integer, allocatable :: of_numbers(:)
     integer :: i
 
-    of_numbers = pack([(i, i=1, size(sweep%axis))], sweep%words == '')
+    of_numbers = pack([(i, i=1, size(sweep%axis))], [(.not. is_wordy(sweep, i), &
+      i=1, size(sweep%axis))])
     call deck%get('sweep', 'values', values)
     if (size(of_numbers) == 0) then
       call refuse(deck, ['values', of_range//' '], 'a key that holds a word; give words')
+    else if (size(values) == 0 .and. all(of_numbers == position_of(sweep, 'measurement.curve')) &
+      .and. .not. any([(deck%is_set('sweep', trim(of_range(i))), i=1, size(of_range))])) then
+      call take_curves(deck, sweep, sweep%axis(of_numbers(1))%values)
     else if (size(values) == 0) then
       call take_ranges(deck, sweep%axis, of_numbers)
     else if (size(of_numbers) > 1) then
@@ -162,6 +182,44 @@ contains
       sweep%axis(of_numbers(1))%values = values
     end if
   end subroutine take_numbers
+
+  !> The number of a key; 0 if the sweep does not vary it.
+  pure integer function position_of(sweep, key) result(k)
+    type(sweep_t), intent(in) :: sweep
+    character(len=*), intent(in) :: key
+
+    do k = word_count(sweep%names), 1, -1
+      if (lower(word_of(sweep%names, k)) == key) return
+    end do
+  end function position_of
+
+  !> The numbers of all curves of the file in &measurement.
+  subroutine take_curves(deck, sweep, values)
+    type(deck_t), intent(inout) :: deck
+    type(sweep_t), intent(inout) :: sweep
+    real(wp), allocatable, intent(inout) :: values(:)
+    type(failure_t), allocatable :: trouble
+    character(len=:), allocatable :: names
+    integer :: skip
+
+    allocate (values(0))
+    skip = 0
+    call deck%get('measurement', 'curves', names)
+    call deck%get('measurement', 'skip_lines', skip)
+    if (word_count(names) == 0 .or. .not. deck%is_set('measurement', 'file')) then
+      call deck%mistake('sweep', 'key', 'without values it takes all curves of one file: give ' &
+        // 'file and curves in &measurement')
+      return
+    end if
+    call sweep%index%find_curves(deck%path_of('measurement', 'file'), &
+      spelled(word_of(names, 1)), skip, trouble)
+    if (allocated(trouble)) then
+      call deck%mistake('measurement', 'file', trouble%message)
+      return
+    end if
+    call deck%note_file('measurement', 'file', sweep%index%digest)
+    values = sweep%index%number
+  end subroutine take_curves
 
   !> Refuses keys that contradict `other`.
   subroutine refuse(deck, keys, other)
@@ -195,7 +253,7 @@ contains
           brief(most_cases) // ' cases')
         exit
       end if
-      call note_case(file, values)
+      call note_case(file, values, rows%text)
     end do
     call rows%close()
     call deck%note_file('sweep', 'file', rows%digest)
@@ -212,16 +270,19 @@ contains
 
   !> Counts a case of a file, and keeps values that show whether all are allowed: the smallest, the
   !> largest and the first that is not an integer.
-  subroutine note_case(file, values)
+  subroutine note_case(file, values, text)
     type(case_file_t), intent(inout) :: file
     real(wp), intent(in) :: values(:)
+    character(len=*), intent(in) :: text
     logical :: telling(3)
     integer :: k
 
     file%cases = file%cases + 1
     file%last = values
+    file%last_text = text
     if (file%cases == 1) then
       file%first = values
+      file%first_text = text
       file%telling = spread(values, 1, size(telling))
       allocate (file%of_case(size(telling), size(values)), source=1)
       return

@@ -147,7 +147,6 @@ BAD_DECKS = {
     "below": ({"fit": {"parameters": [STRENGTH, POINT], "lower": [1e-18, -1.0]}}, "below this"),
     "above": ({"fit": {"parameters": [STRENGTH, POINT], "upper": [1e-20, 1.0]}}, "above this"),
     "rigid": ({"bodies": {"radius": 1.0, "rigid": True}}, "needs elastic bodies"),
-    "sweep": ({"sweep": {"key": STRENGTH, "values": [1e-19]}}, "not together with &sweep"),
 }
 
 

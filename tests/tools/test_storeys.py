@@ -15,9 +15,9 @@ MODULES = {
     "timed_pass", "timed_record", "timed_run", "rate_groups", "rate_entries",
     # theories of others, and fits
     "theory_groups", "classical_rows", "regime_rows", "approximation_tables", "fit_group",
-    "measurement_group", "fit_rows", "fit_words",
+    "measurement_group", "fit_rows", "fit_words", "fit_columns", "case_fit", "measured_fit",
     # processes
-    "ranks",
+    "ranks", "forks",
 }
 # Hertz's theory and (11) of the paper, which give meshes their lengths.
 OF_THE_PAPER = {"convex_contact"}
@@ -26,7 +26,8 @@ OF_THE_PAPER = {"convex_contact"}
 SEAMS = {
     # the deck: one group more
     "scene": {"rate_groups", "theory_groups", "fit_group", "measurement_group"},
-    "scene_groups": {"classical", "fit_request", "layered_surface", "measured_curve"},
+    "scene_groups": {
+        "classical", "curve_index", "fit_request", "layered_surface", "measured_curve"},
     "scene_problem": {"layered_body", "layered_surface", "scene_layers"},
     # the body: its deformation besides that of a half-space, and a film on it
     "elastic_operator": {"mesh_waves"},
@@ -38,21 +39,22 @@ SEAMS = {
     # one kind of output more
     "summarise": {"approximation_tables", "classical_rows", "rate_entries", "regime_rows"},
     "reading_rows": {"maugis"},
-    "case_columns": {"classical"},
+    "case_columns": {"classical", "fit_columns"},
     "problem_numbers": {"classical", "layered_body"},
     "model_warnings": {"layered_body", "layered_surface"},
     "result_folder": {"run_identity"},
     # one kind of run more
     "simulation": {
-        "approximation_tables", "classical_rows", "fit_doubts", "fit_group",
-        "fit_rows", "fit_run", "fit_words", "ranks", "run_identity"},
-    "sweeps": {"ranks"},
-    "dispatch": {"ranks"},
+        "approximation_tables", "classical_rows", "fit_columns", "fit_doubts", "fit_rows",
+        "fit_run", "fit_words", "measured_fit", "ranks", "run_identity"},
+    "sweeps": {"case_fit", "curve_index", "forks", "ranks"},
+    "sweep_case": {"fit_columns"},
+    "case_queue": {"fit_columns"},
     "snapin": {"ranks"},
 }
 
 # The longest chain of `use`, in modules: what a reader must know who begins at its end.
-LONGEST_CHAIN = 40
+LONGEST_CHAIN = 41
 
 
 def is_beyond(name):

@@ -54,7 +54,8 @@ def entries_of(name):
 
 
 # A plain helper that takes nothing from users, and what takes or makes decks and folders.
-HELPERS = {"bytes_for", "fit", "run", "deck_text", "lennard_jones", "exponential", "read_results"}
+HELPERS = {"bytes_for", "fit", "fit_many", "run", "deck_text", "lennard_jones", "exponential",
+           "read_results"}
 
 
 @pytest.mark.parametrize(

@@ -18,10 +18,9 @@ import pathlib
 import numpy as np
 from matplotlib.figure import Figure
 
-from ..results import ResultFiles, ResultsError
+from ..results import ResultFiles, ResultsError, units_of
 from .drawing import (
-    BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILION, Picture, entitle, title_of,
-    units_of)
+    BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILION, Picture, entitle, title_of)
 
 _LOOKS = tuple(zip((BLUE, VERMILION, GREEN, ORANGE, PURPLE, SKY, BLACK), "os^Dv<>"))
 # The numbers whose errors are drawn, if the sweep has them.

@@ -16,7 +16,8 @@ from ..command import as_command
 
 # Kind -> module. All but forces, whose picture needs a deck alone, have a PICTURE.
 _MODULES = {"curve": "force_curve", "forces": "force_law", "profiles": "profiles", "map": "map",
-            "accuracy": "accuracy", "fit": "fit", "regime": "regime", "device": "device_curve"}
+            "curves": "curve_map", "accuracy": "accuracy", "fit": "fit", "regime": "regime",
+            "device": "device_curve"}
 _HELP = f"""usage: snapin-plot [--dpi DPI] FOLDER [FOLDER ...]
        snapin-plot KIND [OPTIONS] FOLDER
 

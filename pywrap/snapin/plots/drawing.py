@@ -3,7 +3,6 @@
 import argparse
 import dataclasses
 import pathlib
-import re
 import sys
 import textwrap
 from collections.abc import Callable
@@ -91,11 +90,6 @@ def smooth(points):
     return np.vstack([*curve, points[-1:]])
 
 
-def units_of(text):
-    """Return the units of the columns of a table by name."""
-    return dict(re.findall(r"^# (\S+) \[(.*?)\]", text, re.MULTILINE))
-
-
 def scale(values, unit):
     """Return the factor and the name of the prefixed unit in which `values` [unit] are short."""
     values = np.abs(np.asarray(values, float))
@@ -171,6 +165,13 @@ class Picture:
         output = pathlib.Path(output or pathlib.Path(folder) / self.file)
         save(self.draw(folder, **options), output, dpi)
         return output
+
+
+def has_fits(files):
+    """Return whether `ResultFiles` have the sweep of a fit over measured curves."""
+    names = (line for line in files.texts.get("sweep.csv", "").split("\n")
+             if not line.startswith("#"))
+    return "verdict" in next(names, "").split(",")
 
 
 def add_dots(parser):

@@ -20,8 +20,8 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, MaxNLocator
 from matplotlib.tri import Triangulation
 
-from ..results import ResultFiles, ResultsError
-from .drawing import COLOURS, GREY, VERMILION, Picture, entitle, title_of, units_of
+from ..results import ResultFiles, ResultsError, units_of
+from .drawing import COLOURS, GREY, VERMILION, Picture, entitle, has_fits, title_of
 
 # The field's words for columns.
 _TERMS = {
@@ -251,4 +251,5 @@ def _options(parser):
 
 PICTURE = Picture(
     "map", draw_map, "map.png", "Draw a result of a sweep over the keys that were swept.",
-    lambda files: "sweep.csv" in files.texts and "costs.csv" not in files.texts, _options)
+    lambda files: "sweep.csv" in files.texts and "costs.csv" not in files.texts
+    and not has_fits(files), _options)

@@ -7,16 +7,15 @@ module ranks
   use kinds, only: long
   use failure, only: failure_t, fail, bad_input
   use byte_record, only: byte_record_t
+  use teams, only: team_t
   use c_library, only: c_pause
   use launch, only: started_together, own_rank
   implicit none
   private
   public :: crew_t
 
-  !> Processes that work together, each with its number: process 0 distributes the work, processes 1
-  !> to `workers` do it. A single process has number 0 and no workers.
-  type :: crew_t
-    integer :: rank = 0, workers = 0
+  !> The processes that were started together. A single process has number 0 and no workers.
+  type, extends(team_t) :: crew_t
   contains
     procedure :: begin
     procedure :: end => end_crew
@@ -86,7 +85,7 @@ contains
 
   !> Waits for a record from any process, whose number is `from`.
   subroutine receive(self, record, from)
-    class(crew_t), intent(in) :: self
+    class(crew_t), intent(inout) :: self
     type(byte_record_t), intent(inout) :: record
     integer, intent(out) :: from
     integer(long), allocatable :: words(:)

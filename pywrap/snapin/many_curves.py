@@ -1,0 +1,195 @@
+"""Fits of many measured curves in memory: one sweep of the program, a record for each curve."""
+
+import contextlib
+import os
+import tempfile
+import warnings
+
+import numpy as np
+
+from .arguments import SnapinError, SnapinWarning, folder_path
+from .curve_fit import columns_of, fit_groups, with_groups
+from .experiment import run
+
+# The column that numbers the curves, the files, and the keys of a curve's place.
+_NUMBER, _CURVES, _CASES = "curve", "curves.csv", "cases.csv"
+_PLACES = ("measurement.x", "measurement.y")
+_TOLD = ("verdict", "warning", "failure")
+
+
+class Fits:
+    """The fits of many curves, SI. `table` has a row for each curve, in their order: the columns of
+    sweep.csv. `parameters`: the names of the unknowns; `units`: of the columns."""
+
+    def __init__(self, result, parameters, broken):
+        self.result, self.parameters = result, parameters
+        self.table, self.units = result.sweep, result.units["sweep"]
+        for i, why in broken.items():
+            self.table["failure"][i] = why[:self.table["failure"].dtype.itemsize // 4]
+
+    def __len__(self):
+        return len(self.table)
+
+    def __getitem__(self, i):
+        """Return the record of a curve, a dictionary."""
+        return dict(zip(self.table.dtype.names, self.table[i].tolist()))
+
+    def records(self):
+        """Return a list of all records."""
+        return [self[i] for i in range(len(self))]
+
+    def of_each(self, ending):
+        """Return for each parameter the numbers of all curves: "estimate", "standard_error",
+        "lower_95" or "upper_95"."""
+        return {name: self.table[f"{name}_{ending}"] for name in self.parameters}
+
+    @property
+    def estimate(self):
+        return self.of_each("estimate")
+
+    @property
+    def standard_error(self):
+        return self.of_each("standard_error")
+
+    @property
+    def interval_95(self):
+        """Return the ends of the 95 % intervals of each parameter: (curves, 2)."""
+        low, high = self.of_each("lower_95"), self.of_each("upper_95")
+        return {name: np.stack([low[name], high[name]], axis=1) for name in self.parameters}
+
+    @property
+    def described(self):
+        """Return which curves the model describes."""
+        return np.isin(self.table["verdict"], ("described", "warned"))
+
+    def worst(self, count=5):
+        """Return the indices of the curves that are fitted worst: those without a fit, then by the
+        excess of their residuals."""
+        return worst_of(self.table, count)
+
+    def draw_maps(self, values=None, *, columns=None):
+        """Return a figure of Matplotlib with maps of columns of the table, by default of work of
+        adhesion, modulus, contact height, Tabor's parameter and verdict, over the places of the
+        curves or, with so many `columns`, their order."""
+        from .curve_maps import draw_maps
+
+        return draw_maps(self.table, self.units, values, columns=columns)
+
+    def to_xarray(self):
+        """Return an `xarray.Dataset` with units as attributes. Its dimensions are y and x if the
+        places of the curves are all points of a grid, else `curve`."""
+        import xarray
+
+        data = xarray.Dataset(attrs={"parameters": list(self.parameters)})
+        places = [self.table[key] for key in _PLACES if key in self.table.dtype.names]
+        shape, order = grid_of(places) if len(places) == 2 else (None, slice(None))
+        dims = ("y", "x") if shape else ("curve",)
+        for name in self.table.dtype.names:
+            values = self.table[name][order]
+            data[name] = dims, values.reshape(shape) if shape else values
+            if self.units.get(name):
+                data[name].attrs["units"] = self.units[name]
+        if shape:
+            data = data.assign_coords(x=np.unique(places[0]), y=np.unique(places[1]))
+        else:
+            data = data.assign_coords(curve=np.arange(len(self)))
+            data = data.assign_coords(
+                {name: ("curve", place) for name, place in zip("xy", places)})
+        for name in {"x", "y"} & set(data.coords):
+            data[name].attrs["units"] = "m"
+        return data
+
+    def __repr__(self):
+        return f"<Fits: {len(self)} curves, {self.described.sum()} described>"
+
+
+def worst_of(table, count):
+    """Return the indices of the rows of sweep.csv whose fits are worst."""
+    excess = np.where(np.isfinite(table["excess"]), table["excess"], np.inf)
+    return np.argsort(-excess, kind="stable")[:count]
+
+
+def grid_of(places):
+    """Return the shape (y, x) of a grid of which the places are all points, and the order of its
+    points, x fastest; None and all in their order if they are not."""
+    x, y = (np.asarray(place) for place in places)
+    shape = len(np.unique(y)), len(np.unique(x))
+    if shape[0] * shape[1] != len(x) or len(set(zip(x, y))) != len(x):
+        return None, slice(None)
+    return shape, np.lexsort((x, y))
+
+
+def fit_many(curves, *, spring_constant, deck, parameters, places=None, each=None, out=None,
+             resume=False, quiet=True, **further):
+    """Fit numbers of a deck to each of many measured curves and return the `Fits`.
+
+    curves: an iterable of (z, force) or (z, force, segment), as of `fit`; a curve that is none is a
+    record with the reason. places: x and y of each curve [m]. each: values of further keys of the
+    deck, one for each curve, such as {"bodies.radius": [...]}. spring_constant: one number, or one
+    for each curve. further: other arguments of `fit`.
+
+    Curves are fitted at once by as many processes as OMP_NUM_THREADS says. out: the folder for
+    curves and results, in which `resume` goes on with the curves that are left.
+    """
+    each = dict(each or {})
+    if np.ndim(spring_constant) > 0:
+        each["measurement.spring_constant"] = spring_constant
+        spring_constant = float(np.asarray(spring_constant).flat[0])
+    if places is not None:
+        each.update(zip(_PLACES, np.asarray(places, float).T))
+    with contextlib.ExitStack() as stack:
+        folder = out
+        if out is None:
+            folder = stack.enter_context(tempfile.TemporaryDirectory())
+        folder = folder_path("out", folder)
+        folder.mkdir(parents=True, exist_ok=True)
+        count, segments, broken = _write_curves(folder / _CURVES, curves)
+        _write_cases(folder / _CASES, count, each)
+        groups = fit_groups(
+            folder / _CURVES, segments, spring_constant=spring_constant, parameters=parameters,
+            **further)
+        groups["measurement"].update(curves=_NUMBER, curve=0)
+        groups["sweep"] = {"file": os.fspath((folder / _CASES).absolute())}
+        with warnings.catch_warnings():
+            # What is said of a curve is in its record.
+            warnings.simplefilter("ignore", SnapinWarning)
+            result = run(with_groups(deck, groups, "fit_many"), out, resume=resume, quiet=quiet)
+    return Fits(result, tuple(groups["fit"]["parameters"]), broken)
+
+
+def _write_curves(path, curves):
+    """Write all curves into one file; return their number, whether they have segments, and why some
+    are no curves."""
+    broken, segments, count = {}, None, 0
+    with path.open("w", encoding="utf-8") as file:
+        for count, curve in enumerate(curves, 1):
+            try:
+                columns = columns_of(*curve)
+                if segments is None:
+                    segments = len(columns) == 3
+                    names = [_NUMBER, "z", "force", *["segment"] * segments]
+                    file.write(",".join(names) + "\n")
+                if (len(columns) == 3) != segments:
+                    raise ValueError("some curves have segments, this one is not like the first")
+                if not len(columns[0]):
+                    raise ValueError("a curve without samples")
+            except (TypeError, ValueError) as problem:
+                broken[count - 1] = str(problem).replace(",", ";").replace("\n", " ")
+                continue
+            number = np.full(len(columns[0]), count - 1)
+            np.savetxt(file, np.column_stack([number, *columns]),
+                       ["%d"] + ["%.17g"] * len(columns), ",")
+    if segments is None:
+        raise SnapinError("curves: there is no curve" + "".join(
+            f"; the first: {why}" for why in list(broken.values())[:1]))
+    return count, segments, broken
+
+
+def _write_cases(path, count, each):
+    """Write the table of cases: the number of each curve and the values of further keys."""
+    for key, values in each.items():
+        if np.shape(values) != (count,):
+            raise ValueError(f"{key}: {count} numbers are needed, one for each curve")
+    columns = [np.arange(count), *(np.asarray(values, float) for values in each.values())]
+    np.savetxt(path, np.column_stack(columns), ["%d"] + ["%.17g"] * len(each), ",",
+               header=",".join([f"measurement.{_NUMBER}", *each]), comments="")

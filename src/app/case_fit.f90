@@ -1,0 +1,135 @@
+!> One case of a sweep that fits measured curves.
+module case_fit
+  use kinds, only: wp, nan
+  use text, only: first_line
+  use failure, only: failure_t
+  use namelist_writer, only: line_t
+  use dimensionless_problem, only: problem_t
+  use scene_groups, only: scene_t
+  use scene, only: swept_scene
+  use scene_problem, only: problem_of
+  use curve_index, only: curve_index_t
+  use fit_group, only: load_curve
+  use experiment_result, only: experiment_result_t
+  use experiment, only: run_experiment
+  use progress, only: progress_t
+  use summary, only: summary_t
+  use summarise, only: summary_of
+  use problem_numbers, only: describe_problem
+  use fit_errors, only: within_95
+  use fit_run, only: fit_outcome_t
+  use fit_doubts, only: doubts_of
+  use fit_columns, only: count_of_fit, endings, derived, described, warned, not_described, &
+    refused, unreadable
+  use measured_fit, only: fit_measured
+  use case_columns, only: numbers_of
+  use sweep_case, only: case_t, case_observer_t
+  implicit none
+  private
+  public :: run_fit_case
+
+contains
+
+  !> Fits the curve of the case with the given number, values and text of the scene's sweep. A curve
+  !> that cannot be read or fitted has a row with the reason. index: where the curves of a file with
+  !> several are, once they are known. Fits make strings: two must not be made at the same time in
+  !> one process (compiler note 4).
+  subroutine run_fit_case(scene, progress, index, case)
+    type(scene_t), intent(in) :: scene
+    type(progress_t), intent(in), target :: progress
+    type(curve_index_t), intent(inout) :: index
+    type(case_t), intent(inout) :: case
+    type(case_observer_t) :: observer
+    type(scene_t) :: variant
+    type(problem_t) :: problem
+    type(experiment_result_t) :: result
+    type(fit_outcome_t) :: outcome
+    type(summary_t) :: summary
+    type(line_t), allocatable :: doubts(:)
+    type(failure_t), allocatable :: error
+
+    observer%case = case%number
+    observer%progress => progress
+    case%failure = ''
+    case%warning = ''
+    case%verdict = unreadable
+    allocate (doubts(0))
+    call summary%set('converged', .false.)
+    call swept_scene(scene, scene%sweep%names, case%values, variant, error, case%text)
+    if (.not. allocated(error)) call load_curve(variant, error, index)
+    if (.not. allocated(error)) then
+      problem = problem_of(variant)
+      call run_experiment(variant, problem, observer, result)
+      summary = summary_of(variant, problem, result)
+      if (size(case%like) > 0) then
+        call fit_measured(variant, problem, .false., observer, outcome, case%like)
+      else
+        call fit_measured(variant, problem, .false., observer, outcome)
+      end if
+      if (.not. allocated(outcome%trouble)) then
+        doubts = doubts_of(outcome)
+        if (allocated(outcome%problem)) call describe_problem(outcome%problem, summary)
+      end if
+      case%verdict = verdict_of(outcome, doubts)
+      if (size(doubts) > 0) case%warning = doubts(1)%text
+      if (allocated(summary%failure)) case%failure = summary%failure
+      if (allocated(outcome%trouble)) case%failure = outcome%trouble
+      if (case%failure /= '' .or. .not. outcome%fitted%found) call summary%set('converged', .false.)
+    else
+      case%failure = first_line(error%message)
+      outcome%trouble = ''
+    end if
+    case%converged = summary%is_true('converged')
+    case%numbers = [numbers_of(summary, scene), numbers_of_fit(scene, outcome, doubts)]
+    case%costs = [real(wp) ::]
+    case%cost = result%cost
+  end subroutine run_fit_case
+
+  !> The numbers of the columns; NaN without a fit.
+  function numbers_of_fit(scene, outcome, doubts) result(numbers)
+    type(scene_t), intent(in) :: scene
+    type(fit_outcome_t), intent(in) :: outcome
+    type(line_t), intent(in) :: doubts(:)
+    real(wp), allocatable :: numbers(:)
+    integer :: i, k, n
+
+    allocate (numbers(count_of_fit(scene)), source=nan)
+    if (allocated(outcome%trouble)) return
+    n = size(scene%fit%unknown)
+    associate (fitted => outcome%fitted, curve => outcome%curve)
+      do i = 1, n
+        numbers(size(endings)*(i - 1) + 1:size(endings)*i) = [fitted%value(i), &
+          fitted%deviation(i), fitted%end_of(i, curve%unknown(i), -within_95), &
+          fitted%end_of(i, curve%unknown(i), within_95)]
+      end do
+      n = size(endings)*n
+      do i = 1, size(derived)
+        do k = 1, size(outcome%derived)
+          if (outcome%derived(k)%name /= derived(i)) cycle
+          numbers(n + 2*i - 1:n + 2*i) = [outcome%derived(k)%value, outcome%derived(k)%error]
+        end do
+      end do
+      n = n + 2*size(derived)
+      numbers(n + 1:) = [curve%contact_height(fitted%value), fitted%chi_squared, &
+        real(fitted%freedom, wp), fitted%lack%excess, fitted%identifiable, &
+        curve%data%noise%deviation, real(size(curve%data%sample), wp), &
+        real(count(curve%data%measured%outlier()), wp), real(size(doubts), wp)]
+    end associate
+  end function numbers_of_fit
+
+  !> The verdict on a fit that was made.
+  pure integer function verdict_of(outcome, doubts) result(verdict)
+    type(fit_outcome_t), intent(in) :: outcome
+    type(line_t), intent(in) :: doubts(:)
+
+    verdict = described
+    if (allocated(outcome%trouble)) then
+      verdict = refused
+    else if (.not. outcome%fitted%lack%is_noise()) then
+      verdict = not_described
+    else if (size(doubts) > 0) then
+      verdict = warned
+    end if
+  end function verdict_of
+
+end module case_fit

@@ -1,0 +1,69 @@
+!> The files that a pattern with *, ? or [...] stands for; sizes and parts of files.
+module file_names
+  use, intrinsic :: iso_c_binding, only: c_char, c_int, c_long, nul => c_null_char
+  use kinds, only: long
+  implicit none
+  private
+  public :: names_like, is_pattern, bytes_of, c_read_at
+
+  interface
+    !> Writes the names of the files that a pattern matches, each with `nul` behind it, into `names`
+    !> as far as they fit; the number of bytes that all of them need. Names are in the order of
+    !> their bytes.
+    integer(c_long) function c_names_like(pattern, names, size) bind(c, name='snapin_names_like')
+      import :: c_char, c_long
+      character(kind=c_char), intent(in) :: pattern(*)
+      character(kind=c_char), intent(inout) :: names(*)
+      integer(c_long), value :: size
+    end function c_names_like
+
+    !> Number of bytes of a file; -1 if there is none.
+    integer(c_long) function c_bytes_of(path) bind(c, name='snapin_bytes_of')
+      import :: c_char, c_long
+      character(kind=c_char), intent(in) :: path(*)
+    end function c_bytes_of
+
+    !> Reads from a place [bytes from the start] of an open file; the number of bytes read, fewer
+    !> than `count` only at the end of the file.
+    integer(c_long) function c_read_at(descriptor, bytes, count, place) &
+        bind(c, name='snapin_read_at')
+      import :: c_char, c_int, c_long
+      integer(c_int), value :: descriptor
+      character(kind=c_char), intent(inout) :: bytes(*)
+      integer(c_long), value :: count, place
+    end function c_read_at
+  end interface
+
+contains
+
+  !> Whether a name is a pattern.
+  pure logical function is_pattern(name)
+    character(len=*), intent(in) :: name
+
+    is_pattern = scan(name, '*?[') > 0
+  end function is_pattern
+
+  !> The names of the files that a pattern matches, each with `nul` behind it.
+  subroutine names_like(pattern, names)
+    character(len=*), intent(in) :: pattern
+    character(len=:), allocatable, intent(out) :: names
+    integer(c_long) :: needed
+
+    needed = 0
+    do
+      allocate (character(len=needed) :: names)
+      needed = c_names_like(pattern // nul, names, int(len(names), c_long))
+      if (needed == len(names)) return
+      ! Files may come between the two calls.
+      deallocate (names)
+    end do
+  end subroutine names_like
+
+  !> Number of bytes of a file; -1 if there is none.
+  integer(long) function bytes_of(path)
+    character(len=*), intent(in) :: path
+
+    bytes_of = c_bytes_of(path // nul)
+  end function bytes_of
+
+end module file_names

@@ -1,0 +1,146 @@
+#!/usr/bin/env python3
+"""Fits thousands of curves of the independent model in one sweep, and compares them with the truth.
+
+    .venv/bin/python tools/verify/many_curves.py [--curves 2000] [--seed 0] [--out FOLDER]
+
+Every group of curves has one instrument (sigma, spring, z0) and is one sweep, as a map is: the work
+of adhesion and the modulus of its curves vary by some per cent from place to place, the noise, the
+number of samples, outliers and drift from curve to curve. The starting values are wrong by factors
+up to three. It prints the bias, how often 95 % intervals hold the truth, the verdicts, fits that
+are wrong without a warning, and the price. Threads: OMP_NUM_THREADS.
+"""
+
+import argparse
+import math
+import pathlib
+import sys
+import tempfile
+import time
+
+import numpy as np
+import snapin
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
+sys.path.append(str(ROOT / "tests"))
+
+from support.reference_curves import RADIUS, Z0, measure, path_of, truth  # noqa: E402
+from support.study_fits import cpu  # noqa: E402
+
+SIGMAS = (0.01, 0.03, 0.1, 0.3, 1.0, 3.0, 10.0, 30.0, 100.0, 300.0)
+KEYS = ("force.work_of_adhesion", "bodies.stiffness", "measurement.contact_point")
+# Curves of a sweep; standard errors from the truth at which a fit is wrong; half-width of a 95 %
+# interval in standard errors.
+GROUP, FAR, WITHIN = 50, 6.0, 1.959964
+# Spreads of the work of adhesion over a map: its curves are those of strengths of adhesion of which
+# the independent path is known, scaled to other moduli, which leaves sigma as it is.
+SPREAD = 0.2
+
+
+def curve_of(sigma, softness, rng):
+    """A curve as measured, the truth, and its noise."""
+    modulus = 1e10 * math.exp(SPREAD * rng.normal())
+    true = truth(sigma, softness, modulus)
+    noise = 10 ** rng.uniform(math.log10(0.003), math.log10(0.05))
+    samples = int(10 ** rng.uniform(2, math.log10(2500)))
+    curve = measure(true, samples, noise, rng, rng.choice([0.0, 0.01, 0.03]))
+    return curve, true, noise, 2 * samples
+
+
+def group(number, seed, size, folder):
+    """The rows of one sweep: the fits and the truth of its curves."""
+    rng = np.random.default_rng((seed, number))
+    sigma = SIGMAS[number % len(SIGMAS)]
+    softness = 10 ** rng.uniform(-0.7, 1)
+    path_of(sigma)
+    made = [curve_of(sigma, softness, rng) for _ in range(size)]
+    off = 3 ** rng.uniform(-1, 1, 2)
+    middle = truth(sigma, softness)
+    deck = {"bodies": {"radius": RADIUS, "stiffness": middle.stiffness * off[0]},
+            "force": {"law": "lennard_jones", "z0": Z0,
+                      "work_of_adhesion": middle.energy * off[1]},
+            "numerics": {"accuracy": 1e-4}}
+    began, used = time.perf_counter(), cpu()
+    fits = snapin.fit_many(
+        ((curve.z, curve.force, curve.segment) for curve, *_ in made), deck=deck, parameters=KEYS,
+        spring_constant=[true.spring for _, true, *_ in made], out=folder)
+    took = time.perf_counter() - began, cpu() - used
+    rows = []
+    for i, (_, true, noise, samples) in enumerate(made):
+        record = fits[i]
+        truths = np.array([true.energy, true.stiffness, 0.0])
+        estimate = np.array([record[f"{key}_estimate"] for key in KEYS])
+        error = np.array([record[f"{key}_standard_error"] for key in KEYS])
+        inside = [record[f"{key}_lower_95"] <= value <= record[f"{key}_upper_95"]
+                  for key, value in zip(KEYS, truths)]
+        with np.errstate(all="ignore"):
+            far = np.where(truths == 0, estimate, np.log(estimate / truths) * estimate) / error
+            # Of works of adhesion and moduli the errors over the truth.
+            part = np.append(estimate[:2] / truths[:2] - 1, np.nan)
+        rows.append({"sigma": sigma, "noise": noise, "samples": samples, "inside": inside,
+                     "far": far, "part": part, "verdict": record["verdict"], "error":
+                     error / np.append(estimate[:2], np.nan),
+                     "told": record["failure"] or record["warning"], "seconds": took[1] / size})
+    return rows, took
+
+
+def share(values):
+    return f"{100 * np.mean(values):5.1f} %" if len(values) else "   none"
+
+
+def report(rows, took):
+    """Print the table."""
+    print(f"{len(rows)} curves, {sum(t[0] for t in took):.0f} s, of the processors "
+          f"{sum(t[1] for t in took):.0f} s")
+    print("  sigma  tabor curves  described  warned  not described  refused  wrong in silence  "
+          "intervals hold w, E, contact       median error of w, E     seconds a curve")
+    for sigma in sorted({row["sigma"] for row in rows}):
+        print(line(f"{sigma:7g} {(4 * sigma**2) ** (1 / 3):6.2f}",
+                   [row for row in rows if row["sigma"] == sigma]))
+    print(line("    all       ", rows))
+
+
+def line(name, rows):
+    verdicts = [row["verdict"] for row in rows]
+    fitted = [row for row in rows if row["verdict"] in ("described", "warned")]
+    silent = [row for row in rows if row["verdict"] == "described"
+              and not np.abs(row["far"]).max() < FAR]
+    held = " ".join(share([row["inside"][k] for row in fitted]) for k in range(3))
+    # The mean over the curves, weighted by their errors: what a map would be wrong by.
+    bias = []
+    for k in range(2):
+        part = np.array([row["part"][k] for row in fitted])
+        weight = np.array([row["error"][k] for row in fitted]) ** -2.0
+        bias.append(f"{100 * np.average(part, weights=weight):+6.2f} %" if len(part) else "  none")
+    counts = [verdicts.count(word) for word in (
+        "described", "warned", "not_described", "refused")]
+    return (f"{name} {len(rows):6d} {counts[0]:10d} {counts[1]:7d} {counts[2]:14d} {counts[3]:8d} "
+            f"{len(silent):17d}  {held}   bias {' '.join(bias)}  "
+            f"{np.median([row['seconds'] for row in rows]):6.3f}")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    parser.add_argument("--curves", type=int, default=2000)
+    parser.add_argument("--size", type=int, default=GROUP, help="curves of a sweep")
+    parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--out", help="folder that keeps curves and results")
+    options = parser.parse_args()
+    rows, took = [], []
+    with tempfile.TemporaryDirectory() as folder:
+        for number in range(-(-options.curves // options.size)):
+            place = pathlib.Path(options.out or folder, f"{number:03d}")
+            size = min(options.size, options.curves - len(rows))
+            new, seconds = group(number, options.seed, size, place)
+            rows += new
+            took.append(seconds)
+            for row in new:
+                if row["verdict"] != "described" or not np.abs(row["far"]).max() < FAR:
+                    print(f"  {number} sigma {row['sigma']:g} noise {100 * row['noise']:.1f} % "
+                          f"samples {row['samples']} off {np.round(row['far'], 1)} "
+                          f"{row['verdict']}: {row['told'][:120]}")
+            print(line(f"{number:4d} {rows[-1]['sigma']:7g}", new), flush=True)
+    report(rows, took)
+
+
+if __name__ == "__main__":
+    main()
