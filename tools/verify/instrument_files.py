@@ -51,8 +51,8 @@ def fetch(folder):
     for package in PACKAGES:
         name = package.replace("==", "-")
         if not (folder / f"{name}.tar.gz").exists():
-            subprocess.run([sys.executable, "-m", "pip", "download", "-q", "--no-binary", ":all:",
-                            "--no-deps", "--no-build-isolation", "-d", folder, package], check=True)
+            subprocess.run([sys.executable, "-m", "pip", "download", "-q", "--no-deps", "-d", folder,
+                            "--no-binary", package.split("==")[0], package], check=True)
         if not (folder / name).exists():
             with tarfile.open(folder / f"{name}.tar.gz") as archive:
                 archive.extractall(folder, filter="data")

@@ -14,6 +14,7 @@
     shapes      the same for springs, fixed loads and cycles of every shape, layers among them
     starts      fits of strongly adhering bodies from starts that are up to ten times off
     fits        fits of curves with several kinds of noise and baseline
+    untold      the same without the keys for the baseline: wrong without a warning
 
 The program is $SNAPIN, else build/snapin. Ends with status 1 if a study finds an error.
 """
@@ -54,8 +55,9 @@ STUDIES = {
     "energy": (study_estimates, study_estimates.energy_jobs, 40, is_bad),
     "starts": (study_fits, study_fits.clean_jobs, 200, lambda finding: finding.wrong),
     "fits": (study_fits, study_fits.noisy_jobs, 150, lambda finding: finding.wrong),
+    "untold": (study_fits, study_fits.untold_jobs, 150, lambda finding: finding.wrong),
 }
-SEEDED = ("starts", "fits", "cycles", "cusp", "laws", "layers", "experiments", "shapes")
+SEEDED = ("starts", "fits", "untold", "cycles", "cusp", "laws", "layers", "experiments", "shapes")
 
 
 def study(name, arguments, folder):
