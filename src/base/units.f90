@@ -1,15 +1,19 @@
-!> Units of the columns of measured data, metres, newtons and volts with the prefixes milli to pico;
-!> and values with their errors in units, for messages.
+!> Units of the columns of measured data, metres, newtons and volts with the prefixes milli to pico,
+!> and Angstrom; and values with their errors in units, for messages.
 module units
   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
   use kinds, only: wp
   use text, only: rounded, rounded_to
   implicit none
   private
-  public :: find_unit, unit_in, with_unit
+  public :: find_unit, unit_in, split_unit, is_unit_cell, with_unit
 
   character(len=*), parameter :: prefixes = 'munp', bases = 'mNV'
   integer, parameter :: powers(*) = [-3, -6, -9, -12]
+  !> The sign of Angstrom in UTF-8, of two code points, and in Latin-1; brackets about a unit.
+  character(len=*), parameter :: angstrom(*) = [character(len=8) :: 'Angstrom', 'angstrom', &
+    char(195) // char(133), char(226) // char(132) // char(171), char(197)], &
+    opens = '([{', closes = ')]}'
 
 contains
 
@@ -25,6 +29,12 @@ contains
     factor = 1
     base = ' '
     unit = trim(adjustl(text))
+    if (any(unit == angstrom) .and. len(unit) > 0) then
+      factor = 1.0e-10_wp
+      base = 'm'
+      return
+    end if
+    if (any(unit == [character(len=7) :: 'micron', 'microns'])) unit = 'um'
     if (len(unit) < 1 .or. len(unit) > 2) return
     if (index(bases, unit(len(unit):)) == 0) return
     if (len(unit) == 2) then
@@ -35,27 +45,59 @@ contains
     base = unit(len(unit):)
   end subroutine find_unit
 
-  !> The unit in a column's name or in a cell of a line of units: 'nN' of 'Force (nN)', '[nN]' and
-  !> 'nN'; '' if there is none.
+  !> The unit in a column's name or in a cell of a line of units; '' if there is none.
   pure function unit_in(name) result(unit)
     character(len=*), intent(in) :: name
-    character(len=:), allocatable :: unit
-    character(len=*), parameter :: opens = '([{', closes = ')]}'
+    character(len=:), allocatable :: unit, bare
+
+    call split_unit(name, bare, unit)
+  end function unit_in
+
+  !> Divides a column's name: 'Force (nN)', 'Force [nN]' and 'Force / nN' are 'Force' and 'nN', the
+  !> cell 'nN' is '' and 'nN'. unit: '' if there is none.
+  pure subroutine split_unit(name, bare, unit)
+    character(len=*), intent(in) :: name
+    character(len=:), allocatable, intent(out) :: bare, unit
+    character(len=:), allocatable :: inner
     real(wp) :: factor
-    character :: base
+    character :: base, before
     integer :: first, last
 
     last = len_trim(name)
-    unit = name(:last)
-    if (last > 1) then
-      if (scan(name(last:last), closes) > 0) then
-        first = scan(name(:last), opens, back=.true.)
-        unit = trim(adjustl(name(first + 1:last - 1)))
-      end if
+    bare = name(:last)
+    unit = ''
+    if (last == 0) return
+    if (scan(name(last:last), closes) > 0) then
+      first = scan(name(:last), opens, back=.true.)
+      last = last - 1
+    else
+      first = index(name(:last), '/', back=.true.)
+      ! 'nN/nm' is the unit of a slope.
+      call find_unit(name(:max(0, first - 1)), factor, before)
+      if (before /= ' ') return
     end if
-    call find_unit(unit, factor, base)
-    if (base == ' ') unit = ''
-  end function unit_in
+    inner = trim(adjustl(name(first + 1:last)))
+    call find_unit(inner, factor, base)
+    if (base == ' ') return
+    unit = inner
+    bare = trim(name(:max(0, first - 1)))
+  end subroutine split_unit
+
+  !> Whether a cell may stand in a line of units: a unit, of any quantity in brackets, or none.
+  pure logical function is_unit_cell(cell) result(is)
+    character(len=*), intent(in) :: cell
+    character(len=:), allocatable :: bare, unit
+    integer :: last
+
+    call split_unit(cell, bare, unit)
+    last = len_trim(cell)
+    is = last == 0
+    if (is) return
+    is = (len(unit) > 0 .and. len(bare) == 0) .or. (scan(cell(1:1), opens) > 0 .and. &
+      scan(cell(last:last), closes) > 0) .or. any(cell == [character(len=5) :: '-', '--', 's', &
+      'ms', 'us', 'min', 'Hz', 'kHz', 'deg', 'Pa', 'kPa', 'A', 'nA', 'pA', 'N/m', 'nN/nm', 'V/m', &
+      'a.u.', '%'])
+  end function is_unit_cell
 
   !> A value and, unless it is NaN, its error in a unit; metres, newtons, pascals and m/V have a
   !> prefix.

@@ -17,13 +17,17 @@ module baseline_test
 
   !> A part that the baseline does not have. name: what adds it in &measurement. gain: by how much
   !> it would lower chi squared. chance: logarithm of the probability that chance does this. shift:
-  !> by how much it would move each unknown, in the unit of its key. period [m]: of a ripple,
-  !> otherwise 0.
+  !> by how much it would move each unknown, in the unit of its key. hidden: by how much a part of
+  !> one column would that chance hides, one of `unseen` standard deviations. period [m]: of a
+  !> ripple, otherwise 0.
   type :: lacking_t
     character(len=:), allocatable :: name
     real(wp) :: gain = 0, period = 0, chance = 0
-    real(wp), allocatable :: shift(:)
+    real(wp), allocatable :: shift(:), hidden(:)
   end type lacking_t
+
+  !> Standard deviations of a part that noise makes in one fit of twenty.
+  real(wp), parameter :: unseen = 2
 
   !> The residuals of a fit and an orthonormal basis of their derivatives by the unknowns, which the
   !> triangle maps to these.
@@ -264,6 +268,13 @@ contains
     call orthonormalise(rest, triangle)
     part = matmul(tangent%residual, rest)
     new%gain = sum(part**2)
+    allocate (new%hidden(size(tangent%basis, 2)), source=0.0_wp)
+    if (size(part) == 1) then
+      if (abs(triangle(1, 1)) > 0) then
+        new%hidden = unseen/triangle(1, 1)*matmul(cleaned(:, 1), tangent%basis)
+        call solve_triangle(tangent%triangle, new%hidden)
+      end if
+    end if
     call solve_triangle(triangle, part)
     if (present(amplitude)) amplitude = part
     new%shift = matmul(matmul(cleaned, part) - tangent%residual, tangent%basis)

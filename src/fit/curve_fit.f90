@@ -46,7 +46,7 @@ contains
 
     residuals%curve = curve
     call residuals%curve%use_model(model)
-    call find_candidates(residuals, start, value, cost)
+    call find_candidates(residuals, start, value, cost, fitted%has_path)
     fitted%has_curve = size(cost) > 0
     if (.not. fitted%has_curve) return
     call search_from()
@@ -54,7 +54,7 @@ contains
       k = minloc(left, 1)
       if (.not. left(k) < huge(left)) exit
       trial = residuals
-      other = fitted_t(has_curve=.true., found=found(k))
+      other = fitted_t(has_path=.true., has_curve=.true., found=found(k))
       other%value = value(:, k)
       if (renew) call settle(trial, other)
       call judge(trial, other)
@@ -84,7 +84,7 @@ contains
         residuals%curve = curve
         call widen(residuals, fitted, better)
         if (.not. allocated(better)) return
-        other = fitted_t(has_curve=.true., value=better)
+        other = fitted_t(has_path=.true., has_curve=.true., value=better)
         residuals%curve = curve
         call search(residuals, other%value, left, other%found)
         call settle(residuals, other)
@@ -136,10 +136,12 @@ contains
   end subroutine fit_curve
 
   !> Candidates with their sums of squares: each column of `start`, at its best contact points.
-  subroutine find_candidates(residuals, start, value, cost)
+  !> has_path: the model has a path for some of them.
+  subroutine find_candidates(residuals, start, value, cost, has_path)
     type(curve_residuals_t), intent(inout) :: residuals
     real(wp), intent(in) :: start(:, :)
     real(wp), allocatable, intent(out) :: value(:, :), cost(:)
+    logical, intent(out) :: has_path
     type(curve_residuals_t) :: few
     real(wp), allocatable :: points(:), costs(:)
     real(wp) :: trial(size(start, 1)), ends(3)
@@ -147,6 +149,7 @@ contains
     integer :: i, k, role
 
     allocate (value(size(start, 1), 0), cost(0))
+    has_path = .false.
     role = findloc(residuals%curve%unknown%role, of_contact_point, 1)
     few = residuals
     few%curve%data%noise = white_noise(residuals%curve%data%noise%deviation)
@@ -159,6 +162,7 @@ contains
       end if
       call few%curve%reach(trial, ends, found)
       if (.not. found) cycle
+      has_path = .true.
       call lowest_points(few, trial, role, ends, points, costs)
       do k = 1, min(most_points, size(points))
         trial(role) = points(minloc(costs, 1))

@@ -18,8 +18,9 @@ module fit_doubts
   !> Limits: correlation of two unknowns; smallest singular value; standard deviation of a
   !> logarithm; distance of a jump in standard deviations.
   real(wp), parameter :: alike = 0.98_wp, lost = 1.0e-3_wp, vague = 0.7_wp, far = 4
-  !> The chance of a part of the baseline that is told if it would move an unknown far.
-  real(wp), parameter :: unlikely = 0.02_wp
+  !> The chance of a part of the baseline that is told if it would move an unknown far: of any part,
+  !> so that a good fit has this false alarm once in a hundred fits at most.
+  real(wp), parameter :: unlikely = 0.01_wp
   !> The part of the excess of chi squared that is most of it.
   real(wp), parameter :: most_of = 0.5_wp
   character(len=*), parameter :: not_described = ': the model does not describe these data, ' // &
@@ -126,8 +127,8 @@ contains
       i = minloc(outcome%lacking%chance, 1)
       k = maxloc(abs(outcome%lacking(i)%shift)/outcome%fitted%deviation, 1)
       if (.not. rarely(outcome%lacking(i)%chance) .and. .not. &
-        (outcome%lacking(i)%chance < log(unlikely) .and. abs(outcome%lacking(i)%shift(k)) > &
-        far*outcome%fitted%deviation(k))) return
+        (outcome%lacking(i)%chance < log(unlikely/size(outcome%lacking)) .and. &
+        abs(outcome%lacking(i)%shift(k)) > far*outcome%fitted%deviation(k))) return
       associate (fitted => outcome%fitted, unknown => outcome%curve%unknown, &
         lacking => outcome%lacking(i))
         if (.not. fitted%lack%is_noise() .and. lacking%gain < most_of*(fitted%chi_squared - &

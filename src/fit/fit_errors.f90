@@ -28,8 +28,10 @@ module fit_errors
   !> curve, in standard deviations of all data together, if the fitted number changes by 1.
   !> side(:, i): standard deviations of fitted number i downward and upward; fitted_deviation(i) is
   !> the larger of both.
+  !> has_path: the model has a path for some start. has_curve: one of them describes the samples
+  !> better with a contact among them than without one.
   type :: fitted_t
-    logical :: found = .false., has_curve = .false.
+    logical :: found = .false., has_curve = .false., has_path = .false.
     real(wp), allocatable :: value(:), deviation(:), fitted_deviation(:), correlation(:, :), &
       effect(:), side(:, :)
     real(wp) :: identifiable = 0

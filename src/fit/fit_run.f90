@@ -27,7 +27,7 @@ module fit_run
   use held_numbers, only: held_t, test_held
   use baseline_test, only: lacking_t, test_baseline
   use second_look, only: chance_of, rarely
-  use fit_alternatives, only: alternative_t, find_alternative
+  use fit_alternatives, only: alternative_t, find_alternative, contact_slope
   use derived_numbers, only: derived_t, derive_numbers
   use theory_fits, only: theory_fit_t, fit_theories, suggested_characters
   implicit none
@@ -208,11 +208,12 @@ contains
     subroutine find_starts()
       type(character_t), allocatable :: likely(:)
       type(character_t) :: new
-      integer :: i, k
+      integer :: i, k, of_data
 
-      likely = suggested_characters(curve, problem)
-      call starts_like(likely, family, curve%unknown, start)
+      likely = suggested_characters(curve, problem, of_data)
+      call starts_like(likely(:of_data), family, curve%unknown, start)
       if (size(start, 2) > 1) suggestion = '; the data suggest ' // values_of(start(:, 2))
+      call starts_like(likely, family, curve%unknown, start)
       do i = 1, size(curve%unknown)
         do k = 1, size(start, 2)
           call reach_for(curve%unknown(i), start(i, k))
@@ -256,10 +257,12 @@ contains
       integer :: i
 
       associate (fitted => outcome%fitted)
-        if (.not. fitted%has_curve) then
+        if (.not. fitted%has_path) then
           trouble = 'with the values of the deck the path could not be solved over the range ' // &
-            'of the data, or is far from them; start from other values, or fit a part of the ' // &
-            'data' // suggestion
+            'of the data; start from other values, or fit a part of the data' // suggestion
+          return
+        else if (.not. fitted%has_curve) then
+          trouble = no_contact()
           return
         end if
         if (.not. allocated(fitted%effect)) then
@@ -288,6 +291,26 @@ contains
       end associate
     end subroutine check_fit
 
+    !> What the data show where the baseline alone describes them as well as the model.
+    function no_contact() result(words)
+      character(len=:), allocatable :: words
+      real(wp) :: left(size(curve%data%sample), 1), slope
+      integer :: freedom
+
+      left(:, 1) = curve%data%measured%signal(curve%data%sample)
+      call curve%data%clean(left)
+      freedom = max(1, size(left) - curve%data%baseline_numbers())
+      slope = contact_slope(curve)
+      words = 'no contact like that of the model in the data: wherever it is assumed, the model ' &
+        // 'describes them no better than the baseline alone, whose residuals are ' // &
+        rounded(sqrt(sum(left**2)/freedom)) // ' times the noise; towards the other body the ' // &
+        'load rises by ' // rounded(slope) // ' N per metre of the travel at most, ' // &
+        rounded(100*slope/curve%spring) // ' % of spring_constant'
+      words = words // suggestion
+      if (len(suggestion) == 0) words = words // ', and no closed form of a contact describes ' // &
+        'them either; check spring_constant, the radius, and whether the base came near enough'
+    end function no_contact
+
     !> Sets `trouble` if the baseline alone describes the data as well as the model, whose contact
     !> may be at any of many samples.
     subroutine check_gain(trouble)
@@ -301,15 +324,10 @@ contains
       associate (fitted => outcome%fitted)
         if (rarely(chance_of(sum(left**2) - fitted%chi_squared, fitted%chi_squared/ &
           max(1, fitted%freedom), columns, size(left)))) return
-        trouble = 'the baseline alone leaves a chi squared of ' // rounded(sum(left**2)) // &
-          ', and the model ' // rounded(fitted%chi_squared) // ', with ' // &
-          rounded(real(fitted%freedom, wp)) // ' degrees of freedom'
-        if (sum(left**2) < bare*fitted%freedom) then
-          trouble = 'no contact in the data: ' // trouble
-        else
-          trouble = 'no start led to a contact like that of the data: ' // trouble // &
-            '; start from other values' // suggestion
-        end if
+        trouble = 'no contact in the data: the baseline alone leaves a chi squared of ' // &
+          rounded(sum(left**2)) // ', and the model ' // rounded(fitted%chi_squared) // ', with ' &
+          // rounded(real(fitted%freedom, wp)) // ' degrees of freedom'
+        if (.not. sum(left**2) < bare*fitted%freedom) trouble = no_contact()
       end associate
     end subroutine check_gain
 

@@ -158,8 +158,9 @@ contains
     n = [count(measured%inward), count(.not. measured%inward)]
     if (any(n < fewest .and. n > 0) .or. sum(n) == 0) then
       call fail(error, bad_input, file // ': fewer than ' // counted(fewest, 'sample') // &
-        ' of the approach or the retreat; segment chooses the branches to fit, and the third ' // &
-        'entry of columns is the column of the segments')
+        ' of the approach or the retreat (' // counted(n(1), 'sample') // ' of the approach, ' // &
+        counted(n(2), 'sample') // ' of the retreat); segment chooses the branches to fit, ' // &
+        'and the third entry of columns is the column of the segments')
       return
     end if
     travel = 0

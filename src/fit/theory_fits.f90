@@ -33,10 +33,12 @@ contains
 
   !> Works of adhesion, stiffnesses and ranges of force that the data suggest: from the pull-off
   !> below the mean of the baseline and below its slope, and from JKR and DMT fits, each with the
-  !> range of the deck's force and with others; without attraction stiffnesses from Hertz fits.
-  function suggested_characters(curve, problem) result(likely)
+  !> range of the deck's force and with others; without attraction stiffnesses from Hertz fits. At
+  !> last come multiples of the deck's stiffness. of_data: the number of those before.
+  function suggested_characters(curve, problem, of_data) result(likely)
     type(modelled_curve_t), intent(in) :: curve
     type(problem_t), intent(in) :: problem
+    integer, intent(out), optional :: of_data
     type(character_t), allocatable :: likely(:)
     type(character_t) :: own, new
     type(classical_model_t), target :: model
@@ -46,6 +48,7 @@ contains
     integer :: i, k, n
 
     allocate (likely(0))
+    if (present(of_data)) of_data = 0
     own = character_of(problem)
     model%finds_work = problem%law%adhesion > 0
     if (model%finds_work) then
@@ -88,6 +91,7 @@ contains
         end do
       end do
     end if
+    if (present(of_data)) of_data = size(likely)
     do k = 1, size(factors)
       new = own
       new%stiffness = own%stiffness*factors(k)

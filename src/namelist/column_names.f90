@@ -6,7 +6,7 @@ module column_names
   use deck_scan, only: span_t
   use deck_source, only: source_t
   use table_line, only: split_at, separator_of
-  use units, only: unit_in
+  use units, only: split_unit
   implicit none
   private
   public :: names_in, find_columns, plain_name, longest_name
@@ -34,9 +34,19 @@ contains
     end do
     allocate (names(size(cells)))
     do k = 1, size(cells)
-      names(k) = plain_name(line(cells(k)%first:cells(k)%last))
+      names(k) = plain_name(unquoted(line(cells(k)%first:cells(k)%last)))
     end do
   end subroutine names_in
+
+  !> A name without single quotes about it.
+  pure function unquoted(name)
+    character(len=*), intent(in) :: name
+    character(len=:), allocatable :: unquoted
+
+    unquoted = name
+    if (len(name) < 2) return
+    if (name(1:1) == '''' .and. name(len(name):) == '''') unquoted = name(2:len(name) - 1)
+  end function unquoted
 
   !> Joins cells that begin with a bracket to the cell before them.
   pure subroutine join_brackets(line, cells)
@@ -83,7 +93,7 @@ contains
   end function plain_name
 
   !> The columns `at` that a deck wants: by number, or by name in upper or lower case, with or
-  !> without the unit in brackets behind it; a minus before either turns the column's sign. error: a
+  !> without the unit behind it; a minus before either turns the column's sign. error: a
   !> column that does not exist, or of which there are several, at the position `named` of the file.
   subroutine find_columns(source, named, names, wanted, at, turned, error)
     type(source_t), intent(in) :: source
@@ -122,14 +132,13 @@ contains
     end do
   end subroutine find_columns
 
-  !> A name without the unit in brackets at its end.
+  !> A name without the unit at its end.
   pure function without_unit(name) result(bare)
     character(len=*), intent(in) :: name
-    character(len=:), allocatable :: bare
+    character(len=:), allocatable :: bare, unit
 
-    bare = trim(name)
-    if (scan(bare(max(1, len(bare)):), ')]}') == 0 .or. len(unit_in(bare)) == 0) return
-    bare = trim(bare(:scan(bare, '([{', back=.true.) - 1))
+    call split_unit(name, bare, unit)
+    if (len(bare) == 0) bare = trim(name)
   end function without_unit
 
 end module column_names

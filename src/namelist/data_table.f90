@@ -12,7 +12,8 @@ module data_table
   use deck_store, only: deck_t
   use column_names, only: find_columns, longest_name
   use table_layout, only: layout_t, find_layout, next_line, line_of, is_missing
-  use table_line, only: split_at, split, uncommented, point_decimals, miscount, columns_where
+  use table_line, only: split_at, split, uncommented, plain_signs, &
+    point_decimals, miscount, columns_where
   use units, only: unit_in
   implicit none
   private
@@ -75,6 +76,7 @@ contains
     integer :: first, next, n, unused, i
 
     table%source = source
+    if (style%of_instrument) call plain_signs(table%source%text)
     call point_decimals(table%source%text)
     n = count([(table%source%text(i:i) == newline, i=1, len(table%source%text))]) + 1
     allocate (table%place(n), table%value(n, size(wanted)), table%missing(n, size(wanted)), &

@@ -7,10 +7,10 @@ module table_layout
   use deck_number, only: parse_real
   use deck_scan, only: span_t
   use deck_source, only: source_t
-  use table_line, only: split_at, separator_of, uncommented, after_mark, ends_empty, miscount, &
-    columns_where
+  use table_line, only: split_at, separator_of, uncommented, comment_in, excel_errors, after_mark, &
+    ends_empty, miscount, columns_where
   use column_names, only: longest_name, names_in
-  use units, only: unit_in
+  use units, only: unit_in, is_unit_cell
   implicit none
   private
   public :: layout_t, find_layout, next_line, line_of, is_missing, is_header
@@ -145,8 +145,8 @@ contains
         layout%named = above(1)
         call names_in(uncommented(line_of(source, above(1))), layout%columns, layout%separator, &
           layout%name)
-        if (above(2) > 0 .and. all([(len_trim(layout%name(k)) == 0 .or. &
-          len(unit_in(layout%name(k))) > 0, k=1, size(layout%name))])) then
+        if (above(2) > 0 .and. all([(is_unit_cell(layout%name(k)), k=1, size(layout%name))]) .and. &
+          any([(len(unit_in(layout%name(k))) > 0, k=1, size(layout%name))])) then
           call names_in(uncommented(line_of(source, above(2))), layout%columns, layout%separator, &
             upper)
           if (size(upper) == size(layout%name)) then
@@ -225,8 +225,9 @@ contains
   pure logical function is_missing(cell)
     character(len=*), intent(in) :: cell
 
-    is_missing = any(lower(cell) == [character(len=9) :: '', 'nan', '+nan', '-nan', 'inf', '+inf', &
-      '-inf', 'infinity', '-infinity', 'na', 'n/a', 'null', 'none', '-', '--'])
+    is_missing = any(lower(cell) == [character(len=9) :: '', 'nan', '+nan', '-nan', 'nan(ind)', &
+      '-nan(ind)', 'inf', '+inf', '-inf', 'infinity', '-infinity', 'na', 'n/a', 'null', 'none', &
+      '-', '--']) .or. any(cell == excel_errors)
   end function is_missing
 
   !> Whether a line of a table has names: no cell is a number.
@@ -253,8 +254,7 @@ contains
       last = index(source%text(at:), newline)
       last = merge(at + last - 2, len(source%text), last > 0)
       next = last + 2
-      mark = index(source%text(at:last), '#')
-      if (mark == 0) mark = last - at + 2
+      mark = comment_in(source%text(at:last))
       if (verify(source%text(at:at + mark - 2), ' ' // achar(9)) > 0) return
       if (mark <= last - at + 1) comment = at
     end do

@@ -6,13 +6,16 @@ module table_line
   use deck_scan, only: span_t
   implicit none
   private
-  public :: split, split_at, separator_of, blanks, after_mark, uncommented, ends_empty, &
-    point_decimals, miscount, columns_where
+  public :: split, split_at, separator_of, blanks, after_mark, uncommented, comment_in, &
+    excel_errors, ends_empty, point_decimals, plain_signs, miscount, columns_where
 
   character(len=*), parameter :: newline = new_line('a')
   !> Separators of cells: blank and tab; comma and semicolon.
   character, parameter :: tab = achar(9)
   character(len=*), parameter :: blanks = ' ' // tab, marks = ',;', between = blanks // marks
+  !> What a spreadsheet writes for a number that does not exist.
+  character(len=*), parameter :: excel_errors(*) = [character(len=7) :: '#N/A', '#NUM!', &
+    '#DIV/0!', '#VALUE!', '#NAME?', '#REF!', '#NULL!']
 
 contains
 
@@ -21,8 +24,51 @@ contains
     character(len=*), intent(in) :: line
     character(len=:), allocatable :: text
 
-    text = line(:index(line//'#', '#') - 1)
+    text = line(:comment_in(line) - 1)
   end function uncommented
+
+  !> Where the comment of a line begins, or the line's length + 1 without one.
+  pure integer function comment_in(line) result(at)
+    character(len=*), intent(in) :: line
+    integer :: k
+
+    at = 0
+    do
+      k = index(line(at + 1:), '#')
+      if (k == 0) exit
+      at = at + k
+      if (all([(index(line(at:), trim(excel_errors(k))) /= 1, k=1, size(excel_errors))])) return
+    end do
+    at = len(line) + 1
+  end function comment_in
+
+  !> Replaces the sign of minus of typesetters and blanks that do not break, in UTF-8, by those of
+  !> ASCII.
+  pure subroutine plain_signs(text)
+    character(len=:), allocatable, intent(inout) :: text
+    character(len=*), parameter :: minus = char(226) // char(136) // char(146), &
+      fixed_blank = char(194) // char(160)
+    character(len=len(text)) :: plain
+    integer :: i, n
+
+    if (index(text, minus) == 0 .and. index(text, fixed_blank) == 0) return
+    n = 0
+    i = 1
+    do while (i <= len(text))
+      n = n + 1
+      plain(n:n) = text(i:i)
+      if (index(text(i:min(len(text), i + 2)), minus) == 1) then
+        plain(n:n) = '-'
+        i = i + len(minus)
+      else if (index(text(i:min(len(text), i + 1)), fixed_blank) == 1) then
+        plain(n:n) = ' '
+        i = i + len(fixed_blank)
+      else
+        i = i + 1
+      end if
+    end do
+    text = plain(:n)
+  end subroutine plain_signs
 
   !> The first line of `lines`, with blanks for its comment marks.
   pure function after_mark(lines) result(line)

@@ -66,7 +66,8 @@ contains
       text = text // of_jump('jump_in', curve%data%jump(1), outcome%fitted%jump_z(1)) // &
         of_jump('jump_out', curve%data%jump(2), outcome%fitted%jump_z(2))
     end associate
-    text = text // of_held(outcome%held) // of_lacking(outcome%lacking)
+    text = text // of_held(outcome%held) // of_lacking(outcome%lacking, &
+      outcome%fitted%deviation)
     do i = 1, size(outcome%derived)
       associate (derived => outcome%derived(i))
         text = text // numbers(derived%name, [derived%value]) // &
@@ -136,9 +137,10 @@ contains
     text = assignment_of('held', names) // numbers('held_asked', held%asked)
   end function of_held
 
-  !> What the baseline may lack.
-  function of_lacking(lacking) result(text)
+  !> What the baseline may lack. deviation: of the unknowns.
+  function of_lacking(lacking, deviation) result(text)
     type(lacking_t), intent(in) :: lacking(:)
+    real(wp), intent(in) :: deviation(:)
     character(len=:), allocatable :: text
     type(line_t), allocatable :: names(:)
     integer :: i
@@ -149,6 +151,8 @@ contains
     end do
     text = assignment_of('baseline_tested', names) // numbers('baseline_gain', lacking%gain) // &
       numbers('baseline_chance', exp(lacking%chance))
+    text = text // numbers('baseline_hidden', [(maxval(abs(lacking(i)%hidden)/deviation), &
+      i=1, size(lacking))])
     do i = 1, size(lacking)
       if (lacking(i)%period > 0) text = text // numbers('ripple_tested', [lacking(i)%period])
     end do

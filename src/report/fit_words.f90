@@ -11,8 +11,9 @@ module fit_words
   private
   public :: words_of_fit
 
-  !> Difference of chi squared up to which two fits are equally good.
-  real(wp), parameter :: as_well = 4
+  !> Difference of chi squared up to which two fits are equally good; standard errors by which a
+  !> part of the baseline that the data do not show must move an unknown to be told.
+  real(wp), parameter :: as_well = 4, far = 4
 
 contains
 
@@ -46,6 +47,7 @@ contains
       line%text = words_of(outcome%derived(i))
       lines = [lines, line]
     end do
+    if (allocated(outcome%lacking)) call tell_hidden()
     line%text = 'the residuals are ' // rounded(left_of(outcome%fitted)) // ' times the noise'
     do i = 1, size(outcome%theory)
       associate (theory => outcome%theory(i))
@@ -67,6 +69,33 @@ contains
         lines = [lines, line]
       end associate
     end do
+
+  contains
+
+    !> Tells the part of the baseline that would move an unknown farthest if noise hid it.
+    subroutine tell_hidden()
+      real(wp) :: moves, most
+      integer :: i, k, part, unknown
+
+      most = far
+      part = 0
+      do i = 1, size(outcome%lacking)
+        do k = 1, size(outcome%lacking(i)%hidden)
+          moves = abs(outcome%lacking(i)%hidden(k))/outcome%fitted%deviation(k)
+          if (.not. moves > most) cycle
+          most = moves
+          part = i
+          unknown = k
+        end do
+      end do
+      if (part == 0) return
+      line%text = 'a baseline that needs ' // outcome%lacking(part)%name // &
+        ' by as little as noise hides would move ' // outcome%curve%unknown(unknown)%name // &
+        ' by ' // rounded(most) // ' standard errors: if it may be so, give this key, and the ' // &
+        'errors include it'
+      lines = [lines, line]
+    end subroutine tell_hidden
+
   end function words_of_fit
 
   !> A derived number with what it assumes.

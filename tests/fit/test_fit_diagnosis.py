@@ -245,6 +245,23 @@ def test_what_a_baseline_lacks_is_named_and_can_be_given(tmp_path, kind):
     assert not any(name in text for text in finding.warned for name in BASELINES.values())
 
 
+def test_a_bow_that_noise_hides_is_told_with_what_it_would_do(tmp_path):
+    """A bow that lowers chi squared by 3 of 542 moves the stiffness by seven standard errors. No
+    test finds it, so that a note says what such a bow would do; the bow costs no warning."""
+    job = study_fits.Job("bow", 75, told=False)
+    true, curve, start, _ = study_fits.made(job)
+    result = run(study_fits.deck_of(true, write(tmp_path / "a.csv", *curve, digits=8), start, {}))
+    fit = result.fitted["fit"]
+    off = (fit["estimate"][1] - true.stiffness) / fit["standard_error"][1]
+    hidden = dict(zip(fit["baseline_tested"], fit["baseline_hidden"]))
+    assert not told(result)
+    assert abs(off) > 6
+    assert hidden["baseline = 'quadratic'"] == pytest.approx(abs(off), rel=0.3)
+    given = run(study_fits.deck_of(true, str(tmp_path / "a.csv"), start, {"baseline": "quadratic"}))
+    wide = given.fitted["fit"]
+    assert abs(wide["estimate"][1] - true.stiffness) < 3 * wide["standard_error"][1]
+
+
 def test_a_baseline_without_slopes_has_none_on_each_way(tmp_path):
     curve = hertz_curve()
     with pytest.raises(snapin.DeckError, match="slope_each_way.* has no slope"):

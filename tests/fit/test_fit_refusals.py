@@ -66,6 +66,24 @@ def test_a_steep_attraction_before_contact_can_be_fitted_without_its_end(branche
     assert np.abs((fit["estimate"] - [1e-19, 0.0]) / fit["standard_error"]).max() < 4
 
 
+@pytest.mark.parametrize("stiffness", [1e3, 1e4, 1e5])
+def test_what_the_data_show_is_said_where_they_have_no_contact(tmp_path, stiffness):
+    """A baseline that bends, far beyond the noise, and no contact. The message once said only that
+    no path came close, and called a tenth of the deck's stiffness one that the data suggest."""
+    z = np.linspace(3e-6, 5e-7, 400)
+    force = -9e-11 * np.tanh((z - 1.75e-6) / 7e-7)
+    noise = 1e-12 * np.random.default_rng(1).standard_normal(400)
+    groups = {"bodies": {"radius": 5e-6, "stiffness": stiffness},
+              "force": {"law": "exponential", "p0": 1e6, "decay_length": 1e-10}}
+    with pytest.raises(snapin.SnapinError) as refused:
+        fitted(tmp_path, (z, force + noise, np.zeros(400, int)), groups, [STIFFNESS, POINT],
+               measurement={"spring_constant": 0.05})
+    said = " ".join(str(refused.value).split())
+    assert "no contact like that of the model in the data" in said
+    assert "% of spring_constant" in said
+    assert f"stiffness = {stiffness / 10:g}" not in said
+
+
 VOLT = 1 / (SPRING * 5e-8)
 # Unit of the signal over newtons, keys of &measurement, and what is said.
 BAD_SIGNALS = {
