@@ -47,7 +47,7 @@ contains
       line%text = words_of(outcome%derived(i))
       lines = [lines, line]
     end do
-    if (allocated(outcome%lacking)) call tell_hidden()
+    if (allocated(outcome%lacking) .and. outcome%fitted%lack%is_noise()) call tell_hidden()
     line%text = 'the residuals are ' // rounded(left_of(outcome%fitted)) // ' times the noise'
     do i = 1, size(outcome%theory)
       associate (theory => outcome%theory(i))

@@ -144,7 +144,8 @@ def test_every_spelling_of_a_curve_is_read(snapin, tmp_path, curve, case):
     status, said = checked(snapin, tmp_path, spell(curve), columns, keys)
     assert status == 0, said
     assert re.search(told, said), said
-    if case not in ("one segment", "a line before names that have units"):  # the sample at the turn may belong to either way
+    # The sample at the turn may belong to either way.
+    if case not in ("one segment", "a line before names that have units"):
         assert WAYS in said, said
 
 

@@ -190,8 +190,8 @@ def table(findings):
         seconds = [one.seconds for one in ones]
         wrong = sum(bool(one.wrong) for one in ones)
         lines.append(f"{kind:<14} {len(ones):4d} curves, wrong {wrong:3d}, called wrong "
-                     f"{alarms:3d}, baseline doubted {doubted:3d}, seconds {np.median(seconds):5.1f} median {max(seconds):5.1f} "
-                     f"most, 95 % intervals hold {shares}")
+                     f"{alarms:3d}, baseline doubted {doubted:3d}, seconds "
+                     f"{np.median(seconds):5.1f} median {max(seconds):5.1f} most, 95 % intervals hold {shares}")
         lines += [f"    {one.job.number} sigma {one.sigma:g}: {'; '.join(one.wrong)}; warned: "
                   f"{' | '.join(one.warned)[:150]}" for one in ones if one.wrong]
     return lines
