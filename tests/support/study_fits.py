@@ -191,7 +191,8 @@ def table(findings):
         wrong = sum(bool(one.wrong) for one in ones)
         lines.append(f"{kind:<14} {len(ones):4d} curves, wrong {wrong:3d}, called wrong "
                      f"{alarms:3d}, baseline doubted {doubted:3d}, seconds "
-                     f"{np.median(seconds):5.1f} median {max(seconds):5.1f} most, 95 % intervals hold {shares}")
+                     f"{np.median(seconds):5.1f} median {max(seconds):5.1f} most, 95 % intervals "
+                     f"hold {shares}")
         lines += [f"    {one.job.number} sigma {one.sigma:g}: {'; '.join(one.wrong)}; warned: "
                   f"{' | '.join(one.warned)[:150]}" for one in ones if one.wrong]
     return lines
