@@ -11,7 +11,7 @@ DECKS = (*CASES, *dict.fromkeys(CASES.values()))
 # Numbers, their names, units and factors, and the ends of the names of their errors.
 NUMBERS = {
     "max_tension": ("largest tension", "µN", 1e6), "jump_in_h0": ("snap-in", "nm", 1e9),
-    "jump_out_h0": ("snap-off", "nm", 1e9), "energy_lost": ("energy lost", "aJ", 1e18)}
+    "jump_out_h0": ("snap-off", "nm", 1e9), "energy_lost": ("energy lost", "fJ", 1e15)}
 ERRORS = ("_error", "_uncertainty")
 # What warnings of numbers begin with or contain, and how the table says it.
 SAID = {
@@ -34,9 +34,9 @@ def rows_of(deck, summary, right):
     said = warnings_of(summary)
     found = []
     for key, (name, unit, factor) in NUMBERS.items():
-        errors = [summary[key + end] for end in ERRORS if key + end in summary]
-        if key not in right or key not in summary and not errors:
+        if not (key in right and key in summary):
             continue
+        errors = [summary[key + end] for end in ERRORS if key + end in summary]
         value, error, exact = (factor * one for one in (summary[key], errors[0], right[key]))
         within = "within" if abs(value - exact) <= error else f"off by {abs(value - exact):.3g}"
         found.append([deck, f"{name} [{unit}]", f"{value:.6g}", f"{error:.2g}", f"{exact:.6g}",
