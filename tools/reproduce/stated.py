@@ -6,7 +6,7 @@ import report
 CASES = {
     "fig06_uniform": "fig06_converged", "fig06_paper": "fig06_converged",
     "fig10a_paper": "fig10a_converged", "fig10b_paper": "fig10b_converged",
-    "fig10c_paper": "fig10c_converged", "fig10c_uniform": "fig10c_converged"}
+    "fig10c_uniform": "fig10c_converged"}
 DECKS = (*CASES, *dict.fromkeys(CASES.values()))
 # Numbers, their names, units and factors, and the ends of the names of their errors.
 NUMBERS = {
