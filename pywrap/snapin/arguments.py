@@ -56,6 +56,9 @@ def folder_path(name: str, value: Path) -> pathlib.Path:
     """Return the path of a folder."""
     if not isinstance(value, (str, os.PathLike)):
         raise TypeError(f"{name}: the path of a folder is needed, not {shown(value)}")
+    # Often a variable that was not set, by which pathlib means the folder of the process.
+    if not os.fspath(value):
+        raise ValueError(f"{name}: an empty name is no folder; '.' is the present one")
     return pathlib.Path(value)
 
 

@@ -15,6 +15,8 @@ from support.half_space import HalfSpace
 COARSE, FINE, ORDER = 36, 54, 10
 # Chebyshev points between two states, and how often a bracket of a fold is made narrower.
 POINTS, CLOSER = chebyshev.chebpts1(9), 2
+# States whose gaps differ by less than this part are one, and have no fold between them.
+SAME = 1e-6
 NOT_FORCES = ("bodies", "shape", "equilibrium_path", "device", "loading", "numerics", "layer")
 
 
@@ -121,14 +123,15 @@ class SecondMesh:
         """States between the two profiles at Chebyshev points of the gap of the node that changes
         most: (h0, load, gap) of each, and the place of the fold, where h0 is extreme."""
         one, two = (self.solved(self.begun(profile), profile[0])[0] for profile in self.profiles)
-        node = int(abs(np.log(two / one)).argmax())
+        apart = abs(np.log(two / one))
+        node = int(apart.argmax())
+        if apart[node] < SAME:
+            raise ArithmeticError("two states that are one on the second mesh")
         wanted = one[node] ** ((1 - POINTS) / 2) * two[node] ** ((1 + POINTS) / 2)
         states, gaps = [], [two, one]
         for value in wanted:
             # Begun as the gaps changed last, with the wanted gap at the node.
             before, last = gaps[-2:]
-            if last[node] == before[node]:
-                raise ArithmeticError("two states that are one on the second mesh")
             rate = np.log(last / before) / math.log(last[node] / before[node])
             begun = last * np.exp(np.clip(rate * math.log(value / last[node]), -1, 1))
             gap, h0 = self.solved(begun, self.profiles[0][0], node)

@@ -16,6 +16,7 @@ import fig08  # noqa: E402
 import fig11  # noqa: E402
 import misprints  # noqa: E402
 import report  # noqa: E402
+import stated  # noqa: E402
 import style  # noqa: E402
 from runs import RunError, Runs  # noqa: E402
 
@@ -153,6 +154,22 @@ def test_what_differs_between_runs_is_a_range_and_what_rounding_leaves_is_no_num
 def test_a_cell_does_not_break_its_markdown_table():
     assert report.escaped("1/|r-t|") == "1/\\|r-t\\|"
     assert report.escaped("a_b*c") == "a\\_b\\*c"
+
+
+def test_what_is_said_of_a_number_is_in_its_row():
+    right = {"max_tension": 6e-4, "jump_in_h0": 1.5e-9, "energy_lost": 1e-13}
+    found = {"max_tension": 5e-4, "max_tension_error": 2e-4, "jump_in_h0": 1.7e-9,
+             "jump_in_h0_error": 1e-10, "energy_lost": 1e-13, "energy_lost_uncertainty": 1e-15,
+             "warnings": "under-resolved: nodes are far apart"}
+    rows = stated.rows_of("deck", found, right)
+    assert [row[1] for row in rows] == ["largest tension [µN]", "snap-in [nm]", "energy lost [fJ]"]
+    assert [row[-1] for row in rows] == ["within", "off by 0.2", "within"]
+    assert {row[-2] for row in rows} == {"under-resolved"}
+    # A number without an error is not left out in silence.
+    with pytest.raises(LookupError):
+        stated.rows_of("deck", {"max_tension": 5e-4}, right)
+    assert stated.rows_of("deck", {}, right) == []
+    assert stated.warnings_of({}) == "nothing"
 
 
 def test_every_row_of_the_paper_s_page_has_a_cell_for_each_column():

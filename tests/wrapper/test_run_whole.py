@@ -129,6 +129,13 @@ def test_a_folder_called_as_standard_output_is_refused_at_once(out, monkeypatch)
         snapin.run(CURVE, out=out)
 
 
+def test_an_empty_name_of_a_folder_is_refused(monkeypatch):
+    """The results went into the folder of the process."""
+    monkeypatch.setattr(experiment, "_carry_out", None)
+    with pytest.raises(ValueError, match="^out: an empty name is no folder"):
+        snapin.run(CURVE, out="")
+
+
 @pytest.mark.parametrize("quiet", [True, False])
 @pytest.mark.parametrize("out", [None, "here"])
 def test_a_run_ends_with_its_python(out, quiet, tmp_path):
