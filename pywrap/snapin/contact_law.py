@@ -63,7 +63,7 @@ class ContactLaw:
 
     @property
     def snap_in(self) -> float:
-        """h0 [m] of the jump into contact; NaN without jumps."""
+        """h0 [m] of snap-in; NaN without jumps."""
         return self.z0*self._path.snap_in.gap if self.jumps else np.nan
 
     @property
@@ -73,7 +73,7 @@ class ContactLaw:
 
     @property
     def snap_in_load(self) -> float:
-        """Load [N] just before the jump into contact."""
+        """Load [N] just before snap-in."""
         return self._load_unit*self._path.load_at(self._path.snap_in) if self.jumps else np.nan
 
     @property
