@@ -17,11 +17,11 @@ import pages
 import snapin
 from matplotlib.figure import Figure
 from snapin.command import as_command
+from snapin.plots.drawing import COLOURS, arrow, plain
 
-sys.path += [str(pages.ROOT / "tools" / "bench"), str(pages.ROOT / "pywrap" / "plots")]
+sys.path.append(str(pages.ROOT / "tools" / "bench"))
 
 import gauge  # noqa: E402
-from drawing import COLOURS, arrow, plain  # noqa: E402
 
 DOCS = pages.ROOT / "docs"
 # Instantaneous adhesion strength, and the velocities of the bell curve in law's lengths over the
