@@ -160,7 +160,8 @@ def draw_drainage():
             right.plot(retreat["h0"] * 1e9, retreat["load"] * 1e9, color=colour, lw=2)
         left.set(xlabel="separation on the axis [nm]", ylabel="load on approach [nN]",
                  xlim=(0.5, 1e3), ylim=(0.1, 300))
-        right.set(xlabel="approach $h_0$ [nm]", ylabel="load [nN]", xlim=(-1, 10), ylim=(-1500, 300))
+        right.set(xlabel="approach $h_0$ [nm]", ylabel="load [nN]", xlim=(-1, 10),
+                  ylim=(-1500, 300))
         left.plot([], [], "k:", label="rigid bodies")
         left.legend(frameon=False)
         for width, way in ((1, "approach"), (2, "retract")):
