@@ -16,11 +16,11 @@ import numpy as np
 import pages
 import snapin
 from matplotlib.figure import Figure
+from snapin.plots.drawing import plain
 
-sys.path += [str(pages.ROOT / "tools" / "bench"), str(pages.ROOT / "pywrap" / "plots")]
+sys.path.append(str(pages.ROOT / "tools" / "bench"))
 
 import problems  # noqa: E402
-from drawing import plain  # noqa: E402
 from program import Program  # noqa: E402
 
 TABLE = pages.ROOT / "docs" / "layers_indentation.csv"
@@ -102,8 +102,8 @@ def draw(table):
         left.plot(CHI, table[f"rigid_base_nu_{nu:g}"], label=f"rigid base, ν = {nu:g}")
     left.plot(CHI, table["dimitriadis_2002_nu_0.5"], "k--", label="Dimitriadis 2002, ν = 0.5")
     left.plot(CHI, table["garcia_2018_nu_0.5"], "k:", label="García 2018, ν = 0.5")
-    left.set(xlabel="√(Rδ)/t, with indentation δ and thickness t", ylabel="load over Hertz's of the film", yscale="log",
-             xlim=(0, 2), ylim=(1, 40))
+    left.set(xlabel="√(Rδ)/t, with indentation δ and thickness t",
+             ylabel="load over Hertz's of the film", yscale="log", xlim=(0, 2), ylim=(1, 40))
     left.legend(fontsize=9, frameon=False)
     contact = (9 * math.pi * SIGMA) ** (1 / 3)
     parts = np.geomspace(0.1, 10, 40)
@@ -117,7 +117,8 @@ def draw(table):
                  for part in solved]
         right.plot(solved, [one["max_tension"] / (math.pi * SIGMA) for one in found], "o",
                    color=line.get_color(), markersize=4)
-    right.set(xlabel="thickness over contact radius without load, t/a₀", ylabel="pull-off force over πwR", xscale="log", ylim=(0.9, 2.5))
+    right.set(xlabel="thickness over contact radius without load, t/a₀",
+              ylabel="pull-off force over πwR", xscale="log", ylim=(0.9, 2.5))
     right.legend(fontsize=9, frameon=False, title="modulus, ν = 0.5")
     figure.savefig(PICTURE, dpi=90)
 

@@ -17,11 +17,11 @@ import pages
 import snapin
 from matplotlib.figure import Figure
 from snapin.command import as_command
+from snapin.plots.drawing import COLOURS, arrow, plain
 
-sys.path += [str(pages.ROOT / "tools" / "bench"), str(pages.ROOT / "pywrap" / "plots")]
+sys.path.append(str(pages.ROOT / "tools" / "bench"))
 
 import gauge  # noqa: E402
-from drawing import COLOURS, arrow, plain  # noqa: E402
 
 DOCS = pages.ROOT / "docs"
 # Instantaneous adhesion strength, and the velocities of the bell curve in law's lengths over the
@@ -160,7 +160,8 @@ def draw_drainage():
             right.plot(retreat["h0"] * 1e9, retreat["load"] * 1e9, color=colour, lw=2)
         left.set(xlabel="separation on the axis [nm]", ylabel="load on approach [nN]",
                  xlim=(0.5, 1e3), ylim=(0.1, 300))
-        right.set(xlabel="approach $h_0$ [nm]", ylabel="load [nN]", xlim=(-1, 10), ylim=(-1500, 300))
+        right.set(xlabel="approach $h_0$ [nm]", ylabel="load [nN]", xlim=(-1, 10),
+                  ylim=(-1500, 300))
         left.plot([], [], "k:", label="rigid bodies")
         left.legend(frameon=False)
         for width, way in ((1, "approach"), (2, "retract")):

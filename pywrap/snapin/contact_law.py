@@ -63,22 +63,22 @@ class ContactLaw:
 
     @property
     def snap_in(self) -> float:
-        """h0 [m] of the jump into contact; NaN without jumps."""
+        """h0 [m] of snap-in; NaN without jumps."""
         return self.z0*self._path.snap_in.gap if self.jumps else np.nan
 
     @property
     def snap_off(self) -> float:
-        """h0 [m] of the jump out of contact; NaN without jumps."""
+        """h0 [m] of snap-off; NaN without jumps."""
         return self.z0*self._path.snap_off.gap if self.jumps else np.nan
 
     @property
     def snap_in_load(self) -> float:
-        """Load [N] just before the jump into contact."""
+        """Load [N] just before snap-in."""
         return self._load_unit*self._path.load_at(self._path.snap_in) if self.jumps else np.nan
 
     @property
     def snap_off_load(self) -> float:
-        """Load [N] just before the jump out of contact: minus the pull-off force at given h0."""
+        """Load [N] just before snap-off: minus the pull-off force at given h0."""
         return self._load_unit*self._path.load_at(self._path.snap_off) if self.jumps else np.nan
 
     @property

@@ -213,7 +213,7 @@ class EquilibriumPath(NamedTuple):
     """The path from far apart to the end, SI; arrays have one value for each state on it.
 
     Fields are as in `ForceCurve`; `stable` (bool) is stability at controlled h0, and `folds` are
-    all points at which h0 turns: the first is the jump in; the last of several is the jump out.
+    all points at which h0 turns: the first is snap-in, the last of several snap-off.
     """
 
     h0: Array

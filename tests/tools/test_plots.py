@@ -340,4 +340,4 @@ def test_theories_touch_at_the_equilibrium_separation(tmp_path):
 def test_theories_of_layers_are_drawn(tmp_path):
     snapin.run((ROOT / "inputs/examples/layers.nml").read_text(), out=tmp_path)
     names = {text.get_text() for text in draw_force_curve(tmp_path).legends[0].get_texts()}
-    assert {"Hertz, layers", "JKR, layers"} <= names
+    assert {"Hertz, layered", "JKR, layered"} <= names

@@ -43,7 +43,7 @@ def laid_out(text, page):
         if not path or re.match(r"\w+:", path):
             return match[0]
         name = os.path.normpath(page.parent / path)
-        if name.endswith(".f90"):
+        if name.startswith("src/") and name.endswith(".f90"):
             path = os.path.relpath(source_page(name), page.parent)
         elif name.endswith(".ipynb"):
             path = f"{path.removesuffix('.ipynb')}.md"

@@ -28,8 +28,8 @@ _THEORIES = {
     "dmt": ("DMT", {"color": GREEN, "linestyle": (0, (6, 2, 1, 2))}),
     "maugis_dugdale": (
         "Maugis-Dugdale", {"color": PURPLE, "linestyle": (0, (6, 1.5, 1, 1.5, 1, 1.5))}),
-    "hertz_layered": ("Hertz, layers", {"color": GREY, "linestyle": (0, (1, 1.5))}),
-    "jkr_layered": ("JKR, layers", {"color": VERMILION, "linestyle": (0, (6, 2))}),
+    "hertz_layered": ("Hertz, layered", {"color": GREY, "linestyle": (0, (1, 1.5))}),
+    "jkr_layered": ("JKR, layered", {"color": VERMILION, "linestyle": (0, (6, 2))}),
 }
 # The abscissas.
 NAMES = {"displacement": "displacement $h(0) - h_0$", "h0": "approach $h_0$"}
