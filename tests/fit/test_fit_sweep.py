@@ -166,7 +166,7 @@ def test_a_check_counts_the_curves(folder):
 
 
 def test_no_curve_starts_before_the_first_that_is_described(folder, swept):
-    """Where the first ones are refused, the bytes do not depend on the number of processes either."""
+    """Where the first are refused, the bytes do not depend on the number of processes either."""
     names = ["curve_broken.csv", *["curve_flat.csv"] * 3, *(f"curve_{i}.csv" for i in range(4))]
     groups = deck(folder, {"key": "measurement.file", "words": names})
     one = run(groups, folder, "late_1")
