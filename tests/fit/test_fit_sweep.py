@@ -181,3 +181,22 @@ def test_rows_of_a_curve_that_are_not_together_are_refused(folder):
     with pytest.raises(snapin.DeckError, match="rows of curve 0 are not together"):
         snapin.run(deck(folder, {"key": "measurement.curve"}, file=os.fspath(folder / "mixed.csv"),
                         curves="number"))
+
+
+def test_a_process_that_is_killed_ends_the_sweep_which_can_go_on(folder, swept):
+    file = folder / "lost.nml"
+    file.write_text(snapin.deck_text(deck(folder, FILES)))
+    command = [snapin.experiment._program(), "--into", folder / "lost", file]
+    with subprocess.Popen(command, env=dict(os.environ, OMP_NUM_THREADS="2"),
+                          stderr=subprocess.PIPE, text=True) as process:
+        children = []
+        while process.poll() is None and len(children) < 2:
+            listed = f"/proc/{process.pid}/task/{process.pid}/children"
+            with open(listed, encoding="ascii") as of_process:
+                children = of_process.read().split()
+        os.kill(int(children[0]), signal.SIGKILL)
+        said = process.communicate(timeout=300)[1]
+    assert process.returncode == 1
+    assert "a process that fitted curves has been ended" in said and "--resume" in said
+    one = (folder / "files/sweep.csv").read_bytes()
+    assert run(deck(folder, FILES), folder, "lost", "--resume", threads=2) == one
