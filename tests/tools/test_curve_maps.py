@@ -1,15 +1,11 @@
 """Maps of many fits: what is in colour and what is grey, and the worst curves by name."""
 
-import runpy
-
 import numpy as np
 import pytest
-from conftest import ROOT
 from snapin import curve_maps
 from snapin.arguments import SnapinError
 
 pytest.importorskip("matplotlib")
-SCRIPT = ROOT / "pywrap/plots/curve_map.py"
 NUMBERS = ("measurement.x", "measurement.y", "fitted_work_of_adhesion", "excess")
 # A grid of 6 by 5 curves; a hill, a spike, and fits that describe nothing.
 SHAPE, SPIKE, BAD, NONE = (5, 6), 8, 20, 21
@@ -72,9 +68,9 @@ def test_without_places_the_number_of_columns_is_needed():
     np.testing.assert_allclose(shown(rows, columns=6)[1], shown(table())[1])
 
 
-def test_the_script_draws_and_names_the_worst(monkeypatch, tmp_path, capsys):
-    monkeypatch.syspath_prepend(SCRIPT.parent)
-    draw = runpy.run_path(str(SCRIPT))["draw_curve_map"]
+def test_a_folder_is_drawn_and_its_worst_are_named(tmp_path, capsys):
+    from snapin.plots.curve_map import draw_curve_map as draw
+
     rows = table()
     names = rows.dtype.names
     lines = ["# title: ", "# measurement.x [m] a key", "# fitted_work_of_adhesion [J/m^2] it",
