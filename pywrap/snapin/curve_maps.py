@@ -93,8 +93,8 @@ def _places(table, places, columns):
         number = np.arange(len(table))
         return number % columns, number // columns, ""
     else:
-        raise SnapinError("the curves have no places: sweep measurement.x and measurement.y too, or "
-                          "say how many curves are in a row of the map")
+        raise SnapinError("the curves have no places: sweep measurement.x and measurement.y too, "
+                          "or say how many curves are in a row of the map")
     span = max(np.ptp(x), np.ptp(y))
     prefix, name = (1e-6, "µm") if span > 2e-7 else (1e-9, "nm")
     return x / prefix, y / prefix, f" [{name}]"

@@ -89,7 +89,7 @@ contains
     class(case_queue_t), intent(in) :: self
 
     waits = allocated(self%scene%fit) .and. .not. allocated(self%like) .and. &
-      self%handed_out < most_first .and. self%written < self%handed_out
+      self%handed_out <= most_first .and. self%written < self%handed_out
   end function waits
 
   !> Reads the row of the next case from the file, or, if all are `given`, what is after the last.

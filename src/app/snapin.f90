@@ -3,7 +3,7 @@
 program snapin
   use, intrinsic :: iso_c_binding, only: c_int
   use failure, only: failure_t, fail, bad_input
-  use text, only: lower, quoted, clip, guess
+  use text, only: lower, quoted, clip, counted, guess
   use deck_source, only: largest_deck
   use deck_keys, only: key_spec, keys_text, is_of, names_of
   use scene, only: scene_t, keys_of_scene, read_scene
@@ -170,7 +170,11 @@ contains
     type(failure_t), allocatable :: trouble
     integer :: i
 
-    if (allocated(scene%measured)) call print_note(name, scene%measured%understood)
+    if (allocated(scene%fit) .and. allocated(scene%sweep)) then
+      call print_note(name, counted(scene%sweep%cases(), 'curve'))
+    else if (allocated(scene%fit)) then
+      call print_note(name, scene%measured%understood)
+    end if
     call check_room(scene, folder, trouble)
     if (allocated(trouble)) call print_note(name, trouble%message)
     call print_note(name, large_results(scene))

@@ -123,11 +123,13 @@ contains
     type(deck_t), intent(inout) :: deck
     type(sweep_t), intent(inout) :: sweep
     character(len=:), allocatable :: words, what
+    logical :: wordy(size(sweep%words))
     integer :: i, k
 
     call deck%get('sweep', 'words', words)
-    k = findloc([(is_wordy(sweep, i), i=1, size(sweep%words))], .true., dim=1)
-    if (count([(is_wordy(sweep, i), i=1, size(sweep%words))]) > 1) then
+    wordy = wordy_keys(sweep)
+    k = findloc(wordy, .true., dim=1)
+    if (count(wordy) > 1) then
       call deck%mistake('sweep', 'key', 'only one of the keys may hold a word; for more give ' // &
         'a file')
     else if (k == 0) then
@@ -148,24 +150,26 @@ contains
     end if
   end subroutine take_words
 
-  !> Whether key k holds a word or a text.
-  pure logical function is_wordy(sweep, k)
+  !> Which keys hold a word or a text.
+  pure function wordy_keys(sweep) result(wordy)
     type(sweep_t), intent(in) :: sweep
-    integer, intent(in) :: k
+    logical :: wordy(size(sweep%words))
 
-    is_wordy = sweep%words(k) /= '' .or. k == sweep%text_key
-  end function is_wordy
+    wordy = sweep%words /= ''
+    if (sweep%text_key > 0) wordy(sweep%text_key) = .true.
+  end function wordy_keys
 
   !> Reads the values of the keys that hold numbers: a list for one key, or ranges.
   subroutine take_numbers(deck, sweep)
     type(deck_t), intent(inout) :: deck
     type(sweep_t), intent(inout) :: sweep
     real(wp), allocatable :: values(:)
+    logical :: wordy(size(sweep%words))
     integer, allocatable :: of_numbers(:)
     integer :: i
 
-    of_numbers = pack([(i, i=1, size(sweep%axis))], [(.not. is_wordy(sweep, i), &
-      i=1, size(sweep%axis))])
+    wordy = wordy_keys(sweep)
+    of_numbers = pack([(i, i=1, size(sweep%axis))], .not. wordy)
     call deck%get('sweep', 'values', values)
     if (size(of_numbers) == 0) then
       call refuse(deck, ['values', of_range//' '], 'a key that holds a word; give words')

@@ -157,9 +157,46 @@ def test_a_sweep_that_cannot_be_made_is_refused(folder, changed, told):
         snapin.run({**deck(folder, None), **changed})
 
 
+def test_a_check_counts_the_curves(folder):
+    file = folder / "check.nml"
+    file.write_text(snapin.deck_text(deck(folder, FILES)))
+    done = subprocess.run([snapin.experiment._program(), "--check", file], capture_output=True,
+                          text=True, check=True, timeout=60)
+    assert f"{COUNT + 2} curves" in done.stderr
+
+
+def test_no_curve_starts_before_the_first_that_is_described(folder, swept):
+    """Where the first are refused, the bytes do not depend on the number of processes either."""
+    names = ["curve_broken.csv", *["curve_flat.csv"] * 3, *(f"curve_{i}.csv" for i in range(4))]
+    groups = deck(folder, {"key": "measurement.file", "words": names})
+    one = run(groups, folder, "late_1")
+    assert run(groups, folder, "late_4", threads=4) == one
+    rows = table(folder, "late_1")
+    assert list(rows["verdict"][3:]) == ["refused", *["described"] * 4]
+
+
 def test_rows_of_a_curve_that_are_not_together_are_refused(folder):
     lines = (folder / "all.csv").read_text().splitlines()
     (folder / "mixed.csv").write_text("\n".join([*lines, lines[1]]) + "\n")
     with pytest.raises(snapin.DeckError, match="rows of curve 0 are not together"):
         snapin.run(deck(folder, {"key": "measurement.curve"}, file=os.fspath(folder / "mixed.csv"),
                         curves="number"))
+
+
+def test_a_process_that_is_killed_ends_the_sweep_which_can_go_on(folder, swept):
+    file = folder / "lost.nml"
+    file.write_text(snapin.deck_text(deck(folder, FILES)))
+    command = [snapin.experiment._program(), "--into", folder / "lost", file]
+    with subprocess.Popen(command, env=dict(os.environ, OMP_NUM_THREADS="2"),
+                          stderr=subprocess.PIPE, text=True) as process:
+        children = []
+        while process.poll() is None and len(children) < 2:
+            listed = f"/proc/{process.pid}/task/{process.pid}/children"
+            with open(listed, encoding="ascii") as of_process:
+                children = of_process.read().split()
+        os.kill(int(children[0]), signal.SIGKILL)
+        said = process.communicate(timeout=300)[1]
+    assert process.returncode == 1
+    assert "a process that fitted curves has been ended" in said and "--resume" in said
+    one = (folder / "files/sweep.csv").read_bytes()
+    assert run(deck(folder, FILES), folder, "lost", "--resume", threads=2) == one

@@ -2,12 +2,14 @@
 """Fits thousands of curves of the independent model in one sweep, and compares them with the truth.
 
     .venv/bin/python tools/verify/many_curves.py [--curves 2000] [--seed 0] [--out FOLDER]
+    .venv/bin/python tools/verify/many_curves.py --map 20 --picture docs/curves.png
 
 Every group of curves has one instrument (sigma, spring, z0) and is one sweep, as a map is: the work
 of adhesion and the modulus of its curves vary by some per cent from place to place, the noise, the
 number of samples, outliers and drift from curve to curve. The starting values are wrong by factors
 up to three. It prints the bias, how often 95 % intervals hold the truth, the verdicts, fits that
-are wrong without a warning, and the price. Threads: OMP_NUM_THREADS.
+are wrong without a warning, and the price. Threads: OMP_NUM_THREADS. `--map` draws a map of a stiff
+and sticky hill instead, some of whose curves are spoilt.
 """
 
 import argparse
@@ -87,6 +89,33 @@ def share(values):
     return f"{100 * np.mean(values):5.1f} %" if len(values) else "   none"
 
 
+def draw_map(size, picture, folder, rng):
+    """Fit a map of size x size curves and draw it."""
+    x, y = (of.ravel() for of in np.meshgrid(*2 * [np.linspace(0, 1, size)]))
+    hill = 1 + 0.8 * np.exp(-((x - 0.4) ** 2 + (y - 0.6) ** 2) / 0.05)
+    curves, springs = [], []
+    for i, modulus in enumerate(1e10 * hill):
+        true = truth(5.0, 1.5, modulus)
+        curve = measure(true, 300, 0.01, rng)
+        force, z = curve.force, curve.z
+        if i % 97 == 5:
+            force = curve.noise * rng.standard_normal(len(force))
+        elif i % 101 == 7:
+            force = force + 20 * curve.noise * np.sin(z / 1e-9)
+        elif i % 103 == 9:
+            force = force[:-1]
+        curves.append((z, force, curve.segment))
+        springs.append(true.spring)
+    middle = truth(5.0, 1.5)
+    fits = snapin.fit_many(
+        curves, spring_constant=springs, places=np.stack([x, y], axis=1) * 1e-5, parameters=KEYS,
+        deck={"bodies": {"radius": RADIUS, "stiffness": middle.stiffness},
+              "force": {"law": "lennard_jones", "z0": Z0, "work_of_adhesion": middle.energy},
+              "numerics": {"accuracy": 1e-4}}, out=folder)
+    fits.draw_maps().savefig(picture, dpi=100)
+    print(fits)
+
+
 def report(rows, took):
     """Print the table."""
     print(f"{len(rows)} curves, {sum(t[0] for t in took):.0f} s, of the processors "
@@ -124,7 +153,12 @@ def main():
     parser.add_argument("--size", type=int, default=GROUP, help="curves of a sweep")
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--out", help="folder that keeps curves and results")
+    parser.add_argument("--map", type=int, help="number of curves in a row of a map to draw")
+    parser.add_argument("--picture", default="curve_map.png", help="of the map")
     options = parser.parse_args()
+    if options.map:
+        draw_map(options.map, options.picture, options.out, np.random.default_rng(options.seed))
+        return
     rows, took = [], []
     with tempfile.TemporaryDirectory() as folder:
         for number in range(-(-options.curves // options.size)):
