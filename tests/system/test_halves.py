@@ -1,5 +1,5 @@
-"""The calls of the system have a POSIX half and a Windows half: both have every function that Fortran
-calls, and are what they say."""
+"""The calls of the system have a POSIX half and a Windows half: both have every function that
+Fortran calls, and are what they say."""
 
 import re
 import shutil
@@ -10,7 +10,8 @@ from conftest import ROOT
 
 SYSTEM = ROOT / "src" / "system"
 SHARED = ("any_system.c", "build_id.c", "heartbeat.c")
-HALVES = {"posix": ("posix.c", "beyond_posix.c", *SHARED), "windows": ("windows.c", *SHARED)}
+HALVES = {"posix": ("posix.c", "beyond_posix.c", "file_names.c", "forks.c", *SHARED),
+          "windows": ("windows.c", "windows_forks.c", "windows_names.c", *SHARED)}
 # Of the program alone.
 BEFORE = {"posix": ("environment.c", "processor.c"),
           "windows": ("windows_environment.c", "processor.c")}
@@ -31,8 +32,8 @@ def compiled(compiler, half, *flags):
     if not shutil.which(compiler):
         pytest.skip(f"needs {compiler}")
     files = [SYSTEM / name for name in HALVES[half] + BEFORE[half]]
-    done = subprocess.run([compiler, "-Wall", "-Wextra", "-Werror", "-fsyntax-only", *flags, *files],
-                          capture_output=True, text=True, check=False)
+    command = [compiler, "-Wall", "-Wextra", "-Werror", "-fsyntax-only", *flags, *files]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
 
 
