@@ -49,8 +49,10 @@ for python in "$@"; do
   version=$("$python" -c 'import sys; print("%d.%d" % sys.version_info[:2])') || exit
   raw=$work/raw-$version
   rm -rf "$raw" "$work/venv-$version"
-  # An environment of its own, since an interpreter of a system may have no pip.
+  # An environment of its own, since an interpreter of a system may have no pip, or an old one.
   logged "Python $version: making an environment" "$python" -m venv "$work/venv-$version"
+  logged "Python $version: installing pip" "$work/venv-$version/bin/python" -m pip install \
+    --disable-pip-version-check 'pip>=25'
   logged "Python $version: building the wheel" "$work/venv-$version/bin/python" -m pip wheel \
     --disable-pip-version-check --no-deps --wheel-dir "$raw" "$top" \
     -Cbuild-dir="$work/meson" -Csetup-args=-Dprocessor=any -Csetup-args=-Dbuildtype=release -Cinstall-args=--strip

@@ -4,11 +4,15 @@ import contextlib
 import os
 import tempfile
 import warnings
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any, Optional, Union
 
 import numpy as np
+from numpy.typing import ArrayLike
 
-from .arguments import SnapinError, SnapinWarning, folder_path
+from .arguments import Path, SnapinError, SnapinWarning, folder_path
 from .curve_fit import columns_of, fit_groups, with_groups
+from .deck import Deck
 from .experiment import run
 
 # The column that numbers the curves, the files, and the keys of a curve's place.
@@ -119,8 +123,10 @@ def grid_of(places):
     return shape, np.lexsort((x, y))
 
 
-def fit_many(curves, *, spring_constant, deck, parameters, places=None, each=None, out=None,
-             resume=False, quiet=True, **further):
+def fit_many(curves: Iterable[Sequence[ArrayLike]], *, spring_constant: ArrayLike, deck: Deck,
+             parameters: Union[str, Sequence[str]], places: Optional[ArrayLike] = None,
+             each: Optional[Mapping[str, Any]] = None, out: Optional[Path] = None,
+             resume: bool = False, quiet: bool = True, **further: Any) -> Fits:
     """Fit numbers of a deck to each of many measured curves and return the `Fits`.
 
     curves: an iterable of (z, force) or (z, force, segment), as of `fit`; a curve that is none is a
@@ -138,10 +144,8 @@ def fit_many(curves, *, spring_constant, deck, parameters, places=None, each=Non
     if places is not None:
         each.update(zip(_PLACES, np.asarray(places, float).T))
     with contextlib.ExitStack() as stack:
-        folder = out
-        if out is None:
-            folder = stack.enter_context(tempfile.TemporaryDirectory())
-        folder = folder_path("out", folder)
+        folder = folder_path(
+            "out", stack.enter_context(tempfile.TemporaryDirectory()) if out is None else out)
         folder.mkdir(parents=True, exist_ok=True)
         count, segments, broken = _write_curves(folder / _CURVES, curves)
         _write_cases(folder / _CASES, count, each)

@@ -14,7 +14,7 @@ module sweeps
   use mesh_store, only: mesh_store_t
   use byte_record, only: byte_record_t
   use curve_index, only: curve_index_t
-  use forks, only: forked_team_t
+  use forks, only: forked_team_t, can_fork
   use results, only: results_t
   use machine, only: thread_count
   use ranks, only: crew_t
@@ -62,7 +62,8 @@ contains
     else if (crew%workers > 0) then
       ! A process fits one curve at a time.
       call hand_out(crew, job, queue, merge(1, thread_count(), allocated(scene%fit)))
-    else if (allocated(scene%fit) .and. min(thread_count(), scene%sweep%cases()) > 1) then
+    else if (allocated(scene%fit) .and. min(thread_count(), scene%sweep%cases()) > 1 .and. &
+      can_fork()) then
       call fit_in_processes(scene, queue, results%trouble)
     else if (allocated(scene%fit)) then
       call complete_cases(queue, store)

@@ -36,13 +36,19 @@ int snapin_lock(int folder) {
 #endif
 }
 
+void end_with_parent_by(int signal) {
+#if !defined(PLAIN_POSIX) && defined(PR_SET_PDEATHSIG)
+  prctl(PR_SET_PDEATHSIG, signal);
+#else
+  (void)signal;
+#endif
+}
+
 /* When the parent process has ended, nobody reads standard output. If it ended before this call,
    the pipe has no reader; where the system tells of no later end, that is all. */
 void snapin_end_with_parent(void) {
   struct pollfd out = {.fd = STDOUT_FILENO};
-#if !defined(PLAIN_POSIX) && defined(PR_SET_PDEATHSIG)
-  prctl(PR_SET_PDEATHSIG, SIGTERM);
-#endif
+  end_with_parent_by(SIGTERM);
   if (poll(&out, 1, 0) == 1 && (out.revents & POLLERR))
     raise(SIGTERM);
 }

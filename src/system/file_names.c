@@ -1,5 +1,7 @@
 /* Names, sizes and parts of files. `file_names` documents each function. */
-#define _GNU_SOURCE
+#ifndef _POSIX_C_SOURCE
+#define _POSIX_C_SOURCE 200809L
+#endif
 #include <errno.h>
 #include <glob.h>
 #include <string.h>

@@ -1,15 +1,16 @@
 /* Processes that compute for this one, each with a pipe to it and one back. `forks` documents each
    function. */
-#define _GNU_SOURCE
+#ifndef _POSIX_C_SOURCE
+#define _POSIX_C_SOURCE 200809L
+#endif
 #include <errno.h>
 #include <poll.h>
 #include <signal.h>
 #include <stdio.h>
-#ifdef __linux__
-#include <sys/prctl.h>
-#endif
 #include <sys/wait.h>
 #include <unistd.h>
+
+#include "system_calls.h"
 
 /* Most processes that are waited for at once; most descriptors that are looked at. */
 enum { most = 1024, most_open = 65536 };
@@ -25,6 +26,8 @@ static void close_others(int reading, int writing) {
     if (fd != reading && fd != writing)
       close(fd);
 }
+
+int snapin_can_fork(void) { return 1; }
 
 int snapin_fork(int *reading, int *writing) {
   int to[2], from[2], status, i;
@@ -55,9 +58,7 @@ int snapin_fork(int *reading, int *writing) {
     return (int)child;
   }
   close_others(*reading, *writing);
-#ifdef PR_SET_PDEATHSIG
-  prctl(PR_SET_PDEATHSIG, SIGKILL);
-#endif
+  end_with_parent_by(SIGKILL);
   if (getppid() != parent)
     _exit(1);
   return 0;

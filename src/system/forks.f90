@@ -9,7 +9,7 @@ module forks
   use teams, only: team_t
   implicit none
   private
-  public :: forked_team_t, most_forks
+  public :: forked_team_t, most_forks, can_fork
 
   !> Largest number of processes; also in `forks.c`.
   integer, parameter :: most_forks = 1024
@@ -28,6 +28,11 @@ module forks
   end type forked_team_t
 
   interface
+    !> 1 if the system can fork processes.
+    integer(c_int) function c_can_fork() bind(c, name='snapin_can_fork')
+      import :: c_int
+    end function c_can_fork
+
     !> Forks a process, in which the result is 0 and no other file is open than the standard
     !> streams; otherwise the result is its number. reading, writing: the pipes between both.
     integer(c_int) function c_fork(reading, writing) bind(c, name='snapin_fork')
@@ -54,6 +59,11 @@ module forks
   end interface
 
 contains
+
+  !> Whether the system can fork processes.
+  logical function can_fork()
+    can_fork = c_can_fork() == 1
+  end function can_fork
 
   !> Forks `count` processes. A forked process returns with its rank, and must end with `leave`.
   subroutine fork(self, count, error)

@@ -16,6 +16,9 @@ typedef void (*procedure)(void);
 /* A procedure of a library that may be there, or NULL. */
 procedure found_procedure(const char *name);
 
+/* Has the system end this process by a signal when its parent ends, if the system can. */
+void end_with_parent_by(int signal);
+
 /* Whether the process may have no more than a part of the address space. */
 int address_space_is_limited(void);
 

@@ -51,8 +51,8 @@ python3 -m pip download --quiet --disable-pip-version-check --only-binary=:all: 
 cp "$top/inputs/first.nml" "$root/try/"
 # A file of an instrument, from the sources of the package that reads them.
 sources=$(mktemp -d)
-python3 -m pip download --quiet --disable-pip-version-check --no-deps --no-binary :all: \
-  --no-build-isolation --dest "$sources" afmformats==0.18.7 > "$sources/log" 2>&1 || :
+python3 -m pip download --quiet --disable-pip-version-check --no-deps --no-binary afmformats \
+  --dest "$sources" afmformats==0.18.7 > "$sources/log" 2>&1 || :
 tar -xf "$sources"/afmformats-*.tar.gz -C "$sources" --wildcards '*/fmt-jpk-fd_*.jpk-force' &&
   cp "$(find "$sources" -name '*.jpk-force' | sort | head -n 1)" "$root/try/curve.jpk-force"
 rm -rf "$sources"
@@ -65,7 +65,7 @@ shown "pip install --no-index --find-links=/wheels 'snapin[plots,instruments]' |
 shown 'snapin first.nml'
 shown "python -c 'import snapin; print(snapin.__version__)
 print(snapin.run(\"first.nml\").summary[\"max_tension\"])
-print(snapin.contact_radius(\"jkr\", 1e-9, radius=1e-6, stiffness=1e9, work_of_adhesion=0.05))'"
+print(snapin.pull_off(\"jkr\", radius=1e-6, stiffness=1e9, surface_energy=0.05))'"
 shown 'snapin-plot results/first'
 shown 'snapin-convert curve.jpk-force -o tables'
 shown 'man snapin | head -n 12'

@@ -131,8 +131,8 @@ relatives() { "$python" "$here/relatives.py" --seed "${SEED:-1}"; }
 posix() {
   builds build-posix -Dsystem=posix -Dpython=disabled || return
   SNAPIN=$top/build-posix/snapin tests -p no:cacheprovider -m 'not slow and not long' \
-    tests/app/test_command_line.py tests/namelist tests/report/test_results.py tests/resume \
-    -k 'not one_run_at_a_time and not to_draw_it'
+    tests/app/test_command_line.py tests/namelist tests/resume \
+    -k 'not a_second_run_is_refused and not the_command_that_draws_a_sweep'
 }
 
 # Every system call on results fails, kills the run, or is the last before a power cut.

@@ -52,11 +52,13 @@ lapack() {
   cd "$libraries" || return
   object la_constants && object la_xisnan || return
   wanted="idamax dgemv dgemm dgetrf sgetrf dgetrs sgetrs dgtsv dgeev dgesvd ilaver"
+  seen=
   while [ -n "$wanted" ]; do
     more=
     for name in $wanted; do
-      [ -e "$name.o" ] && continue
-      object "$name" || return
+      case " $seen " in *" $name "*) continue ;; esac
+      seen="$seen $name"
+      [ -e "$name.o" ] || object "$name" || return
       [ -e "$name.o" ] &&
         more="$more $("$target-nm" "$name.o" | sed -n 's/^ *U \([a-z0-9]*\)_$/\1/p' | tr '\n' ' ')"
     done
