@@ -4,7 +4,7 @@
 
 FOLDER gets the results. Without decks: those of inputs/ and of tools/verify/decks. A deck may end
 with status 1, which says that a state was not found; any other status, or a report of a sanitizer,
-is a failure. Two decks run at a time on two cores. Status 1 if one failed.
+is a failure. As many decks run at a time as there are cores. Status 1 if one failed.
 """
 
 import concurrent.futures

@@ -38,9 +38,8 @@ sanitize() {
   builds build-sanitize --buildtype=debug -Db_sanitize=address,undefined -Db_lundef=false \
     -Dpython=disabled || return
   ASAN_OPTIONS=detect_leaks=1
-  UBSAN_OPTIONS=halt_on_error=1:print_stacktrace=1
-  LSAN_OPTIONS=suppressions=$here/leaks.txt:print_suppressions=0
-  export ASAN_OPTIONS UBSAN_OPTIONS LSAN_OPTIONS
+  UBSAN_OPTIONS=suppressions=$here/overflows.txt:halt_on_error=1:print_stacktrace=1
+  export ASAN_OPTIONS UBSAN_OPTIONS
   checked build-sanitize --ignore=tests/system --ignore=tests/resume --ignore=tests/wrapper
 }
 
