@@ -84,7 +84,7 @@ def test_pip_installs_package_and_command(checkout, tmp_path):
     for name in PAGES:
         assert (tmp_path / "new" / name).stat().st_size > 0
     scripts = sorted((tmp_path / "new/share/snapin").rglob("*.py"))
-    assert {"force_curve", "fit", "force_law", "law_and_curve", "afm_to_table"} <= {
+    assert {"force_curve", "fit", "force_law", "law_and_curve", "map"} <= {
         script.stem for script in scripts}
     for script in [script for script in scripts if script.stem != "drawing"]:
         assert "usage: " in run(binaries / "python", script, "--help", cwd=tmp_path), script
