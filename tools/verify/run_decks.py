@@ -4,7 +4,8 @@
 
 FOLDER gets the results. Without decks: those of inputs/ and of tools/verify/decks. A deck may end
 with status 1, which says that a state was not found, and a wrong one with 2; any other status, or a
-report of a sanitizer, is a failure. As many decks run at a time as there are cores. Status 1 if one failed.
+report of a sanitizer, is a failure. As many decks run at a time as there are cores. Status 1 if one
+failed.
 """
 
 import concurrent.futures
