@@ -166,8 +166,11 @@ is_complete() { [ -f "$1/complete" ] && [ "$(cat "$1/complete")" = "$(foundation
 
 bring_up_to_date() {
   if ! { mkdir -p "$build" 2> /dev/null && [ -w "$build" ]; }; then
-    # The checkout of another user: it is used as it is.
-    [ -x "$build/snapin" ] && [ -x "$venv/bin/python" ] && return
+    # The checkout of another user: it is used as it is. Its Python may be one of that user alone.
+    if [ -x "$build/snapin" ]; then
+      [ "$wanted" = program ] || [ -x "$venv/bin/python" ] && return
+      give_up "this user may not run the Python of this checkout, only ./run: $venv/bin/python"
+    fi
     give_up "this checkout is not built, and this user may not write to it: $top"
   fi
   # These variables would redirect the new environment's Python and pip.
@@ -201,9 +204,10 @@ refuse_path() {
   give_up "move or clone it to a folder whose path has no colon, backslash, equals sign or line end"
 }
 
-# One process at a time in a checkout; in a subshell, so that the lock and the environment end with
-# the subshell.
+# prepare [program]: with `program` Python is not needed afterwards. One process at a time in a
+# checkout; in a subshell, so that the lock and the environment end with the subshell.
 prepare() {
+  wanted=${1-python}
   refuse_path
   (
     if has flock && ! flock -n 9; then

@@ -85,6 +85,7 @@ contains
       type(walk_t), intent(in) :: walk
       real(wp), intent(in) :: at
       type(driven_leg_t) :: leg
+      type(jump_t) :: jump
       integer :: i
 
       do i = 1, size(walk%leg)
@@ -102,13 +103,13 @@ contains
         leg%jumps = leg%jumps .and. driven%solved
         driven%leg = [driven%leg, leg]
         if (.not. leg%jumps) return
-        driven%jumped = [driven%jumped, driven%jump_from(here, leg%inward)]
-        associate (jump => driven%jumped(size(driven%jumped)))
-          driven%solved = driven%solved .and. (jump%landed .or. jump%piece == 0)
-          if (.not. jump%landed) return
-          here = jump%piece
-          state = jump%after
-        end associate
+        ! A result with allocatable components leaks in an array constructor: compiler note 1.
+        jump = driven%jump_from(here, leg%inward)
+        driven%jumped = [driven%jumped, jump]
+        driven%solved = driven%solved .and. (jump%landed .or. jump%piece == 0)
+        if (.not. jump%landed) return
+        here = jump%piece
+        state = jump%after
       end do
     end subroutine go
 

@@ -5,6 +5,7 @@
 !> The deck's iteration solves the rows. A jump is a fold between two rows that converged
 !> (`fixed_motion`); rows that did not converge are no jump and no end of a branch.
 module fixed_stepper
+  use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
   use kinds, only: wp, nan
   use dimensionless_problem, only: calm_gap
   use contact_state, only: state_t, undeformed_state
@@ -60,7 +61,9 @@ contains
       lost = merge(0, lost + 1, event%converged)
     end do
     ! An experiment that begins in contact has lost energy before.
-    if (abs(position%lost) > 0) position%lost = nan
+    if (.not. ieee_is_nan(position%lost)) then
+      if (abs(position%lost) > 0) position%lost = nan
+    end if
     event%jumped = .false.
     event%unsure = .false.
   end subroutine approach_to

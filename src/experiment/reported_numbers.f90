@@ -255,8 +255,12 @@ contains
     real(wp) :: part(quantities)
 
     part = 0
-    where (number%error > 0) part = &
-      min(number%error/max(abs(number%value), number%scale, tiny(1.0_wp)), most)
+    where (.not. ieee_is_nan(number%error)) part = number%error
+    where (part > 0)
+      part = min(part/max(abs(number%value), number%scale, tiny(1.0_wp)), most)
+    elsewhere
+      part = 0
+    end where
     part(of_profile) = number%error(of_profile)
   end function parts_of
 

@@ -41,8 +41,8 @@ contains
 
     advice = ''
     if (verify(one, '+-0123456789') > 0 .or. scan(other(:1), '0123456789') == 0) return
-    if (is_number(one) .and. is_number(one // '.' // other)) advice = 'a comma separates values; ' // &
-      'the decimal sign is a point: ' // clip(one // '.' // other)
+    if (.not. (is_number(one) .and. is_number(one // '.' // other))) return
+    advice = 'a comma separates values; the decimal sign is a point: ' // clip(one // '.' // other)
   end function comma_slip
 
   !> '; write 1.5e-6' for 1.5 um, if that is a number with the unit of the key, or with a prefix

@@ -129,9 +129,10 @@ contains
       integer :: i, j
 
       call results%begin_table('table.csv')
-      unit = maugis_units(problem%radius, problem%stiffness, surface_energy(problem))
-      ! Other shapes have no radius on the axis.
-      if (.not. problem%shape%parabolic) unit = maugis_units_t(nan, nan, nan)
+      ! Other shapes have no radius on the axis, and laws without an energy no theory of adhesion.
+      unit = maugis_units_t(nan, nan, nan)
+      if (problem%shape%parabolic .and. problem%law%work > 0) &
+        unit = maugis_units(problem%radius, problem%stiffness, surface_energy(problem))
       do i = 1, size(readings%prescribed%leg)
         associate (leg => readings%prescribed%leg(i))
           states = states_on(readings%node, leg)

@@ -2,6 +2,7 @@
 !> scenes with &stability. A stability that the record already has is kept: the path counts unstable
 !> modes, and the eigenvalue has to agree with this count.
 module stability_records
+  use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
   use kinds, only: wp
   use dimensionless_problem, only: problem_t
   use discretisation, only: discretisation_t
@@ -59,18 +60,20 @@ contains
     type(state_t), intent(in) :: state
     logical, intent(in) :: profile
     type(record_t) :: completed
-    logical :: certain
+    logical :: certain, known
     real(wp) :: error, by_gap
 
     completed = record
     completed%eigenvalue = unknown()
     completed%local_criterion = unknown()
     completed%axis_criterion = unknown()
+    known = .false.
     ! A state that is not an equilibrium is neither stable nor unstable.
     if (record%converged) then
       call smallest_eigenvalue(problem, grid, state, completed%eigenvalue, certain, self%cost)
       call local_criterion(problem, grid, state, completed%local_criterion, error, by_gap)
-      if (completed%local_criterion > 0) then
+      if (.not. ieee_is_nan(completed%local_criterion)) known = completed%local_criterion > 0
+      if (known) then
         self%criterion_error = max(self%criterion_error, error)
         self%by_gap = max(self%by_gap, by_gap)
         if (certain) then

@@ -66,8 +66,8 @@ contains
     character(len=*), intent(in) :: name
     logical, intent(in) :: quiet
 
-    if (.not. quiet) self%heartbeat = begin_progress(printable(name) // nul, int(max(total, 0), c_long), &
-      merge(1_c_int, 0_c_int, is_terminal()))
+    if (.not. quiet) self%heartbeat = begin_progress(printable(name) // nul, &
+      int(max(total, 0), c_long), merge(1_c_int, 0_c_int, is_terminal()))
   end subroutine start
 
   !> Counts one step of `label` (a branch). failed: the step failed; given: an earlier run did it,

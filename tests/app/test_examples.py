@@ -20,4 +20,5 @@ def test_an_example_runs_to_its_end(snapin, deck, tmp_path):
     if options:
         return
     assert "above the accuracy" not in done.stderr
+    assert "beyond the model" not in done.stderr
     assert f90nml.read(tmp_path / "results/summary.nml")["summary"]["converged"]

@@ -5,6 +5,7 @@ import re
 import shutil
 import subprocess
 import sys
+import tempfile
 import venv
 from pathlib import Path
 
@@ -82,6 +83,12 @@ def test_pip_installs_package_and_command(checkout, tmp_path):
     assert (tmp_path / "results/map/map.png").stat().st_size > 0
     for name in PAGES:
         assert (tmp_path / "new" / name).stat().st_size > 0
+    scripts = sorted((tmp_path / "new/share/snapin").rglob("*.py"))
+    assert {"force_curve", "fit", "force_law", "law_and_curve", "map"} <= {
+        script.stem for script in scripts}
+    for script in [script for script in scripts if script.stem != "drawing"]:
+        assert "usage: " in run(binaries / "python", script, "--help", cwd=tmp_path), script
+    assert "usage: " in run(binaries / "snapin-convert", "--help")
     about = run(binaries / "python", "-m", "pip", "show", "snapin")
     version = run(binaries / "snapin", "--version").split()[1]
     assert f"Version: {version}\n" in about
@@ -164,3 +171,31 @@ def test_pages_of_all_public_procedures_are_made_without_warnings():
     assert "arning" not in done.stdout + done.stderr
     made = {page.stem for page in (TOP / "build/api/module").glob("*.html")}
     assert made >= {source.stem for source in (TOP / "src").glob("*/*.f90")} - {"snapin"}
+
+
+def test_a_user_who_did_not_build_the_checkout_runs_its_program():
+    """He was told that it is not built, where its Python is one of the builder alone."""
+    if os.geteuid() != 0 or not shutil.which("setpriv"):
+        pytest.skip("only root has another user")
+    with tempfile.TemporaryDirectory() as top:
+        top = Path(top)
+        top.chmod(0o755)
+        for name in ("build", "tools", ".venv/bin"):
+            (top / name).mkdir(parents=True)
+        for name in ("run", "test", "tools/setup.sh"):
+            shutil.copy2(TOP / name, top / name)
+        (top / ".venv/bin/python").symlink_to("/root/python")
+        (top / "build/snapin").write_text("#!/bin/sh\necho ran $*\n")
+        (top / "build/snapin").chmod(0o755)
+        as_other = ["setpriv", "--reuid=65534", "--regid=65534", "--clear-groups"]
+        ran = subprocess.run([*as_other, top / "run", "d.nml"], cwd="/", capture_output=True,
+                             text=True, check=False)
+        assert (ran.returncode, ran.stdout, ran.stderr) == (0, "ran d.nml\n", "")
+        refused = subprocess.run([*as_other, top / "test"], cwd="/", capture_output=True,
+                                 text=True, check=False)
+        assert refused.returncode == 2
+        assert "this user may not run the Python of this checkout, only ./run" in refused.stderr
+        (top / "build/snapin").unlink()
+        missing = subprocess.run([*as_other, top / "run"], cwd="/", capture_output=True, text=True,
+                                 check=False)
+        assert missing.returncode == 2 and "is not built" in missing.stderr

@@ -3,8 +3,9 @@
     run_decks.py PROGRAM FOLDER [DECK ...]
 
 FOLDER gets the results. Without decks: those of inputs/ and of tools/verify/decks. A deck may end
-with status 1, which says that a state was not found; any other status, or a report of a sanitizer,
-is a failure. Two decks run at a time on two cores. Status 1 if one failed.
+with status 1, which says that a state was not found, and a wrong one with 2; any other status, or a
+report of a sanitizer, is a failure. As many decks run at a time as there are cores. Status 1 if one
+failed.
 """
 
 import concurrent.futures
@@ -27,7 +28,7 @@ def run(program, folder, deck):
         [program, "--quiet", "--out", folder / deck.parent.name, deck], cwd=deck.parent,
         capture_output=True, text=True, errors="replace", check=False)
     wrong = None
-    if done.returncode not in (0, 1) or REPORT.search(done.stderr):
+    if done.returncode not in (0, 1, 2) or REPORT.search(done.stderr):
         wrong = f"status {done.returncode}\n{done.stderr[-3000:]}"
     return time.monotonic() - began, wrong
 
