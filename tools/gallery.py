@@ -13,6 +13,8 @@ import subprocess
 import sys
 import tempfile
 
+from snapin.command import as_command
+
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 PAGE = ROOT / "docs/gallery.md"
 DPI = "90"
@@ -58,4 +60,4 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(as_command(main)())

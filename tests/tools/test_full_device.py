@@ -10,8 +10,8 @@ from conftest import ROOT
 from support.processes import HANG
 from support.scenes import lennard_jones
 
-FOLDERS = ("pywrap/plots", "pywrap/scripts", "pywrap/snapin", "tools", "tools/bench",
-           "tools/reproduce", "tools/verify")
+FOLDERS = ("pywrap/plots", "pywrap/scripts", "pywrap/snapin", "pywrap/snapin/plots", "tools",
+           "tools/bench", "tools/reproduce", "tools/verify")
 LINE = "standard output: No space left on device\n"
 
 

@@ -251,7 +251,7 @@ def test_a_folder_that_cannot_be_made_is_named_in_one_line(called, snapin_path, 
     (tmp_path / "file").write_text("")
     folder = tmp_path / "file/below"
     done = called(COMMAND, "--out", folder, "--program", snapin_path, "fig02")
-    assert (done.returncode, done.stderr) == (1, f"reproduce: {folder}: Not a directory\n")
+    assert (done.returncode, done.stderr) == (1, f"reproduce.py: {folder}: Not a directory\n")
 
 
 # --- Figures, and chapters as a whole

@@ -21,6 +21,7 @@ import time
 
 import numpy as np
 import snapin
+from snapin.command import as_command
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 sys.path.append(str(ROOT / "tests"))
@@ -177,4 +178,4 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(as_command(main)())

@@ -16,6 +16,8 @@ import subprocess
 import sys
 import time
 
+from snapin.command import as_command
+
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 ALL = ("inputs/**/*.nml", "tools/verify/decks/*.nml")
 REPORT = re.compile(r"SUMMARY: \w+Sanitizer|runtime error|Fortran runtime error|received signal")
@@ -50,4 +52,4 @@ def main(program, folder, *patterns):
 
 
 if __name__ == "__main__":
-    sys.exit(main(*sys.argv[1:]))
+    sys.exit(as_command(main)(*sys.argv[1:]))
