@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from support.scenes import deck, lennard_jones, path_of, several
+from support.scenes import lennard_jones, path_of
 
 COLUMNS = ("h0", "load", "contact_radius", "displacement")
 SIGMAS = [1e-4, 0.0087, 0.3, 0.87, 8.7, 100.0, 1e4]

@@ -5,7 +5,7 @@ import pytest
 from conftest import ROOT
 from support.decks import RUNTIME_ERROR
 from support.interrupted import Bench, frames, rows
-from support.scenes import deck, lennard_jones, loading, read_table, several
+from support.scenes import lennard_jones, loading, read_table, several
 
 CYCLE = {"loading": loading(7, -2, 0.5), "unloading": {"from_": [-2.0, 2.5], "h0_end": 7.0}}
 ACCURACIES = [1e-3, 1e-6, 1e-9]

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from support.scenes import deck, lennard_jones, loading, path_of
+from support.scenes import lennard_jones, loading, path_of
 
 
 def table_of(run, sigma, h0_end):

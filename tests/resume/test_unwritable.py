@@ -7,7 +7,7 @@ import subprocess
 import pytest
 from support.interrupted import Bench, frames, rows, short, sweep  # noqa: F401
 from support.processes import limited, threaded
-from support.scenes import lennard_jones, loading
+from support.scenes import lennard_jones
 
 
 # --- Where files cannot be written

@@ -6,7 +6,6 @@ Each function draws the groups of a deck; what it judges are the numbers of the 
 
 import math
 
-import numpy as np
 from support.comparison import deviations, missing
 from support.decks_in_units import report
 from support.experiment import cycle, largest_tension, reported, reported_of_path
