@@ -155,7 +155,7 @@ def examine(path, folder, both=False):
     try:
         tables, spring, told = converted(path, folder)
     except ConvertError as problem:
-        return f"told: {problem}", "", ""
+        return f"told: {problem}".replace(f"{folder}/", ""), "", ""
     z, force, segment = thinned(tables[0])
     radius = next((size for key, size in RADIUS.items() if key in path.name), ANY_RADIUS)
     way = "approach" if (segment == 0).any() else "retreat"
