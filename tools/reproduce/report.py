@@ -28,8 +28,7 @@ class Comparison(NamedTuple):
     """A published number beside the converged one.
 
     `kind` is "formula" if `published` was computed from a formula, with coefficients from `source`;
-    "printed" if the number is in an available print; "theory" if it is exact in a limit;
-    "not read" if the publication was not available; `published` is None then.
+    "printed" if the number is in an available print; "theory" if it is exact in a limit.
     """
 
     item: str
@@ -48,8 +47,7 @@ class Comparison(NamedTuple):
 
     def cells(self):
         """Return the row as text; a row without the source of its number is refused."""
-        if self.kind not in ("formula", "printed", "theory", "not read") or (
-                (self.kind == "not read") != (self.published is None)):
+        if self.kind not in ("formula", "printed", "theory") or self.published is None:
             raise ValueError(f"{self.item}: {self.kind}, {self.published}")
         error = "" if self.error is None else f"{self.error:+.2f}"
         return [self.item, self.kind, shown(self.published), shown(self.converged), error,

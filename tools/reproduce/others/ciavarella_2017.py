@@ -74,12 +74,10 @@ def draw(_):
 
 
 def rows(_):
-    found = [Comparison(f"mu = {tabor:g}, energy lost", kind, theirs(tabor), _loss(tabor),
-                        "(R^4 w^5/E*^2)^(1/3)", source)
-             for tabor in TABORS
-             for kind, theirs, source in (
-                 ("theory", lambda _: jkr(), "JKR theory at fixed displacement, mu to infinity"),
-                 ("formula", _solved, "7.0922 - (4 pi/3) h0/(mu z0), h0 of the jump solved"),
-                 ("formula", _printed, "the same with h0 by Attard and Parker's (37)"))]
-    return [*found, Comparison("energy lost against mu", "not read", None, "see above", "",
-                               "Ciavarella, Greenwood and Barber (2017)")]
+    return [Comparison(f"mu = {tabor:g}, energy lost", kind, theirs(tabor), _loss(tabor),
+                       "(R^4 w^5/E*^2)^(1/3)", source)
+            for tabor in TABORS
+            for kind, theirs, source in (
+                ("theory", lambda _: jkr(), "JKR theory at fixed displacement, mu to infinity"),
+                ("formula", _solved, "7.0922 - (4 pi/3) h0/(mu z0), h0 of the jump solved"),
+                ("formula", _printed, "the same with h0 by Attard and Parker's (37)"))]

@@ -76,16 +76,8 @@ def rows(_):
     for tabor in TABORS:
         one, name = spheres.sphere(tabor), f"mu = {tabor:g}"
         limit, why = (2.0, bradley) if tabor < 0.5 else (1.5, jkr)
-        found += [Comparison(f"{name}, pull-off", "theory", limit, one.tension, "pi w R", why),
-                  _not_read(f"{name}, h0 at the pull-off", one.tension_h0, "z0")]
+        found.append(Comparison(f"{name}, pull-off", "theory", limit, one.tension, "pi w R", why))
         if one.jump_in:
-            found += [_not_read(f"{name}, h0 at the jump in", one.jump_in[0], "z0"),
-                      _not_read(f"{name}, tension before it", one.jump_in[1], "pi w R"),
-                      _not_read(f"{name}, h0 at the jump out", one.jump_out[0], "z0"),
-                      Comparison(f"{name}, tension before it", "theory", 5 / 6, one.jump_out[1],
-                                 "pi w R", f"{jkr}, at fixed displacement")]
+            found.append(Comparison(f"{name}, tension before the jump out", "theory", 5 / 6,
+                                    one.jump_out[1], "pi w R", f"{jkr}, at fixed displacement"))
     return found
-
-
-def _not_read(item, value, unit):
-    return Comparison(item, "not read", None, value, unit, "tables of Greenwood, Feng")

@@ -5,10 +5,8 @@ import functools
 import curves
 import spheres
 import style
-from report import Comparison
 
 POISSON = (0.3, 0.35, 0.4, 0.45, 0.5)
-RATIOS = (0.2, 0.4, 0.6, 0.8, 1.0, 1.5, 2.0)
 _COLORS = (style.BLACK, style.BLUE, style.GREEN, style.ORANGE, style.VERMILION)
 
 
@@ -46,9 +44,3 @@ def draw(_):
     style.label(panel, "$a/t$", "$\\kappa = F/(2E'a\\delta)$", xlim=(0, 2), ylim=(1, 11))
     panel.legend(loc="upper left")
     return page
-
-
-def rows(_):
-    return [Comparison(f"kappa at nu = {nu:g}, a/t = {ratio:g}", "not read", None, kappa(nu, ratio),
-                       "", "Hayes et al. (1972), their table of kappa for flat punches")
-            for nu in POISSON for ratio in RATIOS]

@@ -65,10 +65,8 @@ def draw(_):
 
 
 def rows(_):
-    found = [Comparison(f"mu = {tabor:g}, {what} at the jump into contact", "formula", printed,
-                        solved, unit, _SOURCE)
-             for tabor in TABORS
-             for what, unit, solved, printed in zip(("h0", "gap on the axis", "tension"),
-                                                    ("z0", "z0", "pi w R"), *jump(tabor))]
-    return [*found, Comparison("fitted distance of the jump", "not read", None, "see above", "",
-                               "Wu (2010)")]
+    return [Comparison(f"mu = {tabor:g}, {what} at the jump into contact", "formula", printed,
+                       solved, unit, _SOURCE)
+            for tabor in TABORS
+            for what, unit, solved, printed in zip(("h0", "gap on the axis", "tension"),
+                                                   ("z0", "z0", "pi w R"), *jump(tabor))]
