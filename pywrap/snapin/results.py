@@ -7,6 +7,7 @@ import itertools
 import os
 import pathlib
 import re
+import stat
 import time
 from typing import Any, Optional
 
@@ -138,8 +139,10 @@ class ResultFiles:
 
     def __init__(self, folder: Path) -> None:
         self.folder = pathlib.Path(folder)
-        if (self.folder / "summary.nml").exists() and not (self.folder / "summary.nml").is_file():
-            raise ResultsError(f"{self.folder / 'summary.nml'} is no file")
+        # One look, since a run may put its summary there or take it away meanwhile.
+        with contextlib.suppress(OSError):
+            if not stat.S_ISREG((self.folder / "summary.nml").stat().st_mode):
+                raise ResultsError(f"{self.folder / 'summary.nml'} is no file")
         patience = time.monotonic() + _PATIENCE
         while not self._have_been_read():
             if time.monotonic() > patience:
