@@ -87,7 +87,10 @@ contains
       if (.not. fresh(i)) cycle
       number(i)%judged = .true.
       associate (error => number(i)%error, value => number(i)%value)
-        where (error > 0) error = max(error, lowest*max(abs(value), least))
+        do k = 1, quantities
+          if (ieee_is_nan(error(k)) .or. ieee_is_nan(value(k))) cycle
+          if (error(k) > 0) error(k) = max(error(k), lowest(k)*max(abs(value(k)), least(k)))
+        end do
       end associate
     end do
   end subroutine judge
@@ -252,15 +255,18 @@ contains
   !> The relative errors of all quantities of a number.
   pure function parts_of(number) result(part)
     type(number_t), intent(in) :: number
-    real(wp) :: part(quantities)
+    real(wp) :: part(quantities), magnitude
+    integer :: k
 
     part = 0
-    where (.not. ieee_is_nan(number%error)) part = number%error
-    where (part > 0)
-      part = min(part/max(abs(number%value), number%scale, tiny(1.0_wp)), most)
-    elsewhere
-      part = 0
-    end where
+    do k = 1, quantities
+      if (ieee_is_nan(number%error(k))) cycle
+      if (number%error(k) <= 0) cycle
+      magnitude = max(number%scale(k), tiny(1.0_wp))
+      if (.not. ieee_is_nan(number%value(k))) magnitude = max(magnitude, abs(number%value(k)))
+      part(k) = most
+      if (number%error(k) < most*magnitude) part(k) = number%error(k)/magnitude
+    end do
     part(of_profile) = number%error(of_profile)
   end function parts_of
 
