@@ -32,7 +32,7 @@ def test_every_command_that_prints_ends_through_one_procedure():
         for path in sorted((ROOT / folder).glob("*.py")):
             text = path.read_text(encoding="utf-8")
             if '__name__ == "__main__"' in text and "print(" in text:
-                through = re.search(r"as_command\(main\)\(\)|@as_command\ndef main", text)
+                through = re.search(r"as_command\(main\)\(|@as_command\ndef main", text)
                 others += [] if through else [path.name]
     assert others == []
 

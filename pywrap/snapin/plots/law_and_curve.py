@@ -78,7 +78,3 @@ def main(arguments=None):
     except (snapin.SnapinError, OSError) as trouble:
         sys.exit(f"{parser.prog}: {trouble}")
     print(picture)
-
-
-if __name__ == "__main__":
-    main()
