@@ -6,10 +6,9 @@ module curve_index
   use checksums, only: checksum
   use failure, only: failure_t, fail, bad_input, file_trouble
   use text, only: brief, quoted, printable
-  use c_library, only: c_open, c_close, explain, as_input, not_there, nul
-  use file_names, only: c_read_at
+  use c_library, only: c_read, c_seek, c_close, explain, as_data
   use deck_number, only: parse_real
-  use deck_source, only: source_t, take_source
+  use deck_source, only: source_t, take_source, open_file
   use column_names, only: find_columns
   use data_table, only: largest_table
   use table_layout, only: layout_t, find_layout
@@ -55,7 +54,7 @@ contains
       if (self%file == file .and. self%column == column .and. self%skip == skip) return
     end if
     if (allocated(self%file)) deallocate (self%file)
-    call open_file(file, descriptor, error)
+    call open_file(file, as_data, descriptor, error)
     if (allocated(error)) return
     allocate (character(len=piece) :: buffer)
     call find_heading(self, file, column, skip, descriptor, buffer, layout, at, error)
@@ -68,20 +67,6 @@ contains
     self%skip = skip
   end subroutine find_curves
 
-  subroutine open_file(file, descriptor, error)
-    character(len=*), intent(in) :: file
-    integer(c_int), intent(out) :: descriptor
-    type(failure_t), allocatable, intent(inout) :: error
-    character(len=:), allocatable :: reason
-    integer(c_int) :: sort
-
-    descriptor = c_open(file // nul, as_input)
-    if (descriptor >= 0) return
-    call explain(descriptor, sort, reason)
-    if (sort == not_there) reason = 'no such file'
-    call fail(error, file_trouble, printable(file) // ': ' // reason)
-  end subroutine open_file
-
   !> Reads bytes from a place in the file; `held` of them, fewer at its end.
   subroutine read_bytes(file, descriptor, place, bytes, held, error)
     character(len=*), intent(in) :: file
@@ -93,7 +78,8 @@ contains
     character(len=:), allocatable :: reason
     integer(c_int) :: sort
 
-    held = int(c_read_at(descriptor, bytes, int(len(bytes), c_long), int(place, c_long)))
+    held = c_seek(descriptor, int(place, c_long))
+    if (held == 0) held = int(c_read(descriptor, bytes, int(len(bytes), c_long)))
     if (held >= 0) return
     call explain(int(held, c_int), sort, reason)
     call fail(error, file_trouble, printable(file) // ': cannot be read: ' // reason)
@@ -282,7 +268,7 @@ contains
         brief(number) // '; the file has ' // brief(size(self%number)) // ' curves')
       return
     end if
-    call open_file(self%file, descriptor, error)
+    call open_file(self%file, as_data, descriptor, error)
     if (allocated(error)) return
     allocate (character(len=self%behind(k) - self%first(k)) :: bytes)
     call read_bytes(self%file, descriptor, self%first(k), bytes, held, error)

@@ -4,13 +4,13 @@ module case_rows
   use, intrinsic :: iso_c_binding, only: c_int, c_long
   use kinds, only: wp, long
   use failure, only: failure_t, fail, file_trouble
-  use c_library, only: c_open, c_read, c_close, explain, as_data, not_there, nul
+  use c_library, only: c_read, c_close, explain, as_data
   use checksums, only: checksum
   use text, only: lower, printable, word_of
   use deck_number, only: parse_real
   use deck_numbers, only: words_of, number_of_word, holds_text
   use deck_scan, only: span_t
-  use deck_source, only: source_t, take_source
+  use deck_source, only: source_t, take_source, open_file
   use deck_store, only: deck_t
   use table_layout, only: is_header
   use table_line, only: split, blanks, after_mark, uncommented, point_decimals, miscount
@@ -62,21 +62,14 @@ contains
     type(failure_t), allocatable, intent(out) :: error
     type(source_t) :: comment, named
     type(span_t), allocatable :: names(:)
-    character(len=:), allocatable :: reason
-    integer(c_int) :: sort
     logical :: found
     integer :: k
 
     self%file = file
     self%names = ''
     self%text = ''
-    self%descriptor = c_open(file // nul, as_data)
-    if (self%descriptor < 0) then
-      call explain(self%descriptor, sort, reason)
-      if (sort == not_there) reason = 'no such file'
-      call fail(error, file_trouble, printable(file) // ': ' // reason)
-      return
-    end if
+    call open_file(file, as_data, self%descriptor, error)
+    if (allocated(error)) return
     comment%text = ''
     do
       call self%next_line(found, error)

@@ -9,7 +9,7 @@ module deck_source
   use text, only: brief, printable
   implicit none
   private
-  public :: source_t, load_source, take_source, unprintable, largest_deck
+  public :: source_t, load_source, take_source, open_file, unprintable, largest_deck
 
   character(len=*), parameter :: newline = new_line('a')
   !> Largest size of a deck; ten thousand sweep values take a quarter of it.
@@ -50,14 +50,8 @@ contains
       return
     end if
     ! A deck may come through a pipe, a table may not.
-    descriptor = c_open(file // nul, merge(as_data, as_input, present(most)))
-    if (descriptor < 0) then
-      call explain(descriptor, sort, reason)
-      reason = 'cannot be opened: ' // reason
-      if (sort == not_there) reason = 'no such file'
-      call fail(error, file_trouble, source%file // ': ' // reason)
-      return
-    end if
+    call open_file(file, merge(as_data, as_input, present(most)), descriptor, error)
+    if (allocated(error)) return
     n = largest_deck
     if (present(most)) n = most
     allocate (character(len=n + 1) :: bytes)
@@ -70,6 +64,23 @@ contains
       call take_source(file, bytes(:n), source, error, most)
     end if
   end subroutine load_source
+
+  !> Opens a file for reading; how: as in `c_library`.
+  subroutine open_file(file, how, descriptor, error)
+    character(len=*), intent(in) :: file
+    integer(c_int), intent(in) :: how
+    integer(c_int), intent(out) :: descriptor
+    type(failure_t), allocatable, intent(out) :: error
+    character(len=:), allocatable :: reason
+    integer(c_int) :: sort
+
+    descriptor = c_open(file // nul, how)
+    if (descriptor >= 0) return
+    call explain(descriptor, sort, reason)
+    reason = 'cannot be opened: ' // reason
+    if (sort == not_there) reason = 'no such file'
+    call fail(error, file_trouble, printable(file) // ': ' // reason)
+  end subroutine open_file
 
   !> Takes the bytes of a deck; `name` is its name in messages, and lines_before the number of lines
   !> of the file before these bytes. Fails if there are more than `most` bytes, or not plain text.

@@ -37,7 +37,9 @@ module deck_store
     !> The same for a scalar that is allocated only if the key has a value.
     generic :: get_optional => get_optional_real, get_optional_integer
     procedure :: path_of
+    procedure :: placed
     procedure :: note_file
+    procedure :: note_checksum
     procedure :: in_use
     procedure :: drop_group
     procedure :: mistake
@@ -208,15 +210,25 @@ contains
     self%values(row)%status = following
   end subroutine assume_text
 
-  !> Path of the file that a key names; a relative path begins at the folder of the deck.
+  !> Path of the file that a key names.
   pure function path_of(self, group, key) result(path)
     class(deck_t), intent(in) :: self
     character(len=*), intent(in) :: group, key
     character(len=:), allocatable :: path
 
     call self%get(group, key, path)
-    if (.not. is_absolute(path)) path = self%source%folder // path
+    path = self%placed(path)
   end function path_of
+
+  !> A path of the deck: a relative one begins at the folder of the deck.
+  pure function placed(self, path)
+    class(deck_t), intent(in) :: self
+    character(len=*), intent(in) :: path
+    character(len=:), allocatable :: placed
+
+    placed = path
+    if (.not. is_absolute(path)) placed = self%source%folder // path
+  end function placed
 
   !> Notes the checksum of the file that a key names. `resolved` writes it, so that a deck with a
   !> changed file counts as another deck, and the absolute path, which also holds in other folders.
@@ -225,16 +237,25 @@ contains
     character(len=*), intent(in) :: group, key
     integer(long), intent(in) :: digest
     character(len=:), allocatable :: path
-    character(len=8) :: number
     integer :: row
 
     row = self%row_of(group, key)
     path = whole_path(self%path_of(group, key))
     ! A path that a deck cannot hold is not replaced.
     if (len(path) <= self%specs(row)%most .and. plain(path) == path) self%values(row)%text = path
-    write (number, '(z8.8)') digest
-    self%values(row)%remark = 'checksum ' // number
+    call self%note_checksum(group, key, digest)
   end subroutine note_file
+
+  !> Notes a checksum of what a key names.
+  subroutine note_checksum(self, group, key, digest)
+    class(deck_t), intent(inout) :: self
+    character(len=*), intent(in) :: group, key
+    integer(long), intent(in) :: digest
+    character(len=8) :: number
+
+    write (number, '(z8.8)') digest
+    self%values(self%row_of(group, key))%remark = 'checksum ' // number
+  end subroutine note_checksum
 
   !> Whether the deck has a group or its defaults always hold.
   pure logical function in_use(self, group)

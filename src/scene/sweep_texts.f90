@@ -35,10 +35,10 @@ contains
       last = first - 2 + scan(words(first:) // ' ', ' ')
       next = min(last + 1, len(words))
       if (of_files .and. is_pattern(words(first:last))) then
-        call names_like(whole(spelled(words(first:last))), names)
+        call names_like(deck%placed(spelled(words(first:last))), names)
         if (len(names) == 0) call deck%mistake('sweep', 'words', 'no file is like ' // &
           quoted(spelled(words(first:last))))
-        call add_names(names, len(whole('')))
+        call add_names(names, len(deck%source%folder))
       else
         call add_names(spelled(words(first:last)) // nul, 0)
       end if
@@ -49,15 +49,6 @@ contains
     if (of_files) call note_files()
 
   contains
-
-    !> A name from the folder of the deck on.
-    function whole(name) result(path)
-      character(len=*), intent(in) :: name
-      character(len=:), allocatable :: path
-
-      path = name
-      if (index(name, '/') /= 1) path = deck%source%folder // name
-    end function whole
 
     !> Adds names, each with `nul` behind it, without their first letters.
     subroutine add_names(names, letters)
@@ -74,7 +65,7 @@ contains
       do i = size(sweep%texts) + 1, size(more)
         more(i)%text = names(at:at - 2 + index(names(at:), nul))
         at = at + len(more(i)%text) + 1
-        if (letters > 0 .and. index(more(i)%text, whole('')) == 1) &
+        if (letters > 0 .and. index(more(i)%text, deck%source%folder) == 1) &
           more(i)%text = more(i)%text(letters + 1:)
       end do
       call move_alloc(more, sweep%texts)
@@ -83,15 +74,12 @@ contains
     !> Notes the checksum of the names and sizes of the files.
     subroutine note_files()
       integer(long) :: digest(size(sweep%texts), 2)
-      character(len=8) :: number
-      integer :: row, i
+      integer :: i
 
       do i = 1, size(sweep%texts)
-        digest(i, :) = [checksum(sweep%texts(i)%text), bytes_of(whole(sweep%texts(i)%text))]
+        digest(i, :) = [checksum(sweep%texts(i)%text), bytes_of(deck%placed(sweep%texts(i)%text))]
       end do
-      write (number, '(z8.8)') checksum(reshape(digest, [size(digest)]))
-      row = deck%row_of('sweep', 'words')
-      deck%values(row)%remark = 'checksum ' // number
+      call deck%note_checksum('sweep', 'words', checksum(reshape(digest, [size(digest)])))
     end subroutine note_files
 
   end subroutine take_texts

@@ -1,8 +1,44 @@
-/* Failures and OpenBLAS, by way of the calls of this system; see `c_library`. */
+/* Reading and writing, failures and OpenBLAS, by way of the calls that all systems have; see
+   `c_library`. */
+#ifndef _POSIX_C_SOURCE
+#define _POSIX_C_SOURCE 200809L
+#endif
 #include <errno.h>
 #include <string.h>
+#include <sys/types.h>
+#include <unistd.h>
 
 #include "system_calls.h"
+
+long snapin_read(int fd, char *bytes, long count) {
+  long done = 0;
+  while (done < count) {
+    ssize_t got = read(fd, bytes + done, count - done);
+    if (got < 0 && errno == EINTR)
+      continue;
+    if (got < 0)
+      return -errno;
+    if (got == 0)
+      break;
+    done += got;
+  }
+  return done;
+}
+
+int snapin_write(int fd, const char *bytes, long count) {
+  while (count > 0) {
+    ssize_t done = write(fd, bytes, count);
+    if (done < 0 && errno == EINTR)
+      continue;
+    if (done < 0)
+      return -errno;
+    bytes += done;
+    count -= done;
+  }
+  return 0;
+}
+
+int snapin_seek(int fd, long place) { return lseek(fd, place, SEEK_SET) < 0 ? -errno : 0; }
 
 /* The sort of a failure, or 0 for others, and the system's message. */
 int snapin_explain(int status, char *reason, int size) {

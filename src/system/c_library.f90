@@ -6,7 +6,7 @@ module c_library
   use failure, only: failure_t, fail, file_trouble
   implicit none
   private
-  public :: c_open, c_read, c_write, c_sync, c_sync_in, c_sync_above, c_close, c_size, c_cut, &
+  public :: c_open, c_read, c_write, c_sync, c_sync_in, c_sync_above, c_close, c_size, c_cut, c_seek, &
     c_make_folder, c_current_folder, c_own_path, c_is_absolute, c_use_slashes, c_lock, c_kind, &
     c_same_file, c_rename, c_remove, &
     c_remove_folder, c_beginning, c_free_disk, &
@@ -86,6 +86,13 @@ module c_library
       integer(c_int), value :: descriptor
       integer(c_long), value :: length, place
     end function c_cut
+
+    !> Sets where the next reading begins [bytes from the start].
+    integer(c_int) function c_seek(descriptor, place) bind(c, name='snapin_seek')
+      import :: c_int, c_long
+      integer(c_int), value :: descriptor
+      integer(c_long), value :: place
+    end function c_seek
 
     integer(c_int) function c_make_folder(path) bind(c, name='snapin_make_folder')
       import :: c_char, c_int

@@ -1,10 +1,10 @@
-!> The files that a pattern with *, ? or [...] stands for; sizes and parts of files.
+!> The files that a pattern with *, ? or [...] stands for, and sizes of files.
 module file_names
-  use, intrinsic :: iso_c_binding, only: c_char, c_int, c_long, nul => c_null_char
+  use, intrinsic :: iso_c_binding, only: c_char, c_long, nul => c_null_char
   use kinds, only: long
   implicit none
   private
-  public :: names_like, is_pattern, bytes_of, c_read_at
+  public :: names_like, is_pattern, bytes_of
 
   interface
     !> Writes the names of the files that a pattern matches, each with `nul` behind it, into `names`
@@ -22,16 +22,6 @@ module file_names
       import :: c_char, c_long
       character(kind=c_char), intent(in) :: path(*)
     end function c_bytes_of
-
-    !> Reads from a place [bytes from the start] of an open file; the number of bytes read, fewer
-    !> than `count` only at the end of the file.
-    integer(c_long) function c_read_at(descriptor, bytes, count, place) &
-        bind(c, name='snapin_read_at')
-      import :: c_char, c_int, c_long
-      integer(c_int), value :: descriptor
-      character(kind=c_char), intent(inout) :: bytes(*)
-      integer(c_long), value :: count, place
-    end function c_read_at
   end interface
 
 contains

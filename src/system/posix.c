@@ -76,34 +76,6 @@ int snapin_open(const char *path, int how) {
 }
 
 /* Number of bytes read; fewer than asked for only at the end. */
-long snapin_read(int fd, char *bytes, long count) {
-  long done = 0;
-  while (done < count) {
-    ssize_t got = read(fd, bytes + done, count - done);
-    if (got < 0 && errno == EINTR)
-      continue;
-    if (got < 0)
-      return -errno;
-    if (got == 0)
-      break;
-    done += got;
-  }
-  return done;
-}
-
-int snapin_write(int fd, const char *bytes, long count) {
-  while (count > 0) {
-    ssize_t done = write(fd, bytes, count);
-    if (done < 0 && errno == EINTR)
-      continue;
-    if (done < 0)
-      return -errno;
-    bytes += done;
-    count -= done;
-  }
-  return 0;
-}
-
 /* On file systems that do not support fsync, nothing more can be done. */
 int snapin_sync(int fd) {
   if (fsync(fd) == 0 || errno == EINVAL || errno == ENOTSUP || errno == ENOSYS)

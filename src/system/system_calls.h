@@ -16,6 +16,9 @@ typedef void (*procedure)(void);
 /* A procedure of a library that may be there, or NULL. */
 procedure found_procedure(const char *name);
 
+/* Reads count bytes, fewer only at the end of the file; returns their number, or minus an errno. */
+long snapin_read(int fd, char *bytes, long count);
+
 /* Has the system end this process by a signal when its parent ends, if the system can. */
 void end_with_parent_by(int signal);
 

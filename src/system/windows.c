@@ -120,30 +120,6 @@ int snapin_open(const char *path, int how) {
   }
 }
 
-long snapin_read(int fd, char *bytes, long count) {
-  long done = 0;
-  while (done < count) {
-    int got = _read(fd, bytes + done, count - done);
-    if (got < 0)
-      return -errno;
-    if (got == 0)
-      break;
-    done += got;
-  }
-  return done;
-}
-
-int snapin_write(int fd, const char *bytes, long count) {
-  while (count > 0) {
-    int done = _write(fd, bytes, count);
-    if (done < 0)
-      return -errno;
-    bytes += done;
-    count -= done;
-  }
-  return 0;
-}
-
 /* The names in a folder are the file system's own care. */
 int snapin_sync(int fd) {
   BY_HANDLE_FILE_INFORMATION about;

@@ -1,9 +1,7 @@
-/* Names, sizes and parts of files on Windows, whose patterns have * and ? in the last part of a
+/* Names and sizes of files on Windows, whose patterns have * and ? in the last part of a
    path. `file_names` documents each function. */
 #define WIN32_LEAN_AND_MEAN
 #include <windows.h>
-#include <errno.h>
-#include <io.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -49,19 +47,4 @@ long snapin_names_like(const char *pattern, char *names, long size) {
 long snapin_bytes_of(const char *path) {
   struct _stat64 file;
   return _stat64(path, &file) == 0 ? (long)file.st_size : -1;
-}
-
-long snapin_read_at(int fd, char *bytes, long count, long place) {
-  long done = 0;
-  if (_lseeki64(fd, place, SEEK_SET) < 0)
-    return -errno;
-  while (done < count) {
-    int got = _read(fd, bytes + done, count - done);
-    if (got < 0)
-      return -errno;
-    if (got == 0)
-      break;
-    done += got;
-  }
-  return done;
 }

@@ -247,7 +247,7 @@ WRONG = {
     "blank": ('"bodies.stiffness force.hamaker"\n1e9\n', "cases.csv:1: a name with a blank"),
     "open quote": ('bodies.stiffness\n"1e9\n', 'cases.csv:2: "1e9 is not a number'),
     "whole": ("numerics.nodes\n100\n200\n2.5\n", "case 3: 2.5"),
-    "folder": ({"file": "."}, ".: Is a directory"),
+    "folder": ({"file": "."}, "cannot be"),
     "twice": ({**GRID, "key": ["force.hamaker", "Force.Hamaker"]}, "is there twice"),
     "column twice": ("bodies.stiffness, bodies.stiffness\n1e9, 2e9\n",
                      "'bodies.stiffness' is there twice"),

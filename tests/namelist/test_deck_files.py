@@ -49,7 +49,11 @@ def test_a_table_is_a_file_since_a_pipe_is_read_once(snapin, tmp_path, name):
     """A pipe without a writer was waited for, without a word."""
     os.mkfifo(tmp_path / "pipe")
     decks = {"force.nml": f"&tabulated file = '{name}', tail_exponent = 3 /\n",
-             "sweep.nml": f"{FORCE}&sweep file = '{name}' /\n"}
+             "sweep.nml": f"{FORCE}&sweep file = '{name}' /\n",
+             "curves.nml": f"{FORCE}&measurement file = '{name}', curves = '1', curve = 1, "
+                           "columns = '2', '3', spring_constant = 1 /\n"
+                           "&fit parameters = 'force.hamaker', 'measurement.contact_point' /\n"
+                           "&equilibrium_path h0_end = -1e-9 /\n"}
     for deck, group in decks.items():
         (tmp_path / deck).write_text(BODIES + group + LOADING)
         done = snapin("--check", deck, cwd=tmp_path)
