@@ -13,7 +13,7 @@ module fit_run
   use measured_curve, only: measured_curve_t
   use measured_jumps, only: find_jump, find_far, off_baseline
   use measured_checks, only: check_measured
-  use measured_loads, only: check_loads, other_order
+  use measured_loads, only: check_loads
   use turn_rest, only: leave_out_rest
   use noise, only: white_noise, rounding_of
   use fit_starts, only: character_t, character_of, starts_like
@@ -26,8 +26,8 @@ module fit_run
   use fit_errors, only: fitted_t, least_effect
   use held_numbers, only: held_t, test_held
   use baseline_test, only: lacking_t, test_baseline
-  use second_look, only: chance_of, rarely
-  use fit_alternatives, only: alternative_t, find_alternative, contact_slope
+  use fit_alternatives, only: alternative_t, find_alternative
+  use fit_refusals, only: check_fit
   use derived_numbers, only: derived_t, derive_numbers
   use theory_fits, only: theory_fit_t, fit_theories, suggested_characters
   implicit none
@@ -55,8 +55,6 @@ module fit_run
 
   !> Smallest noise over the largest signal, for computed signals.
   real(wp), parameter :: least_noise = 1.0e-9_wp
-  !> Chi squared per degree of freedom of data without contact, at most.
-  real(wp), parameter :: bare = 2
   !> Works of adhesion of further starts, over the deck's.
   real(wp), parameter :: works(*) = [0.2_wp, 5.0_wp]
 
@@ -96,7 +94,7 @@ contains
     end if
     outcome%resolved = models%path%left_out <= too_much*numerics%accuracy
     outcome%curve = curve
-    call check_fit(outcome%trouble)
+    call check_fit(curve, model, outcome%fitted, suggestion, outcome%trouble)
     if (allocated(outcome%trouble)) return
     call test_held(curve, outcome%fitted%value, numerics, wider, problem%law%adhesion > 0, &
       outcome%held)
@@ -250,86 +248,6 @@ contains
       name = ''
       if (size(held) > 0) name = held(maxloc(abs(held%asked), 1))%name
     end function asked_most
-
-    !> Sets `trouble` if the search did not end in a fit.
-    subroutine check_fit(trouble)
-      character(len=:), allocatable, intent(out) :: trouble
-      integer :: i
-
-      associate (fitted => outcome%fitted)
-        if (.not. fitted%has_path) then
-          trouble = 'with the values of the deck the path could not be solved over the range ' // &
-            'of the data; start from other values, or fit a part of the data' // suggestion
-          return
-        else if (.not. fitted%has_curve) then
-          trouble = no_contact()
-          return
-        end if
-        if (.not. allocated(fitted%effect)) then
-          trouble = 'the search ended where the path has no derivatives; start from other values' &
-            // suggestion
-          return
-        end if
-        call check_gain(trouble)
-        if (allocated(trouble)) return
-        if (.not. fitted%lack%is_noise() .and. any(fitted%effect <= least_effect .or. &
-          is_at_end(curve%unknown, fitted%value))) then
-          trouble = other_order(curve, model)
-          if (len(trouble) > 0) then
-            trouble = trouble // suggestion
-            return
-          end if
-          deallocate (trouble)
-        end if
-        do i = 1, size(fitted%effect)
-          if (fitted%effect(i) > least_effect) cycle
-          trouble = curve%unknown(i)%name // &
-            ' has no effect on this curve near the best value found, ' // &
-            rounded(fitted%value(i)) // '; remove it from parameters, or give a prior' // suggestion
-          return
-        end do
-      end associate
-    end subroutine check_fit
-
-    !> What the data show where the baseline alone describes them as well as the model.
-    function no_contact() result(words)
-      character(len=:), allocatable :: words
-      real(wp) :: left(size(curve%data%sample), 1), slope
-      integer :: freedom
-
-      left(:, 1) = curve%data%measured%signal(curve%data%sample)
-      call curve%data%clean(left)
-      freedom = max(1, size(left) - curve%data%baseline_numbers())
-      slope = contact_slope(curve)
-      words = 'no contact like that of the model in the data: wherever it is assumed, the model ' &
-        // 'describes them no better than the baseline alone, whose residuals are ' // &
-        rounded(sqrt(sum(left**2)/freedom)) // ' times the noise; towards the other body the ' // &
-        'load rises by ' // rounded(slope) // ' N per metre of the travel at most, ' // &
-        rounded(100*slope/curve%spring) // ' % of spring_constant'
-      words = words // suggestion
-      if (len(suggestion) == 0) words = words // ', and no closed form of a contact describes ' // &
-        'them either; check spring_constant, the radius, and whether the base came near enough'
-    end function no_contact
-
-    !> Sets `trouble` if the baseline alone describes the data as well as the model, whose contact
-    !> may be at any of many samples.
-    subroutine check_gain(trouble)
-      character(len=:), allocatable, intent(inout) :: trouble
-      real(wp) :: left(size(curve%data%sample), 1)
-      integer :: columns
-
-      left(:, 1) = curve%data%measured%signal(curve%data%sample)
-      call curve%data%clean(left)
-      columns = 2*((size(curve%unknown) + 1)/2)
-      associate (fitted => outcome%fitted)
-        if (rarely(chance_of(sum(left**2) - fitted%chi_squared, fitted%chi_squared/ &
-          max(1, fitted%freedom), columns, size(left)))) return
-        trouble = 'no contact in the data: the baseline alone leaves a chi squared of ' // &
-          rounded(sum(left**2)) // ', and the model ' // rounded(fitted%chi_squared) // ', with ' &
-          // rounded(real(fitted%freedom, wp)) // ' degrees of freedom'
-        if (.not. sum(left**2) < bare*fitted%freedom) trouble = no_contact()
-      end associate
-    end subroutine check_gain
 
   end subroutine run_fit
 
