@@ -15,7 +15,7 @@ module case_queue
   private
   public :: case_queue_t
 
-  !> The first cases of a sweep of fits, of which one shows the others where to start.
+  !> Number of the first cases of a sweep of fits, of which one shows the others where to start.
   integer, parameter :: most_first = 5
 
   !> The cases of a sweep: number of cases handed out, cases that wait for the rows before theirs,
@@ -40,6 +40,7 @@ module case_queue
     procedure :: begin
     procedure, private :: next_row
     procedure, private :: waits
+    procedure, private :: learn
     procedure, private :: has
     procedure, private :: add
   end type case_queue_t
@@ -186,10 +187,7 @@ contains
       associate (first => self%waiting(mod(self%written + 1, size(self%waiting))))
         if (first%number /= self%written + 1) exit
         call write_case(self, first)
-        if (allocated(self%scene%fit) .and. .not. allocated(self%like) .and. first%number <= &
-          most_first .and. first%verdict == described) self%like = &
-          values_of_fit(first%numbers(size(first%numbers) - count_of_fit(self%scene) + 1:), &
-          size(self%scene%fit%unknown))
+        if (allocated(self%scene%fit)) call self%learn(first)
         call self%tally%add(first)
         first%number = 0
         deallocate (first%numbers, first%values, first%costs, first%text)
@@ -197,6 +195,16 @@ contains
       self%written = self%written + 1
     end do
   end subroutine add
+
+  !> Keeps the values of the first of the first curves that is described.
+  pure subroutine learn(self, case)
+    class(case_queue_t), intent(inout) :: self
+    type(case_t), intent(in) :: case
+
+    if (allocated(self%like) .or. case%number > most_first .or. case%verdict /= described) return
+    self%like = values_of_fit(case%numbers(size(case%numbers) - count_of_fit(self%scene) + 1:), &
+      size(self%scene%fit%unknown))
+  end subroutine learn
 
   !> Writes the row of a case.
   subroutine write_case(self, case)

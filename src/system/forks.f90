@@ -18,8 +18,6 @@ module forks
   !> the pipes to process 0, or from and to each other process.
   type, extends(team_t) :: forked_team_t
     integer(c_int), allocatable, private :: reading(:), writing(:), child(:)
-    !> Whether a process is gone that nobody has dismissed.
-    logical :: lost = .false.
   contains
     procedure :: fork
     procedure :: send
@@ -120,16 +118,13 @@ contains
     from = -1
     i = 1
     if (self%rank == 0) i = c_ready(self%reading, size(self%reading, kind=c_int)) + 1
-    self%lost = i < 1
-    if (self%lost) return
+    if (i < 1) return
     allocate (character(len=letters) :: bytes)
-    self%lost = c_read(self%reading(i), bytes, int(len(bytes), c_long)) < len(bytes)
-    if (self%lost) return
+    if (c_read(self%reading(i), bytes, int(len(bytes), c_long)) < len(bytes)) return
     length = transfer(bytes, length)
     deallocate (bytes)
     allocate (character(len=letters*length(1)) :: bytes)
-    self%lost = c_read(self%reading(i), bytes, int(len(bytes), c_long)) < len(bytes)
-    if (self%lost) return
+    if (c_read(self%reading(i), bytes, int(len(bytes), c_long)) < len(bytes)) return
     call record%fill(transfer(bytes, length, int(length(1))))
     from = merge(i, 0, self%rank == 0)
   end subroutine receive
