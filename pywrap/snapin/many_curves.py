@@ -75,7 +75,7 @@ class Fits:
         """Return a figure of Matplotlib with maps of columns of the table, by default of work of
         adhesion, modulus, contact height, Tabor's parameter and verdict, over the places of the
         curves or, with so many `columns`, their order."""
-        from .curve_maps import draw_maps
+        from .plots.curve_map import draw_maps
 
         return draw_maps(self.table, self.units, values, columns=columns)
 

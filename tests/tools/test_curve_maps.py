@@ -2,10 +2,9 @@
 
 import numpy as np
 import pytest
-from snapin import curve_maps
 from snapin.arguments import SnapinError
+from snapin.plots.curve_map import draw_curve_map, draw_maps
 
-pytest.importorskip("matplotlib")
 NUMBERS = ("measurement.x", "measurement.y", "fitted_work_of_adhesion", "excess")
 # A grid of 6 by 5 curves; a hill, a spike, and fits that describe nothing.
 SHAPE, SPIKE, BAD, NONE = (5, 6), 8, 20, 21
@@ -31,8 +30,8 @@ def table():
 
 def shown(rows, **options):
     """The values in colour of the first panel, in the order of the curves."""
-    figure = curve_maps.draw_maps(rows, {"fitted_work_of_adhesion": "J/m^2"},
-                                  ["fitted_work_of_adhesion", "verdict"], **options)
+    figure = draw_maps(rows, {"fitted_work_of_adhesion": "J/m^2"},
+                       ["fitted_work_of_adhesion", "verdict"], **options)
     coloured = [of for of in figure.axes[0].collections if of.get_cmap().name == "viridis"]
     return figure, np.ma.filled(coloured[-1].get_array(), np.nan).ravel()
 
@@ -69,18 +68,16 @@ def test_without_places_the_number_of_columns_is_needed():
 
 
 def test_a_folder_is_drawn_and_its_worst_are_named(tmp_path, capsys):
-    from snapin.plots.curve_map import draw_curve_map as draw
-
     rows = table()
     names = rows.dtype.names
     lines = ["# title: ", "# measurement.x [m] a key", "# fitted_work_of_adhesion [J/m^2] it",
              ",".join(names)] + [",".join(map(str, row.tolist())) for row in rows]
     (tmp_path / "sweep.csv").write_text("\n".join(lines) + "\n")
     (tmp_path / "summary.nml").write_text("&summary\n  converged = .true.\n/\n&cost\n/\n")
-    figure = draw(tmp_path, worst=2)
+    figure = draw_curve_map(tmp_path, worst=2)
     assert [axes.get_title() for axes in figure.axes[:2]] == ["work of adhesion", "verdict"]
     said = capsys.readouterr().out.splitlines()
     assert said == ["curve 22: measurement.file = c21.csv: refused; no contact",
                     "curve 21: measurement.file = c20.csv: not_described; the residual"]
     with pytest.raises(Exception, match="there is no column 'tabor'"):
-        draw(tmp_path, value=["tabor"])
+        draw_curve_map(tmp_path, value=["tabor"])
