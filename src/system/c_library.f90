@@ -6,9 +6,9 @@ module c_library
   use failure, only: failure_t, fail, file_trouble
   implicit none
   private
-  public :: c_open, c_read, c_write, c_sync, c_sync_in, c_sync_above, c_close, c_size, c_cut, c_seek, &
-    c_make_folder, c_current_folder, c_own_path, c_is_absolute, c_use_slashes, c_lock, c_kind, &
-    c_same_file, c_rename, c_remove, &
+  public :: c_open, c_read, c_write, c_sync, c_sync_in, c_sync_above, c_close, c_size, c_cut, &
+    c_seek, c_make_folder, c_current_folder, c_own_path, c_is_absolute, c_use_slashes, c_lock, &
+    c_kind, c_same_file, c_rename, c_remove, &
     c_remove_folder, c_beginning, c_free_disk, &
     c_is_terminal, c_prepare, c_end_with_parent, c_pause, c_openblas_threads, &
     c_openblas_end_threads, c_openblas_config, c_build_id, explain, check_status, nul, as_input, &

@@ -11,6 +11,7 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 from snapin import deck_text, results
+from snapin.result_text import namelist_groups
 from support.processes import HANG, threaded
 
 JKR = 1.5 * math.pi  # Pull-off of JKR theory in units of gamma R.
@@ -131,7 +132,7 @@ def read_groups(path):
     text = re.sub(r" ! checksum \w+$", "", path.read_text(), flags=re.MULTILINE)
     return {
         name: {key: values[0] if len(values) == 1 else values for key, values in group.items()}
-        for name, group in results._namelist(text).items()}
+        for name, group in namelist_groups(text).items()}
 
 
 class Run(NamedTuple):

@@ -20,7 +20,8 @@ from support.wrapper_registry import GATHERED, LEFT_OUT, REGISTRY
 # Modules of checks, which the callables of the others go through, of commands, and of what has
 # decks and files for arguments.
 CHECKS = {"snapin.arguments", "snapin.command", "snapin.convert", "snapin.curve_fit",
-          "snapin.deck", "snapin.many_curves", "snapin.results"}
+          "snapin.deck", "snapin.many_curves", "snapin.result_text",
+          "snapin.results"}
 
 
 def public_callables():

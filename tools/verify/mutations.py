@@ -38,6 +38,7 @@ import numpy as np
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 sys.path.insert(0, str(ROOT / "pywrap"))
 from snapin import results  # noqa: E402
+from snapin.result_text import namelist_groups  # noqa: E402
 from snapin.command import as_command  # noqa: E402
 
 # Processor seconds of a process, after which a change has made it endless.
@@ -264,7 +265,7 @@ def _read(folder):
             if path.suffix == ".csv" and path.name != "costs.csv":
                 found[path.name] = results.read_table(path.parent, path.name)
             elif path.name == "summary.nml":
-                for group, keys in results._namelist(path.read_text()).items():
+                for group, keys in namelist_groups(path.read_text()).items():
                     if group != "cost":
                         found[f"summary {group}"] = {key: np.array(value)
                                                      for key, value in keys.items()}

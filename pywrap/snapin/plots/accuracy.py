@@ -18,7 +18,8 @@ import pathlib
 import numpy as np
 from matplotlib.figure import Figure
 
-from ..results import ResultFiles, ResultsError, units_of
+from ..result_text import units_of
+from ..results import ResultFiles, ResultsError
 from .drawing import (
     BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILION, Picture, entitle, title_of)
 

@@ -20,7 +20,8 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, MaxNLocator
 from matplotlib.tri import Triangulation
 
-from ..results import ResultFiles, ResultsError, units_of
+from ..result_text import units_of
+from ..results import ResultFiles, ResultsError
 from .drawing import COLOURS, GREY, VERMILION, Picture, entitle, has_fits, title_of
 
 # The field's words for columns.
