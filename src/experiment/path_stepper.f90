@@ -235,7 +235,7 @@ contains
       end if
     end associate
     if (.not. event%converged) call self%span%solve_at_h0(self%solver_t, h0, state, event%converged)
-    call remember(position, state, mesh, jumped, foretold=state%iterations == 1)
+    call remember(position, state, mesh, jumped, predicted=state%iterations == 1)
   end subroutine solve_on_piece
 
 end module path_stepper

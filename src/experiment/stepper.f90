@@ -108,21 +108,21 @@ contains
   end function grid
 
   !> Makes `state` the position's present state. The past is removed if the mesh changes or the
-  !> bodies jumped. foretold: the state was predicted from the past and needed no correction; it is
+  !> bodies jumped. predicted: the state was predicted from the past and needed no correction; it is
   !> not added to the past.
-  subroutine remember(position, state, mesh, jumped, foretold)
+  subroutine remember(position, state, mesh, jumped, predicted)
     type(branch_point_t), intent(inout) :: position
     type(state_t), intent(in) :: state
     integer, intent(in) :: mesh
     logical, intent(in) :: jumped
-    logical, intent(in), optional :: foretold
+    logical, intent(in), optional :: predicted
     integer :: j
 
     if (mesh /= position%mesh .or. jumped) position%held = 0
     position%mesh = mesh
     call move_to(position, state)
-    if (present(foretold)) then
-      if (foretold) return
+    if (present(predicted)) then
+      if (predicted) return
     end if
     ! After a turn of the experiment the same values of h0 occur again.
     do j = 1, position%held

@@ -149,7 +149,7 @@ contains
     integer, intent(in) :: way
 
     residual = 0
-    if (.not. self%curve%response%way(way)%foretold) return
+    if (.not. self%curve%response%way(way)%predicted) return
     residual = missed
     if (self%curve%response%way(way)%main == 0) return
     residual = self%curve%data%measured%facing*(self%curve%jump_of(value, way) - &

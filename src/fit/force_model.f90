@@ -58,12 +58,12 @@ module force_model
 
   !> The branches of a way in order, and the position of the drive at the end of each. The main
   !> jump, that with the largest change of load, starts from the end of branch number `main` of
-  !> these; 0: there is none. foretold = .false.: the theory does not predict the jump.
+  !> these; 0: there is none. predicted = .false.: the theory does not predict the jump.
   type :: way_t
     integer, allocatable :: branch(:)
     real(wp), allocatable :: leaves_at(:)
     integer :: main = 0
-    logical :: foretold = .true.
+    logical :: predicted = .true.
   end type way_t
 
   type :: response_t

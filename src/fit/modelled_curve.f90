@@ -153,7 +153,7 @@ contains
     real(wp), allocatable :: rate(:)
 
     z = nan
-    if (self%response%way(way)%main == 0 .or. .not. self%response%way(way)%foretold) return
+    if (self%response%way(way)%main == 0 .or. .not. self%response%way(way)%predicted) return
     call self%response%jump_from(way, position, rate, load)
     z = self%number_of(value, of_contact_point, self%contact_point) + &
       self%data%measured%facing*position
@@ -168,7 +168,7 @@ contains
     real(wp), allocatable :: rate(:)
 
     by = 0
-    if (.not. self%response%way(way)%foretold .or. self%response%way(way)%main == 0) return
+    if (.not. self%response%way(way)%predicted .or. self%response%way(way)%main == 0) return
     call self%response%jump_from(way, position, rate, load)
     by = self%data%measured%facing*unfolded(self%unknown%role, rate, self%data%measured%facing, &
       0.0_wp, load/self%number_of(value, of_spring, self%spring)**2)

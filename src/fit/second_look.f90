@@ -263,7 +263,7 @@ contains
       before = curve%signal_of(value, at, side=1)
       after = curve%signal_of(value, at, side=2)
       i = minloc(abs(data%measured%z(at) - curve%jump_of(value, way)), 1)
-      if (.not. curve%response%way(way)%foretold) i = size(at)/2
+      if (.not. curve%response%way(way)%predicted) i = size(at)/2
       associate (change => after(i) - before(i))
         before = merge((bare - before)**2/unit, 0.0_wp, .not. data%measured%skipped(at))
         after = merge((bare - after)**2/unit, 0.0_wp, .not. data%measured%skipped(at))

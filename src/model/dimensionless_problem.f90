@@ -39,9 +39,9 @@ module dimensionless_problem
   !> Bodies are in contact, as in the paper's Fig. 6, at gaps below this multiple of the gap at
   !> rest.
   real(wp), parameter :: contact_gap = 1.1_wp
-  !> Distance from the gap at rest to that of largest tension, over the range (depth of the well
-  !> over largest tension), above which the tension is as large from contact to there: 0.2 for the
-  !> Lennard-Jones law, 0.35 for Morse's, 0.9 and more for a step.
+  !> Distance from the equilibrium separation to that of largest tension, over the range (depth of
+  !> the well over largest tension), above which the tension is as large from contact to there: 0.2
+  !> for the Lennard-Jones law, 0.35 for Morse's, 0.9 and more for a step.
   real(wp), parameter :: even = 0.5_wp
   !> Width of the neck times sigma, lateral units.
   real(wp), parameter :: neck = 0.375_wp
@@ -153,8 +153,8 @@ contains
       even*range_of(problem)
   end function tension_is_even
 
-  !> A gap beyond which bodies hardly deform: twice the gap at which parabolas jump into contact
-  !> under an r^-3 attraction, (37). For any shape and attractive law, the deformation there is
+  !> A gap beyond which bodies hardly deform: twice the gap at which parabolas snap in under an r^-3
+  !> attraction, (37). For any shape and attractive law, the deformation there is
   !> about a tenth of that at the jump. The gap is outside a step of the law.
   pure real(wp) function calm_gap(problem) result(gap)
     type(problem_t), intent(in) :: problem
@@ -167,7 +167,7 @@ contains
   end function calm_gap
 
   !> The largest gap at which bodies deform by more than the fraction `left` of the deformation at
-  !> the jump into contact; 0 if there is none. Over the zone of interaction, sqrt(gap) wide for a
+  !> snap-in; 0 if there is none. Over the zone of interaction, sqrt(gap) wide for a
   !> parabola, the law's slope deforms bodies by coupling*slope*width of their gap, times a
   !> constant. The constant makes the result one at (37), the gap of the jump under an r^-3
   !> attraction.

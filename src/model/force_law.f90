@@ -76,8 +76,8 @@ module force_law
     character(len=200) :: caveat = ''
 
     !> Set by the scan of the law (`law_scan`), or by the law if closed forms are known.
-    !> adhesion: tension integrated from the gap at rest to the next zero of the pressure, in units
-    !> of length*pressure_unit, which sets the scale of the contact edge; 0 for a law that does not
+    !> adhesion: tension integrated from the equilibrium separation to the next zero of the
+    !> pressure, in units of length*pressure_unit, which sets the scale of the contact edge; 0 for a law that does not
     !> attract. work: the work of adhesion, from rest to infinity; less than adhesion if a barrier
     !> is outside, negative if contact is only metastable.
     real(wp) :: adhesion = 0, work = 0

@@ -20,8 +20,8 @@ module law_scan
   real(wp), parameter :: nearest = 1.0e-2_wp, farthest = 1.0e5_wp, lowest = -60
   integer, parameter :: geometric = 3000, even = 3000
   !> Pressure below which a law has ended, relative to the largest tension or the unit; and the
-  !> number of lengths beyond the gap at rest after which a tail does not matter, where a repulsion
-  !> of the ninth power has ended.
+  !> number of lengths beyond the equilibrium separation after which a tail does not matter, where a
+  !> repulsion of the ninth power has ended.
   real(wp), parameter :: ended = 1.0e-16_wp, longest = 59
   !> Pressures below this count as zero.
   real(wp), parameter :: vanished = 1.0e-100_wp
@@ -95,8 +95,8 @@ contains
     if (i > 0 .and. i < size(gap)) law%range = min(law%range, gap(i + 1))
   end subroutine find_scales
 
-  !> Sets adhesion and work of a law without a gap at rest, whose attraction ends at a gap, or
-  !> nowhere. The work of adhesion is the energy at contact. That of a singular law is infinite, and
+  !> Sets adhesion and work of a law without an equilibrium separation, whose attraction ends at a
+  !> gap, or nowhere. The work of adhesion is the energy at contact. That of a singular law is infinite, and
   !> work is 0; adhesion is then only a scale, from a gap of one length, or half the gap at which
   !> the attraction ends.
   subroutine find_adhesion_without_rest(law, ends)

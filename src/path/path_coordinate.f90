@@ -15,7 +15,7 @@ module path_coordinate
   private
   public :: path_control, coordinate_of, axis_coordinate, axis_gap_rate
 
-  !> The singular gap of the logarithm, over the gap at rest.
+  !> The singular gap of the logarithm, over the equilibrium separation.
   real(wp), parameter :: singular = 0.9_wp
 
 contains

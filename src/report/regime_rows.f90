@@ -37,7 +37,7 @@ contains
 
   !> Adds the regime to the summary. The contact radius is that of the theories, at which tension
   !> begins: the radius of largest tension or, where the tension is even, as under a step, that of
-  !> contact. In the theories touching bodies have no separation, here that of the gap at rest;
+  !> contact. In the theories touching bodies have no separation, here the equilibrium separation;
   !> indentations count from there, and their errors are relative to a^2/R.
   subroutine summarise_regime(problem, places, summary)
     type(problem_t), intent(in) :: problem
