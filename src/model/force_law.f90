@@ -77,9 +77,9 @@ module force_law
 
     !> Set by the scan of the law (`law_scan`), or by the law if closed forms are known.
     !> adhesion: tension integrated from the equilibrium separation to the next zero of the
-    !> pressure, in units of length*pressure_unit, which sets the scale of the contact edge; 0 for a law that does not
-    !> attract. work: the work of adhesion, from rest to infinity; less than adhesion if a barrier
-    !> is outside, negative if contact is only metastable.
+    !> pressure, in units of length*pressure_unit, which sets the scale of the contact edge; 0 for a
+    !> law that does not attract. work: the work of adhesion, from rest to infinity; less than
+    !> adhesion if a barrier is outside, negative if contact is only metastable.
     real(wp) :: adhesion = 0, work = 0
     !> Gap of largest tension, which defines the contact edge; 0 if there is none.
     real(wp) :: edge_gap = 0

@@ -96,9 +96,9 @@ contains
   end subroutine find_scales
 
   !> Sets adhesion and work of a law without an equilibrium separation, whose attraction ends at a
-  !> gap, or nowhere. The work of adhesion is the energy at contact. That of a singular law is infinite, and
-  !> work is 0; adhesion is then only a scale, from a gap of one length, or half the gap at which
-  !> the attraction ends.
+  !> gap, or nowhere. The work of adhesion is the energy at contact. That of a singular law is
+  !> infinite, and work is 0; adhesion is then only a scale, from a gap of one length, or half the
+  !> gap at which the attraction ends.
   subroutine find_adhesion_without_rest(law, ends)
     class(force_law_t), intent(inout) :: law
     real(wp), intent(in) :: ends
