@@ -51,18 +51,22 @@ contains
     end do
   end function printable
 
-  !> `text` as a namelist string: in single quotes, quotes inside doubled.
-  pure function quoted(text) result(literal)
+  !> `text` as a namelist string: in single quotes, or between two of `mark`; those inside doubled.
+  pure function quoted(text, mark) result(literal)
     character(len=*), intent(in) :: text
+    character, intent(in), optional :: mark
     character(len=:), allocatable :: literal
+    character :: quote
     integer :: i
 
-    literal = "'"
+    quote = "'"
+    if (present(mark)) quote = mark
+    literal = quote
     do i = 1, len(text)
       literal = literal // text(i:i)
-      if (text(i:i) == "'") literal = literal // "'"
+      if (text(i:i) == quote) literal = literal // quote
     end do
-    literal = literal // "'"
+    literal = literal // quote
   end function quoted
 
   !> The text inside the quotes of `literal`, with doubled quotes made single.

@@ -14,7 +14,7 @@ module results
   use tables, only: table_t, cells, columns_of_curve, curve_row, columns_of_profiles, write_profile
   use result_folder, only: result_folder_t
   use result_tables, only: columns_of
-  use text, only: word_of
+  use text, only: quoted, word_of
   use summary, only: summary_t, summary_text
   use progress, only: progress_t
   implicit none
@@ -174,16 +174,9 @@ contains
   pure function quoted_cell(text) result(cell)
     character(len=*), intent(in) :: text
     character(len=:), allocatable :: cell
-    integer :: i
 
     cell = text
-    if (scan(text, ',"') == 0) return
-    cell = '"'
-    do i = 1, len(text)
-      cell = cell // text(i:i)
-      if (text(i:i) == '"') cell = cell // '"'
-    end do
-    cell = cell // '"'
+    if (scan(text, ',"') > 0) cell = quoted(text, '"')
   end function quoted_cell
 
   !> A text as a cell of a table: without commas and control characters.

@@ -4,7 +4,6 @@ A number is within its error, or outside but told by a warning about the numbers
 silence. A relative at which the right answer itself is not decided is not judged.
 """
 
-import math
 import random
 from typing import NamedTuple
 
@@ -74,8 +73,3 @@ def numbers_verdict(job, text, told, off, absent=()):
     judged.within = len(off) - len(outside)
     (judged.told if told else judged.silent).extend([*outside, *absent])
     return judged
-
-
-def logarithmic(rng, low, high):
-    """A number whose logarithm is uniform."""
-    return math.exp(rng.uniform(math.log(low), math.log(high)))

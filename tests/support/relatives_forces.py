@@ -9,9 +9,10 @@ import math
 import numpy as np
 from support.decks_in_units import run_deck
 from support.reference import Path
-from support.relatives import Judged, is_told, logarithmic, numbers_verdict
+from support.relatives import Judged, is_told, numbers_verdict
 from support.scenes import UNIT, deck, lennard_jones, read_groups, read_table, several
 from support.states import EDGE, pressure, slope, solve
+from support.study_cycles import logarithmic
 
 SECONDS = 15
 # Relative accuracy of closed forms that are solved here on a grid of the contact radius.

@@ -10,8 +10,9 @@ from support.comparison import deviations, missing
 from support.decks_in_units import report
 from support.experiment import cycle, largest_tension, reported, reported_of_path
 from support.reference import CUSP, Path
-from support.relatives import UNITS_OF, Judged, is_told, logarithmic, numbers_verdict
+from support.relatives import UNITS_OF, Judged, is_told, numbers_verdict
 from support.scenes import loading
+from support.study_cycles import logarithmic
 
 # Turns this close to a fold [z0], and strengths this close to the cusp (relative), are undecided:
 # on a grid of a hundred nodes the fold may be on the other side.

@@ -8,10 +8,11 @@ load of the latter with `second_mesh`, which shares no mesh, matrix or iteration
 import math
 
 import numpy as np
-from support.relatives import Judged, is_told, logarithmic, numbers_verdict
+from support.relatives import Judged, is_told, numbers_verdict
 from support.relatives_forces import results_of
 from support.scenes import deck, read_table, several
 from support.second_mesh import SecondMesh
+from support.study_cycles import logarithmic
 
 LOADS = ("max_tension", "end_load", "jump_in_load", "jump_out_load", "folds_load")
 PLACES = ("max_tension_h0", "jump_in_h0", "jump_out_h0", "folds_h0", "device_jump_in_z",
