@@ -50,7 +50,7 @@ checked() {
   "$venv/bin/ninja" -C "$1" ring_image layer_waves base_values > /dev/null || return
   shift
   for room in ${ROOMS-}; do set -- "$@" "tests/$room"; done
-  SNAPIN=$checked_build tests --program -m 'not slow and not long and not alone' "$@"
+  SNAPIN=$checked_build tests --program -m 'not alone' "$@"
   tested=$?
   scratch=$(mktemp -d)
   # shellcheck disable=SC2086 # a list of files is meant
@@ -131,7 +131,7 @@ relatives() { "$python" "$here/relatives.py" --seed "${SEED:-1}"; }
 # program's own path; the tests of these two cannot pass there.
 posix() {
   builds build-posix -Dsystem=posix -Dpython=disabled || return
-  SNAPIN=$top/build-posix/snapin tests -p no:cacheprovider -m 'not slow and not long' \
+  SNAPIN=$top/build-posix/snapin tests -p no:cacheprovider \
     tests/app/test_command_line.py tests/namelist tests/resume \
     -k 'not a_second_run_is_refused and not the_command_that_draws_a_sweep'
 }

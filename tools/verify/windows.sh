@@ -93,5 +93,5 @@ printf '#!/bin/sh\nexec %s %s "$@"\n' "$wine" "$folder/snapin.exe" > "$folder/sn
 chmod +x "$folder/snapin"
 "$folder/snapin" --version || exit
 [ $# -gt 0 ] || set -- tests/namelist/test_deck.py tests/app/test_examples.py \
-  tests/app/test_price.py -m 'not slow'
+  tests/app/test_price.py
 SNAPIN=$folder/snapin "$venv/bin/python" -m pytest -q -n auto "$@"
