@@ -18,7 +18,7 @@ module group_reading
   !> add their own rows.
   type(key_spec), parameter :: keys_of_force(*) = [ &
     key_spec('force', meaning='Force per area between the surfaces, against their separation.', &
-      example='&force law = ''lennard_jones'', work_of_adhesion = 0.05, z0 = 0.3e-9 /'), &
+      choices='&force law = ''lennard_jones'', work_of_adhesion = 0.05, z0 = 0.3e-9 /'), &
     key_spec('force', 'law', word_value, 'Name of the force law.', &
       choices='lennard_jones exponential', required=.true.)]
 
@@ -107,7 +107,7 @@ contains
     rows = [ &
       key_spec('shape', meaning='Shape of the undeformed gap f(r): bodies at h0 are h0 + f(r) ' // &
         'apart. Without this group it is r^2/(2R).', &
-        example='&shape kind = ''sphere'' /'), &
+        choices='&shape kind = ''sphere'' /'), &
       key_spec('shape', 'kind', word_value, 'Kind of shape.', choices=kinds, required=.true.), &
       key_spec('shape', 'radius', real_value, 'Radius R of a parabola or sphere, of the end ' // &
         'of a spheroid, of the rim of a punch; for a power B = 1/(2 R^(n-1)).', 'm', above=0.0_wp, &

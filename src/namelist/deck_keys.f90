@@ -25,7 +25,9 @@ module deck_keys
     character(len=32) :: default = ''
     !> Meaning of a blank default in words ("as in &loading"); shown, never read.
     character(len=48) :: otherwise = ''
-    !> Blank-separated words that a `word_value` may be.
+    !> Blank-separated words that a `word_value` may be; for a group, which has no words, a line of
+    !> a deck that works, which is shown and never read. (Each deck has a copy of the table: a
+    !> component of its own would cost 28 kB a deck.)
     character(len=80) :: choices = ''
     !> The bounds of a number: `low` and `high` are allowed, `above` and `below` are not.
     real(wp) :: low = -huge(1.0_wp), high = huge(1.0_wp), above = -huge(1.0_wp), &
@@ -39,8 +41,6 @@ module deck_keys
     logical :: always = .false.
     !> An earlier name of the key, which decks may use instead.
     character(len=24) :: former = ''
-    !> Of a group: a line of a deck that works; shown, never read.
-    character(len=80) :: example = ''
   end type key_spec
 
 contains
@@ -131,7 +131,7 @@ contains
           text = text // nl // '&' // trim(spec%group) // &
             trim(merge(' (required)', '           ', spec%required)) // nl
           text = text // '    ' // trim(spec%meaning) // nl
-          if (spec%example /= '') text = text // '    Example: ' // trim(spec%example) // nl
+          if (spec%choices /= '') text = text // '    Example: ' // trim(spec%choices) // nl
         case (ignored_group)
           text = text // nl // '&' // trim(spec%group) // ' (skipped)' // nl
           text = text // '    ' // trim(spec%meaning) // nl

@@ -18,14 +18,14 @@ module curve_groups
   type(key_spec), parameter :: cycle_keys(*) = [ &
     key_spec('loading', meaning='Approach in steps of h0, the separation that undeformed ' // &
       'bodies would have at the centre.', &
-      example='&loading h0_start = 10e-9, h0_end = -5e-9, h0_step = 0.1e-9 /'), &
+      choices='&loading h0_start = 10e-9, h0_end = -5e-9, h0_step = 0.1e-9 /'), &
     key_spec('loading', 'h0_start', real_value, 'First h0.', 'm', required=.true.), &
     key_spec('loading', 'h0_end', real_value, 'Last h0, below h0_start.', 'm', required=.true.), &
     key_spec('loading', 'h0_step', real_value, 'Step, positive.', 'm', above=0.0_wp, &
       required=.true.), &
     key_spec('unloading', meaning='Retract in steps of h0, one cycle for each turning point; ' // &
       'needs &loading.', &
-      example='&unloading from = -5e-9 /'), &
+      choices='&unloading from = -5e-9 /'), &
     key_spec('unloading', 'from', real_list, 'Turning points, inside the range of &loading.', 'm', &
       most=100, otherwise='h0_end of &loading'), &
     key_spec('unloading', 'h0_end', real_value, 'Where each retract ends, above every turning ' // &
@@ -37,14 +37,14 @@ module curve_groups
   type(key_spec), parameter :: path_keys(*) = [ &
     key_spec('equilibrium_path', meaning='The whole path of equilibria, stable and unstable, ' // &
       'with exact turning points.', &
-      example='&equilibrium_path h0_end = -5e-9 /'), &
+      choices='&equilibrium_path h0_end = -5e-9 /'), &
     key_spec('equilibrium_path', 'h0_start', real_value, 'First h0, above h0_end.', 'm', &
       otherwise='chosen by the program'), &
     key_spec('equilibrium_path', 'h0_end', real_value, 'Last h0; needed without &loading.', 'm', &
       otherwise='h0_end of &loading'), &
     key_spec('device', meaning='Approach and retract with a spring (cantilever), from the ' // &
       'path; needs &equilibrium_path.', &
-      example='&device spring_constant = 40 /'), &
+      choices='&device spring_constant = 40 /'), &
     key_spec('device', 'spring_constant', real_list, 'Spring constant of each spring; 0: a ' // &
       'dead load.', 'N/m', most=100, low=0.0_wp, otherwise='h0 is prescribed', &
       former='stiffness'), &
@@ -55,18 +55,18 @@ module curve_groups
       'm', otherwise='in contact, at h0_end or beyond'), &
     key_spec('fixed_load', meaning='All equilibria under given loads, stable or not; needs ' // &
       '&equilibrium_path.', &
-      example='&fixed_load load = 0, -2e-7 /'), &
+      choices='&fixed_load load = 0, -2e-7 /'), &
     key_spec('fixed_load', 'load', real_list, 'The loads; negative: tension.', 'N', most=1000, &
       required=.true.), &
     key_spec('table', meaning='Load, contact radius and stiffness against indentation, for ' // &
       'discrete or finite elements; needs &equilibrium_path.', &
-      example='&table /')]
+      choices='&table /')]
 
   !> The rows of &profiles.
   type(key_spec), parameter :: profiles_keys(*) = [ &
     key_spec('profiles', meaning='Separation, deformation, pressure and energy against r; ' // &
       'needs &loading or &equilibrium_path.', &
-      example='&profiles h0 = 1e-9, -5e-9 /'), &
+      choices='&profiles h0 = 1e-9, -5e-9 /'), &
     key_spec('profiles', 'h0', real_list, 'The h0 of the profiles.', 'm', most=1000, &
       required=.true.)]
 

@@ -28,7 +28,7 @@ module deck_family
   type(key_spec), parameter :: sensitivity_keys(*) = [ &
     key_spec('sensitivity', meaning='Derivatives of reported numbers by numbers of bodies, ' // &
       'shape and forces; needs &equilibrium_path, or &drive.', &
-      example='&sensitivity parameters = ''force.work_of_adhesion'', ''bodies.young(2)'' /'), &
+      choices='&sensitivity parameters = ''force.work_of_adhesion'', ''bodies.young(2)'' /'), &
     key_spec('sensitivity', 'parameters', names_value, 'The numbers, as ''group.key''; an ' // &
       'element of a list as ''group.key(2)''.', most=20, required=.true.)]
 

@@ -24,7 +24,7 @@ module fit_group
   !> The rows of &fit.
   type(key_spec), parameter :: fit_keys(*) = [ &
     key_spec('fit', meaning='Fits keys of this deck to the curve of &measurement.', &
-      example='&fit parameters = ''force.work_of_adhesion'', ''measurement.contact_point'' /'), &
+      choices='&fit parameters = ''force.work_of_adhesion'', ''measurement.contact_point'' /'), &
     key_spec('fit', 'parameters', names_value, 'The unknowns, as ''group.key'': numbers of ' // &
       'bodies, shape and forces, and measurement.contact_point, sensitivity or spring_constant.', &
       most=most_unknowns, required=.true.), &

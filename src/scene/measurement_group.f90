@@ -20,7 +20,7 @@ module measurement_group
   !> The rows of &measurement.
   type(key_spec), parameter :: measurement_keys(*) = [ &
     key_spec('measurement', meaning='A measured force curve, for &fit.', &
-      example='&measurement file = ''curve.csv'', spring_constant = 40 /'), &
+      choices='&measurement file = ''curve.csv'', spring_constant = 40 /'), &
     key_spec('measurement', 'file', text_value, 'File of the curve: a table of numbers, # ' // &
       'before comments, perhaps a line of names; a relative path begins at the deck''s folder.', &
       most=1000, otherwise='required, unless &sweep gives it'), &

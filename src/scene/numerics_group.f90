@@ -16,7 +16,7 @@ module numerics_group
   type(key_spec), parameter :: numerics_keys(*) = [ &
     key_spec('numerics', meaning='How the equations are solved. Most decks need only accuracy.', &
       always=.true., &
-      example='&numerics accuracy = 1e-3 /'), &
+      choices='&numerics accuracy = 1e-3 /'), &
     key_spec('numerics', 'method', word_value, 'Iteration to equilibrium.', &
       choices='auto mixing anderson_mixing anderson newton', default='auto'), &
     key_spec('numerics', 'accuracy', real_value, 'Relative accuracy of load and displacement. ' // &

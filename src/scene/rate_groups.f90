@@ -24,7 +24,7 @@ module rate_groups
   !> The rows of &drive, &viscoelastic and &fluid.
   type(key_spec), parameter :: rate_keys(*) = [ &
     key_spec('drive', meaning='Bodies driven together and apart in time, at constant velocity.', &
-      example='&drive velocity = 1e-6, z_start = 50e-9, z_turn = -5e-9, ' // &
+      choices='&drive velocity = 1e-6, z_start = 50e-9, z_turn = -5e-9, ' // &
         'spring_constant = 40 /'), &
     key_spec('drive', 'velocity', real_value, 'Velocity of h0 or, behind a spring, of its base.', &
       'm/s', above=0.0_wp, required=.true.), &
@@ -43,7 +43,7 @@ module rate_groups
       otherwise='from accuracy, 1e-4 unless it is given'), &
     key_spec('viscoelastic', meaning='Viscoelastic bodies; &bodies has the instantaneous ' // &
       'stiffness. Give stiffness_relaxed or compliance. Needs &drive.', &
-      example='&viscoelastic stiffness_relaxed = 1e9, retardation_time = 1e-3 /'), &
+      choices='&viscoelastic stiffness_relaxed = 1e9, retardation_time = 1e-3 /'), &
     key_spec('viscoelastic', 'stiffness_relaxed', real_value, 'E/(1-nu^2) of relaxed ' // &
       'bodies, a standard linear solid; at most the instantaneous one.', 'Pa', above=0.0_wp), &
     key_spec('viscoelastic', 'compliance', real_list, 'Final contribution of each term to the ' // &
@@ -52,7 +52,7 @@ module rate_groups
       'of creep at constant load.', 's', most=most_terms, above=0.0_wp, required=.true.), &
     key_spec('fluid', meaning='A squeeze film of viscous fluid between the bodies. Needs ' // &
       '&drive.', &
-      example='&fluid viscosity = 1e-3, slip_length = 5e-9 /'), &
+      choices='&fluid viscosity = 1e-3, slip_length = 5e-9 /'), &
     key_spec('fluid', 'viscosity', real_value, 'Viscosity of the fluid.', 'Pa s', above=0.0_wp, &
       required=.true.), &
     key_spec('fluid', 'slip_length', real_list, 'Slip length of the fluid on the walls: one ' // &

@@ -36,7 +36,7 @@ contains
 
     specs = [ &
       key_spec('scene', meaning='Name of the calculation.', &
-        example='&scene title = ''Silica probe on a polymer'' /'), &
+        choices='&scene title = ''Silica probe on a polymer'' /'), &
       key_spec('scene', 'title', text_value, 'Title, repeated in all files of results.', most=200, &
         otherwise='none'), &
       keys_of_model(), &
@@ -45,13 +45,13 @@ contains
       sensitivity_keys, &
       key_spec('regime', meaning='Which theory of contact describes the scene: parameters, ' // &
         'and errors against the path; needs &equilibrium_path.', &
-        example='&regime /'), &
+        choices='&regime /'), &
       rate_keys, &
       profiles_keys, &
       theory_keys(), &
       key_spec('stability', meaning='Stability of every equilibrium, by criterion and by ' // &
         'smallest eigenvalue; needs &loading or &equilibrium_path.', &
-        example='&stability /'), &
+        choices='&stability /'), &
       measurement_keys, &
       fit_keys, &
       sweep_keys, &

@@ -25,7 +25,7 @@ module scene_layers
   type(key_spec), parameter :: layer_keys(*) = [ &
     key_spec('layer', meaning='Layers bonded to a body, from the top down, on the half-space ' // &
       'of &bodies.', &
-      example='&layer thickness = 200e-9, young = 1e9, poisson = 0.4, body = 2 /'), &
+      choices='&layer thickness = 200e-9, young = 1e9, poisson = 0.4, body = 2 /'), &
     key_spec('layer', 'thickness', real_list, 'Thickness of each layer.', 'm', most=most, &
       above=0.0_wp, required=.true.), &
     key_spec('layer', 'young', real_list, 'Young''s modulus of each layer.', 'Pa', most=most, &

@@ -22,7 +22,7 @@ module scene_problem
   type(key_spec), parameter :: bodies_keys(*) = [ &
     key_spec('bodies', meaning='The two bodies. Exactly one of: stiffness; ' // &
       'reduced_modulus; young and poisson; rigid = .true.', required=.true., &
-      example='&bodies radius = 5e-6, young = 70e9, 2e9, poisson = 0.17, 0.4 /'), &
+      choices='&bodies radius = 5e-6, young = 70e9, 2e9, poisson = 0.17, 0.4 /'), &
     key_spec('bodies', 'radius', real_value, 'Radius R of the gap h0 + r^2/(2R), or of ' // &
       '&shape; a sphere on a plane has its own radius.', 'm', above=0.0_wp, otherwise='none'), &
     key_spec('bodies', 'stiffness', real_value, 'E/(1-nu^2) of two identical bodies, twice ' // &

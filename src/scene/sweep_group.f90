@@ -29,7 +29,7 @@ module sweep_group
     key_spec('sweep', meaning='The same deck for several values of keys. Either key with ' // &
       'from, to and count, one of each for each key, and then every combination is a case; or ' // &
       'one key with values; or a file.', &
-      example='&sweep key = ''bodies.radius'', values = 1e-7, 1e-6, 1e-5 /'), &
+      choices='&sweep key = ''bodies.radius'', values = 1e-7, 1e-6, 1e-5 /'), &
     key_spec('sweep', 'key', names_value, 'The keys to vary, as ''group.key''. The last one ' // &
       'varies fastest.', most=most_keys, otherwise='those of file'), &
     key_spec('sweep', 'from', real_list, 'First value of each, in the unit of the key.', &

@@ -34,7 +34,7 @@ contains
     type(key_spec) :: specs(4)
 
     specs = [ &
-      key_spec(name, meaning=meaning, example=example), &
+      key_spec(name, meaning=meaning, choices=example), &
       key_spec(name, 'h0_start', real_value, 'Upper end of the range of h0.', 'm', &
         otherwise='as in &loading or &equilibrium_path'), &
       key_spec(name, 'h0_end', real_value, 'Lower end of the range of h0.', 'm', &

@@ -14,7 +14,7 @@ module born
   !> The rows of &born.
   type(key_spec), parameter :: keys(*) = [ &
     key_spec('born', meaning='Born repulsion, A/(6 pi z0^3) (z0/h)^n.', &
-      example='&born z0 = 0.25e-9 /'), &
+      choices='&born z0 = 0.25e-9 /'), &
     key_spec('born', 'hamaker', real_value, 'Hamaker constant A for the strength.', 'J', &
       above=0.0_wp, otherwise='as in &van_der_waals'), &
     key_spec('born', 'z0', real_value, 'Separation at which the repulsion balances the ' // &

@@ -16,7 +16,7 @@ module capillary
   type(key_spec), parameter :: keys(*) = [ &
     key_spec('capillary', meaning='Capillary bridge at equilibrium. Give kelvin_radius or ' // &
       'humidity.', &
-      example='&capillary humidity = 0.6, contact_angle = 0.5 /'), &
+      choices='&capillary humidity = 0.6, contact_angle = 0.5 /'), &
     key_spec('capillary', 'surface_tension', real_value, 'Surface tension of the liquid.', 'N/m', &
       above=0.0_wp, default='0.0728'), &
     key_spec('capillary', 'contact_angle', real_list, 'Contact angles of the two surfaces, or ' // &

@@ -14,7 +14,7 @@ module depletion
   !> The rows of &depletion.
   type(key_spec), parameter :: keys(*) = [ &
     key_spec('depletion', meaning='Depletion attraction in a solution of particles.', &
-      example='&depletion osmotic_pressure = 5e4, diameter = 10e-9 /'), &
+      choices='&depletion osmotic_pressure = 5e4, diameter = 10e-9 /'), &
     key_spec('depletion', 'osmotic_pressure', real_value, 'Osmotic pressure of the particles.', &
       'Pa', above=0.0_wp, required=.true.), &
     key_spec('depletion', 'diameter', real_value, 'Diameter of the particles.', 'm', above=0.0_wp, &

@@ -48,7 +48,7 @@ module double_layer
   type(key_spec), parameter :: keys(*) = [ &
     key_spec('double_layer', meaning='Electric double layers in an electrolyte with ions of ' // &
       'one valence. Give salt or debye_length.', &
-      example='&double_layer potential = -0.05, salt = 10 /'), &
+      choices='&double_layer potential = -0.05, salt = 10 /'), &
     key_spec('double_layer', 'potential', real_list, 'Potentials of the two isolated ' // &
       'surfaces, or one for both.', 'V', most=2, required=.true.), &
     key_spec('double_layer', 'regulation', real_list, 'Regulation of the two surfaces, or one ' // &

@@ -14,7 +14,7 @@ module dugdale
   type(key_spec), parameter :: keys(*) = [ &
     key_spec('dugdale', meaning='Constant attraction up to a separation; needs a repulsion ' // &
       'beside it.', &
-      example='&dugdale stress = 2e7, range = 1.5e-9 /'), &
+      choices='&dugdale stress = 2e7, range = 1.5e-9 /'), &
     key_spec('dugdale', 'stress', real_value, 'Attraction.', 'Pa', above=0.0_wp, required=.true.), &
     key_spec('dugdale', 'range', real_value, 'Separation at which the attraction ends.', 'm', &
       above=0.0_wp, required=.true.), &

@@ -13,7 +13,7 @@ module hydration
   type(key_spec), parameter :: keys(*) = [ &
     key_spec('hydration', meaning='Hydration repulsion. Give energy or pressure; each value ' // &
       'of a list is one term.', &
-      example='&hydration energy = 5e-3, decay_length = 0.3e-9 /'), &
+      choices='&hydration energy = 5e-3, decay_length = 0.3e-9 /'), &
     key_spec('hydration', 'energy', real_list, 'Energy W at h = 0.', 'J/m^2', most=8, &
       above=0.0_wp), &
     key_spec('hydration', 'pressure', real_list, 'Pressure at h = 0, W over the decay length.', &

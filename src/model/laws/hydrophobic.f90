@@ -13,7 +13,7 @@ module hydrophobic
   type(key_spec), parameter :: keys(*) = [ &
     key_spec('hydrophobic', meaning='Hydrophobic attraction; each value of a list is one ' // &
       'term. Needs a repulsion beside it.', &
-      example='&hydrophobic energy = 0.02, decay_length = 1e-9 /'), &
+      choices='&hydrophobic energy = 0.02, decay_length = 1e-9 /'), &
     key_spec('hydrophobic', 'energy', real_list, 'Energy W at h = 0, twice the interfacial ' // &
       'energy times the hydrophobic fraction.', 'J/m^2', most=8, above=0.0_wp, required=.true.), &
     key_spec('hydrophobic', 'decay_length', real_list, 'Decay length l.', 'm', most=8, &

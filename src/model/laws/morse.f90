@@ -24,7 +24,7 @@ module morse
   type(key_spec), parameter :: keys(*) = [ &
     key_spec('morse', meaning='Morse law: an exponential repulsion within an exponential ' // &
       'attraction of twice its range.', &
-      example='&morse work_of_adhesion = 0.05, z0 = 0.3e-9, decay_length = 0.2e-9 /'), &
+      choices='&morse work_of_adhesion = 0.05, z0 = 0.3e-9, decay_length = 0.2e-9 /'), &
     key_spec('morse', 'work_of_adhesion', real_value, 'Work of adhesion: the energy needed to ' // &
       'separate unit area.', 'J/m^2', above=0.0_wp, required=.true., former='surface_energy'), &
     key_spec('morse', 'z0', real_value, 'Separation of zero force.', 'm', required=.true.), &

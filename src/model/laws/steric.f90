@@ -24,7 +24,7 @@ module steric
   !> The rows of &steric.
   type(key_spec), parameter :: keys(*) = [ &
     key_spec('steric', meaning='Repulsion of polymer brushes.', &
-      example='&steric brush_thickness = 5e-9, grafting_density = 3e17 /'), &
+      choices='&steric brush_thickness = 5e-9, grafting_density = 3e17 /'), &
     key_spec('steric', 'model', word_value, 'Profile of the brush: a step, whose force begins ' // &
       'with a kink, or a parabola.', choices='alexander_de_gennes milner_witten_cates', &
       default='alexander_de_gennes'), &

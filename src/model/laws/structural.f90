@@ -23,7 +23,7 @@ module structural
   type(key_spec), parameter :: keys(*) = [ &
     key_spec('structural', meaning='Oscillatory force of a structured liquid, -p0 cos(2 pi ' // &
       'h/d + phase) exp(-h/decay_length).', &
-      example='&structural amplitude = 2e7, period = 0.8e-9, decay_length = 0.8e-9 /'), &
+      choices='&structural amplitude = 2e7, period = 0.8e-9, decay_length = 0.8e-9 /'), &
     key_spec('structural', 'amplitude', real_value, 'Pressure p0; negative for the opposite ' // &
       'sign.', 'Pa', required=.true.), &
     key_spec('structural', 'period', real_value, 'Period d, about the size of a molecule.', 'm', &

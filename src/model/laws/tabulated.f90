@@ -44,7 +44,7 @@ module tabulated
   !> The rows of &tabulated.
   type(key_spec), parameter :: keys(*) = [ &
     key_spec('tabulated', meaning='A law from a file. Give tail_exponent or tail_decay_length.', &
-      example='&tabulated file = ''law.txt'', tail_exponent = 3 /'), &
+      choices='&tabulated file = ''law.txt'', tail_exponent = 3 /'), &
     key_spec('tabulated', 'file', text_value, 'File of two columns, gap and quantity in SI, # ' // &
       'before comments; a relative path begins at the deck''s folder.', most=1000, &
       required=.true.), &

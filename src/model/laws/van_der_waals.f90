@@ -25,7 +25,7 @@ module van_der_waals
   type(key_spec), parameter :: keys(*) = [ &
     key_spec('van_der_waals', meaning='Van der Waals attraction, retarded or not; needs a ' // &
       'repulsion such as &born beside it.', &
-      example='&van_der_waals hamaker = 5e-20 /'), &
+      choices='&van_der_waals hamaker = 5e-20 /'), &
     key_spec('van_der_waals', 'hamaker', real_value, 'Hamaker constant.', 'J', above=0.0_wp, &
       required=.true.), &
     key_spec('van_der_waals', 'retardation_length', real_value, 'Wavelength beyond which the ' // &
