@@ -10,7 +10,8 @@ from ..results import ResultFiles
 from .drawing import (
     BLUE, GREY, SKY, VERMILION, Picture, dress, entitle, scale, title_of)
 
-_WAYS = {"approach": SKY, "retreat": BLUE}
+# Directions of the table, their names and colours.
+_WAYS = {"approach": ("approach", SKY), "retreat": ("retract", BLUE)}
 # Margin of the picture beyond the last sample with a force, over the extent of these samples.
 _BEYOND = 0.15
 # Outliers with larger residuals are drawn at this multiple of the largest residual in use.
@@ -39,16 +40,15 @@ def draw_fit(folder, whole=False):
     edge = _EDGE * np.abs(table["residual"][table["used"] == 1]).max()
     figure = Figure(figsize=(7.5, 5.6), layout="constrained")
     panel, below = figure.subplots(2, 1, sharex=True, height_ratios=(2, 1))
-    for way, color in _WAYS.items():
+    for way, (name, color) in _WAYS.items():
         mine = table["direction"] == way
         if not mine.any():
             continue
         used = mine & (table["used"] == 1)
-        mine &= ~outlier
-        panel.plot(z[mine], force[mine] / signals[0], ".", markersize=2.5, color=color, label=way)
-        way_of = table["direction"] == way
-        model = (table["model"] - table["baseline"])[way_of] / signals[0]
-        panel.plot(z[way_of], model, color=VERMILION, linewidth=1.0,
+        kept = mine & ~outlier
+        panel.plot(z[kept], force[kept] / signals[0], ".", markersize=2.5, color=color, label=name)
+        model = (table["model"] - table["baseline"])[mine] / signals[0]
+        panel.plot(z[mine], model, color=VERMILION, linewidth=1.0,
                    label="model" if way == table["direction"][0] else None)
         below.plot(z[used], table["residual"][used] / lefts[0], ".", markersize=2.5, color=color)
     if outlier.any():

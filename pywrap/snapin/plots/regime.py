@@ -58,8 +58,8 @@ def draw_regime(folder):
 def _advice(summary):
     """Return the name of the theory that the program recommends."""
     name = summary["regime_recommended"]
-    names = {"none": "no theory", "maugis": "Maugis", "hertz": "Hertz"}
-    return "here " + names.get(name, name.upper())
+    names = {"none": "no theory", "maugis": "Maugis-Dugdale", "hertz": "Hertz"}
+    return "this scene: " + names.get(name, name.upper())
 
 
 def _hertz_load(share, jkr):
