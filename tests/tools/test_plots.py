@@ -311,6 +311,30 @@ def test_largest_tensions_at_an_end_are_no_pull_offs_in_pictures(tmp_path):
         draw_map(tmp_path, over=["a.x"])
 
 
+def test_a_map_ends_where_its_logarithmic_axis_begins_and_has_no_comb_there(tmp_path):
+    """Where the next case was negative, the whole cell was left out: the lower edge was a comb."""
+    (tmp_path / "summary.nml").write_text("&summary\n  converged = .true.\n/\n&cost\n/\n")
+    # A column that falls through zero along each line of the sweep, at another place in each.
+    rows = [f"{i},{j},1,{i + 1},{30 * (20 - j) ** 2 / 20 + 0.01 - 0.37 * i - (j > 18)},{i + j + 1},\n"
+            for i in range(20) for j in range(21)]
+    (tmp_path / "sweep.csv").write_text(
+        "# title:\na.x,a.y,converged,across,down,max_tension,failure\n" + "".join(rows))
+    axes = draw_map(tmp_path, over=["across", "down"]).axes[0]
+    (mesh,) = [of for of in axes.collections if hasattr(of, "_triangulation")]
+    places = mesh._triangulation
+    corners = places.y[places.triangles]
+    begin = corners.min()
+    # Each line of cases, and each cell between two of them, comes down to the begin of the axis.
+    for left in np.arange(1, 20):
+        inside = (places.x[places.triangles] >= left).all(axis=1) & (
+            places.x[places.triangles] <= left + 1).all(axis=1)
+        assert corners[inside].min() == pytest.approx(begin), left
+        for side in (left, left + 1):
+            at = inside[:, None] & (places.x[places.triangles] == side)
+            assert corners[at].min() == pytest.approx(begin), (left, side)
+    assert begin == round(begin)
+
+
 def test_a_curve_that_ends_before_its_pull_off_has_a_mark(tmp_path):
     for h0_end, marked in ((1.3e-9, True), (-2e-9, False)):
         deck = BODIES + FORCE + f"&loading h0_start = 7e-9, h0_end = {h0_end}, h0_step = 0.2e-9 /\n"
