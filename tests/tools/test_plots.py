@@ -16,6 +16,7 @@ from support.processes import HANG
 pytest.importorskip("matplotlib")
 from snapin.plots.device_curve import draw_device_curve  # noqa: E402 (needs matplotlib)
 from snapin.plots.drawing import scale, smooth  # noqa: E402 (needs matplotlib)
+from snapin.plots.fit import _numbers_of as numbers_of  # noqa: E402 (needs matplotlib)
 from snapin.plots.force_curve import Curve, draw_force_curve  # noqa: E402 (needs matplotlib)
 from snapin.plots.force_law import OTHERS  # noqa: E402 (needs matplotlib)
 from snapin.plots.map import draw_map  # noqa: E402 (needs matplotlib)
@@ -309,6 +310,15 @@ def test_largest_tensions_at_an_end_are_no_pull_offs_in_pictures(tmp_path):
     table(f"{i},0,1,2,{i + 1},1,\n" for i in range(10))
     with pytest.raises(snapin.results.ResultsError, match="no pull-offs"):
         draw_map(tmp_path, over=["a.x"])
+
+
+def test_a_fitted_number_is_in_the_picture_once_in_the_words_of_the_field():
+    fit = {"parameters": ["bodies.young(2)", "measurement.contact_point"], "units": ["Pa", "m"],
+           "estimate": [8.19e8, 3.2e-6], "standard_error": [1.6e7, 1e-10],
+           "young_of_sample": 8.19e8, "young_of_sample_error": 1.6e7}
+    fit |= {key: [fit[key]] for key in ("young_of_sample", "young_of_sample_error")}
+    names = [line.split(" 0.")[0].split(" 3.")[0] for line in numbers_of(fit)]
+    assert names == ["contact point", "Young's modulus of the sample"]
 
 
 def test_a_map_ends_where_its_logarithmic_axis_begins_and_has_no_comb_there(tmp_path):
