@@ -315,8 +315,7 @@ def test_largest_tensions_at_an_end_are_no_pull_offs_in_pictures(tmp_path):
 def test_a_fitted_number_is_in_the_picture_once_in_the_words_of_the_field():
     fit = {"parameters": ["bodies.young(2)", "measurement.contact_point"], "units": ["Pa", "m"],
            "estimate": [8.19e8, 3.2e-6], "standard_error": [1.6e7, 1e-10],
-           "young_of_sample": 8.19e8, "young_of_sample_error": 1.6e7}
-    fit |= {key: [fit[key]] for key in ("young_of_sample", "young_of_sample_error")}
+           "young_of_sample": [8.19e8], "young_of_sample_error": [1.6e7]}
     names = [line.split(" 0.")[0].split(" 3.")[0] for line in numbers_of(fit)]
     assert names == ["contact point", "Young's modulus of the sample"]
 
