@@ -35,6 +35,8 @@ PAGES = {
     "tools/pages.py --mark docs/methods.md",
     "docs/reproduction/others.md": "./reproduce others --publish",
     "docs/reproduction/report.md": "./reproduce paper --publish",
+    "docs/records/verification.md": "tools/verify/verify.sh, its tables by hand; then "
+    "tools/pages.py --mark docs/records/verification.md",
     "docs/testing.md": "tools/verify/verify.sh, its tables by hand; then tools/pages.py --mark "
     "docs/testing.md",
 }
