@@ -30,19 +30,9 @@ module one_run
   use records, only: observer_t
   implicit none
   private
-  public :: prepare, begin_run, run_once
+  public :: begin_run, run_once
 
 contains
-
-  !> Sets the parts that all steppers have.
-  subroutine prepare(steps, problem, chosen)
-    class(stepper_t), intent(inout) :: steps
-    type(problem_t), intent(in) :: problem
-    type(choice_t), intent(in) :: chosen
-
-    steps%problem = problem
-    steps%options = chosen%options
-  end subroutine prepare
 
   !> Lays out the meshes of a run and, under a law that attracts, traces the path. coarser: the
   !> meshes of a run with fewer digits; keep: see `new_mesh_family`.
@@ -57,7 +47,7 @@ contains
     logical, intent(in), optional :: keep
     type(demand_t), allocatable :: demand
 
-    call prepare(steps, problem, chosen)
+    call steps%set_up(problem, chosen%options)
     call steps%operator%forget()
     call steps%frozen%forget()
     call lay_out(.true.)
