@@ -9,7 +9,8 @@ module one_run
   use dimensionless_problem, only: problem_t
   use experiment_request, only: request_t
   use numerics_choice, only: choice_t, fixed_mesh
-  use edge_locked, only: mesh_family_t, new_mesh_family
+  use mesh_family, only: mesh_family_t
+  use edge_locked, only: new_mesh_family
   use mesh_store, only: mesh_store_t
   use ending, only: turn_not_reached, path_lost
   use stepper, only: stepper_t, branch_point_t, step_result_t
