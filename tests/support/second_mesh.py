@@ -11,10 +11,14 @@ import snapin
 from numpy.polynomial import chebyshev
 from support.half_space import HalfSpace
 
-# Panels of the coarse and the fine resolution, nodes of a panel.
-COARSE, FINE, ORDER = 36, 54, 10
+# Panels of the resolutions, the finest last (two of them may be off alike beside a sharp step), and
+# nodes of a panel.
+PANELS = COARSE, *_ = 36, 54, 80
+ORDER = 10
 # Chebyshev points between two states, and how often a bracket of a fold is made narrower.
 POINTS, CLOSER = chebyshev.chebpts1(9), 2
+# The last coefficients of resolved series over their largest.
+RESOLVED = 1e-5
 # States whose gaps differ by less than this part are one, and have no fold between them.
 SAME = 1e-6
 NOT_FORCES = ("bodies", "shape", "equilibrium_path", "device", "loading", "numerics", "layer")
@@ -43,13 +47,13 @@ class SecondMesh:
 
     @classmethod
     def twice(cls, groups, profiles, read):
-        """What is read from the fine resolution, and how far the coarse one is from it, of each
-        number; None if Newton's method finds no state from these profiles."""
+        """What is read from the finest resolution, and how far the others are from it at most, of
+        each number; None if Newton's method finds no state from these profiles."""
         try:
-            coarse, fine = (read(cls(groups, profiles, panels)) for panels in (COARSE, FINE))
+            found = [read(cls(groups, profiles, panels)) for panels in PANELS]
         except ArithmeticError:
             return None
-        return [(right, abs(right - rough)) for right, rough in zip(fine, coarse)]
+        return [(numbers[-1], np.ptp(numbers)) for numbers in zip(*found)]
 
     def ends(self, panels):
         """Ends of panels between which pressures and gaps change about equally, and as the radius;
@@ -145,10 +149,12 @@ class SecondMesh:
         return states, inside[abs(inside).argmin()]
 
     def between(self):
-        """The place of the fold, its h0 and its load."""
+        """The place of the fold, its h0 and its load, by polynomials that resolve both."""
         states, place = self.along()
         values = zip(*((h0, load) for h0, load, _ in states))
         fits = [chebyshev.chebfit(POINTS, value, len(POINTS) - 1) for value in values]
+        if any(abs(fit[-2:]).max() > RESOLVED * abs(fit[1:]).max() for fit in fits):
+            raise ArithmeticError("the states beside the fold are too far apart on the second mesh")
         return place, *(float(chebyshev.chebval(place, fit)) for fit in fits)
 
     def closer(self):
