@@ -170,8 +170,8 @@ def _ending(made, runs, version):
              *(f"    {line}" for line in version.split("\n")), ""]
     if not decks:
         return lines
-    lines += [f"{len(decks)} decks, {seconds:.0f} s on the clock together, each on one core beside whatever else "
-              "the machine did:", "",
+    lines += [f"{len(decks)} decks, {seconds:.0f} s on the clock together, each on one core beside "
+              "whatever else the machine did:", "",
               "| deck | runs | seconds on the clock, the first | exit status |", "|---|---|---|---|"]
     for deck in decks:
         record, count = runs.record(deck), len(runs.with_draws([deck]))
