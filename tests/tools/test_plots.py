@@ -323,9 +323,12 @@ def test_a_fitted_number_is_in_the_picture_once_in_the_words_of_the_field():
 def test_a_map_ends_where_its_logarithmic_axis_begins_and_has_no_comb_there(tmp_path):
     """Where the next case was negative, the whole cell was left out: the lower edge was a comb."""
     (tmp_path / "summary.nml").write_text("&summary\n  converged = .true.\n/\n&cost\n/\n")
-    # A column that falls through zero along each line of the sweep, at another place in each.
-    rows = [f"{i},{j},1,{i + 1},{30 * (20 - j) ** 2 / 20 + 0.01 - 0.37 * i - (j > 18)},{i + j + 1},\n"
-            for i in range(20) for j in range(21)]
+
+    def down(i, j):
+        """Falls through zero along each line of the sweep, at another place in each."""
+        return 30 * (20 - j) ** 2 / 20 + 0.01 - 0.37 * i - (j > 18)
+
+    rows = [f"{i},{j},1,{i + 1},{down(i, j)},{i + j + 1},\n" for i in range(20) for j in range(21)]
     (tmp_path / "sweep.csv").write_text(
         "# title:\na.x,a.y,converged,across,down,max_tension,failure\n" + "".join(rows))
     axes = draw_map(tmp_path, over=["across", "down"]).axes[0]
