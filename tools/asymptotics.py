@@ -44,7 +44,8 @@ def main():
         sys.exit(f"{file}: not every case converged")
     (DOCS / "table_lennard_jones.csv").write_bytes(file.read_bytes())
     pages.insert(DOCS / "asymptotics.md", "table",
-                 pages.table(HEADER, [cells(row) for row in sweep[::EVERY]]))
+                 pages.table(HEADER, [cells(row) for row in sweep[::EVERY]]),
+                 "tools/asymptotics.py")
 
 
 if __name__ == "__main__":

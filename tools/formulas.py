@@ -153,7 +153,7 @@ def draw(found):
 
 def main():
     found = formulas()
-    pages.insert(PAGE, "formulas", table(found))
+    pages.insert(PAGE, "formulas", table(found), "tools/formulas.py")
     style.save(draw(found), PICTURE)
 
 

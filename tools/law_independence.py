@@ -52,4 +52,4 @@ def table():
 
 
 if __name__ == "__main__":
-    pages.insert(PAGE, "laws", table())
+    pages.insert(PAGE, "laws", table(), "tools/law_independence.py")

@@ -190,7 +190,8 @@ def write_prices():
 
     rows = [[str(thin), str(sigma), *(cell(sigma, thin, coat) for coat in COATS)]
             for thin in THIN for sigma in STRENGTHS]
-    pages.insert(PAGE, "prices", pages.table(["t/a₀", "σ", *COATS], rows), measured=False)
+    pages.insert(PAGE, "prices", pages.table(["t/a₀", "σ", *COATS], rows),
+                 "tools/layers.py --prices")
 
 
 if __name__ == "__main__":

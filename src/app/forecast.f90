@@ -21,7 +21,7 @@ module forecast
   use progress, only: duration
   implicit none
   private
-  public :: advice_t, advice_on
+  public :: advice_t, advice_on, advice_on_stiffness
 
   type :: advice_t
     character(len=:), allocatable :: text
@@ -56,6 +56,26 @@ contains
       call advise(scene, 1, advice)
     end if
   end function advice_on
+
+  !> What is said of bodies so soft that adhesion alone draws them into each other, whose paths may
+  !> take minutes: the unit of the stiffness may be wrong. Empty for other bodies.
+  pure function advice_on_stiffness(problem) result(text)
+    type(problem_t), intent(in) :: problem
+    character(len=:), allocatable :: text
+    real(wp) :: slope
+    !> Slope at the edge of the contact without load, far above any of the model.
+    real(wp), parameter :: absurd = 2, short = 0.1_wp
+
+    text = ''
+    if (problem%rigid .or. .not. problem%law%adhesion > 0) return
+    ! Where the law is as long as the radius, the deck has units of its own.
+    if (problem%length > short*problem%radius) return
+    slope = problem%shape%slope(largest_radius(problem, 1.0_wp, 1.0_wp))*problem%length/ &
+      problem%lateral
+    if (slope > absurd) text = 'beyond the model: with a stiffness of ' // &
+      rounded(problem%stiffness) // ' Pa adhesion alone makes a contact with a slope of ' // &
+      rounded(slope) // ' at its edge; moduli of a deck are in Pa: 70 GPa are 70e9'
+  end function advice_on_stiffness
 
   !> Whether the deck or its sweep may choose a fixed grid or mixing. The default needs no advice,
   !> and no time for making the problem.

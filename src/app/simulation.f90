@@ -16,7 +16,7 @@ module simulation
   use sweep_case, only: sweep_tally_t
   use ranks, only: crew_t
   use preflight, only: check_room, large_results
-  use forecast, only: advice_t, advice_on
+  use forecast, only: advice_t, advice_on, advice_on_stiffness
   use machine, only: thread_count
   use linear_algebra, only: claim_buffers
   use equilibrium, only: cost_t
@@ -85,8 +85,8 @@ contains
     end if
     call check_room(scene, out_dir, error)
     if (allocated(error)) return
-    if (.not. quiet) call warn_before()
     problem = problem_of(scene)
+    if (.not. quiet) call warn_before()
     call open_folder()
     if (allocated(error)) return
     call compute()
@@ -145,6 +145,8 @@ contains
       do i = 1, size(advice)
         call destination%say('warning: ' // advice(i)%text)
       end do
+      if (advice_on_stiffness(problem) /= '') call destination%say('warning: ' // &
+        advice_on_stiffness(problem))
     end subroutine warn_before
 
     !> Locks the folder for this run and begins its tables.

@@ -21,7 +21,8 @@ program snapin
   use ranks, only: crew_t
   use case_columns, only: left_out
   use preflight, only: check_room, check_inputs, large_results
-  use forecast, only: advice_t, advice_on
+  use forecast, only: advice_t, advice_on, advice_on_stiffness
+  use scene_problem, only: problem_of
   use build_info, only: version, compiler, blas, options_of_build => options
   implicit none
 
@@ -183,6 +184,7 @@ contains
     do i = 1, size(advice)
       call print_note(name, 'warning: ' // advice(i)%text)
     end do
+    call print_note(name, advice_on_stiffness(problem_of(scene)))
   end subroutine print_notes
 
   !> Prints what is to be said of a deck, if anything.

@@ -30,7 +30,7 @@ contains
     allocate (lines(0))
     associate (curve => outcome%curve)
       line%text = counted(size(curve%data%sample), 'sample') // ', noise ' // &
-        with_unit(curve%data%noise%deviation, nan, trim(curve%data%measured%signal_in)) // &
+        with_unit(curve%data%noise%deviation, nan, curve%data%measured%signal_unit()) // &
         ', correlation of neighbours ' // &
         rounded(curve%data%noise%correlation(1)) // ', ' // counted(count( &
         curve%data%measured%outlier()), 'outlier') // ' left out'

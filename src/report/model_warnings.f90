@@ -17,6 +17,9 @@ module model_warnings
   !> quarter of the square); pressure over stiffness, which is about the strain, that gives a
   !> warning.
   real(wp), parameter :: noted = 0.1_wp, warned = 1.0_wp/3, strained = 0.1_wp
+  !> Radius [m] and range of a force [m] that no measurement has together: lenses are smaller, and
+  !> who takes other lengths for a unit has longer ranges.
+  real(wp), parameter :: huge_radius = 0.5_wp, short_range = 1.0e-6_wp
 
 contains
 
@@ -36,6 +39,9 @@ contains
     call judge(summary, 'range_over_radius', range_of(problem)/problem%radius, &
       'the range of the force over the radius of the bodies', &
       'Derjaguin''s approximation needs forces of short range')
+    if (problem%radius >= huge_radius .and. range_of(problem) < short_range) call summary%warn( &
+      'units: a radius of ' // rounded(problem%radius) // ' m under a force with a range of ' // &
+      rounded(range_of(problem)) // ' m; lengths of a deck are in m: 5 um are 5e-6')
   end subroutine judge_law
 
   !> Sets and checks the error that the points of a table leave in the depth of the well and the
@@ -86,7 +92,8 @@ contains
       strain = quality%pressure*problem%pressure/problem%stiffness
       call summary%set('pressure_over_stiffness', strain)
       if (strain > strained) call summary%warn('beyond the model: the largest pressure is ' // &
-        rounded(strain) // ' of the stiffness; strains are no longer small')
+        rounded(strain) // ' of the stiffness, ' // rounded(problem%stiffness) // &
+        ' Pa; strains are no longer small')
     end subroutine judge_extent
 
     !> Warns of states beyond the points of a profile or before those of a table.

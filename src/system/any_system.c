@@ -12,15 +12,22 @@
 
 long snapin_read(int fd, char *bytes, long count) {
   long done = 0;
+  int tries = 0, later;
   while (done < count) {
     ssize_t got = read(fd, bytes + done, count - done);
     if (got < 0 && errno == EINTR)
       continue;
-    if (got < 0)
+    if (got < 0 && (errno != EAGAIN || may_be_read_later(fd, -1) <= 0))
       return -errno;
-    if (got == 0)
-      break;
-    done += got;
+    if (got == 0) {
+      later = done > 0 ? 0 : may_be_read_later(fd, tries++);
+      if (later < 0)
+        return later;
+      if (later == 0)
+        break;
+    }
+    if (got > 0)
+      done += got;
   }
   return done;
 }
@@ -42,8 +49,9 @@ int snapin_seek(int fd, long place) { return lseek(fd, place, SEEK_SET) < 0 ? -e
 
 /* The sort of a failure, or 0 for others, and the system's message. */
 int snapin_explain(int status, char *reason, int size) {
-  hand_over(status == -not_regular ? "not a file but a link, a pipe or a device"
-                                   : strerror(-status),
+  hand_over(status == -not_regular   ? "not a file but a link, a pipe or a device"
+            : status == -not_written ? "no program has opened this pipe for writing"
+                                     : strerror(-status),
             reason, size);
   switch (-status) {
   case EFBIG:

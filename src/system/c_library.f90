@@ -34,7 +34,8 @@ module c_library
       integer(c_int), value :: how
     end function c_open
 
-    !> Number of bytes read; fewer than `count` only at the end of the file.
+    !> Number of bytes read; fewer than `count` only at the end of the file. A pipe that no program
+    !> opens for writing within two seconds is a failure.
     integer(c_long) function c_read(descriptor, bytes, count) bind(c, name='snapin_read')
       import :: c_char, c_int, c_long
       integer(c_int), value :: descriptor

@@ -9,6 +9,7 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <limits.h>
+#include <poll.h>
 #include <signal.h>
 #include <stdio.h>
 #include <string.h>
@@ -67,7 +68,7 @@ int snapin_open(const char *path, int how) {
   case as_data:
     return open_data(path);
   case as_input:
-    return status_of(open(path, O_RDONLY | O_CLOEXEC));
+    return status_of(open(path, O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC));
   case as_folder:
     return status_of(open(path, O_RDONLY | O_DIRECTORY | O_CLOEXEC));
   default:
@@ -75,7 +76,23 @@ int snapin_open(const char *path, int how) {
   }
 }
 
-/* Number of bytes read; fewer than asked for only at the end. */
+int may_be_read_later(int fd, int tries) {
+  const struct timespec pause = {0, 100 * 1000 * 1000};
+  struct stat file;
+  if (!(fcntl(fd, F_GETFL) & O_NONBLOCK))
+    return 0;
+  if (tries < 0) {
+    struct pollfd waiting = {fd, POLLIN, 0};
+    return poll(&waiting, 1, -1) > 0 || errno == EINTR;
+  }
+  if (fstat(fd, &file) != 0 || !S_ISFIFO(file.st_mode))
+    return 0;
+  if (tries >= 20)
+    return -not_written;
+  nanosleep(&pause, NULL);
+  return 1;
+}
+
 /* On file systems that do not support fsync, nothing more can be done. */
 int snapin_sync(int fd) {
   if (fsync(fd) == 0 || errno == EINVAL || errno == ENOTSUP || errno == ENOSYS)

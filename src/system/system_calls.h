@@ -5,7 +5,7 @@
 #include <string.h>
 
 /* Larger than every errno; also in `c_library`, like the two lists. */
-enum { not_regular = 100000 };
+enum { not_regular = 100000, not_written = 100001 };
 
 enum { too_large = 1, disk_full = 2, in_the_way = 3, not_there = 4, locked = 5 };
 
@@ -18,6 +18,12 @@ procedure found_procedure(const char *name);
 
 /* Reads count bytes, fewer only at the end of the file; returns their number, or minus an errno. */
 long snapin_read(int fd, char *bytes, long count);
+
+/* Whether a read that does not wait, and that got nothing, is to be tried again. tries < 0: there
+   are no bytes yet, and this waits for some. Otherwise there may be no writer: a pipe's is waited
+   for a tenth of a second, up to twenty times, then -not_written. Only if the file was opened so as
+   not to wait: opening a pipe without a writer would wait for ever. */
+int may_be_read_later(int fd, int tries);
 
 /* Has the system end this process by a signal when its parent ends, if the system can. */
 void end_with_parent_by(int signal);

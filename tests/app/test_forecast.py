@@ -6,7 +6,7 @@ import re
 import numpy as np
 import pytest
 import snapin as package
-from support.scenes import exponential, lennard_jones, loading
+from support.scenes import deck, exponential, lennard_jones, loading
 
 
 @pytest.fixture
@@ -40,6 +40,26 @@ def test_the_run_warns_before_it_begins(snapin, tmp_path):
     assert first < 2
     quiet = snapin("--quiet", "d.nml", cwd=tmp_path)
     assert "mixing needs" not in quiet.stderr
+
+
+# Lengths in micrometres, moduli in GPa, and both as they are: 1 um, 70 GPa.
+@pytest.mark.parametrize(("radius", "stiffness", "early", "late"), [
+    (1e-6, 70.0, "with a stiffness of 70 Pa", ""), (1.0, 70e9, "", "units: a radius of 1 m"),
+    (1e-6, 70e9, "", "")])
+def test_slips_of_units_are_named(said, snapin, tmp_path, radius, stiffness, early, late):
+    """They passed without a word, and the soft contact takes minutes."""
+    end = 1e-6 if early else 1e-9
+    text = said(deck(
+        bodies={"radius": radius, "stiffness": stiffness}, loading=loading(2*end, end, end),
+        force={"law": "lennard_jones", "hamaker": 1e-19, "z0": 3e-10}))
+    assert bool(text) == bool(early) and early in text
+    done = snapin("d.nml", cwd=tmp_path)
+    warnings = re.findall(r"warning: (.*)", done.stderr)
+    # Two states far apart have no pull-off.
+    assert sum("no pull-off" in said for said in warnings) == 1
+    named = [said for said in warnings if "no pull-off" not in said]
+    assert len(named) == bool(early or late)
+    assert all((early or late) in said for said in named)
 
 
 @pytest.mark.parametrize("seed", range(8))

@@ -4,6 +4,7 @@ import os
 import re
 import subprocess
 import threading
+import time
 
 import pytest
 from support.decks import BODIES, FORCE, GOOD, LOADING, RUNTIME_ERROR
@@ -42,6 +43,35 @@ def test_pipe_is_read(snapin, tmp_path):
     done = snapin("--check", "pipe", cwd=tmp_path)
     writer.join()
     assert (done.returncode, done.stdout) == (0, "pipe: ok\n")
+
+
+@pytest.mark.slow
+def test_a_writer_may_take_its_time(snapin, tmp_path):
+    """The program waits for a pipe that is open for writing."""
+    os.mkfifo(tmp_path / "pipe")
+
+    def write():
+        with open(tmp_path / "pipe", "w", encoding="utf-8") as pipe:
+            for part in GOOD[:20], GOOD[20:]:
+                time.sleep(1.5)
+                pipe.write(part)
+                pipe.flush()
+
+    writer = threading.Thread(target=write)
+    writer.start()
+    done = snapin("--check", "pipe", cwd=tmp_path)
+    writer.join()
+    assert (done.returncode, done.stdout) == (0, "pipe: ok\n")
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("option", ["--check", "--price", "--quiet"])
+def test_a_pipe_that_nobody_writes_into_is_refused(snapin, tmp_path, option):
+    """It was waited for, for ever."""
+    os.mkfifo(tmp_path / "pipe")
+    done = snapin(option, "pipe", cwd=tmp_path, timeout=60)
+    assert done.returncode == 2
+    assert done.stderr == "pipe: cannot be read: no program has opened this pipe for writing\n"
 
 
 @pytest.mark.parametrize("name", ["/dev/zero", "pipe"])

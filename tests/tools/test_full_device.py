@@ -39,7 +39,7 @@ def test_every_command_that_prints_ends_through_one_procedure():
 
 @pytest.mark.parametrize("name", [
     "pywrap/plots/map.py", "pywrap/plots/force_law.py", "pywrap/scripts/afm_to_table.py",
-    "pywrap/snapin/convert.py", "tools/pages.py", "tools/reproduce/reproduce.py"])
+    "pywrap/snapin/convert.py", "tools/reproduce/reproduce.py"])
 def test_a_full_device_is_one_line(name):
     """It was a traceback and status 120."""
     module = name.endswith("convert.py")

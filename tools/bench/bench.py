@@ -14,6 +14,8 @@ for the comparison in the table of costs.
 """
 
 import argparse
+import datetime
+import hashlib
 import pathlib
 import subprocess
 import sys
@@ -66,13 +68,10 @@ def main():
             path = folder / f"{name}.csv"
             fresh = path.is_file() and path.stat().st_mtime > runner.snapin.stat().st_mtime
             if not (options.resume and fresh):
-                _measure(name, path, runner, f"sources {pages.digest(build.parent / 'src')}",
+                _measure(name, path, runner, _digest(build.parent / "src"),
                          options.quick)
     in_guide = not options.quick and options.out is None
     _present(folder, in_guide)
-    if in_guide and not options.only and not options.draw:
-        for guide in _GUIDES:
-            pages.mark(guide)
 
 
 def _measure(name, path, runner, sources, quick):
@@ -80,12 +79,12 @@ def _measure(name, path, runner, sources, quick):
     began = time.perf_counter()
     _say(name)
     rows = _PARTS[name][0](runner, quick, lambda text: _say(f"  {text}"))
-    if name in _COMPARED and path.is_file() and _sources(path) != sources:
+    if name in _COMPARED and path.is_file() and not _sources(path).endswith(sources):
         path.replace(_before(path))
     version = subprocess.run([str(runner.snapin), "--version"], check=True, capture_output=True,
                              text=True).stdout.split("\n")[0]
     tables.write(path, rows, [f"./bench --only {name}{' --quick' if quick else ''}", version,
-                              sources, tables.machine()])
+                              f"{datetime.date.today()}, sources {sources}", tables.machine()])
     _say(f"  {time.perf_counter() - began:.0f} s; {path}")
 
 
@@ -105,7 +104,7 @@ def _present(folder, in_guide):
         found |= digits.honesty(folder)
     if in_guide:
         _insert("version", [
-            f"Measured with {sources} ({machine}): {', '.join(names)}."
+            f"Measured on {sources} ({machine}): {', '.join(names)}."
             for (sources, machine), names in measured.items()])
     for name, (header, lines) in found.items():
         table = pages.table(header, lines, tables.short)
@@ -119,11 +118,20 @@ def _insert(name, lines):
     """Put lines between the marks of the guides that have them."""
     for guide in _GUIDES:
         if f"<!-- {name} -->" in guide.read_text(encoding="utf-8"):
-            pages.insert(guide, name, lines, measured=False)
+            pages.insert(guide, name, lines)
+
+
+def _digest(folder):
+    """Return twelve digits that tell sources apart."""
+    found = hashlib.sha256()
+    for path in sorted(folder.rglob("*.f90")):
+        found.update(path.read_bytes())
+    return found.hexdigest()[:12]
 
 
 def _sources(path):
-    return next((note for note in tables.notes(path) if note.startswith("sources ")), "")
+    """Return the note on the day of a measurement and its sources."""
+    return next((note for note in tables.notes(path) if ", sources " in note), "")
 
 
 def _before(path):

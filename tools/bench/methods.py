@@ -243,7 +243,7 @@ def main():
         tables.write(CYCLES, measure_cycles(say), [])
     rows, cycles = tables.read(TABLE), tables.read(CYCLES)
     methods_page.draw(rows, cycles, PICTURE)
-    pages.insert(GUIDE, "methods", methods_page.lines(rows, cycles), measured=False)
+    pages.insert(GUIDE, "methods", methods_page.lines(rows, cycles))
 
 
 if __name__ == "__main__":

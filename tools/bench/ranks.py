@@ -145,7 +145,7 @@ def main():
 
 
 def renew(name, columns, rows):
-    pages.insert(PAGE, name, pages.table(columns, rows), measured=False)
+    pages.insert(PAGE, name, pages.table(columns, rows), "tools/bench/ranks.py")
 
 
 def show_limits(found):

@@ -10,6 +10,7 @@ the rows of its table, one on each line, have {fields}. Its module has
 """
 
 import csv
+import datetime
 import importlib
 import io
 import os
@@ -165,6 +166,7 @@ def _ending(made, runs, version):
              f"    ./reproduce {example}  # some of it",
              "    ./reproduce --publish  # and copy it to docs/reproduction/", "",
              "Decks that have not changed are not run again.", "",
+             f"Computed on {datetime.date.today()} by", "",
              *(f"    {line}" for line in version.split("\n")), ""]
     if not decks:
         return lines

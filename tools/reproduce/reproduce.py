@@ -23,7 +23,6 @@ import traceback
 
 sys.path.append(str(pathlib.Path(__file__).resolve().parents[1]))
 
-import pages  # noqa: E402 (found through the line above)
 import report  # noqa: E402
 import style  # noqa: E402
 from pages import ROOT  # noqa: E402
@@ -87,7 +86,6 @@ def _publish(folder, to, key):
     for path in [folder / f"{book.page}.md", folder / f"{book.table}.csv",
                  *filter(pathlib.Path.is_file, pictures)]:
         shutil.copyfile(path, to / path.name)
-    pages.mark(to / f"{book.page}.md")
     _say(f"published in {to}: {book.page}.md")
 
 

@@ -160,12 +160,9 @@ fuzz() {
   [ -z "$found" ] || { printf '%s\n' "$found"; return 1; }
 }
 
-# No page has figures of older numerics than src/.
-pages() { "$python" "$top/tools/pages.py"; }
-
 failed=
 stages='long traps sanitize memory coverage levels posix extremes faults judge'
-stages="$stages relatives mutations mpi fuzz pages"
+stages="$stages relatives mutations mpi fuzz"
 for stage in ${*:-$stages}; do
   case " $stages " in
     *" $stage "*) ;;
