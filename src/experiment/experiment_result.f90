@@ -1,7 +1,7 @@
-!> Results of the experiments of a scene, in the units of `dimensionless_problem`, and the places at
-!> which their numbers are read. Those of the path's readings are entered into the table of places
-!> under the names in `result_rows`: of drives, given loads, energies, and a table of stable states,
-!> which is judged at some of its rows.
+!> Results of the experiments of a scene, in the units of `dimensionless_problem`. The places at
+!> which their numbers are read are entered into the table of places, under the names in
+!> `result_rows`: those of springs, given loads, energies, and some rows of the table of stable
+!> states.
 module experiment_result
   use kinds, only: wp
   use numerics_choice, only: choice_t

@@ -1,6 +1,6 @@
 !> The motion of bodies in equilibrium from one h0 to another on a mesh fixed in space: along a
-!> branch, from its end by a relaxation to another branch, and so on. The steps, of the experiment
-!> and of the iteration, do not decide where a branch ends (`branch_end`).
+!> branch, from its end by a relaxation to another branch, and so on. Where a branch ends depends on
+!> neither the steps of the experiment nor those of the iteration (`branch_end`).
 module fixed_motion
   use kinds, only: wp, nan
   use dimensionless_problem, only: over_neck => spacing_over_neck

@@ -1,6 +1,6 @@
-!> What a drive of viscoelastic bodies keeps of its start. A drive begins with relaxed bodies, which
-!> the attraction has already drawn out towards each other where they start near. In a fast drive
-!> they keep this bulge, which makes their tips sharper, or blunter, than they are.
+!> What a drive of viscoelastic bodies keeps of its start. A drive begins with relaxed bodies; if it
+!> begins near, the attraction has already drawn them out towards each other. In a fast drive they
+!> keep this bulge, so that their tips are sharper, or blunter, than those of undeformed bodies.
 module frozen_start
   use kinds, only: wp
   use contact_state, only: state_t

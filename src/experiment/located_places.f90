@@ -1,6 +1,6 @@
-!> The quantities at the places of a table, once a run has found the places: of the states of the
-!> path at points and landings, and of the states that an experiment has stored; and what iteration
-!> and rounding leave of them as errors. A residual acts like an equal error of h0.
+!> The quantities at the places of a table, once a run has found the places, and their errors by
+!> iteration and rounding. The states are those of the path at its points and after its jumps, and
+!> those that an experiment has stored. A residual acts like an equal error of h0.
 module located_places
   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
   use kinds, only: wp, nan

@@ -1,6 +1,6 @@
-!> The rows of the equilibrium path: points of the path, states at given h0, and between these the
-!> number of states for which straight lines through the rows show the curve: load and contact
-!> radius against h0, also near folds and at large separations.
+!> The rows of the equilibrium path: points of the path, states at given h0, and as many states
+!> between them as straight lines from row to row need to show load and contact radius against h0,
+!> also near folds and at large separations.
 module path_rows
   use kinds, only: wp
   use dimensionless_problem, only: contact_level_of

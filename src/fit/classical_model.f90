@@ -1,7 +1,6 @@
 !> The theories of JKR, DMT and Maugis-Dugdale as models of a measured curve, and Hertz's for bodies
-!> that do not attract each other. Separate bodies do not attract each other. Bodies in contact
-!> follow the theory's curve, ordered by contact radius. These theories do not predict
-!> snap-in.
+!> that do not attract each other. Bodies in contact follow the theory's curve, ordered by contact
+!> radius. In these theories separated bodies have no force, and there is no snap-in.
 module classical_model
   use kinds, only: wp
   use root_finding, only: bracket_t

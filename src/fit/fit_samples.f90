@@ -1,5 +1,5 @@
-!> The samples of a measured curve that count in a fit: the side of a jump on which each one is, and
-!> the whitening of residuals and the removal of their baseline.
+!> The samples of a measured curve that count in a fit, and the side of a jump on which each one is.
+!> Their residuals are whitened, and the baseline is removed from them.
 !>
 !> The baseline is a sum of given columns (`baseline`). It does not depend on the unknowns of a
 !> model, so one projection removes it from residuals and from their derivatives.

@@ -1,5 +1,5 @@
-!> The loads of a measured curve beside those that its spring permits and those of the model: in a
-!> wrong unit they are off by orders of magnitude.
+!> Compares the loads of a measured curve with those that its spring permits, and with those of the
+!> model: loads in a wrong unit differ from them by orders of magnitude.
 module measured_loads
   use kinds, only: wp
   use text, only: rounded

@@ -1,8 +1,8 @@
 !> Meshes that are inserted while the path is traced. A new mesh about the axis begins where the
-!> present one misses too much of the load, unless meshes are locked to the front of a step. Under a
-!> law with several minima of its energy there is metastable contact in a secondary minimum. Its
-!> edge is where the tension outside the minimum is largest. While this edge moves faster than the
-!> axis, meshes are locked to it.
+!> present one misses too much of the load, unless meshes are locked to the front of a step. A law
+!> with several minima of its energy has metastable contact in a secondary minimum, whose edge is
+!> where the tension outside the minimum is largest. While this edge moves faster than the axis,
+!> meshes are locked to it.
 module further_meshes
   use kinds, only: wp
   use force_law, only: force_law_t

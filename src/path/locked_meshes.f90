@@ -1,4 +1,4 @@
-!> Prescribed h0 in edge-locked coordinates.
+!> The control that prescribes h0 on a mesh that is locked to the contact edge, and its scale.
 module locked_meshes
   use kinds, only: wp
   use shape, only: shape_t

@@ -1,6 +1,6 @@
-!> Derivatives of the curve of all equilibria by parameters of the problem: of h0 and load at every
-!> point of the path, at a fixed place x, in SI units. At a fixed h0, or position of a drive, the
-!> place changes too; `held` includes this change.
+!> Derivatives of h0 and load by parameters of the problem, in SI units, at every point of the path:
+!> at a fixed value x of the coordinate along the path. At a fixed h0, or position of a drive, x
+!> changes too; `held` includes this change.
 module path_sensitivity
   use kinds, only: wp
   use dimensionless_problem, only: problem_t

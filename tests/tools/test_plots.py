@@ -320,12 +320,30 @@ def test_a_fitted_number_is_in_the_picture_once_in_the_words_of_the_field():
     assert names == ["contact point", "Young's modulus of the sample"]
 
 
+def test_a_map_may_have_values_over_many_decades_or_no_two_neighbours(tmp_path):
+    """Over eighteen decades there were no contours, and the colour bar failed."""
+    (tmp_path / "summary.nml").write_text("&summary\n  converged = .true.\n/\n&cost\n/\n")
+    head = "# title:\na.x,a.y,converged,max_tension,failure\n"
+    rows = [(10.0**i, 10.0**j, 1, 10.0**(i + j)) for i in range(10) for j in range(10)]
+    lone = [(i, j, int(i == j == 9), i + j) for i in range(10) for j in range(10)]
+    for cases, lines in ((rows, 4), (lone, 0)):
+        (tmp_path / "sweep.csv").write_text(
+            head + "".join(",".join(map(str, case)) + ",\n" for case in cases))
+        figure = draw_map(tmp_path)
+        figure.savefig(tmp_path / "map.png")
+        drawn = [of for of in figure.axes[0].collections if type(of).__name__ == "TriContourSet"]
+        assert len([path for of in drawn for path in of.get_paths() if len(path)]) >= lines
+
+
 def test_a_map_ends_where_its_logarithmic_axis_begins_and_has_no_comb_there(tmp_path):
     """Where the next case was negative, the whole cell was left out: the lower edge was a comb."""
     (tmp_path / "summary.nml").write_text("&summary\n  converged = .true.\n/\n&cost\n/\n")
-    # A column that falls through zero along each line of the sweep, at another place in each.
-    rows = [f"{i},{j},1,{i + 1},{30 * (20 - j) ** 2 / 20 + 0.01 - 0.37 * i - (j > 18)},{i + j + 1},\n"
-            for i in range(20) for j in range(21)]
+
+    def down(i, j):
+        """Falls through zero along each line of the sweep, at another place in each."""
+        return 30 * (20 - j) ** 2 / 20 + 0.01 - 0.37 * i - (j > 18)
+
+    rows = [f"{i},{j},1,{i + 1},{down(i, j)},{i + j + 1},\n" for i in range(20) for j in range(21)]
     (tmp_path / "sweep.csv").write_text(
         "# title:\na.x,a.y,converged,across,down,max_tension,failure\n" + "".join(rows))
     axes = draw_map(tmp_path, over=["across", "down"]).axes[0]

@@ -49,6 +49,8 @@ _NO_PULL_OFF = {"color": GREY, "marker": "o", "markersize": 4, "fillstyle": "non
                 "label": "tension largest in the first or last row: no pull-off"}
 # Values with a larger ratio of the largest to the smallest are shown on a logarithmic scale.
 _DECADES = 30.0
+# Up to this ratio contours are drawn at 2 and 5 times the powers of ten too.
+_MANY = 1e4
 # With more values of the second column a map is drawn, not curves; as many curves have labels.
 _MOST_CURVES = 7
 # The share of the positive values of a column that may be below the begin of its logarithmic axis,
@@ -158,30 +160,19 @@ def _draw_colours(figure, axes, places, keys, values, good, failed, at_end, labe
     there = np.isfinite(x) & np.isfinite(y)
     x, y = (np.where(there, of, of[there].mean()) for of in (x, y))
     triangles = _triangles(x / (np.ptp(x) or 1.0), y / (np.ptp(y) or 1.0), there, keys)
-    # A triangle with a corner without value or place is left out.
-    placed = good & np.isfinite(places).all(axis=0)
-    triangles = triangles[placed[triangles].all(axis=1)]
-    points = np.where(placed, np.stack([*places, values]), np.stack([*places, values])[
-        :, placed].mean(axis=1, keepdims=True)).T
-    for column, begin in enumerate(lowest):
-        if begin is not None:
-            triangles, points = _cut(triangles, points, column, begin)
-    if not len(triangles):
-        triangles = np.full((1, 3), np.flatnonzero(placed)[0])
-    used, triangles = np.unique(triangles, return_inverse=True)
-    points, triangles = points[used], triangles.reshape(-1, 3)
-    mesh = Triangulation(*(_as_drawn(np.maximum(of, begin or -np.inf), begin)
-                           for of, begin in zip(points.T, lowest)), triangles)
-    filled = points[:, 2]
-    good, failed, at_end = good & there, failed & there, at_end & there
+    mesh, filled = _mesh_of(triangles, places, values, good, lowest)
+    failed, at_end = failed & there, at_end & there
     nothing = there & ~good & ~failed & ~at_end
-    low, high = values[good].min(), values[good].max()
-    norm = LogNorm(low, high) if _wide(values[good]) else Normalize(low, high)
+    low, high = filled.min(), filled.max()
+    norm = LogNorm(low, high) if _wide(filled) else Normalize(low, high)
     colours = axes.tripcolor(mesh, filled, shading="gouraud", cmap="viridis", norm=norm,
                              rasterized=True)
     bar = figure.colorbar(colours, ax=axes, label=label)
     if high > low:
-        levels = LogLocator(subs=(1, 2, 5)) if _wide(values[good]) else MaxNLocator(8)
+        levels = MaxNLocator(8)
+        if _wide(filled):
+            # Over many decades LogLocator has no ticks between the powers, and then none at all.
+            levels = LogLocator(subs=(1, 2, 5) if high < _MANY * low else (1,))
         levels = levels.tick_values(low, high)
         bar.add_lines(axes.tricontour(mesh, filled, levels=levels, colors="white", linewidths=0.7))
     axes.plot(x[failed], y[failed], "x", color=VERMILION, markersize=4)
@@ -189,6 +180,25 @@ def _draw_colours(figure, axes, places, keys, values, good, failed, at_end, labe
     if at_end.any():
         axes.plot(x[at_end], y[at_end], **_NO_PULL_OFF)
         figure.legend(loc="outside lower center", frameon=False, fontsize="small")
+
+
+def _mesh_of(triangles, places, values, good, lowest):
+    """Return the triangles to be filled, as drawn, and the values at their corners."""
+    placed = good & np.isfinite(places).all(axis=0)
+    points = np.where(placed, [*places, values], 0).T
+    # A triangle with a corner without value or place is left out.
+    triangles = triangles[placed[triangles].all(axis=1)]
+    for column, begin in enumerate(lowest):
+        if begin is not None:
+            triangles, points = _cut(triangles, points, column, begin)
+    if not len(triangles):
+        triangles = np.full((1, 3), np.flatnonzero(placed)[0])
+    used, triangles = np.unique(triangles, return_inverse=True)
+    x, y, filled = points[used].T
+    # Rounding may leave a corner below the begin.
+    drawn = [of if begin is None else np.log10(np.maximum(of, begin))
+             for of, begin in zip((x, y), lowest)]
+    return Triangulation(*drawn, triangles.reshape(-1, 3)), filled
 
 
 def _triangles(x, y, there, keys):
