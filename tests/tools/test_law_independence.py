@@ -20,7 +20,8 @@ def page():
     """The table of the page: Tabor's parameter -> column -> value."""
     text = PAGE.read_text(encoding="utf-8")
     lines = re.search(r"<!-- laws -->\n(.*?)<!-- /laws -->", text, re.S)[1].splitlines()
-    names, _, *rows = ([cell.strip() for cell in line.strip("|").split("|")] for line in lines)
+    names, _, *rows = ([cell.strip() for cell in line.strip("|").split("|")]
+                       for line in lines if line.startswith("|"))
     return {float(row[0]): dict(zip(names[1:], map(float, row[1:]))) for row in rows}
 
 

@@ -27,6 +27,9 @@ import types
 from pathlib import Path
 
 TOP = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(TOP / "pywrap"))
+from snapin.command import as_command  # noqa: E402
+
 PYTHON = "%d.%d" % sys.version_info[:2]
 # Packages of pip by their names in conda.
 OF_PIP = ("pip", "meson-python", "pyproject-metadata", "packaging", "meson", "ninja", "numpy")
@@ -176,4 +179,4 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(as_command(main)())
