@@ -17,6 +17,7 @@ import contextlib
 import hashlib
 import json
 import os
+import re
 import runpy
 import shutil
 import subprocess
@@ -66,6 +67,9 @@ def channel_of_stand_ins(folder):
             elif name in OF_PIP:
                 run(sys.executable, "-m", "pip", "install", "-q", "--no-deps", "--ignore-installed",
                     "--no-compile", "--disable-pip-version-check", "--prefix", files, name)
+                for script in files.glob("bin/*"):
+                    script.write_bytes(re.sub(rb"\A#!.*/python.*", b"#!/usr/bin/env python3",
+                                              script.read_bytes()))
                 (about,) = files.glob("lib/python*/site-packages/*.dist-info")
                 version = about.name.removesuffix(".dist-info").rpartition("-")[2]
             else:
