@@ -98,7 +98,7 @@ def conda(scratch, tarball, options):
     recipe.parent.mkdir()
     text = (TOP / "packaging/conda/recipe.yaml").read_text(encoding="utf-8")
     place = "../../dist/snapin-${{ version }}.tar.gz"
-    last = "-Csetup-args=-Dprocessor=any"
+    last = "-Csetup-args=-Dcarried=disabled"
     assert place in text and last in text
     text = text.replace(place, str(tarball))
     text = text.replace(last, " ".join([last, *(f"-Csetup-args={word}" for word in options)]))
