@@ -137,7 +137,8 @@ let_python_find_snapin() {
 builds() {
   folder=$1
   shift
-  [ -f "$folder/build.ninja" ] || "$venv/bin/meson" setup "$folder" "$@" > /dev/null || return
+  [ -f "$folder/build.ninja" ] || said=$("$venv/bin/meson" setup "$folder" "$@" 2>&1) ||
+    { printf '%s\n' "$said" | tail -n 25; return 1; }
   "$venv/bin/meson" compile -C "$folder" > "$folder/compile.log" ||
     { tail -n 25 "$folder/compile.log"; return 1; }
 }

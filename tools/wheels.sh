@@ -1,9 +1,10 @@
 #!/bin/sh
 # tools/wheels.sh [PYTHON ...]: a wheel of the package for each of these interpreters, by default for
-# each of Python 3.9 to 3.14 that this machine has, into dist/. The wheels need no compiler and no
-# library but the C library: OpenBLAS, LAPACK and gfortran's libraries are inside. They run on any
-# x86-64 processor. Their tags say how old a C library they accept, which is as old as that of this
-# machine and its libraries allow: build them on the oldest system that they shall run on.
+# each of Python 3.9 to 3.14 that this machine has, into dist/, and a run of each. The wheels need
+# no compiler and no library but the C library: OpenBLAS, LAPACK and gfortran's libraries are
+# inside. They run on any x86-64 processor. Their tags say how old a C library they accept, which is
+# as old as that of this machine and its libraries allow: build them on the oldest system that they
+# shall run on.
 #
 # The program and the library are compiled once, for all interpreters. tools/verify/empty_root.sh
 # tries the wheels where there is nothing else.
@@ -58,6 +59,11 @@ for python in "$@"; do
     -Cbuild-dir="$work/meson" -Csetup-args=-Dprocessor=any -Csetup-args=-Dbuildtype=release -Cinstall-args=--strip
   logged "Python $version: putting the libraries inside" env PATH="$work/tools/bin:$PATH" \
     "$work/tools/bin/auditwheel" repair --wheel-dir "$out" "$raw"/snapin-*.whl
+  tag=cp$(echo "$version" | tr -d .)
+  logged "Python $version: installing the wheel" "$work/venv-$version/bin/python" -m pip install \
+    --disable-pip-version-check --force-reinstall "$out"/snapin-*-"$tag-$tag"-*.whl
+  logged "Python $version: trying it" "$work/venv-$version/bin/python" -c "import snapin
+print(snapin.run('$top/inputs/first.nml').summary['max_tension'])"
 done
 for wheel in "$out"/snapin-*.whl; do
   printf '%s %s MB\n' "${wheel##*/}" \

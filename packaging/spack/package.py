@@ -40,7 +40,8 @@ class Snapin(MesonPackage):
         mpi = "enabled" if self.spec.satisfies("+mpi") else "disabled"
         blas = "openblas" if self.spec["blas"].name == "openblas" else "lapack"
         # Spack's compiler wrappers choose the processor.
-        return [f"-Dpython={python}", f"-Dmpi={mpi}", f"-Dblas={blas}", "-Dprocessor=any"]
+        return [f"-Dpython={python}", f"-Dmpi={mpi}", f"-Dblas={blas}", "-Dprocessor=any",
+                "-Dcarried=disabled"]
 
     def setup_build_environment(self, env):
         if self.spec.satisfies("+mpi"):

@@ -7,7 +7,7 @@ radii in sqrt(R z0), loads in pi w R, and energies in pi w R z0.
 import functools
 import json
 import pathlib
-from typing import NamedTuple
+from typing import NamedTuple, Optional
 
 import numpy as np
 from numpy.polynomial import chebyshev, polynomial
@@ -40,7 +40,7 @@ class Panel(NamedTuple):
     load: np.ndarray
     radius: np.ndarray
     squared: bool
-    energy: np.ndarray | None = None
+    energy: Optional[np.ndarray] = None
 
 
 def tabor_of(log_mu):

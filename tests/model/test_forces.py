@@ -32,7 +32,7 @@ def test_van_der_waals_and_born_make_the_lennard_jones_law():
         snapin.force_law(snapin.lennard_jones(hamaker=HAMAKER, z0=Z0, part=part), GAP)
         for part in ("repulsive", "attractive")
     )
-    for found, exact, up, down in zip(sum_of, whole, repulsion, attraction, strict=True):
+    for found, exact, up, down in zip(sum_of, whole, repulsion, attraction):
         claim(found, exact, abs(up) + abs(down))
 
 
@@ -83,11 +83,11 @@ def test_surface_energy_in_place_of_the_hamaker_constant():
 
 def test_hydration_and_hydrophobic_terms_add_up():
     energies, lengths = [5e-3, 2e-2], [1e-9, 0.2e-9]
-    exact = sum(w / d * np.exp(-GAP / d) for w, d in zip(energies, lengths, strict=True))
+    exact = sum(w / d * np.exp(-GAP / d) for w, d in zip(energies, lengths))
     groups = {"energy": energies, "decay_length": lengths}
     claim(pressure(hydration=groups), exact)
     claim(pressure(hydrophobic=groups), -exact)
-    pressures = [w / d for w, d in zip(energies, lengths, strict=True)]
+    pressures = [w / d for w, d in zip(energies, lengths)]
     claim(pressure(hydration={"pressure": pressures, "decay_length": lengths}), exact)
 
 

@@ -67,7 +67,7 @@ def test_points_are_met_and_nothing_jumps(tmp_path, interpolation, quantity):
     np.testing.assert_allclose(getattr(snapin.force_law(groups, gap), quantity), exact, rtol=1e-11)
     before, after = (snapin.force_law(groups, gap * (1 + e)) for e in (-1e-12, 1e-12))
     size = snapin.force_law(snapin.lennard_jones(hamaker=HAMAKER, z0=Z0, part="repulsive"), gap)
-    for one, two, scale in zip(before, after, size, strict=True):
+    for one, two, scale in zip(before, after, size):
         # The curvature of a monotone interpolant jumps, which is in the slope where that of the
         # energy is interpolated.
         if scale is size.slope and (interpolation, quantity) == ("monotone", "energy"):

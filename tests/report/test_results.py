@@ -129,7 +129,7 @@ def test_numbers_of_any_size_are_written_to_the_last_digit(snapin, tmp_path):
     done = runner(snapin, tmp_path)(text)
     lines = (done.folder / "sweep.csv").read_text().splitlines()
     rows = [line.split(",") for line in lines if not line.startswith("#")][1:]
-    for value, row in zip(values, rows, strict=True):
+    for value, row in zip(values, rows):
         assert float(row[0]) == value
         for cell in row[:-1]:
             mantissa, exponent = f"{float(cell):.16e}".upper().split("E") if cell != "NaN" else "NN"

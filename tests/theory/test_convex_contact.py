@@ -86,10 +86,10 @@ def test_the_theories_are_the_closed_forms(run, name):
     hertz, jkr = classical_rows(run, shape, 5.0)
     assert len(hertz) > 8 and len(jkr) > 8
     for a, displacement, load in zip(
-            hertz["contact_radius"], hertz["displacement"], hertz["load"], strict=True):
+            hertz["contact_radius"], hertz["displacement"], hertz["load"]):
         assert closed(a) == pytest.approx((displacement, load), rel=1e-9, abs=1e-12)
     for a, displacement, load in zip(
-            jkr["contact_radius"], jkr["displacement"], jkr["load"], strict=True):
+            jkr["contact_radius"], jkr["displacement"], jkr["load"]):
         depth, repulsion = closed(a)
         assert depth - math.sqrt(2 * math.pi * a / E_STAR) == pytest.approx(
             displacement, rel=1e-9, abs=1e-9)
@@ -101,7 +101,7 @@ def test_the_theory_of_a_punch_is_the_integral_of_its_slope(run):
     shape = {"kind": "rounded_punch", "radius": radius, "flat_radius": flat}
     hertz, _ = classical_rows(run, shape, 2.0)
     for a, displacement, load in zip(
-            hertz["contact_radius"], hertz["displacement"], hertz["load"], strict=True):
+            hertz["contact_radius"], hertz["displacement"], hertz["load"]):
         if not displacement > 0:
             continue
         assert a > flat

@@ -25,9 +25,9 @@ def test_the_version_is_that_of_the_build(name, pattern):
 def test_recipes_give_the_build_options_that_it_has():
     package, _ = package_of_spack()
     given = {argument.removeprefix("-D").partition("=")[0] for argument in package.meson_args()}
-    assert given == {"python", "mpi", "blas", "processor"} <= OPTIONS
+    assert given == {"python", "mpi", "blas", "processor", "carried"} <= OPTIONS
     recipe = (ROOT / "packaging/conda/recipe.yaml").read_text(encoding="utf-8")
-    assert set(re.findall(r"-Csetup-args=-D(\w+)=", recipe)) == {"processor"}
+    assert set(re.findall(r"-Csetup-args=-D(\w+)=", recipe)) == {"processor", "carried"}
 
 
 def test_recipes_install_the_licences_of_all_parts():

@@ -1,6 +1,7 @@
 """Claims about the form of the sources: lines are short, and a module uses its own room of src/ and
 those above it, none below."""
 
+import ast
 import re
 
 import pytest
@@ -76,3 +77,20 @@ def test_no_line_is_longer_than_a_hundred_columns(folder):
         if len(line) > COLUMNS
     ]
     assert not long
+
+
+def test_python_3_9_reads_every_file_of_python():
+    """The package could not be imported there: a field had the type `array | None`."""
+    newer = []
+    for path in sorted(path for room in ("pywrap", "tests", "tools")
+                       for path in (ROOT / room).rglob("*.py")):
+        tree = ast.parse(path.read_text(encoding="utf-8"), feature_version=(3, 9))
+        for node in ast.walk(tree):
+            annotations = [getattr(node, name, None) for name in ("annotation", "returns")]
+            if any(isinstance(part, ast.BinOp) and isinstance(part.op, ast.BitOr)
+                   for found in annotations if found for part in ast.walk(found)):
+                newer.append(f"{path.name}, line {node.lineno}: a type with |")
+            if (isinstance(node, ast.Call) and getattr(node.func, "id", "") == "zip"
+                    and any(word.arg == "strict" for word in node.keywords)):
+                newer.append(f"{path.name}, line {node.lineno}: zip(strict=)")
+    assert newer == []

@@ -4,6 +4,7 @@ import dataclasses
 import math
 import pathlib
 import re
+from typing import Optional
 
 EXAMPLES = pathlib.Path(__file__).resolve().parents[2] / "inputs" / "examples"
 RADIUS, _Z0, _HAMAKER = 1.5e-2, 0.5e-9, 1e-19
@@ -23,7 +24,7 @@ class Problem:
     step: float
     adhesive: bool = True
     # Strength of adhesion of a Lennard-Jones problem, whose numbers are known independently.
-    sigma: float | None = None
+    sigma: Optional[float] = None
 
     @property
     def load(self):

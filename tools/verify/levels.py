@@ -177,7 +177,7 @@ def limit_of(one):
     if file.is_file():
         fit = f90nml.read(file)["fit"]
         return FITTED * max(abs(error / value) for error, value in
-                            zip(fit["standard_error"], fit["estimate"], strict=True))
+                            zip(fit["standard_error"], fit["estimate"]))
     left = [value for name, value in numbers_of(one).items() if name.endswith("worst_residual")]
     return max([EXACT, *(OF_RESIDUAL * float(np.nanmax(value)) for value in left)])
 

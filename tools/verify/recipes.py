@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Builds the recipes of packaging/ from a source distribution and tries what they install.
 
-    python -m build --sdist && python tools/verify/recipes.py [conda] [spack]
+    python -m build --sdist && python tools/verify/recipes.py [--quick] [conda] [spack]
 
 conda: rattler-build (pip install py-rattler-build) renders, solves, builds and tests the recipe.
 Where no channel of conda can be reached, the packages that it needs stand in a channel made here:
@@ -10,6 +10,8 @@ OpenBLAS are the system's, so that their packages are empty.
 
 spack: the phases of Spack's Meson packages, with the arguments that the package gives; Spack itself
 does not run. Directives are noted, and the defaults of the variants are taken.
+
+With --quick the compilers do not optimise.
 """
 
 import argparse
@@ -17,6 +19,7 @@ import contextlib
 import hashlib
 import json
 import os
+import re
 import runpy
 import shutil
 import subprocess
@@ -69,6 +72,9 @@ def channel_of_stand_ins(folder):
             elif name in OF_PIP:
                 run(sys.executable, "-m", "pip", "install", "-q", "--no-deps", "--ignore-installed",
                     "--no-compile", "--disable-pip-version-check", "--prefix", files, name)
+                for script in files.glob("bin/*"):
+                    script.write_bytes(re.sub(rb"\A#!.*/python.*", b"#!/usr/bin/env python3",
+                                              script.read_bytes()))
                 (about,) = files.glob("lib/python*/site-packages/*.dist-info")
                 version = about.name.removesuffix(".dist-info").rpartition("-")[2]
             else:
@@ -88,15 +94,18 @@ def channel_of_stand_ins(folder):
         {"info": {"subdir": "linux-64"}, "packages": {}, "packages.conda": entries}))
 
 
-def conda(scratch, tarball):
+def conda(scratch, tarball, options):
     import rattler_build  # noqa: PLC0415 - spack does without
 
     recipe = scratch / "recipe/recipe.yaml"
     recipe.parent.mkdir()
     text = (TOP / "packaging/conda/recipe.yaml").read_text(encoding="utf-8")
     place = "../../dist/snapin-${{ version }}.tar.gz"
-    assert place in text
-    recipe.write_text(text.replace(place, str(tarball)), encoding="utf-8")
+    last = "-Csetup-args=-Dcarried=disabled"
+    assert place in text and last in text
+    text = text.replace(place, str(tarball))
+    text = text.replace(last, " ".join([last, *(f"-Csetup-args={word}" for word in options)]))
+    recipe.write_text(text, encoding="utf-8")
     channel_of_stand_ins(scratch / "channel")
     variants = rattler_build.VariantConfig({
         "python": [PYTHON], "c_compiler": ["gcc"], "fortran_compiler": ["gfortran"],
@@ -105,6 +114,7 @@ def conda(scratch, tarball):
     result = variant.run_build(
         rattler_build.ToolConfiguration(test_strategy="native"), scratch / "output",
         [(scratch / "channel").as_uri()])
+    print("\n".join(result.log))
     for package in result.packages:
         print(f"{Path(package).name}: {Path(package).stat().st_size/1e6:.1f} MB")
 
@@ -144,7 +154,7 @@ def package_of_spack():
     return package, noted
 
 
-def spack(scratch, tarball):
+def spack(scratch, tarball, options=()):
     package, _ = package_of_spack()
     with tarfile.open(tarball) as archive:
         archive.extractall(scratch / "source")
@@ -153,7 +163,7 @@ def spack(scratch, tarball):
     # Those of spack_repo.builtin.build_systems.meson, with the defaults of its variants.
     arguments = [f"-Dprefix={prefix}", f"-Dlibdir={prefix}/lib", "-Dbuildtype=release",
                  "-Dstrip=false", "-Ddefault_library=shared", "-Dwrap_mode=nodownload"]
-    run("meson", "setup", source, build, *arguments, *package.meson_args())
+    run("meson", "setup", source, build, *arguments, *package.meson_args(), *options)
     run("ninja", "-C", build, "-v", stdout=subprocess.DEVNULL)
     run("ninja", "-C", build, "install", stdout=subprocess.DEVNULL)
     run(prefix / "bin/snapin", source / "inputs/first.nml", cwd=scratch)
@@ -171,11 +181,13 @@ def main():
     parser.add_argument("recipe", nargs="*", help="conda, spack; both by default")
     parser.add_argument("--from", dest="tarball", type=Path, metavar="FILE",
                         help="the source distribution; the one of dist/ by default")
+    parser.add_argument("--quick", action="store_true", help="compile without optimisation")
     given = parser.parse_args()
+    options = ["-Doptimization=0"] if given.quick else []
     tarball = (given.tarball or next((TOP / "dist").glob("snapin-*.tar.gz"))).resolve()
     for recipe in given.recipe or ["conda", "spack"]:
         with tempfile.TemporaryDirectory(prefix=f"snapin-{recipe}-") as scratch:
-            {"conda": conda, "spack": spack}[recipe](Path(scratch), tarball)
+            {"conda": conda, "spack": spack}[recipe](Path(scratch), tarball, options)
 
 
 if __name__ == "__main__":

@@ -68,7 +68,7 @@ lapack() {
   "$target-ar" rcs liblapack.a ./*.o && "$target-ar" rcs libblas.a la_constants.o
 }
 
-lapack_source || give_up 'no source of LAPACK'
+(lapack_source) || give_up 'no source of LAPACK'
 (lapack) || give_up 'LAPACK cannot be compiled for Windows'
 cat > "$libraries/windows.ini" <<END
 [binaries]

@@ -85,7 +85,7 @@ def draw_force_law(deck, title=""):
     """Return a figure of the law of the groups `deck`, and of its parts."""
     law = Law(deck)
     figure = Figure(figsize=(9, 4.2), layout="constrained")
-    for panel, quantity in zip(figure.subplots(1, 2), UNITS, strict=True):
+    for panel, quantity in zip(figure.subplots(1, 2), UNITS):
         law.draw(panel, quantity, styled(parts_of(deck)))
     handles, labels = figure.axes[0].get_legend_handles_labels()
     if handles:
