@@ -243,12 +243,14 @@ contains
     ends = self%data%measured%facing*(nearest - [inner, outer, outer + travel])
   end subroutine reach
 
-  !> The contact point, whether it is fitted or given.
+  !> The contact point, whether it is fitted or given; NaN for radii under loads.
   pure real(wp) function contact_height(self, value)
     class(modelled_curve_t), intent(in) :: self
     real(wp), intent(in) :: value(:)
 
-    contact_height = self%number_of(value, of_contact_point, self%contact_point)
+    contact_height = nan
+    if (.not. self%data%measured%under_loads()) &
+      contact_height = self%number_of(value, of_contact_point, self%contact_point)
   end function contact_height
 
   !> Position of the drive at a sample.

@@ -87,6 +87,20 @@ def test_errors_of_a_jkr_test_are_those_of_its_theory(tmp_path):
     assert found["correlation"][1][0] == pytest.approx(correlation, abs=0.03)
 
 
+def test_a_sweep_over_tests_has_no_contact_point(contact, tmp_path):
+    rows = contact[:contact["load"].argmin() - 1]
+    for i in range(2):
+        np.savetxt(tmp_path / f"{i}.csv", np.column_stack([rows["load"], rows["contact_radius"]]),
+                   "%.16e", ",", header="F,a", comments="")
+    deck = deck_of(SCENE, "", [*TRUTH], LOADS, noise=1e-12)
+    del deck["measurement"]["file"]
+    deck["sweep"] = {"key": "measurement.file", "words": str(tmp_path / "*.csv")}
+    table = run(deck).sweep
+    assert len(table) == 2
+    assert table[f"{STRENGTH}_estimate"] == pytest.approx(TRUTH[STRENGTH], rel=1e-4)
+    assert np.isnan(table["contact_height"]).all()
+
+
 REFUSED = {
     "no load": ({"columns": ["F", "a"], "quantity": ["separation", "contact_radius"]}, {},
                 "needs a load"),
