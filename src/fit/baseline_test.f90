@@ -58,6 +58,7 @@ contains
     integer :: n
 
     allocate (lacking(0))
+    if (residuals%curve%data%baseline_numbers() == 0) return
     call find_tangent(residuals, value, tangent, found)
     if (.not. found) return
     associate (data => residuals%curve%data%measured)
@@ -257,6 +258,9 @@ contains
     integer :: k
 
     at_samples = column(data%sample, :)
+    do k = 1, size(data%sample)
+      if (data%is_beside(data%sample(k))) at_samples(k, :) = 0
+    end do
     call data%clean(at_samples)
     cleaned = 0
     cleaned(:size(data%sample), :) = at_samples

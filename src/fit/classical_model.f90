@@ -40,7 +40,7 @@ contains
     logical, intent(in) :: with_rates
     type(response_t), intent(out) :: response
     logical, intent(out) :: found
-    real(wp) :: number(2), widest, turn
+    real(wp) :: number(2), weights(2), widest, turn
     integer :: unknowns
 
     number = [self%work, self%stiffness]
@@ -49,7 +49,9 @@ contains
     ! Hertz's contact radius at the largest load and a hundred times the adhesion.
     widest = (1.5_wp*self%radius*(2*max(largest, 0.0_wp) + 100*number(1)*self%radius)/ &
       number(2))**(1.0_wp/3)
-    turn = turning_radius(self, number, 1/stiffness, widest)
+    weights = [0, -1]
+    if (stiffness > 0) weights = [1.0_wp, -1/stiffness]
+    turn = turning_radius(self, number, weights, widest)
     found = turn < 0.5_wp*widest
     if (.not. found) return
     allocate (response%branch(2))
@@ -62,6 +64,8 @@ contains
         panel%h0 = widest*reshape([1, -1, 0, -1], [2, 2])
         panel%load = 0*panel%h0
         allocate (panel%h0_rate(unknowns, 2), panel%load_rate(unknowns, 2), source=0.0_wp)
+        panel%square = panel%load
+        panel%square_rate = panel%load_rate
       end associate
       apart%turns_last = .true.
     end associate
@@ -72,6 +76,9 @@ contains
     response%way(outward) = way_t([2, 1], [response%branch(2)%position(1), huge(1.0_wp)], 1)
     ! Without adhesion there is no jump.
     if (self%theory == hertz) response%way%main = 0
+    if (stiffness > 0) return
+    response%way(inward) = way_t([2], [-huge(1.0_wp)])
+    response%way(outward) = way_t([2], [huge(1.0_wp)])
   end subroutine respond
 
   !> The branch in contact, from the turn of the position inward. Panels become longer as the
@@ -94,7 +101,8 @@ contains
         panel%ends = edge(i - 1:i)
         panel%x = panel%ends
         allocate (panel%h0(2, 2), panel%load(2, 2), panel%h0_rate(unknowns, 2), &
-          panel%load_rate(unknowns, 2))
+          panel%load_rate(unknowns, 2), panel%square(2, 2))
+        allocate (panel%square_rate(unknowns, 2), source=0.0_wp)
         do side = 1, 2
           a = panel%x(side)
           now = state(model, number, a)
@@ -102,6 +110,7 @@ contains
             (2*step*a)
           panel%h0(:, side) = [now(1), by_a(1)]
           panel%load(:, side) = [now(2), by_a(2)]
+          panel%square(:, side) = [a**2, 2*a]
           do k = 1, unknowns
             rate = varied(model, number, which(k), a)
             panel%h0_rate(k, side) = rate(1)
@@ -147,9 +156,9 @@ contains
   end function state
 
   !> The contact radius at which the position of the drive is largest.
-  pure real(wp) function turning_radius(model, number, compliance, widest) result(turn)
+  pure real(wp) function turning_radius(model, number, weights, widest) result(turn)
     class(classical_model_t), intent(in) :: model
-    real(wp), intent(in) :: number(2), compliance, widest
+    real(wp), intent(in) :: number(2), weights(2), widest
     type(bracket_t) :: bracket
     real(wp) :: at(0:tried), position(0:tried), points(2)
     integer :: i
@@ -169,7 +178,7 @@ contains
     pure real(wp) function position_at(a)
       real(wp), intent(in) :: a
 
-      position_at = dot_product(state(model, number, a), [1.0_wp, -compliance])
+      position_at = dot_product(state(model, number, a), weights)
     end function position_at
 
   end function turning_radius

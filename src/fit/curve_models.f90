@@ -21,12 +21,12 @@ module curve_models
 contains
 
   !> Sets the model of a family of problems, which attract each other or do not. `self` must exist
-  !> as long as the model is used.
-  subroutine set(self, family, numerics, attracts, model)
+  !> as long as the model is used. with_radius: whether the contact radius is wanted.
+  subroutine set(self, family, numerics, attracts, with_radius, model)
     class(curve_models_t), intent(inout), target :: self
     class(problem_family_t), intent(in) :: family
     type(numerics_t), intent(in) :: numerics
-    logical, intent(in) :: attracts
+    logical, intent(in) :: attracts, with_radius
     class(force_model_t), pointer, intent(out) :: model
 
     if (attracts) then
@@ -38,6 +38,7 @@ contains
       self%stepped%numerics = numerics
       model => self%stepped
     end if
+    model%with_radius = with_radius
   end subroutine set
 
 end module curve_models

@@ -5,7 +5,8 @@ module curve_rows
   use text, only: counted, quoted, rounded
   use deck_source, only: source_t
   use data_table, only: data_table_t, style_t, take_data_table
-  use fit_request, only: measurement_t, of_position, of_separation, of_load, of_segment
+  use fit_request, only: measurement_t, of_position, of_separation, of_load, of_segment, &
+    of_radius
   use units, only: find_unit
   implicit none
   private
@@ -13,17 +14,22 @@ module curve_rows
 
   !> Kinds of segments.
   integer, parameter :: of_pause = 0, of_approach = 1, of_retreat = 2
+  !> Names of the quantities that are lengths.
+  character(len=*), parameter :: lengths(of_position:of_radius) = [character(len=14) :: &
+    'position', 'separation', '', '', 'contact radius']
   !> Smallest number of samples of a curve, and of an approach or a retreat.
   integer, parameter :: fewest = 20
 
   !> z [m], signal [N, or V] of the complete rows in the order of the file, or first those of the
-  !> approach; code: the index of each row's label in `label`, if the file has a column of segments;
+  !> approach; radius [m]: of the contact, 0 where it was not seen, if the file has it beside these.
+  !> Without positions z is the load and `signal` the radius. code: the index of each row's label in
+  !> `label`, if the file has a column of segments;
   !> kind: of each row's segment, once it is known. unit: of the columns in the file;
   !> signal_in: as in `measurement_t`.
   !> incomplete: number of rows that are left out. columns_read: a description for the user.
   type :: curve_rows_t
     character(len=:), allocatable :: file, columns_read
-    real(wp), allocatable :: z(:), signal(:)
+    real(wp), allocatable :: z(:), signal(:), radius(:)
     integer, allocatable :: code(:), kind(:)
     character(len=64), allocatable :: label(:)
     real(wp), allocatable :: unit(:)
@@ -43,13 +49,19 @@ contains
     type(style_t) :: style
     character(len=:), allocatable :: what
     logical, allocatable :: whole(:), more(:)
-    integer :: z, signal, segment, n
+    integer :: z, signal, segment, radius, n
     logical :: side_by_side
 
     n = size(measurement%columns)
     z = findloc(measurement%quantity, of_position, 1)
     if (z == 0) z = findloc(measurement%quantity, of_separation, 1)
     signal = findloc(measurement%quantity, of_load, 1)
+    radius = findloc(measurement%quantity, of_radius, 1)
+    if (z == 0) then
+      z = signal
+      signal = radius
+      radius = 0
+    end if
     segment = findloc(measurement%quantity, of_segment, 1)
     side_by_side = count(measurement%quantity == of_load) == 2
     style%of_instrument = .true.
@@ -67,7 +79,14 @@ contains
       call fail(error, bad_input, rows%file // ': ' // what)
       return
     end if
+    if (radius > 0) then
+      ! A contact without a radius has other quantities.
+      where (table%missing(:, radius)) table%value(:, radius) = 0
+      table%missing(:, radius) = .false.
+    end if
     whole = .not. any(table%missing(:, :merge(2, n, side_by_side)), 2)
+    if (measurement%under_loads()) whole = whole .and. table%value(:, signal) > 0
+    if (radius > 0) rows%radius = pack(max(table%value(:, radius), 0.0_wp), whole)
     rows%z = pack(table%value(:, z), whole)
     rows%signal = pack(table%value(:, signal), whole)
     rows%incomplete = count(.not. whole)
@@ -91,8 +110,15 @@ contains
       call fail(error, bad_input, rows%file // ': ' // what)
       return
     end if
-    rows%columns_read = trim(merge('separation', 'position  ', measurement%has(of_separation))) // &
-      column_text(z) // ', signal' // column_text(signal)
+    rows%columns_read = 'position' // column_text(z)
+    if (measurement%has(of_separation)) rows%columns_read = 'separation' // column_text(z)
+    if (measurement%under_loads()) then
+      rows%columns_read = 'load' // column_text(z) // ', contact radius' // column_text(signal)
+    else
+      rows%columns_read = rows%columns_read // ', signal' // column_text(signal)
+    end if
+    if (radius > 0) rows%columns_read = rows%columns_read // ', contact radius' // &
+      column_text(radius)
 
   contains
 
@@ -105,7 +131,7 @@ contains
       if (table%name(i) /= '') text = ' ' // quoted(trim(table%name(i)))
       text = text // ' in '
       if (abs(rows%unit(i) - 1) > 0) text = text // rounded(rows%unit(i)) // ' '
-      if (i == z) then
+      if (measurement%quantity(i) /= of_load) then
         text = text // 'm'
       else if (rows%signal_in == ' ') then
         text = text // 'V or m, times sensitivity'
@@ -161,8 +187,8 @@ contains
         unit(i) = measurement%unit(i)
       else if (measurement%quantity(i) /= of_load) then
         if (scan(base, 'NVR') > 0) what = 'the ' // &
-          trim(merge('position  ', 'separation', measurement%quantity(i) == of_position)) // ' ' &
-          // quoted(trim(table%name(i))) // ' is not a length; are the two columns exchanged?'
+          trim(lengths(measurement%quantity(i))) // ' ' // quoted(trim(table%name(i))) // &
+          ' is not a length; are the two columns exchanged?'
       else if (allocated(measurement%sensitivity)) then
         if (base == 'R') what = 'the signal ' // quoted(trim(table%name(i))) // ' is a force ' // &
           'over a radius, and no deflection with sensitivity'

@@ -4,8 +4,9 @@ module fit_alternatives
   use kinds, only: wp
   use dimensionless_problem, only: problem_t
   use variation, only: problem_family_t
-  use fit_request, only: unknown_t, of_spring, of_separation
+  use fit_request, only: unknown_t, of_spring, of_position
   use baseline, only: ways_in
+  use measured_curve, only: measured_curve_t
   use measured_jumps, only: find_jump
   use part_slopes, only: slopes_of_parts
   use fit_starts, only: starts_like
@@ -72,21 +73,23 @@ contains
       type(modelled_curve_t) :: trial
       type(fitted_t) :: other
       type(unknown_t) :: unknown
+      type(measured_curve_t) :: signal
       real(wp), allocatable :: start(:, :), starts(:, :)
       integer :: n
 
       n = size(curve%unknown)
       if (.not. curve%is_force .or. any(curve%unknown%role == of_spring)) return
-      ! Separations do not show the spring.
-      if (curve%data%measured%has(of_separation)) return
+      ! Separations and loads do not show the spring.
+      if (.not. curve%data%measured%has(of_position)) return
       ! Jumps and starting values are those of a spring as stiff as the contact.
       trial = curve
       trial%spring = max(contact_slope(curve), softest*curve%spring)
       trial%sensitivity = curve%data%measured%load_of_unit()/trial%spring
       trial%largest_slope = 1/trial%sensitivity
       associate (data => trial%data, slope => trial%largest_slope)
-        data%jump = [find_jump(data%measured, data%noise%deviation, slope, .true.), &
-          find_jump(data%measured, data%noise%deviation, slope, .false.)]
+        signal = data%measured%of_signal()
+        data%jump = [find_jump(signal, data%noise%deviation, slope, .true.), &
+          find_jump(signal, data%noise%deviation, slope, .false.)]
         call data%take(1)
       end associate
       call starts_like(suggested_characters(trial, problem), family, trial%unknown, start)

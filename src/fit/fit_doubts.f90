@@ -7,6 +7,7 @@ module fit_doubts
   use fit_request, only: unknown_t, of_spring, fitted_of, is_at_end, farthest_off
   use second_look, only: lack_t, hardly_ever, rarely
   use fit_errors, only: fitted_t
+  use measured_curve, only: measured_curve_t
   use held_numbers, only: held_t
   use fit_run, only: fit_outcome_t
   use fit_alternatives, only: contact_slope
@@ -214,7 +215,7 @@ contains
 
       associate (data => outcome%curve%data)
         if (.not. (any(data%way == 1) .and. any(data%way == 2))) return
-        below = open_end(data%measured, data%noise)
+        below = open_end(data%measured%of_signal(), data%noise)
         if (below > 0) call add('the retreat ends below the approach by ' // &
           rounded(below/data%noise%deviation) // ' times the noise: if the bodies have not ' // &
           'parted there, measure farther, or fit segment = ''approach''; if the baseline ' // &
@@ -224,15 +225,17 @@ contains
 
     !> Doubt about a signal that stays at its end, as that of a detector at the end of its range.
     subroutine doubt_signal()
+      type(measured_curve_t) :: measured
       integer :: first, last
       real(wp) :: step
 
+      measured = outcome%curve%data%measured%of_signal()
       associate (data => outcome%curve%data)
-        call find_saturated(data%measured, data%noise, first, last)
+        call find_saturated(measured, data%noise, first, last)
         if (last == 0) return
-        associate (z => data%measured%z(first:last))
+        associate (z => measured%z(first:last))
           step = (maxval(z) - minval(z))/(size(z) - 1)
-          call add('the signal is ' // rounded(data%measured%signal(last)) // ' in ' // &
+          call add('the signal is ' // rounded(measured%signal(last)) // ' in ' // &
             brief(size(z)) // ' samples in a row, and nowhere beyond: if the detector was at ' // &
             'the end of its range, leave them out, skip = ' // rounded_to(minval(z) - step/2, &
             step/10) // ', ' // rounded_to(maxval(z) + step/2, step/10))

@@ -10,11 +10,13 @@ module fit_request
   public :: measurement_t, fit_t, unknown_t, of_model, of_contact_point, of_sensitivity, &
     of_spring, free_of, value_of, fitted_of, value_by_free, value_by_fitted, farthest_off, &
     is_at_end, is_beyond
-  public :: of_position, of_separation, of_load, of_segment
+  public :: of_position, of_separation, of_load, of_segment, of_radius
 
   !> What a column of the file is: the position of the base of the spring; the separation of the
-  !> bodies (h0, but for a constant); the load, or the signal that shows it; the segment.
-  integer, parameter :: of_position = 1, of_separation = 2, of_load = 3, of_segment = 4
+  !> bodies (h0, but for a constant); the load, or the signal that shows it; the segment; the
+  !> contact radius.
+  integer, parameter :: of_position = 1, of_separation = 2, of_load = 3, of_segment = 4, &
+    of_radius = 5
 
   !> &measurement [SI]. sensitivity: of a signal in volts; not allocated: the signal is the force,
   !> or the force over the radius. spring_constant: 0 without a spring.
@@ -45,6 +47,7 @@ module fit_request
     type(baseline_t) :: baseline
   contains
     procedure :: has
+    procedure :: under_loads
     procedure :: load_of_unit
     procedure :: signal_unit
   end type measurement_t
@@ -69,11 +72,12 @@ module fit_request
     real(wp), allocatable :: lower, upper
   end type unknown_t
 
-  !> &fit. noise: standard deviation of the signal; not allocated: that of the baseline. poisson:
-  !> Poisson's ratios of the bodies, if the deck gives them.
+  !> &fit. noise: standard deviation of the signal; not allocated: that of the baseline.
+  !> noise_radius: that of contact radii; not allocated: as the radii show it. poisson: Poisson's
+  !> ratios of the bodies, if the deck gives them.
   type :: fit_t
     type(unknown_t), allocatable :: unknown(:)
-    real(wp), allocatable :: noise, poisson(:)
+    real(wp), allocatable :: noise, noise_radius, poisson(:)
   end type fit_t
 
 contains
@@ -85,6 +89,13 @@ contains
 
     has = any(self%quantity == quantity)
   end function has
+
+  !> Whether the load is what other quantities depend on, since there is no position.
+  pure logical function under_loads(self)
+    class(measurement_t), intent(in) :: self
+
+    under_loads = .not. (self%has(of_position) .or. self%has(of_separation))
+  end function under_loads
 
   !> The load of a unit of a signal that is the force [N], or the force over the radius [N/m].
   pure real(wp) function load_of_unit(self) result(load)

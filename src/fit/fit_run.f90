@@ -9,14 +9,14 @@ module fit_run
   use variation, only: problem_family_t
   use experiment_request, only: numerics_t
   use fit_request, only: fit_t, unknown_t, of_model, of_contact_point, of_sensitivity, &
-    is_at_end, farthest_off
+    is_at_end, farthest_off, of_radius
   use measured_curve, only: measured_curve_t
   use measured_jumps, only: find_jump, find_far, off_baseline
   use measured_checks, only: check_measured
   use part_slopes, only: steepest_slope
   use measured_loads, only: check_loads
   use turn_rest, only: leave_out_rest
-  use noise, only: white_noise, rounding_of
+  use noise, only: white_noise, rounding_of, rough_deviation
   use fit_starts, only: character_t, character_of, starts_like
   use mending, only: too_much
   use force_model, only: force_model_t
@@ -89,7 +89,7 @@ contains
     call take_curve(outcome%trouble)
     if (allocated(outcome%trouble)) return
     call listener%hear('fitting the path')
-    call models%set(family, numerics, problem%law%adhesion > 0, model)
+    call models%set(family, numerics, problem%law%adhesion > 0, measured%has(of_radius), model)
     suggestion = ''
     if (.not. is_like()) then
       call find_starts()
@@ -130,6 +130,11 @@ contains
       real(wp) :: slope
       integer :: i
 
+      if (measured%has(of_radius) .and. .not. problem%law%rest_gap > 0) then
+        trouble = 'contact radii need a force that pulls and pushes: the edge of a contact is ' // &
+          'where the separation is a tenth above that of zero force'
+        return
+      end if
       curve%data%measured = measured
       curve%unknown = fit%unknown
       do i = 1, size(fit%unknown)
@@ -143,12 +148,18 @@ contains
       curve%spring = measured%spring_constant
       if (.not. curve%spring > 0) curve%spring = no_spring
       curve%is_force = .not. allocated(measured%sensitivity)
-      curve%sensitivity = measured%load_of_unit()/curve%spring
+      if (measured%under_loads()) curve%spring = 0
+      curve%sensitivity = measured%load_of_unit()/max(curve%spring, tiny(curve%spring))
       if (.not. curve%is_force) curve%sensitivity = measured%sensitivity
       if (allocated(measured%contact_point)) curve%contact_point = measured%contact_point
       slope = 1/curve%sensitivity
       if (.not. measured%spring_constant > 0) slope = steepest_slope(measured)
       curve%largest_slope = slope
+      curve%data%noise_radius_is_given = allocated(fit%noise_radius)
+      if (measured%under_loads()) then
+        call take_radii()
+        return
+      end if
       associate (data => curve%data%measured)
         call find_far(data, slope, curve%data%noise)
         curve%data%least_noise = least_noise*maxval(abs(data%signal))
@@ -170,10 +181,41 @@ contains
         curve%largest = beyond*max(maxval(data%signal, data%usable) - level_of(curve), &
           maxval(off_baseline(data), data%usable))
       end associate
+      if (curve%data%noise_radius_is_given) then
+        curve%data%noise_radius = fit%noise_radius
+      else if (allocated(measured%contact_radius)) then
+        associate (seen => pack(measured%contact_radius, measured%contact_radius > 0))
+          if (size(seen) > 2) curve%data%noise_radius = rough_deviation(seen)
+        end associate
+      end if
+      call curve%data%measured%add_radii()
+      call finish_curve()
+    end subroutine take_curve
+
+    !> Takes a curve of contact radii under loads: no baseline, no jump, and the load is what the
+    !> model is to reach.
+    subroutine take_radii()
+      associate (data => curve%data%measured)
+        data%far = spread(.false., 1, size(data%z))
+        data%rested = data%far
+        curve%data%noise_is_given = curve%data%noise_radius_is_given
+        if (curve%data%noise_is_given) then
+          curve%data%noise = white_noise(fit%noise_radius)
+        else
+          curve%data%least_noise = max(least_noise*maxval(data%signal), rounding_of(data%signal))
+          curve%data%noise = white_noise(max(rough_deviation(data%signal), &
+            curve%data%least_noise))
+        end if
+        curve%largest = beyond*max(0.0_wp, maxval(data%z))
+      end associate
+      call finish_curve()
+    end subroutine take_radii
+
+    subroutine finish_curve()
       call curve%data%take(1)
       if (size(curve%data%sample) < 2*size(curve%unknown) + 4) &
-        trouble = 'too few samples for so many parameters'
-    end subroutine take_curve
+        outcome%trouble = 'too few samples for so many parameters'
+    end subroutine finish_curve
 
     !> Whether a search from the values of a similar curve describes the data. Its ends are about
     !> these values too.

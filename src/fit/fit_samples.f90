@@ -7,6 +7,7 @@ module fit_samples
   use kinds, only: wp
   use measured_curve, only: measured_curve_t
   use measured_jumps, only: measured_jump_t
+  use fit_request, only: of_radius
   use noise, only: noise_t, whiten
   use force_model, only: inward, outward
   implicit none
@@ -20,6 +21,9 @@ module fit_samples
     real(wp) :: least_noise = 0
     !> Whether the deck gives the noise.
     logical :: noise_is_given = .false.
+    !> Standard deviation of contact radii beside a signal [m], and whether the deck gives it.
+    real(wp) :: noise_radius = 0
+    logical :: noise_radius_is_given = .false.
     type(measured_jump_t) :: jump(2)
     !> The samples that count. For all samples: the way, the side of its jump (`load_on`), and the
     !> number of the run.
@@ -27,9 +31,12 @@ module fit_samples
     !> The columns of the baseline at all samples; an orthonormal basis of the whitened columns at
     !> the samples that count, and the triangle that maps these to the basis.
     real(wp), allocatable, private :: column(:, :), basis(:, :), triangle(:, :)
+    !> Of the samples that count: the factor that gives all the noise of the signal.
+    real(wp), allocatable, private :: weight(:)
   contains
     procedure :: take
     procedure :: keep_way
+    procedure :: is_beside
     procedure :: baseline_numbers
     procedure :: clean
     procedure :: baseline_under
@@ -53,6 +60,11 @@ contains
       do i = 1, n
         associate (jump => self%jump(self%way(i)))
           if (jump%before == 0) cycle
+          if (self%is_beside(i)) then
+            ! A radius is seen in contact: after the jump in, before the jump out.
+            self%side(i) = merge(2, 1, data%inward(i))
+            cycle
+          end if
           ! The last sample before the jump, number `before`, does not count: the slope there may be
           ! arbitrarily large.
           if (i < jump%before) self%side(i) = 1
@@ -62,16 +74,26 @@ contains
       end do
       counts = self%side >= 0 .and. data%usable
       ! A run is a sequence of neighbours of one way and one side of its jump.
+      ! Contact radii beside a signal have white noise: each is a run.
       self%run = [(1, i=1, n)]
       do i = 2, n
         self%run(i) = self%run(i - 1)
-        if (self%way(i) /= self%way(i - 1) .or. self%side(i) /= self%side(i - 1) .or. &
+        if (self%is_beside(i) .or. self%way(i) /= self%way(i - 1) .or. &
+          self%side(i) /= self%side(i - 1) .or. &
           (counts(i) .neqv. counts(i - 1))) self%run(i) = self%run(i - 1) + 1
       end do
       self%sample = pack([(i, i=1, n)], counts .and. [(mod(i, every) == 0, i=1, n)])
       call set_baseline(self)
     end associate
   end subroutine take
+
+  !> Whether a sample is a contact radius beside a signal.
+  pure logical function is_beside(self, i)
+    class(fit_samples_t), intent(in) :: self
+    integer, intent(in) :: i
+
+    is_beside = self%measured%observed(i) /= self%measured%observed(1)
+  end function is_beside
 
   !> Drops the samples of the other way.
   subroutine keep_way(self, inward)
@@ -90,6 +112,7 @@ contains
       data%usable = pack(data%usable, keep)
       data%skipped = pack(data%skipped, keep)
       data%rested = pack(data%rested, keep)
+      data%observed = pack(data%observed, keep)
       data%inward = pack(data%inward, keep)
     end associate
     self%jump(3 - way) = measured_jump_t()
@@ -104,9 +127,20 @@ contains
   pure subroutine set_baseline(self)
     type(fit_samples_t), intent(inout) :: self
     real(wp), allocatable :: column(:, :)
+    integer :: i
 
-    column = self%measured%baseline%columns(self%measured%z, self%measured%inward)
-    self%basis = column(self%sample, :)
+    associate (data => self%measured)
+      column = data%baseline%columns(data%z, data%inward)
+      ! Radii have no baseline.
+      if (data%observed(1) == of_radius) column = column(:, :0)
+      do i = 1, size(column, 2)
+        column(:, i) = merge(column(:, i), 0.0_wp, data%observed /= of_radius)
+      end do
+    end associate
+    self%weight = [(1.0_wp, i=1, size(self%sample))]
+    if (self%noise_radius > 0) self%weight = [(merge(self%noise%left(0)/self%noise_radius, 1.0_wp, &
+      self%is_beside(self%sample(i))), i=1, size(self%sample))]
+    self%basis = spread(self%weight, 2, size(column, 2))*column(self%sample, :)
     call move_alloc(column, self%column)
     call whiten(self%noise, self%run(self%sample), self%basis)
     call orthonormalise(self%basis, self%triangle)
@@ -145,6 +179,7 @@ contains
     class(fit_samples_t), intent(in) :: self
     real(wp), intent(inout) :: column(:, :)
 
+    column = spread(self%weight, 2, size(column, 2))*column
     call whiten(self%noise, self%run(self%sample), column)
     column = column - matmul(self%basis, matmul(transpose(self%basis), column))
   end subroutine clean
@@ -164,7 +199,7 @@ contains
     real(wp), intent(in) :: signal(:)
     real(wp) :: left(size(self%sample), 1), part(size(self%column, 2))
 
-    left(:, 1) = signal(self%sample)
+    left(:, 1) = self%weight*signal(self%sample)
     call whiten(self%noise, self%run(self%sample), left)
     part = matmul(left(:, 1), self%basis)
     call solve_triangle(self%triangle, part)

@@ -1,10 +1,11 @@
 !> The prediction of a model for bodies that a spring drives towards each other and back: the load
 !> along each stable piece as a function of the drive's position, with derivatives by the unknowns
-!> of the model. SI units.
+!> of the model, and likewise the contact radius. SI units.
 !>
-!> On each panel of a branch h0 and load are Hermite's polynomials of a coordinate x, which pass
-!> through nodes: for the path its points, so that they are the path's own polynomials. Newton's
-!> method finds the x of a given position h0 - load/stiffness.
+!> On each panel of a branch h0, load and the square of the contact radius are Hermite's polynomials
+!> of a coordinate x, which pass through nodes: for the path its points, so that they are the path's
+!> own polynomials. Newton's method finds the x of a given position h0 - load/stiffness, or of a
+!> given -load.
 module force_model
   use kinds, only: wp
   use interpolation, only: interval_of, hermite_t, hermite_through, polynomial_weights, &
@@ -20,11 +21,13 @@ module force_model
 
   !> A panel of a branch. ends: its coordinates x at begin and end. At the nodes, which may lie
   !> beyond the ends: their coordinates, h0 and load with derivatives by x, (value and slope, node),
-  !> and derivatives by the unknowns at fixed x, (unknown, node).
+  !> and derivatives by the unknowns at fixed x, (unknown, node). square: of the contact radius, if
+  !> it is wanted.
   type :: panel_t
     real(wp) :: ends(2) = [0.0_wp, 1.0_wp]
     real(wp), allocatable :: x(:), h0(:, :), load(:, :), h0_rate(:, :), load_rate(:, :)
-    type(hermite_t), private :: position_curve, load_curve
+    real(wp), allocatable :: square(:, :), square_rate(:, :)
+    type(hermite_t), private :: position_curve, load_curve, square_curve
   end type panel_t
 
   !> Panels, ordered from large to small h0. turns: the piece ends at a turn of the position, not at
@@ -32,8 +35,8 @@ module force_model
   type :: force_branch_t
     type(panel_t), allocatable :: panel(:)
     logical :: turns_first = .false., turns_last = .false.
-    !> 1/stiffness of the spring.
-    real(wp) :: compliance = 0
+    !> The weights of h0 and load in the position.
+    real(wp) :: weights(2) = [1.0_wp, 0.0_wp]
     !> Positions at the begins of the panels, and at the end of the last; and their negatives, which
     !> ascend.
     real(wp), allocatable :: position(:)
@@ -47,10 +50,10 @@ module force_model
   end type force_branch_t
 
   !> The load at a position, and its derivatives by the position and by the unknowns at that
-  !> position.
+  !> position; the same for the contact radius.
   type :: load_at_t
-    real(wp) :: load = 0, slope = 0
-    real(wp), allocatable :: rate(:)
+    real(wp) :: load = 0, slope = 0, radius = 0, radius_slope = 0
+    real(wp), allocatable :: rate(:), radius_rate(:)
   end type load_at_t
 
   !> The two ways.
@@ -79,9 +82,12 @@ module force_model
 
   !> A model of the force between the bodies, with unknowns.
   type, abstract :: force_model_t
+    !> Whether the contact radius is wanted.
+    logical :: with_radius = .false.
   contains
     !> The response for values of the unknowns, behind a spring of `stiffness`, from the position
-    !> `farthest` [m] to a contact under the load `largest` [N] at least. with_rates: with
+    !> `farthest` [m] to a contact under the load `largest` [N] at least. stiffness = 0: in contact
+    !> under dead loads, by positions -load. with_rates: with
     !> derivatives by the unknowns. found = .false.: there is no response.
     procedure(respond_to), deferred :: respond
   end type force_model_t
@@ -182,15 +188,18 @@ contains
     real(wp), intent(in) :: stiffness
     integer :: i, n
 
-    self%compliance = 1/stiffness
+    self%weights = [0, -1]
+    if (stiffness > 0) self%weights = [1.0_wp, -1/stiffness]
     n = size(self%panel)
     allocate (self%position(n + 1))
     do i = 1, n
       associate (panel => self%panel(i))
         panel%load_curve = hermite_through(panel%x, panel%load(1, :), panel%load(2, :))
         panel%position_curve = hermite_through(panel%x, &
-          panel%h0(1, :) - self%compliance*panel%load(1, :), &
-          panel%h0(2, :) - self%compliance*panel%load(2, :))
+          self%weights(1)*panel%h0(1, :) + self%weights(2)*panel%load(1, :), &
+          self%weights(1)*panel%h0(2, :) + self%weights(2)*panel%load(2, :))
+        if (allocated(panel%square)) panel%square_curve = hermite_through(panel%x, &
+          panel%square(1, :), panel%square(2, :))
         self%position(i:i + 1) = [panel%position_curve%value(panel%ends(1)), &
           panel%position_curve%value(panel%ends(2))]
       end associate
@@ -204,7 +213,7 @@ contains
     integer, intent(in) :: i
     real(wp), allocatable :: rate(:, :)
 
-    rate = self%panel(i)%h0_rate - self%compliance*self%panel(i)%load_rate
+    rate = self%weights(1)*self%panel(i)%h0_rate + self%weights(2)*self%panel(i)%load_rate
   end function position_rate
 
   !> The load at a position. Beyond a turn the load stays constant. Beyond an end of the path it
@@ -222,6 +231,7 @@ contains
       if (self%turns_last) return
       found = on_panel(self, n, self%panel(n)%ends(2))
       found%load = found%load + found%slope*(position - self%position(n + 1))
+      found%radius = found%radius + found%radius_slope*(position - self%position(n + 1))
     else
       i = interval_of(self%ascending(:n), -position)
       found = on_panel(self, i, place_on(self, i, position))
@@ -276,24 +286,42 @@ contains
     class(force_branch_t), intent(in) :: self
     integer, intent(in) :: i
     real(wp), intent(in) :: x
-    real(wp) :: load_slope
+    real(wp) :: load_slope, square, slope
 
     associate (panel => self%panel(i))
       call panel%load_curve%evaluate(x, found%load, load_slope)
       found%slope = load_slope/panel%position_curve%slope(x)
       associate (weight => polynomial_weights(panel%x, x))
         found%rate = matmul(panel%load_rate - found%slope*self%position_rate(i), weight)
+        if (.not. allocated(panel%square)) return
+        call panel%square_curve%evaluate(x, square, slope)
+        slope = slope/panel%position_curve%slope(x)
+        call set_radius(found, square, slope, matmul(panel%square_rate - &
+          slope*self%position_rate(i), weight))
       end associate
     end associate
   end function on_panel
+
+  !> Sets the contact radius from its square with derivatives by the position and by the unknowns;
+  !> without contact it is 0.
+  pure subroutine set_radius(found, square, slope, rate)
+    type(load_at_t), intent(inout) :: found
+    real(wp), intent(in) :: square, slope, rate(:)
+
+    found%radius_rate = 0*rate
+    if (.not. square > 0) return
+    found%radius = sqrt(square)
+    found%radius_slope = slope/(2*found%radius)
+    found%radius_rate = rate/(2*found%radius)
+  end subroutine set_radius
 
   !> Load and derivatives at an end. A turn is where the derivative of the position by x vanishes,
   !> and moves with the unknowns.
   pure type(load_at_t) function end_of(self, inner) result(found)
     class(force_branch_t), intent(in) :: self
     logical, intent(in) :: inner
-    real(wp), allocatable :: rate(:, :)
-    real(wp) :: bend, x, slope
+    real(wp), allocatable :: rate(:, :), moved(:), square_rate(:)
+    real(wp) :: bend, x, slope, square, square_slope
     integer :: i, k
 
     i = merge(size(self%panel), 1, inner)
@@ -301,13 +329,17 @@ contains
       x = panel%ends(merge(2, 1, inner))
       call panel%load_curve%evaluate(x, found%load, slope)
       found%rate = matmul(panel%load_rate, polynomial_weights(panel%x, x))
-      if (.not. merge(self%turns_last, self%turns_first, inner)) return
+      moved = 0*found%rate
       bend = panel%position_curve%curvature(x)
-      if (.not. abs(bend) > 0) return
-      rate = self%position_rate(i)
-      do k = 1, size(rate, 1)
-        found%rate(k) = found%rate(k) - slope/bend*polynomial_slope(panel%x, rate(k, :), x)
-      end do
+      if (merge(self%turns_last, self%turns_first, inner) .and. abs(bend) > 0) then
+        rate = self%position_rate(i)
+        moved = [(-polynomial_slope(panel%x, rate(k, :), x)/bend, k=1, size(moved))]
+      end if
+      found%rate = found%rate + slope*moved
+      if (.not. allocated(panel%square)) return
+      call panel%square_curve%evaluate(x, square, square_slope)
+      square_rate = matmul(panel%square_rate, polynomial_weights(panel%x, x)) + square_slope*moved
+      call set_radius(found, square, 0.0_wp, square_rate)
     end associate
   end function end_of
 

@@ -6,7 +6,7 @@
 module held_numbers
   use kinds, only: wp
   use fit_request, only: unknown_t, of_model, of_contact_point, of_sensitivity, of_spring, &
-    of_separation
+    of_position, of_radius
   use failure, only: failure_t
   use variation, only: problem_family_t, variation_t, vary, to_search
   use experiment_request, only: numerics_t
@@ -54,7 +54,7 @@ contains
     n = size(value)
     allocate (family, source=wider)
     call keep_variable(pack(value, curve%unknown%role == of_model), family)
-    call models%set(family, numerics, attracts, model)
+    call models%set(family, numerics, attracts, curve%data%measured%has(of_radius), model)
     residuals%curve = curve
     call add_held(family, curve, residuals%curve%unknown)
     all_values = [value, residuals%curve%unknown(n + 1:)%value]
@@ -111,12 +111,13 @@ contains
     do i = count(unknown%role == of_model) + 1, size(family%parameter)
       call add(family%parameter(i)%name, of_model, family%parameter(i)%value)
     end do
-    if (.not. curve%data%measured%has(of_separation)) &
+    if (curve%data%measured%has(of_position)) &
       call add('measurement.spring_constant', of_spring, curve%spring)
     if (allocated(curve%data%measured%sensitivity) .and. &
-      .not. curve%data%measured%has(of_separation)) &
+      curve%data%measured%has(of_position)) &
       call add('measurement.sensitivity', of_sensitivity, curve%sensitivity)
-    call add('measurement.contact_point', of_contact_point, curve%contact_point)
+    if (.not. curve%data%measured%under_loads()) &
+      call add('measurement.contact_point', of_contact_point, curve%contact_point)
 
   contains
 

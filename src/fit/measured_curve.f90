@@ -8,7 +8,7 @@ module measured_curve
   use deck_source, only: source_t
   use curve_rows, only: curve_rows_t, read_curve_rows, fewest, of_approach, of_retreat, of_pause
   use curve_segments, only: find_segments
-  use fit_request, only: measurement_t, of_separation
+  use fit_request, only: measurement_t, of_separation, of_load, of_radius, of_segment
   implicit none
   private
   public :: measured_curve_t, read_measured
@@ -19,6 +19,11 @@ module measured_curve
   type, extends(measurement_t) :: measured_curve_t
     real(wp), allocatable :: z(:), signal(:)
     logical, allocatable :: inward(:)
+    !> What each sample observes: the signal, or the contact radius. Without positions z is the
+    !> load, over that of a unit of the signal.
+    integer, allocatable :: observed(:)
+    !> The contact radii [m] of the same rows, 0 where there is none, until `add_radii`.
+    real(wp), allocatable :: contact_radius(:)
     real(wp) :: facing = 1
     !> Samples far from contact, which show the baseline, once they are known.
     logical, allocatable :: far(:)
@@ -29,6 +34,8 @@ module measured_curve
     character(len=:), allocatable :: understood
   contains
     procedure :: outlier
+    procedure :: add_radii
+    procedure :: of_signal
   end type measured_curve_t
 
   !> Median over mean of the changes from part to part of a curve, and the number of parts: a base
@@ -49,6 +56,43 @@ contains
     outlier = .not. (self%usable .or. self%skipped)
   end function outlier
 
+  !> Makes samples of their own of the contact radii that were read beside the signal. Each row of
+  !> the file then has as many samples as observed quantities.
+  pure subroutine add_radii(self)
+    class(measured_curve_t), intent(inout) :: self
+    logical, allocatable :: seen(:)
+
+    if (.not. allocated(self%contact_radius)) return
+    seen = self%contact_radius > 0
+    self%z = [self%z, pack(self%z, seen)]
+    self%signal = [self%signal, pack(self%contact_radius, seen)]
+    self%inward = [self%inward, pack(self%inward, seen)]
+    self%usable = [self%usable, .not. pack(self%skipped, seen)]
+    self%skipped = [self%skipped, pack(self%skipped, seen)]
+    self%rested = [self%rested, pack(self%rested, seen)]
+    self%far = [self%far, spread(.false., 1, count(seen))]
+    self%observed = [self%observed, spread(of_radius, 1, count(seen))]
+    deallocate (self%contact_radius)
+  end subroutine add_radii
+
+  !> The samples of the signal alone; of contact radii, if there is no signal but these.
+  pure type(measured_curve_t) function of_signal(self) result(other)
+    class(measured_curve_t), intent(in) :: self
+    logical :: keep(size(self%z))
+
+    other = self
+    keep = self%observed == self%observed(1)
+    if (all(keep)) return
+    other%z = pack(self%z, keep)
+    other%signal = pack(self%signal, keep)
+    other%inward = pack(self%inward, keep)
+    other%skipped = pack(self%skipped, keep)
+    other%rested = pack(self%rested, keep)
+    other%far = pack(self%far, keep)
+    other%usable = pack(self%usable, keep)
+    other%observed = pack(self%observed, keep)
+  end function of_signal
+
   !> Reads the samples of a curve from the text of its file. Positions of the base follow from
   !> separations behind a spring, once it is known in which direction they fall towards the other
   !> body.
@@ -64,7 +108,7 @@ contains
 
     call read_curve_rows(measured%measurement_t, source, rows, error)
     if (allocated(error)) return
-    call check_columns(rows%file, rows%z, rows%signal, error)
+    if (.not. measured%under_loads()) call check_columns(rows%file, rows%z, rows%signal, error)
     if (allocated(error)) return
     if (.not. measured%has(of_separation) .or. .not. measured%spring_constant > 0) then
       call take_rows(measured, rows, error)
@@ -125,8 +169,12 @@ contains
     logical, allocatable :: wanted(:), repeated(:)
     integer :: i
 
-    call find_segments(rows, measured%measurement_t, error)
-    if (allocated(error)) return
+    if (measured%has(of_segment) .or. .not. measured%under_loads()) then
+      call find_segments(rows, measured%measurement_t, error)
+      if (allocated(error)) return
+    else
+      rows%kind = spread(of_retreat, 1, size(rows%z))
+    end if
     associate (z => rows%z, signal => rows%signal, kind => rows%kind)
       ! A row that repeats the one before it tells nothing new.
       repeated = [.false., (.not. (abs(z(i) - z(i - 1)) > 0 .or. abs(signal(i) - signal(i - 1)) > &
@@ -141,21 +189,38 @@ contains
       measured%inward = [(.true., i=1, count(wanted .and. kind == of_approach)), &
         (.false., i=1, count(wanted .and. kind == of_retreat))]
     end associate
+    if (allocated(rows%radius)) measured%contact_radius = [pack(rows%radius, wanted .and. &
+      rows%kind == of_approach), pack(rows%radius, wanted .and. rows%kind == of_retreat)]
+    measured%observed = spread(merge(of_radius, of_load, measured%under_loads()), 1, &
+      size(measured%z))
     measured%unit = rows%unit
     measured%signal_in = rows%signal_in
     measured%skipped = [(any(measured%z(i) >= measured%skip(1::2) .and. &
       measured%z(i) <= measured%skip(2::2)), i=1, size(measured%z))]
     measured%usable = .not. measured%skipped
-    call find_facing(rows%file, measured, error)
+    if (measured%under_loads()) then
+      ! There is one contact at each load, and the position of a dead load is minus the load.
+      measured%inward = spread(.false., 1, size(measured%z))
+      measured%facing = -1
+    else
+      call find_facing(rows%file, measured, error)
+    end if
     if (.not. allocated(error)) call describe()
 
   contains
 
     !> Says how the file was understood.
     subroutine describe()
-      measured%understood = rows%file // ': ' // rows%columns_read // '; ' // &
-        counted(count(measured%inward), 'sample') // ' of the approach, ' // &
-        counted(count(.not. measured%inward), 'sample') // ' of the retreat'
+      measured%understood = rows%file // ': ' // rows%columns_read // '; '
+      if (measured%under_loads()) then
+        measured%understood = measured%understood // counted(size(measured%z), 'sample')
+      else
+        measured%understood = measured%understood // &
+          counted(count(measured%inward), 'sample') // ' of the approach, ' // &
+          counted(count(.not. measured%inward), 'sample') // ' of the retreat'
+      end if
+      if (allocated(measured%contact_radius)) measured%understood = measured%understood // ', ' // &
+        counted(count(measured%contact_radius > 0), 'row') // ' with a contact radius'
       call add(rows%incomplete, 'with an empty cell or NaN')
       call add(count(rows%kind == of_pause), 'of pauses or other segments')
       call add(count(repeated), 'like the row before')

@@ -6,7 +6,7 @@
 !> kept, since another contact point or detector needs no new solution.
 module modelled_curve
   use kinds, only: wp, nan
-  use fit_request, only: unknown_t, of_model, of_contact_point, of_sensitivity, of_spring
+  use fit_request, only: unknown_t, of_model, of_contact_point, of_sensitivity, of_spring, of_radius
   use fit_samples, only: fit_samples_t
   use force_model, only: force_model_t, response_t, load_at_t
   implicit none
@@ -71,6 +71,8 @@ contains
     real(wp), intent(in) :: signal
     real(wp) :: most
 
+    needs_more = .false.
+    if (self%data%measured%under_loads()) return
     most = (maxval(self%data%measured%z) - minval(self%data%measured%z))/self%sensitivity
     needs_more = signal > self%largest .and. self%largest < most
     if (needs_more) self%largest = min(beyond*signal, most)
@@ -95,6 +97,7 @@ contains
     if (allocated(self%asked)) deallocate (self%asked)
     ! Twice the travel is enough for any contact point.
     farthest = 2*(maxval(self%data%measured%z) - minval(self%data%measured%z))
+    if (self%data%measured%under_loads()) farthest = 0
     call self%model%respond(asked(:size(asked) - 1), k, farthest, largest, with_rates, &
       self%response, found)
     if (.not. found) return
@@ -111,15 +114,21 @@ contains
     integer, intent(in) :: sample(:)
     integer, intent(in), optional :: side
     real(wp) :: signal(size(sample))
+    type(load_at_t) :: state
     integer :: i, n, on_side
 
     do n = 1, size(sample)
       i = sample(n)
       on_side = max(self%data%side(i), 0)
       if (present(side)) on_side = side
-      signal(n) = self%response%value_on(self%data%way(i), on_side, self%position_of(value, i))
+      if (self%data%measured%observed(i) == of_radius) then
+        state = self%response%load_on(self%data%way(i), on_side, self%position_of(value, i))
+        signal(n) = state%radius
+      else
+        signal(n) = self%response%value_on(self%data%way(i), on_side, &
+          self%position_of(value, i))/self%newtons(value)
+      end if
     end do
-    signal = signal/self%newtons(value)
   end function signal_of
 
   !> Derivatives of the signal by the unknowns, (sample, unknown), at the samples that count.
@@ -140,6 +149,11 @@ contains
       load = self%response%load_on(self%data%way(i), self%data%side(i), self%position_of(value, i))
       by(n, :) = 0
       if (self%data%side(i) == 0 .and. abs(load%slope) > steep*self%largest_slope*k*s) cycle
+      if (self%data%measured%observed(i) == of_radius) then
+        by(n, :) = unfolded(self%unknown%role, load%radius_rate, &
+          -self%data%measured%facing*load%radius_slope, 0.0_wp, load%radius_slope*load%load/k**2)
+        cycle
+      end if
       by(n, :) = unfolded(self%unknown%role, load%rate/(k*s), &
         -self%data%measured%facing*load%slope/(k*s), -load%load/(k*s**2), &
         -(load%slope*load%load/k**2 + by_force*load%load/k)/(k*s))
@@ -229,12 +243,14 @@ contains
     ends = self%data%measured%facing*(nearest - [inner, outer, outer + travel])
   end subroutine reach
 
-  !> The contact point, whether it is fitted or given.
+  !> The contact point, whether it is fitted or given; NaN for radii under loads.
   pure real(wp) function contact_height(self, value)
     class(modelled_curve_t), intent(in) :: self
     real(wp), intent(in) :: value(:)
 
-    contact_height = self%number_of(value, of_contact_point, self%contact_point)
+    contact_height = nan
+    if (.not. self%data%measured%under_loads()) &
+      contact_height = self%number_of(value, of_contact_point, self%contact_point)
   end function contact_height
 
   !> Position of the drive at a sample.
@@ -245,6 +261,7 @@ contains
 
     position = self%data%measured%facing*(self%data%measured%z(i) - &
       self%number_of(value, of_contact_point, self%contact_point))
+    if (self%data%measured%under_loads()) position = position*self%newtons(value)
   end function position_of
 
   !> The load of a unit of the signal, k s.

@@ -27,7 +27,8 @@ contains
       width = (maxval(z) - low)/parts
       do way = 1, 2
         do i = 0, 2*parts - 2
-          there = measured%usable .and. (measured%inward .eqv. way == 1) .and. &
+          there = measured%usable .and. measured%observed == measured%observed(1) .and. &
+            (measured%inward .eqv. way == 1) .and. &
             abs(z - low - (0.5_wp*i + 0.5_wp)*width) <= 0.5_wp*width
           if (count(there) < fewest) cycle
           middle = [sum(z, there), sum(s, there)]/count(there)

@@ -4,23 +4,37 @@ module path_model
   use kinds, only: wp
   use failure, only: failure_t
   use listener, only: listener_t
-  use dimensionless_problem, only: problem_t
+  use dimensionless_problem, only: problem_t, contact_level_of
+  use contact_state, only: radius_of_gap
+  use discretisation, only: discretisation_t
   use variation, only: problem_family_t, variation_t, vary, to_search
   use edge_locked, only: new_mesh_family
   use mesh_store, only: mesh_store_t
-  use traced_path, only: traced_path_t
+  use traced_path, only: traced_path_t, no_mesh
   use path_sensitivity, only: rate_t, rates_along
   use drives, only: through_spring
-  use driven_pieces, only: driven_piece_t
+  use driven_pieces, only: driven_piece_t, find_pieces
   use device, only: driven_t, drive_bodies
   use experiment_request, only: request_t, numerics_t
   use numerics_choice, only: choice_t, choose
   use path_demand, only: demand_of
   use path_stepper, only: path_stepper_t
-  use force_model, only: force_model_t, response_t, force_branch_t, inward, outward
+  use force_model, only: force_model_t, response_t, force_branch_t, way_t, inward, outward
   implicit none
   private
   public :: path_model_t
+
+  !> The edge of the contact at a point of the path, where the gap is that of `contact_level_of`:
+  !> the square of its radius, with derivatives by the path's coordinate and by that separation [m]
+  !> at a fixed place; its radius over the scale of the mesh; and the derivatives of the square by
+  !> the unknowns at a fixed coordinate.
+  type :: edge_t
+    real(wp) :: square(2) = 0, by_level = 0, place = 0
+    real(wp), allocatable :: rate(:)
+  end type edge_t
+
+  !> The part of its value by which the level of the contact is varied for a difference.
+  real(wp), parameter :: change = 1.0e-3_wp
 
   type, extends(force_model_t) :: path_model_t
     !> The problems; the unknowns are its parameters.
@@ -36,6 +50,8 @@ module path_model
     logical, private :: solved = .false.
     !> Derivatives of its curve, once they were asked for.
     type(rate_t), allocatable, private :: rate(:, :)
+    !> The edges at its points, if the contact radius is wanted.
+    type(edge_t), allocatable, private :: edge(:)
     !> The part of the load that its meshes leave out (`mending`).
     real(wp) :: left_out = 0
   contains
@@ -70,10 +86,16 @@ contains
     allocate (response%branch(size(self%driven%piece)))
     do i = 1, size(response%branch)
       call make_branch(self%steps%problem, self%steps%known%path, self%driven%piece(i), rate, &
-        response%branch(i))
+        self%edge, response%branch(i))
       call response%branch(i)%close(stiffness)
     end do
-    call find_ways(self%steps%problem, self%driven, response)
+    if (stiffness > 0) then
+      call find_ways(self%steps%problem, self%driven, response)
+    else
+      ! Under dead loads the last piece is that in contact.
+      response%way(inward) = way_t([i - 1], [-huge(1.0_wp)])
+      response%way(outward) = way_t([i - 1], [huge(1.0_wp)])
+    end if
   end subroutine respond
 
   !> Traces the path of a trial and drives the bodies along it.
@@ -94,6 +116,7 @@ contains
     self%farthest = farthest
     self%solved = .false.
     if (allocated(self%rate)) deallocate (self%rate)
+    if (allocated(self%edge)) deallocate (self%edge)
     self%steps = fresh
     call self%family%pose(value, problem, error)
     if (allocated(error)) return
@@ -113,6 +136,13 @@ contains
       demand_of(request, problem))
     self%left_out = self%steps%known%left_out
     if (.not. self%steps%known%path%held > 1) return
+    if (self%with_radius) call find_edges(self%steps, self%edge)
+    if (.not. stiffness > 0) then
+      call find_pieces(self%steps%solver_t, self%steps%known%path, through_spring(0.0_wp), &
+        self%driven)
+      self%solved = self%driven%whole .and. size(self%driven%piece) > 0
+      return
+    end if
     call drive_bodies(self%steps%solver_t, self%steps%known%path, &
       through_spring(stiffness*problem%length/problem%load), chosen%low, anywhere, anywhere, &
       self%driven)
@@ -127,7 +157,8 @@ contains
     type(variation_t) :: varied(size(rate, 1))
     type(rate_t), allocatable :: all_rates(:, :)
     type(failure_t), allocatable :: error
-    integer :: i
+    real(wp) :: level(size(rate, 1))
+    integer :: i, k
 
     self%family%parameter%value = self%value
     where (abs(self%value) > 0) self%family%parameter%scale = abs(self%value)
@@ -136,20 +167,75 @@ contains
       call vary(self%family, i, to_search, varied(i), error)
       found = found .and. .not. allocated(error)
     end do
-    if (found) call rates_along(self%steps%equations_t, self%steps%known%path, varied, all_rates, &
-      found)
-    if (found) rate = all_rates
+    if (.not. found) return
+    if (.not. allocated(self%edge)) then
+      call rates_along(self%steps%equations_t, self%steps%known%path, varied, all_rates, found)
+    else
+      call rates_along(self%steps%equations_t, self%steps%known%path, varied, all_rates, found, &
+        self%edge%place)
+    end if
+    if (.not. found) return
+    rate = all_rates
+    if (.not. allocated(self%edge)) return
+    do i = 1, size(varied)
+      level(i) = 0
+      do k = 1, size(varied(i)%weight)
+        associate (problem => varied(i)%problem(k))
+          level(i) = level(i) + varied(i)%weight(k)* &
+            problem%law%separation_of(contact_level_of(problem))
+        end associate
+      end do
+    end do
+    do k = 1, size(self%edge)
+      self%edge(k)%rate = self%edge(k)%by_level*(level - rate(:, k)%separation)
+    end do
   end subroutine find_rates
 
+  !> The edges of the contact at the points of the path.
+  subroutine find_edges(steps, edge)
+    type(path_stepper_t), intent(in) :: steps
+    type(edge_t), allocatable, intent(out) :: edge(:)
+    integer :: i
+
+    allocate (edge(steps%known%path%last))
+    do i = 1, size(edge)
+      associate (point => steps%known%path%point(i))
+        if (point%mesh /= no_mesh) call set_edge(steps%meshes%grid(point%mesh), edge(i))
+      end associate
+    end do
+
+  contains
+
+    subroutine set_edge(grid, edge)
+      type(discretisation_t), intent(in) :: grid
+      type(edge_t), intent(inout) :: edge
+      real(wp) :: level, radius, by_level
+
+      associate (problem => steps%problem, point => steps%known%path%point(i))
+        level = contact_level_of(problem)
+        radius = radius_of_gap(problem%shape, level, grid, point%state)
+        if (.not. radius > 0) return
+        by_level = (radius_of_gap(problem%shape, level*(1 + change), grid, point%state)**2 - &
+          radius_of_gap(problem%shape, level*(1 - change), grid, point%state)**2)/(2*change*level)
+        edge%place = radius/point%state%scale
+        edge%by_level = problem%lateral**2*by_level/problem%length
+        edge%square = problem%lateral**2*[radius**2, 2*radius**2*point%tangent%scale/ &
+          point%state%scale - by_level*grid%interpolate(point%tangent%gap, edge%place)]
+      end associate
+    end subroutine set_edge
+
+  end subroutine find_edges
+
   !> A stable piece of the path as panels, SI units; rate(unknown, point) at its points.
-  subroutine make_branch(problem, path, piece, rate, branch)
+  subroutine make_branch(problem, path, piece, rate, edge, branch)
     type(problem_t), intent(in) :: problem
     type(traced_path_t), intent(in) :: path
     type(driven_piece_t), intent(in) :: piece
     type(rate_t), intent(in) :: rate(:, :)
+    type(edge_t), allocatable, intent(in) :: edge(:)
     type(force_branch_t), intent(out) :: branch
     integer, allocatable :: near(:)
-    integer :: i, n
+    integer :: i, k, n
 
     allocate (branch%panel(piece%last%interval - piece%first%interval + 1))
     n = 0
@@ -168,6 +254,14 @@ contains
           [2, size(near)], order=[2, 1])
         panel%h0_rate = rate(:, near)%h0
         panel%load_rate = rate(:, near)%load
+        if (allocated(edge)) then
+          allocate (panel%square(2, size(near)))
+          panel%square_rate = 0*panel%load_rate
+          do k = 1, size(near)
+            panel%square(:, k) = edge(near(k))%square
+            if (size(rate, 1) > 0) panel%square_rate(:, k) = edge(near(k))%rate
+          end do
+        end if
       end associate
       n = n + 1
     end do

@@ -131,7 +131,7 @@ contains
     real(wp), intent(in) :: value(:)
     logical, intent(out) :: settled
     real(wp), allocatable :: model(:), baseline(:), left(:)
-    logical, allocatable :: usable(:)
+    logical, allocatable :: usable(:), signal(:)
     type(measured_jump_t) :: jump
     real(wp) :: deviation, spread
     integer :: way
@@ -140,16 +140,20 @@ contains
     left = curve%data%measured%signal - model
     associate (data => curve%data)
       ! The model must reach all loads; where it does not, it continues on a straight line.
+      signal = [(.not. data%is_beside(way), way=1, size(left))]
       settled = .not. curve%needs_more(maxval(data%measured%signal - baseline, &
-        data%measured%usable))
+        data%measured%usable .and. signal))
       usable = data%measured%usable
       deviation = data%noise%deviation
       ! A wrong model leaves large residuals nearly everywhere.
-      spread = max(deviation, median_of(abs(left(data%sample)))/normal_median)
+      spread = max(deviation, median_of(abs(pack(left(data%sample), signal(data%sample))))/ &
+        normal_median)
+      if (any(.not. signal)) call renew_radii(curve, left, signal)
       ! Near a jump, on whose side the model may be wrong, outliers are kept.
       data%measured%usable = merge(usable, .not. (data%measured%skipped .or. &
-        stand_apart(left, 3*data%way + data%side, .not. data%measured%skipped, &
-        [(apart*spread, way=1, size(left))])), data%side < 0)
+        stand_apart(left, 3*data%way + data%side + merge(0, 100, signal), &
+        .not. data%measured%skipped, apart*merge(spread, 2*data%noise_radius, signal))), &
+        data%side < 0)
       settled = settled .and. all(usable .eqv. data%measured%usable)
       if (.not. data%noise_is_given) call renew_noise(curve, left)
       settled = settled .and. abs(data%noise%deviation - deviation) < 0.01_wp*deviation
@@ -164,6 +168,25 @@ contains
     call curve%data%take(1)
   end subroutine look_again
 
+  !> Finds the noise of contact radii beside a signal, unless it is given: that of the differences
+  !> between neighbouring residuals.
+  subroutine renew_radii(curve, left, signal)
+    type(modelled_curve_t), intent(inout) :: curve
+    real(wp), intent(in) :: left(:)
+    logical, intent(in) :: signal(:)
+    type(noise_t) :: noise
+    logical :: mine(size(left))
+    integer :: steps
+
+    associate (data => curve%data)
+      if (data%noise_radius_is_given) return
+      mine = .false.
+      mine(data%sample) = .not. signal(data%sample)
+      call noise_of_steps(pack(left, mine), pack(3*data%way + data%side, mine), noise, steps)
+      if (steps >= fewest_far .and. noise%deviation > 0) data%noise_radius = noise%deviation
+    end associate
+  end subroutine renew_radii
+
   !> Finds the noise of the residuals. The samples far from contact show their noise without a
   !> model: what a model adds to it there is the model's misfit. Where they are too few to show a
   !> correlation, the residuals of all samples do, if this correlation explains them and the far
@@ -173,13 +196,16 @@ contains
     real(wp), intent(in) :: left(:)
     type(noise_t) :: far_noise, all_noise, bare, correlated
     logical :: far(size(left))
-    integer :: steps
+    integer :: steps, i
+    integer, allocatable :: of_signal(:)
 
     associate (data => curve%data)
+      of_signal = pack(data%sample, [(.not. data%is_beside(data%sample(i)), i=1, &
+        size(data%sample))])
       far = .false.
       far(data%sample) = data%measured%far(data%sample)
       far = far .and. data%measured%usable
-      call noise_of_steps(left(data%sample), data%run(data%sample), all_noise, steps)
+      call noise_of_steps(left(of_signal), data%run(of_signal), all_noise, steps)
       if (steps < enough) return
       if (count(far) >= enough) then
         far_noise = noise_of(pack(data%measured%z, far), pack(left, far), pack(data%way, far))
@@ -190,7 +216,7 @@ contains
         if (far_noise%order > 0 .or. abs(log(all_noise%deviation/far_noise%deviation)) > &
           differs*sqrt(0.5_wp/count(far) + 0.75_wp/steps)) all_noise = far_noise
       end if
-      correlated = noise_of_residuals(left(data%sample), data%run(data%sample), &
+      correlated = noise_of_residuals(left(of_signal), data%run(of_signal), &
         size(curve%unknown) + data%baseline_numbers())
       if (explains(correlated)) all_noise = correlated
       if (all_noise%deviation > 0) data%noise = all_noise
@@ -202,18 +228,18 @@ contains
     !> Whether a correlated noise explains all residuals, and the far samples alone.
     logical function explains(noise)
       type(noise_t), intent(in) :: noise
-      real(wp) :: white(size(curve%data%sample), 1)
+      real(wp) :: white(size(of_signal), 1)
       type(lack_t) :: lack
 
       explains = noise%order > 0 .and. count(far) >= fewest_far
       if (.not. explains) return
       associate (data => curve%data)
-        white(:, 1) = left(data%sample)
-        call whiten(noise, data%run(data%sample), white)
-        lack = lack_in(white(:, 1), 3*data%way(data%sample) + data%side(data%sample), &
+        white(:, 1) = left(of_signal)
+        call whiten(noise, data%run(of_signal), white)
+        lack = lack_in(white(:, 1), 3*data%way(of_signal) + data%side(of_signal), &
           size(white) - size(curve%unknown) - data%baseline_numbers(), noise)
-        explains = lack%is_noise() .and. is_even(data%measured%z(data%sample), &
-          left(data%sample), noise) .and. .not. contradicts(pack(data%measured%z, far), &
+        explains = lack%is_noise() .and. is_even(data%measured%z(of_signal), &
+          left(of_signal), noise) .and. .not. contradicts(pack(data%measured%z, far), &
           pack(data%measured%signal, far), pack(data%way, far), noise)
       end associate
     end function explains
@@ -256,7 +282,8 @@ contains
     integer :: i
 
     associate (data => curve%data)
-      at = pack([(i, i=1, size(left))], data%way == way)
+      at = pack([(i, i=1, size(left))], data%way == way .and. &
+        data%measured%observed == data%measured%observed(1))
       unit = data%noise%long_deviation()**2*max(1.0_wp, sum(left(data%sample)**2)/ &
         size(data%sample)/data%noise%deviation**2)
       bare = data%measured%signal(at) - baseline(at)

@@ -54,14 +54,18 @@ contains
     if (model%finds_work) then
       if (.not. own%work > 0) return
       associate (data => curve%data%measured)
-        pull_off = -[minval(data%signal, data%usable) - level_of(curve), &
-          minval(off_baseline(data), data%usable)]
+        if (data%under_loads()) then
+          pull_off = -minval(data%z)*data%load_of_unit()
+        else
+          pull_off = -[minval(data%signal, data%usable) - level_of(curve), &
+            minval(off_baseline(data), data%usable)]*curve%spring*curve%sensitivity
+        end if
       end associate
       do i = size(pull_off), 1, -1
-        own%work = pull_off(i)*curve%spring*curve%sensitivity/(1.5_wp*pi*problem%radius)
+        own%work = pull_off(i)/(1.5_wp*pi*problem%radius)
         if (own%work > 0) likely = [likely, own]
       end do
-      if (size(likely) == 0) return
+      if (size(likely) == 0) likely = [character_of(problem)]
       own = likely(size(likely))
     end if
     if (problem%shape%parabolic) then

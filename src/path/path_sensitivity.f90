@@ -17,25 +17,27 @@ module path_sensitivity
 
   !> Derivatives of h0 [m] and load [N] by a parameter; left: the remaining derivative of the
   !> equations (`state_sensitivity`); uncertainty: the change of the load's derivative with a
-  !> coarser difference rule.
+  !> coarser difference rule. separation: the derivative of a separation, at a fixed radius.
   type :: rate_t
-    real(wp) :: h0 = 0, load = 0, left = 0, uncertainty = 0
+    real(wp) :: h0 = 0, load = 0, left = 0, uncertainty = 0, separation = 0
   end type rate_t
 
 contains
 
   !> The element rate(i, j) is the derivative by parameter i at point j of the path, at fixed x.
-  !> found = .false.: at some point the derivatives do not exist.
-  subroutine rates_along(equations, path, varied, rate, found)
+  !> found = .false.: at some point the derivatives do not exist. radius(j): the radius of a
+  !> separation at point j, over the scale of its mesh; 0: there is none.
+  subroutine rates_along(equations, path, varied, rate, found, radius)
     type(equations_t), intent(inout) :: equations
     type(traced_path_t), intent(in) :: path
     type(variation_t), intent(in) :: varied(:)
     type(rate_t), allocatable, intent(out) :: rate(:, :)
     logical, intent(out) :: found
+    real(wp), intent(in), optional :: radius(:)
     type(frozen_jacobian_t) :: frozen
     type(change_t) :: change(size(varied))
     type(place_on_path_t) :: place
-    integer :: i, j
+    integer :: i, j, n
 
     allocate (rate(size(varied), path%last))
     found = .true.
@@ -51,8 +53,12 @@ contains
         call differentiate(equations, place, frozen, varied, change, found)
         if (.not. found) return
         do i = 1, size(varied)
-          rate(i, j) = rate_t(change(i)%separation(size(change(i)%separation)), change(i)%load, &
-            change(i)%left, change(i)%uncertainty)
+          n = size(change(i)%separation) - 1
+          rate(i, j) = rate_t(change(i)%separation(n + 1), change(i)%load, change(i)%left, &
+            change(i)%uncertainty)
+          if (.not. present(radius)) cycle
+          if (radius(j) > 0) rate(i, j)%separation = equations%meshes%grid(point%mesh)% &
+            interpolate(change(i)%separation(:n), radius(j))
         end do
       end associate
     end do

@@ -5,7 +5,7 @@ module fit_rows
   use namelist_writer, only: line_t, assignment_of
   use results, only: results_t
   use tables, only: direction_of
-  use fit_request, only: unknown_t
+  use fit_request, only: unknown_t, of_radius
   use measured_jumps, only: measured_jump_t
   use fit_errors, only: fitted_t, within_95
   use held_numbers, only: held_t
@@ -34,7 +34,8 @@ contains
     associate (data => outcome%curve%data%measured, fitted => outcome%fitted)
       do i = 1, size(used)
         call results%row(direction_of(data%inward(i)), [data%z(i), data%signal(i), &
-          fitted%model(i), fitted%baseline(i), fitted%residual(i)], [used(i), outlier(i)])
+          fitted%model(i), fitted%baseline(i), fitted%residual(i)], [used(i), outlier(i), &
+          data%observed(i) == of_radius])
       end do
     end associate
   end subroutine write_fit_rows
@@ -57,8 +58,11 @@ contains
         text = text // numbers('tabor', [tabor_parameter(outcome%problem)])
       end if
       signal_unit = curve%data%measured%signal_unit()
+      if (curve%data%measured%under_loads()) signal_unit = 'm'
       text = text // assignment_of('signal_unit', signal_unit)
       text = text // numbers('noise', [curve%data%noise%deviation])
+      if (curve%data%noise_radius > 0) text = text // &
+        numbers('noise_radius', [curve%data%noise_radius])
       text = text // numbers('noise_correlation', curve%data%noise%correlation(1:))
       text = text // numbers('rested', [real(count(curve%data%measured%rested), wp)])
       if (curve%data%measured%baseline%period > 0) text = text // &

@@ -25,12 +25,15 @@ contains
     type(line_t), intent(in) :: doubts(:)
     type(line_t), allocatable :: lines(:)
     type(line_t) :: line
+    character(len=:), allocatable :: unit
     integer :: i
 
     allocate (lines(0))
     associate (curve => outcome%curve)
+      unit = curve%data%measured%signal_unit()
+      if (curve%data%measured%under_loads()) unit = 'm'
       line%text = counted(size(curve%data%sample), 'sample') // ', noise ' // &
-        with_unit(curve%data%noise%deviation, nan, curve%data%measured%signal_unit()) // &
+        with_unit(curve%data%noise%deviation, nan, unit) // &
         ', correlation of neighbours ' // &
         rounded(curve%data%noise%correlation(1)) // ', ' // counted(count( &
         curve%data%measured%outlier()), 'outlier') // ' left out'

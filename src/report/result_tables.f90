@@ -122,13 +122,14 @@ module result_tables
     'load_derivative [] the same for the load; both are NaN where z turns', &
     '= fit.csv | with &fit | One row for each sample of the measured curve.', &
     'direction [] approach or retreat', &
-    'z [m] position of the base, as measured', &
-    'measured [] the signal: N, or V or m if the deck has a sensitivity', &
+    'z [m] position of the base, as measured; without positions the load, as measured', &
+    'measured [] the signal: N, or N/m, V or m as in the file; or a contact radius, m', &
     'model [] the signal of the model, with its baseline', &
     'baseline [] the signal without force', &
     'residual [] measured less model', &
     'used [] 1: in the fit; 0: an outlier, skipped, last before a jump, or within it', &
     'outlier [] 1: it differs from its neighbours by more than noise', &
+    'radius [] 1: measured is a contact radius; 0: the signal', &
     '= fit.nml | with &fit | A namelist: &fit, the values found, and a group for each ' // &
       'classical theory, fitted to the same samples.', &
     '= sweep.csv | with &sweep | One row for each case: the values of the keys, then the ' // &

@@ -35,8 +35,8 @@ module fit_group
     key_spec('fit', 'prior', real_list, 'Standard deviation of each before the measurement, ' // &
       'about the value in the deck; 0: unknown.', most=most_unknowns, low=0.0_wp, &
       otherwise='unknown'), &
-    key_spec('fit', 'noise', real_value, 'Standard deviation of the signal, in its unit.', &
-      above=0.0_wp, otherwise='that of the baseline')]
+    key_spec('fit', 'noise', real_list, 'Standard deviation of the signal, in its unit, and ' // &
+      'then of the contact radius.', most=2, above=0.0_wp, otherwise='those of the data')]
 
 contains
 
@@ -175,9 +175,9 @@ contains
       if (allocated(scene%deck%error)) return
     end do
     if (.not. any(scene%fit%unknown%role == of_contact_point) .and. &
-      .not. allocated(scene%measured%contact_point)) call scene%deck%mistake('fit', &
-      'parameters', 'the contact point is unknown: add measurement.contact_point here, or ' // &
-      'give contact_point in &measurement')
+      .not. (allocated(scene%measured%contact_point) .or. scene%measured%under_loads())) &
+      call scene%deck%mistake('fit', 'parameters', 'the contact point is unknown: add ' // &
+      'measurement.contact_point here, or give contact_point in &measurement')
     call take_bounds(scene%deck, scene%fit%unknown)
   end subroutine take_unknowns
 
@@ -226,6 +226,11 @@ contains
       call scene%deck%mistake('fit', 'parameters', quoted(unknown%name) // ' cannot be ' // &
         'fitted; of &measurement only contact_point, sensitivity and spring_constant can')
     end select
+    if (scene%measured%under_loads() .and. .not. allocated(scene%deck%error)) then
+      call scene%deck%mistake('fit', 'parameters', quoted(unknown%name) // ' does not change ' // &
+        'contact radii under loads')
+      return
+    end if
     if (any(unknown%role == [of_sensitivity, of_spring]) .and. scene%measured%has(of_separation)) &
       call scene%deck%mistake('fit', 'parameters', quoted(unknown%name) // ' cannot be fitted to ' &
       // 'separations, which were computed with it; fit positions of the base')

@@ -7,7 +7,7 @@ module measurement_group
   use deck_keys, only: key_spec, real_value, real_list, integer_value, logical_value, word_value, &
     text_value, names_value
   use baseline, only: baseline_t
-  use fit_request, only: of_position, of_separation, of_load, of_segment
+  use fit_request, only: of_position, of_separation, of_load, of_segment, of_radius
   use scene_groups, only: scene_t
   use units, only: find_unit
   implicit none
@@ -19,8 +19,8 @@ module measurement_group
   character(len=*), parameter :: kinds(*) = [character(len=9) :: 'constant', 'linear', 'quadratic']
 
   !> The quantities of columns, by their numbers in `fit_request`.
-  character(len=*), parameter :: quantities(*) = [character(len=10) :: 'position', 'separation', &
-    'load', 'segment']
+  character(len=*), parameter :: quantities(*) = [character(len=14) :: 'position', 'separation', &
+    'load', 'segment', 'contact_radius']
 
   !> The rows of &measurement.
   type(key_spec), parameter :: measurement_keys(*) = [ &
@@ -45,7 +45,8 @@ module measurement_group
       'changes the sign.', most=4, otherwise='the first two', spaced=.true.), &
     key_spec('measurement', 'quantity', names_value, 'What the first column is, or all, in ' // &
       'their order: position (of the base of the spring), separation (of the bodies), load ' // &
-      '(the signal), segment.', most=4, otherwise='position'), &
+      '(the signal), contact_radius, segment; a load with a position, a separation or a ' // &
+      'contact_radius.', most=4, otherwise='position'), &
     key_spec('measurement', 'approach', names_value, 'Numbers or words that the approach has ' // &
       'in the column of segments.', most=most_labels, spaced=.true., &
       otherwise='0, a word for it, or by the position'), &
@@ -131,7 +132,7 @@ contains
       if (allocated(radius)) measurement%radius = radius
       if (measurement%signal_in == 'R' .and. .not. allocated(radius)) call deck%mistake( &
         'measurement', 'units', 'a force over a radius needs radius in &bodies')
-      call deck%get_optional('fit', 'noise', scene%fit%noise)
+      call take_noise(scene)
     end associate
   end subroutine take_measurement
 
@@ -162,10 +163,15 @@ contains
     else if (size(quantity) /= columns) then
       call deck%mistake('measurement', 'quantity', 'give what the first column is, or one ' // &
         'quantity for each of columns')
-    else if (count(quantity == of_position .or. quantity == of_separation) /= 1 .or. &
-      count(quantity == of_load) /= 1 .or. count(quantity == of_segment) > 1) then
-      call deck%mistake('measurement', 'quantity', 'a curve has a position or a separation, a ' // &
-        'load, and at most one segment')
+    else if (count(quantity == of_position .or. quantity == of_separation) > 1 .or. &
+      any([(count(quantity == k) > 1, k=1, size(quantities))])) then
+      call deck%mistake('measurement', 'quantity', 'a curve has each quantity once, and a ' // &
+        'position or a separation')
+    else if (.not. any(quantity == of_load)) then
+      call deck%mistake('measurement', 'quantity', 'a curve needs a load')
+    else if (all(quantity == of_load .or. quantity == of_segment)) then
+      call deck%mistake('measurement', 'quantity', 'a load needs a position, a separation or a ' &
+        // 'contact_radius')
     end if
   end subroutine take_quantities
 
@@ -191,8 +197,10 @@ contains
       if (scene%sweeps('measurement.spring_constant') .and. .not. allocated(spring_constant)) &
         spring_constant = 1
       if (allocated(spring_constant)) then
+        if (scene%measured%under_loads()) call deck%mistake('measurement', 'spring_constant', &
+          'contact radii under loads have no position, and need no spring')
         scene%measured%spring_constant = spring_constant
-      else if (.not. scene%measured%has(of_separation)) then
+      else if (scene%measured%has(of_position)) then
         call deck%mistake('measurement', 'spring_constant', 'missing; the position of the base ' &
           // 'of a spring needs it; without a spring, quantity = ''separation''')
       else if (deck%is_set('measurement', 'sensitivity')) then
@@ -201,6 +209,24 @@ contains
       end if
     end associate
   end subroutine take_spring
+
+  !> Reads the noise: of the signal, and of the contact radius; of the only one of them.
+  subroutine take_noise(scene)
+    type(scene_t), intent(inout) :: scene
+    real(wp), allocatable :: noise(:)
+
+    call scene%deck%get('fit', 'noise', noise)
+    if (size(noise) == 0) return
+    if (scene%measured%under_loads()) then
+      scene%fit%noise_radius = noise(1)
+    else
+      scene%fit%noise = noise(1)
+      if (size(noise) > 1) scene%fit%noise_radius = noise(2)
+    end if
+    if (size(noise) > 1 .and. (scene%measured%under_loads() .or. &
+      .not. scene%measured%has(of_radius))) call scene%deck%mistake('fit', 'noise', &
+      'one value, since the curve has a signal or a contact radius, and not both')
+  end subroutine take_noise
 
   !> Reads which curve of the file is meant.
   subroutine take_number(scene)

@@ -35,8 +35,8 @@ def test_a_spring_in_separations_is_that_of_positions(branches, tmp_path, sense)
 def test_without_a_spring_h0_is_prescribed(tmp_path):
     """Jumps are those at the turning points of h0, and the truth comes back."""
     adhering = {**LENNARD_JONES, "bodies": {**BODIES, "stiffness": 2e9}}
-    bodies = Branches(adhering, spring=1e20, h0_end=-6e-9, step=2e-11)
-    z, force, segment = bodies.measure(300, noise=NOISE, seed=4)
+    held = Branches(adhering, spring=1e20, h0_end=-6e-9, step=2e-11)
+    z, force, segment = held.measure(300, noise=NOISE, seed=4)
     file = write(tmp_path / "d.csv", z, force, segment)
     deck = fit_deck(adhering, file, PARAMETERS, None, {"quantity": "separation"})
     del deck["measurement"]["spring_constant"]

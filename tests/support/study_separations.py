@@ -11,7 +11,7 @@ import numpy as np
 import snapin
 from support.measured import write
 from support.reference_curves import Z0, Driven
-from support.study_fits import FAR, PARAMETERS, Finding, Job, cpu
+from support.study_fits import FAR, PARAMETERS, Finding, Job, cpu, table  # noqa: F401
 
 RADIUS = 0.01
 STRENGTHS = (0.3, 1.0, 5.0, 20.0, 60.0)

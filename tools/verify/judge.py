@@ -16,6 +16,7 @@
     fits        fits of curves with several kinds of noise and baseline
     untold      the same without the keys for the baseline: wrong without a warning
     separations fits of forces over the radius against separation, with and without a spring
+    radii       fits of JKR tests: contact radii under loads, and beside loads and separations
 
 The program is $SNAPIN, else build/snapin. Ends with status 1 if a study finds an error.
 """
@@ -34,7 +35,7 @@ sys.path.insert(0, str(ROOT / "tests"))
 
 from snapin.command import as_command  # noqa: E402
 from support import study_bodies, study_cycles, study_estimates, study_fits  # noqa: E402
-from support import study_folds, study_laws, study_separations  # noqa: E402
+from support import study_folds, study_laws, study_radii, study_separations  # noqa: E402
 from support.comparison import is_bad  # noqa: E402
 from support.decks_in_units import program_path  # noqa: E402
 from support.spread import spread  # noqa: E402
@@ -59,9 +60,10 @@ STUDIES = {
     "untold": (study_fits, study_fits.untold_jobs, 150, lambda finding: finding.wrong),
     "separations": (study_separations, study_separations.separation_jobs, 120,
                     lambda finding: finding.wrong),
+    "radii": (study_radii, study_radii.radius_jobs, 120, lambda finding: finding.wrong),
 }
-SEEDED = ("starts", "fits", "untold", "separations", "cycles", "cusp", "laws", "layers",
-          "experiments", "shapes")
+SEEDED = ("starts", "fits", "untold", "separations", "radii", "cycles", "cusp", "laws",
+          "layers", "experiments", "shapes")
 
 
 def study(name, arguments, folder):

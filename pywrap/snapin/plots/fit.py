@@ -28,8 +28,14 @@ def draw_fit(folder, whole=False):
     """Return a figure of the fit in `folder`; `whole` shows all of the baseline."""
     files = ResultFiles(folder)
     summary, table = files.summary(), files.table("fit.csv")
+    # Contact radii beside a signal have a scale of their own, and are left out.
+    alike = table["radius"] == table["radius"][0]
+    table = {name: column[alike] for name, column in table.items()}
+    across, up = "position of the base, from its least", "signal less baseline"
+    if table["radius"][0] == 1:
+        across, up = "load, from its least", "contact radius"
     force = table["measured"] - table["baseline"]
-    lengths = scale(np.ptp(table["z"]), "m")
+    lengths = scale(np.ptp(table["z"]), "N" if up == "contact radius" else "m")
     fit = files.fit()
     unit = fit["signal_unit"][0] if "signal_unit" in fit else None
     signals = _scale_of_signal(force, unit)
@@ -58,9 +64,8 @@ def draw_fit(folder, whole=False):
         for side, marker in ((beyond > 0, "^"), (beyond <= 0, "v")):
             below.plot(z[outlier][side], beyond[side], marker, markersize=4, color=GREY)
     below.set_ylim(-1.1 * edge / lefts[0], 1.1 * edge / lefts[0])
-    dress(panel, "", f"signal less baseline [{signals[1]}]")
-    dress(below, f"position of the base, from its least [{lengths[1]}]",
-          f"residual [{lefts[1]}]")
+    dress(panel, "", f"{up} [{signals[1]}]")
+    dress(below, f"{across} [{lengths[1]}]", f"residual [{lefts[1]}]")
     if not whole:
         _show_contact(panel, z, table, np.where(outlier, 0, force))
     # As entries of the legend the numbers lie where no curve is.
