@@ -92,7 +92,8 @@ contains
     subroutine trace()
       select type (steps)
       class is (path_stepper_t)
-        call steps%know_path(chosen, allocated(request%path), chosen%accuracy, observer, demand)
+        call steps%know_path(chosen%high, chosen%low, chosen%ends_at, allocated(request%path), &
+          chosen%accuracy, observer, demand)
       end select
     end subroutine trace
 

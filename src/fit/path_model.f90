@@ -109,8 +109,8 @@ contains
     self%steps%options%mixing = .false.
     self%steps%meshes = new_mesh_family(problem, chosen%high, chosen%low, chosen%digits, &
       store=self%store)
-    call self%steps%know_path(chosen, .true., self%numerics%accuracy, silent, &
-      demand_of(request, problem))
+    call self%steps%know_path(chosen%high, chosen%low, chosen%ends_at, .true., &
+      self%numerics%accuracy, silent, demand_of(request, problem))
     self%left_out = self%steps%known%left_out
     if (.not. self%steps%known%path%held > 1) return
     call drive_bodies(self%steps%solver_t, self%steps%known%path, &
