@@ -106,13 +106,14 @@ contains
     real(wp), intent(in), optional :: also(:)
     type(h0_schedule_t) :: plan
     real(wp), allocatable :: h0(:), profiles(:)
+    !> A remainder that is due to rounding, in steps, is no step.
+    real(wp), parameter :: remainder = 1.0e-6_wp
     real(wp) :: sense, same
     integer :: steps, i
 
     sense = sign(1.0_wp, finish - start)
-    ! A remainder due to rounding is not a step.
-    same = 1.0e-6_wp*min(step, abs(finish - start))
-    steps = floor(abs(finish - start)/step + 1.0e-6_wp)
+    same = remainder*min(step, abs(finish - start))
+    steps = floor(abs(finish - start)/step + remainder)
     h0 = [(start + sense*step*i, i=0, steps)]
     if (abs(h0(steps + 1) - finish) <= same) then
       h0(steps + 1) = finish

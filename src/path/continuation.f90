@@ -34,8 +34,9 @@ module continuation
   !> define a smooth curve; small errors are best predicted from more states.
   real(wp), parameter :: miss_of_curve = 1.0e-7_wp, step_of_curve = 0.12_wp
   integer, parameter :: states_of_curve = 4
-  !> The least step for which steps are shortened so that they end on the mesh.
-  real(wp), parameter :: shortest_passage = 0.05_wp
+  !> The least step for which steps are shortened so that they end on the mesh, and the factor by
+  !> which they are.
+  real(wp), parameter :: shortest_passage = 0.05_wp, shortening = 0.6_wp
 
   !> The last states on the current mesh, newest last.
   type, extends(arc_t) :: continuation_t
@@ -187,7 +188,7 @@ contains
       do while (step > shortest_passage)
         if (radius_for(equations, mesh, mesh + 1, self%guess(equations%problem, &
           meshes%grid(mesh), s + step)) <= beyond_passage*meshes%passage(mesh)) exit
-        step = 0.6_wp*step
+        step = shortening*step
       end do
     end associate
   end function next_step
