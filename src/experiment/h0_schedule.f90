@@ -3,13 +3,22 @@ module h0_schedule
   use kinds, only: wp
   use experiment_request, only: request_t
   use force_law, only: force_law_t
-  use stepped_branch, only: h0_schedule_t
   implicit none
   private
-  public :: path_plan, loading_plan, unloading_plan, states_planned, thinned
+  public :: h0_schedule_t, path_plan, loading_plan, unloading_plan, states_planned, thinned
 
   !> Number of states of a path that is stepped in h0.
   integer, parameter :: path_states = 100
+
+  !> The values of h0 of a branch, in the law's lengths; those with a profile; and those whose
+  !> errors represent the errors of all.
+  type :: h0_schedule_t
+    character(len=:), allocatable :: name
+    real(wp), allocatable :: h0(:)
+    logical, allocatable :: profile(:), sample(:)
+    !> Whether there is one state for every h0, so that each state is known to be stable.
+    logical :: unique = .false.
+  end type h0_schedule_t
 
 contains
 
