@@ -1,13 +1,12 @@
-!> Thin wrappers over BLAS and LAPACK.
+!> Thin wrappers over LAPACK: factors, solutions, eigenvalues, singular values.
 module linear_algebra
   use kinds, only: wp
-  use lapack, only: dgemv, dgemm, dgetrf, dgetrs, dgtsv, dgeev, dgesvd
+  use lapack, only: dgetrf, dgetrs, dgtsv, dgeev, dgesvd
   use rough_lu, only: rough_lu_t
   implicit none
   private
-  public :: multiply, multiply_left, multiply_transposed, &
-    add_by_transposed, factorisation_t, factorise, solve, determinant_sign, &
-    claim_buffers, eigenvalues, solve_tridiagonal, singular_values
+  public :: factorisation_t, factorise, solve, determinant_sign, claim_buffers, eigenvalues, &
+    solve_tridiagonal, singular_values
 
   !> LU factors of a square matrix, from `factorise`. If the factors are rough, lu is still the
   !> matrix.
@@ -32,43 +31,6 @@ contains
     call dgetrf(2, 2, a, 2, pivot, info)
   end subroutine claim_buffers
 
-  !> y = a(:size(y), :columns) x(:columns).
-  pure subroutine multiply(a, columns, x, y)
-    real(wp), intent(in), contiguous :: a(:, :)
-    integer, intent(in) :: columns
-    real(wp), intent(in) :: x(:)
-    real(wp), intent(out) :: y(:)
-
-    if (columns > 0) then
-      call dgemv('n', size(y), columns, 1.0_wp, a, size(a, 1), x, 1, 0.0_wp, y, 1)
-    else
-      y = 0
-    end if
-  end subroutine multiply
-
-  !> y = x a(:size(x), :size(y)).
-  pure subroutine multiply_left(x, a, y)
-    real(wp), intent(in), contiguous :: a(:, :)
-    real(wp), intent(in) :: x(:)
-    real(wp), intent(out) :: y(:)
-
-    if (size(x) > 0) then
-      call dgemv('t', size(x), size(y), 1.0_wp, a, size(a, 1), x, 1, 0.0_wp, y, 1)
-    else
-      ! DGEMV would leave y as it is.
-      y = 0
-    end if
-  end subroutine multiply_left
-
-  !> c = matmul(transpose(a), b).
-  subroutine multiply_transposed(a, b, c)
-    real(wp), intent(in), contiguous :: a(:, :), b(:, :)
-    real(wp), intent(out) :: c(:, :)
-
-    call dgemm('t', 'n', size(a, 2), size(b, 2), size(a, 1), 1.0_wp, a, size(a, 1), b, size(b, 1), &
-      0.0_wp, c, size(c, 1))
-  end subroutine multiply_transposed
-
   !> Factorises the matrix held in factors%lu, in place unless the factors are to be rough. Rough
   !> factors are in single precision, for iterations that correct what they leave; a matrix that is
   !> singular in this precision gets exact factors. rough: .false. if absent.
@@ -92,15 +54,6 @@ contains
     call dgetrf(n, n, factors%lu, n, factors%pivot, info)
     factors%valid = info == 0
   end subroutine factorise
-
-  !> Adds matmul(a, transpose(b)) to the first rows of c.
-  subroutine add_by_transposed(a, b, c)
-    real(wp), intent(in), contiguous :: a(:, :), b(:, :)
-    real(wp), intent(inout), contiguous :: c(:, :)
-
-    call dgemm('n', 't', size(a, 1), size(b, 1), size(a, 2), 1.0_wp, a, size(a, 1), b, size(b, 1), &
-      1.0_wp, c, size(c, 1))
-  end subroutine add_by_transposed
 
   !> Overwrites b with the solution; `factors` must be valid.
   subroutine solve(factors, b)

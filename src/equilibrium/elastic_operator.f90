@@ -10,7 +10,7 @@
 !> kernel: the axis, the centre, the nodes. Homogeneous bodies have no second part and no waves.
 module elastic_operator
   use kinds, only: wp
-  use linear_algebra, only: multiply
+  use matrix_products, only: multiply
   use mesh_digits, only: digits_of_layers
   use mesh_waves, only: mesh_waves_t, new_mesh_waves
   use dimensionless_problem, only: problem_t

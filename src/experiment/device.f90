@@ -8,8 +8,8 @@ module device
   use traced_path, only: traced_path_t
   use path_state, only: path_state_t
   use drives, only: drive_t
-  use driven_pieces, only: driven_pieces_t, jump_t, find_pieces, find_jumps, state_driven
-  use walk, only: leg_t, walk_t, way_along
+  use driven_pieces, only: driven_pieces_t, jump_t, leg_t, walk_t, way_along
+  use piece_search, only: find_pieces, find_jumps, state_driven
   implicit none
   private
   public :: driven_t, driven_leg_t, states_on, drive_bodies

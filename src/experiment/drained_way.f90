@@ -21,6 +21,11 @@ module drained_way
     no_less = 0.5_wp
   !> Largest and smallest ratio of a step to the previous step.
   real(wp), parameter :: longer = 2, least_ratio = 0.2_wp
+  !> The part of the step with the permitted deviation that is taken next, and after a step that is
+  !> repeated; the ratio after a step that did not converge.
+  real(wp), parameter :: safety = 0.9_wp, repeated = 0.7_wp, lost_step = 0.3_wp
+  !> A remainder of a way below this part of a step is added to the step.
+  real(wp), parameter :: remainder = 0.01_wp
   !> The first step over the duration of a way: the fluid's pressure jumps where the drive turns.
   real(wp), parameter :: first_drained = 1.0e-7_wp
   !> The shortest step in roundings of the time; largest change of the path's coordinate in such a
@@ -57,7 +62,7 @@ contains
     if (.not. now%step > 0) now%step = shorter*first
     least = roundings*spacing(max(now%at%time, now%step))
     when = now%at%time + now%step
-    if (when + 0.01_wp*now%step > whole) when = whole
+    if (when + remainder*now%step > whole) when = whole
     taken = when - now%at%time
     farthest = steps%farthest
     ! Motion within the rounding of the time is not resolved.
@@ -79,12 +84,12 @@ contains
     now%missed = 0
     if (done .and. (off < rejected .or. taken <= 2*least)) then
       call accept(steps, next, taken > 2*least .and. .not. jumped, now)
-      now%step = min(longest, taken*min(longer, max(least_ratio, 0.9_wp/sqrt(off))))
+      now%step = min(longest, taken*min(longer, max(least_ratio, safety/sqrt(off))))
       if (now%held > now%most) call lose(now)
     else
       steps%cost%rejected_steps = steps%cost%rejected_steps + 1
       if (done) now%missed = off
-      now%step = taken*merge(max(least_ratio, 0.7_wp/sqrt(off)), 0.3_wp, done)
+      now%step = taken*merge(max(least_ratio, repeated/sqrt(off)), lost_step, done)
       if (.not. done .and. taken <= least) call lose(now)
     end if
     now%step = max(now%step, least)

@@ -3,13 +3,22 @@ module h0_schedule
   use kinds, only: wp
   use experiment_request, only: request_t
   use force_law, only: force_law_t
-  use stepped_branch, only: h0_schedule_t
   implicit none
   private
-  public :: path_plan, loading_plan, unloading_plan, states_planned, thinned
+  public :: h0_schedule_t, path_plan, loading_plan, unloading_plan, states_planned, thinned
 
   !> Number of states of a path that is stepped in h0.
   integer, parameter :: path_states = 100
+
+  !> The values of h0 of a branch, in the law's lengths; those with a profile; and those whose
+  !> errors represent the errors of all.
+  type :: h0_schedule_t
+    character(len=:), allocatable :: name
+    real(wp), allocatable :: h0(:)
+    logical, allocatable :: profile(:), sample(:)
+    !> Whether there is one state for every h0, so that each state is known to be stable.
+    logical :: unique = .false.
+  end type h0_schedule_t
 
 contains
 
@@ -106,13 +115,14 @@ contains
     real(wp), intent(in), optional :: also(:)
     type(h0_schedule_t) :: plan
     real(wp), allocatable :: h0(:), profiles(:)
+    !> A remainder that is due to rounding, in steps, is no step.
+    real(wp), parameter :: remainder = 1.0e-6_wp
     real(wp) :: sense, same
     integer :: steps, i
 
     sense = sign(1.0_wp, finish - start)
-    ! A remainder due to rounding is not a step.
-    same = 1.0e-6_wp*min(step, abs(finish - start))
-    steps = floor(abs(finish - start)/step + 1.0e-6_wp)
+    same = remainder*min(step, abs(finish - start))
+    steps = floor(abs(finish - start)/step + remainder)
     h0 = [(start + sense*step*i, i=0, steps)]
     if (abs(h0(steps + 1) - finish) <= same) then
       h0(steps + 1) = finish

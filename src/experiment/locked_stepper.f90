@@ -32,6 +32,8 @@ module locked_stepper
   !> Smallest step in h0, in the law's lengths and relative to h0: deep in contact the state is
   !> nearly constant over smaller steps, and rounding makes some of them fail.
   real(wp), parameter :: smallest_creep = 1.0e-6_wp, smallest_part = 1.0e-4_wp
+  !> Ratio of a step to the one before, with and without a solution.
+  real(wp), parameter :: longer = 2, shorter = 0.3_wp
 
 contains
 
@@ -120,9 +122,9 @@ contains
       if (event%converged) then
         call remember(position, state, position%mesh, .false.)
         if (abs(next - h0) <= 0.0_wp) return
-        step = 2*step
+        step = longer*step
       else
-        step = 0.3_wp*step
+        step = shorter*step
         if (abs(step) < max(smallest_creep, smallest_part*abs(position%state%h0))) then
           event%ending%cause = steps_lost
           call move_to(position, state)

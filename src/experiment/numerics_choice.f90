@@ -46,10 +46,20 @@ module numerics_choice
   !> of other runs on a fixed grid, since a finer one would cost many times as much; the smaller
   !> extent should still contain the contact.
   real(wp), parameter :: more_digits = 1.5_wp, part_of_nodes = 2/3.0_wp, part_of_extent = 5/6.0_wp
+  !> Tolerance of residuals over the accuracy, and its largest value. Without mixing, and not on
+  !> uniform grids, it is at most this smaller part of the accuracy, but not below this value.
+  real(wp), parameter :: part_of_accuracy = 0.01_wp, largest_tolerance = 1.0e-8_wp, &
+    small_part = 1.0e-4_wp, small_tolerance = 1.0e-10_wp
   !> Depth of the accelerated mixing.
   integer, parameter :: mixing_depth = 10
   !> Error of an extremum's place over the accuracy: the error of the load is a few times larger.
-  real(wp), parameter :: place_over_accuracy = 1.0e-5_wp
+  !> Its largest value; and the error of slopes over that of places.
+  real(wp), parameter :: place_over_accuracy = 1.0e-5_wp, largest_place_error = 1.0e-7_wp, &
+    slope_over_place = 0.1_wp
+  !> Nodes of a panel on a grid that is fixed in space: this number, for each decade of accuracy,
+  !> and their limits.
+  real(wp), parameter :: panel_nodes = 4.6_wp, panel_nodes_of_decade = 0.8_wp
+  integer, parameter :: fewest_on_panel = 6, most_on_panel = 16
 
 contains
 
@@ -116,17 +126,18 @@ contains
     type(problem_t), intent(in) :: problem
 
     options%mixing = mixes(numerics%method)
-    options%tolerance = min(1.0e-8_wp, 0.01_wp*numerics%accuracy)
+    options%tolerance = min(largest_tolerance, part_of_accuracy*numerics%accuracy)
     ! The residual at which an iteration stops, below its tolerance, depends on rounding. This
     ! changes the digits of a load beyond a thousandth of the tolerance; with the lower tolerance
     ! these are beyond the requested digits, at the cost of a few products. For mixing the cost
     ! would be larger, and on uniform grids the error of the mesh is far larger.
     if (.not. options%mixing .and. numerics%grid /= 'uniform') &
-      options%tolerance = min(options%tolerance, max(1.0e-10_wp, 1.0e-4_wp*numerics%accuracy))
+      options%tolerance = min(options%tolerance, max(small_tolerance, &
+      small_part*numerics%accuracy))
     if (allocated(numerics%residual_tolerance)) options%tolerance = numerics%residual_tolerance
-    options%place_error = min(1.0e-7_wp, max(options%place_error, &
+    options%place_error = min(largest_place_error, max(options%place_error, &
       place_over_accuracy*numerics%accuracy))
-    options%slope_error = max(options%slope_error, 0.1_wp*options%place_error)
+    options%slope_error = max(options%slope_error, slope_over_place*options%place_error)
     if (numerics%method == 'anderson_mixing') options%mixing_depth = mixing_depth
     if (allocated(numerics%anderson_depth)) then
       options%depth = numerics%anderson_depth
@@ -159,7 +170,8 @@ contains
     real(wp) :: widest, feature
 
     ! For a relative accuracy of load and displacement.
-    chosen%panel_order = min(16, max(6, nint(4.6_wp - 0.8_wp*log10(numerics%accuracy))))
+    chosen%panel_order = min(most_on_panel, max(fewest_on_panel, &
+      nint(panel_nodes - panel_nodes_of_decade*log10(numerics%accuracy))))
     if (allocated(numerics%panel_order)) chosen%panel_order = numerics%panel_order
     widest = largest_radius(problem, chosen%low, contact_level(problem))
     feature = smallest_feature(problem, widest)

@@ -21,8 +21,8 @@ module one_run
   use path_end, only: demand_t
   use path, only: follow_path
   use path_readings, only: read_path
-  use stepped_branch, only: h0_schedule_t, branch_t, run_branch
-  use h0_schedule, only: path_plan, loading_plan, unloading_plan, thinned
+  use stepped_branch, only: branch_t, run_branch
+  use h0_schedule, only: h0_schedule_t, path_plan, loading_plan, unloading_plan, thinned
   use experiment_result, only: experiment_result_t, enter_readings, enter_energy, enter_table, &
     enter_turns
   use reported_place, only: place_t, place_without_state, of_energy
@@ -92,7 +92,8 @@ contains
     subroutine trace()
       select type (steps)
       class is (path_stepper_t)
-        call steps%know_path(chosen, allocated(request%path), chosen%accuracy, observer, demand)
+        call steps%know_path(chosen%high, chosen%low, chosen%ends_at, allocated(request%path), &
+          chosen%accuracy, observer, demand)
       end select
     end subroutine trace
 

@@ -15,12 +15,11 @@ module path_stepper
   use path_span, only: path_span_t, new_path_span
   use prediction, only: missed_t, expect
   use path_end, only: demand_t
-  use numerics_choice, only: choice_t
   use path_tangent, only: of_h0
   use tracing, only: tracing_t, trace
   use drives, only: drive_t
-  use driven_pieces, only: driven_pieces_t, jump_t, find_pieces, find_jumps, interval_with
-  use walk, only: walk_t, way_along
+  use driven_pieces, only: driven_pieces_t, jump_t, walk_t, way_along
+  use piece_search, only: find_pieces, find_jumps, interval_with
   use reported_place, only: place_t, point_of_path, of_load
   use largest_tension, only: lower, lower_along
   use stepper, only: branch_point_t, step_result_t, remember
@@ -61,14 +60,14 @@ module path_stepper
 
 contains
 
-  !> Traces the path from chosen%high, or from where the bodies hardly deform, until it is stable at
-  !> chosen%low; into_contact: until the bodies are also in contact, at chosen%ends_at; accuracy,
-  !> demand: see `trace`; with `demand` the points define a smooth curve. To be called before the
-  !> first step. The listener receives messages about the progress.
-  subroutine know_path(self, chosen, into_contact, accuracy, listener, demand)
+  !> Traces the path from h0_high, or from where the bodies hardly deform, until it is stable at
+  !> h0_low; into_contact: until the bodies are also in contact, at ends_at; accuracy, demand: see
+  !> `trace`; with `demand` the points define a smooth curve. To be called before the first step.
+  !> The listener receives messages about the progress.
+  subroutine know_path(self, h0_high, h0_low, ends_at, into_contact, accuracy, listener, &
+    demand)
     class(path_stepper_t), intent(inout) :: self
-    type(choice_t), intent(in) :: chosen
-    real(wp), intent(in) :: accuracy
+    real(wp), intent(in) :: h0_high, h0_low, ends_at, accuracy
     logical, intent(in) :: into_contact
     class(listener_t), intent(inout) :: listener
     type(demand_t), intent(in), optional :: demand
@@ -78,10 +77,10 @@ contains
 
     self%known = nothing
     call self%operator%forget()
-    call self%begin_afar(chosen%high, position, event)
+    call self%begin_afar(h0_high, position, event)
     if (.not. event%ending%early()) then
-      call trace(self%solver_t, position%state, chosen%low, into_contact, accuracy, listener, &
-        self%known, demand, chosen%ends_at)
+      call trace(self%solver_t, position%state, h0_low, into_contact, accuracy, listener, &
+        self%known, demand, ends_at)
       associate (path => self%known%path, stable => self%known%stable)
         call find_pieces(self%solver_t, path, drive_t(of_h0), stable)
         ! The part beyond the last stable piece was traced only to find the end of this piece.

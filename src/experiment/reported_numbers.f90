@@ -9,7 +9,7 @@ module reported_numbers
   implicit none
   private
   public :: number_t, run_numbers_t, judge, differentiate, chance, chance_on_grids, largest_error, &
-    largest_of, of_table, of_turns, name_length
+    largest_of, of_table, name_length
 
   integer, parameter :: name_length = 24
 

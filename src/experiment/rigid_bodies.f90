@@ -17,8 +17,8 @@ module rigid_bodies
   use records, only: observer_t, record_t, stable_yes, stable_unasked
   use experiment_request, only: request_t
   use experiment_result, only: experiment_result_t
-  use stepped_branch, only: branch_t, h0_schedule_t, compare_ends, enter_ends
-  use h0_schedule, only: path_plan, loading_plan, unloading_plan
+  use stepped_branch, only: branch_t, compare_ends, enter_ends
+  use h0_schedule, only: h0_schedule_t, path_plan, loading_plan, unloading_plan
   use clock, only: seconds
   implicit none
   private

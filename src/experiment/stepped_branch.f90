@@ -3,6 +3,7 @@
 module stepped_branch
   use kinds, only: wp
   use equilibrium, only: holds
+  use h0_schedule, only: h0_schedule_t
   use stepper, only: stepper_t, branch_point_t, step_result_t
   use ending, only: ending_t
   use largest_tension, only: lower
@@ -12,17 +13,7 @@ module stepped_branch
   use records, only: observer_t, record_t, quality_t, record_of, stable_yes, stable_unasked
   implicit none
   private
-  public :: h0_schedule_t, branch_t, run_branch, compare_ends, enter_ends
-
-  !> The values of h0 of a branch, in the law's lengths; those with a profile; and those whose
-  !> errors represent the errors of all.
-  type :: h0_schedule_t
-    character(len=:), allocatable :: name
-    real(wp), allocatable :: h0(:)
-    logical, allocatable :: profile(:), sample(:)
-    !> Whether there is one state for every h0, so that each state is known to be stable.
-    logical :: unique = .false.
-  end type h0_schedule_t
+  public :: branch_t, run_branch, compare_ends, enter_ends
 
   !> The results of a branch, in the units of `dimensionless_problem`. A component that is not
   !> allocated does not exist.

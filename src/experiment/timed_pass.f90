@@ -22,6 +22,14 @@ module timed_pass
   !> first step, as fractions of a way.
   real(wp), parameter :: bend = 8.0e-3_wp, edge_moves = 2, longest_part = 0.05_wp, &
     first_part = 1.0e-3_wp
+  !> Smallest and largest ratio of a step to the previous one, and the part of the step with the
+  !> permitted deviation that is taken; deviation from a line that does not count.
+  real(wp), parameter :: least_ratio = 0.3_wp, most_ratio = 2, safety = 0.9_wp, straight = 0.05_wp
+  !> The shortest step that the choice takes over the shortest time of retardation, and its limits
+  !> as fractions of a way.
+  real(wp), parameter :: shortest_chosen = 1.0e-4_wp, shortest_of_way(2) = [1.0e-8_wp, 1.0e-5_wp]
+  !> A remainder of a way below this part of a step is added to the step.
+  real(wp), parameter :: remainder = 0.01_wp
   !> Number of steps after a rejected one before longer steps are tried again.
   integer, parameter :: patience = 3
   !> The shortest step over the shortest time of retardation, its motion over the law's length, and
@@ -95,7 +103,8 @@ contains
       real(wp) :: whole, end, moved, shortest, way_length
 
       whole = now%drive%lasts(now%way)
-      shortest = max(1.0e-8_wp*whole, min(1.0e-5_wp*whole, 1.0e-4_wp*steps%creep%shortest()))
+      shortest = max(shortest_of_way(1)*whole, min(shortest_of_way(2)*whole, &
+        shortest_chosen*steps%creep%shortest()))
       if (.not. now%step > 0) now%step = first_part*whole
       ! Without adhesion, a long step may lead from a load of zero far into contact.
       way_length = now%drive%length_of(now%way)
@@ -103,11 +112,12 @@ contains
         longest_step(steps, now%at)*whole/way_length)
       if (allocated(now%time_step)) now%step = 2*now%time_step
       end = now%at%time + now%step
-      if (end + 0.01_wp*now%step > whole) end = whole
+      if (end + remainder*now%step > whole) end = whole
       from = now%at
       call go_to(end)
       moved = missed(steps, from, now)
-      now%step = (now%at%time - from%time)*min(2.0_wp, max(0.3_wp, 0.9_wp/sqrt(moved)))
+      now%step = (now%at%time - from%time)* &
+        min(most_ratio, max(least_ratio, safety/sqrt(moved)))
       now%step = min(max(now%step, shortest), longest_part*whole)
       if (now%held > most_steps) call lose(now)
     end subroutine choose_step
@@ -120,7 +130,7 @@ contains
       type(pass_t), intent(in) :: now
       real(wp) :: line, unit
 
-      missed = 0.05_wp
+      missed = straight
       ! Creeping bodies are stiffer than bodies at rest.
       unit = now%load_unit
       if (.not. steps%meshes%traceable) unit = max(unit, now%result%largest_load)
@@ -183,7 +193,7 @@ contains
       least = max(least, roundings*spacing(now%drive%lasts(now%way)))
       do while (now%at%time < time)
         try = min(now%longest, time - now%at%time)
-        if (now%at%time + 1.01_wp*try > time) try = time - now%at%time
+        if (now%at%time + (1 + remainder)*try > time) try = time - now%at%time
         when = min(now%at%time + try, time)
         call steps%step(now%at, when, now%drive%at(now%way, when), next, done)
         smooth = done

@@ -10,10 +10,12 @@ module path_model
   use variation, only: problem_family_t, variation_t, vary, to_search
   use edge_locked, only: new_mesh_family
   use mesh_store, only: mesh_store_t
-  use traced_path, only: traced_path_t, no_mesh
+  use path_state, only: no_mesh
+  use traced_path, only: traced_path_t
   use path_sensitivity, only: rate_t, rates_along
   use drives, only: through_spring
-  use driven_pieces, only: driven_piece_t, find_pieces
+  use driven_pieces, only: driven_piece_t
+  use piece_search, only: find_pieces
   use device, only: driven_t, drive_bodies
   use experiment_request, only: request_t, numerics_t
   use numerics_choice, only: choice_t, choose
@@ -132,8 +134,8 @@ contains
     self%steps%options%mixing = .false.
     self%steps%meshes = new_mesh_family(problem, chosen%high, chosen%low, chosen%digits, &
       store=self%store)
-    call self%steps%know_path(chosen, .true., self%numerics%accuracy, silent, &
-      demand_of(request, problem))
+    call self%steps%know_path(chosen%high, chosen%low, chosen%ends_at, .true., &
+      self%numerics%accuracy, silent, demand_of(request, problem))
     self%left_out = self%steps%known%left_out
     if (.not. self%steps%known%path%held > 1) return
     if (self%with_radius) call find_edges(self%steps, self%edge)

@@ -20,6 +20,9 @@ module contact_scales
   !> Range of the Lennard-Jones law (its adhesion over its largest tension) in the law's length.
   real(wp), parameter :: usual_range = 0.97_wp
 
+  !> Margin of radii and separations of JKR theory.
+  real(wp), parameter :: margin = 1.2_wp
+
   !> The residual due to rounding, in the law's lengths, above which the law is not resolved.
   real(wp), parameter :: largest_floor = 1.0e-3_wp
 
@@ -45,7 +48,7 @@ contains
           sqrt(4*pi*coupling_over(problem, c)*problem%law%adhesion*c))
         if (.not. abs(c - before) > 0) exit
       end do
-      c = max(1.0_wp, 1.2_wp*c)
+      c = max(1.0_wp, margin*c)
     end if
     if (.not. problem%body%is_homogeneous()) &
       c = c*(2 - min(1.0_wp, coupling_over(problem, c)/problem%coupling))
@@ -61,7 +64,7 @@ contains
     strength = adhesion_strength(problem)
     if (.not. problem%body%is_homogeneous()) strength = problem%law%adhesion* &
       max(problem%coupling, coupling_over(problem, largest_radius(problem, 1.0_wp, 1.0_wp)))
-    beyond_contact = 1.2_wp*(1 + jkr_like_detachment(problem%shape, strength))
+    beyond_contact = margin*(1 + jkr_like_detachment(problem%shape, strength))
   end function beyond_contact
 
   !> Scale of the mesh for a law without adhesion: about the radius of a Hertz contact that begins

@@ -7,7 +7,7 @@
 module graded_kernel
   use kinds, only: wp, pi
   use elastic_kernel, only: kernel
-  use linear_algebra, only: multiply_left, multiply_transposed
+  use matrix_products, only: multiply_left, multiply_transposed
   use quadrature, only: gauss_legendre, legendre_values
   use panel_map, only: panel_map_t, linear_map, sinh_map, power_map, algebraic_map
   implicit none

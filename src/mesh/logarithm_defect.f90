@@ -10,7 +10,7 @@
 !> decreases to zero far from the panel.
 module logarithm_defect
   use kinds, only: wp
-  use linear_algebra, only: multiply_transposed
+  use matrix_products, only: multiply_transposed
   use quadrature, only: legendre_values
   implicit none
   private

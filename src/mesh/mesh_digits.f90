@@ -10,6 +10,10 @@ module mesh_digits
   private
   public :: digits_for, digits_of_layers, most_digits
 
+  !> Digits for the load alone by decimal places of accuracy, as three lines, each with its constant
+  !> and its slope: for up to 3.7 places, up to 6 places, and more.
+  real(wp), parameter :: for_few_places(2) = [-0.25_wp, 1.5_wp], &
+    for_places(2) = [2.5_wp, 0.75_wp], for_many_places(2) = [-0.2_wp, 1.2_wp]
   !> Least number of digits for a path; largest number of digits that rounding allows.
   real(wp), parameter :: fewest = 4.25_wp, most_digits = 13
   !> Least number of digits for each decade of sigma: with fewer digits, folds would be missing or
@@ -85,7 +89,16 @@ contains
   pure real(wp) function of_load(places) result(digits)
     real(wp), intent(in) :: places
 
-    digits = max(min(1.5_wp*places - 0.25_wp, 2.5_wp + 0.75_wp*places), 1.2_wp*places - 0.2_wp)
+    digits = max(min(on(for_few_places), on(for_places)), on(for_many_places))
+
+  contains
+
+    pure real(wp) function on(line)
+      real(wp), intent(in) :: line(2)
+
+      on = line(1) + line(2)*places
+    end function on
+
   end function of_load
 
 end module mesh_digits

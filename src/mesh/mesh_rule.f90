@@ -16,6 +16,25 @@ module mesh_rule
   private
   public :: approach_shape, contact_shape
 
+  !> Nodes per unit of z, as coefficients of the powers of the digits from 0: before contact, and
+  !> about the edge of a contact.
+  real(wp), parameter :: density_before(0:2) = [0.35_wp, 0.4_wp, 0.012_wp], &
+    density_about_edge(0:2) = [0.15_wp, 0.24_wp, 0.0105_wp]
+  !> Relative increase of the density for each factor of e in sigma.
+  real(wp), parameter :: for_adhesion = 0.03_wp
+  !> Relative increase for each factor of e by which repulsion outweighs adhesion, inside the edge;
+  !> outside it with logarithms of the same number (`contact_shape`).
+  real(wp), parameter :: inside_repulsion = 0.3_wp, outside_repulsion = 0.5_wp, &
+    of_repulsion = 0.75_wp
+  !> The density inside the edge over that about it: under strong adhesion, the additional part
+  !> under weak adhesion, and how fast this part decreases with sigma.
+  real(wp), parameter :: inside_strong = 0.85_wp, inside_weak = 0.25_wp, weakening = 0.3_wp
+  !> Factors of densities: without adhesion, where only the repulsion is resolved; and outside the
+  !> edge of contacts smaller than their neck, whose part decreases with the square of the radius
+  !> over the neck times `beside_neck`.
+  real(wp), parameter :: without_adhesion = 1.5_wp, small_contact = 0.5_wp, beside_neck = 3
+  !> Digits of a kernel for a digit of the mesh, without this number, and for a decade of sigma.
+  real(wp), parameter :: of_kernel = 1.2_wp, fewer_of_kernel = 2, for_decade = 0.5_wp
   !> The length d over the smallest feature: errors change little between half this value and twice.
   real(wp), parameter :: finer = 0.5_wp
   !> Least positions of the tail's beginning: in lateral units, and in units of the contact radius
@@ -51,8 +70,8 @@ contains
     type(seen_gaps_t), intent(in), optional :: seen
     real(wp) :: density, reach, feature, edges(2)
 
-    density = (0.35_wp + digits*(0.4_wp + 0.012_wp*digits))* &
-      (1 + 0.03_wp*log(1 + adhesion_strength(problem)))
+    density = density_for(density_before, digits)* &
+      (1 + for_adhesion*log(1 + adhesion_strength(problem)))
     reach = max(4.0_wp, beyond_poles*problem%shape%position_of(h0_high))
     call give_tail(problem, problem%law%edge_gap, widest, digits, reach, density, shape)
     feature = smallest_feature(problem, 1.0_wp)
@@ -65,7 +84,7 @@ contains
       ! Nodes are equally dense over the band. Outside it `fit_panels` adds them where they lack.
       shape%focus = 0.5_wp*sum(edges)
       shape%d = max(0.5_wp*(edges(2) - edges(1)), finer*smallest_feature(problem, edges(2)))
-      density = density_in_contact(digits)
+      density = density_for(density_about_edge, digits)
       ! Panels between kinks end exactly on the axis.
       call add_panels(problem, shape, about_axis, -1, asinh(shape%focus/shape%d), density, digits, &
         0.0_wp, 0.0_wp, seen)
@@ -88,16 +107,17 @@ contains
     type(seen_gaps_t), intent(in), optional :: seen
     real(wp) :: inner, outer, farthest, reach, repulsion
 
-    inner = density_in_contact(digits)
+    inner = density_for(density_about_edge, digits)
     if (problem%law%adhesion > 0) then
       ! Under strong adhesion a small contact is drawn out into a neck. Under strong repulsion the
       ! repulsion begins inside the edge. Both cases need more nodes, mainly inside the edge.
-      inner = inner*(1 + 0.03_wp*log(1 + adhesion_strength(problem)/(1 + high)**2))
+      inner = inner*(1 + for_adhesion*log(1 + adhesion_strength(problem)/(1 + high)**2))
       repulsion = log(1 + high/(pi*adhesion_strength(problem)))
-      outer = inner*(1 + 0.5_wp*log(1 + 0.75_wp*repulsion))
-      inner = inner*(0.85_wp + 0.25_wp/(1 + 0.3_wp*adhesion_strength(problem)) + 0.3_wp*repulsion)
+      outer = inner*(1 + outside_repulsion*log(1 + of_repulsion*repulsion))
+      inner = inner*(inside_strong + inside_weak/(1 + weakening*adhesion_strength(problem)) + &
+        inside_repulsion*repulsion)
     else
-      inner = 1.5_wp*inner
+      inner = without_adhesion*inner
       outer = inner
     end if
     farthest = 0.5_wp*calm_gap(problem)
@@ -106,7 +126,7 @@ contains
     ! The pressure around a contact smaller than its neck is that before contact. If the neck is
     ! wider than the range of the force, this pressure is smooth enough.
     if (problem%law%adhesion > 0 .and. cohesive_width(problem) < 1) &
-      outer = outer*(1 + 0.5_wp/(1 + 3*(low/cohesive_width(problem))**2))
+      outer = outer*(1 + small_contact/(1 + beside_neck*(low/cohesive_width(problem))**2))
     call give_tail(problem, max(level, problem%law%edge_gap), 0.0_wp, digits, reach, outer, shape)
     reach = max(tail_of_contact, reach/low)
     shape%centre = 1
@@ -124,12 +144,12 @@ contains
     shape%digits = kernel_digits(problem, digits, high)
   end function contact_shape
 
-  !> Nodes per unit of z about the edge of a contact.
-  pure real(wp) function density_in_contact(digits) result(density)
-    real(wp), intent(in) :: digits
+  !> Nodes per unit of z for a number of digits.
+  pure real(wp) function density_for(terms, digits) result(density)
+    real(wp), intent(in) :: terms(0:2), digits
 
-    density = 0.15_wp + digits*(0.24_wp + 0.0105_wp*digits)
-  end function density_in_contact
+    density = terms(0) + digits*(terms(1) + terms(2)*digits)
+  end function density_for
 
   !> Adds sinh panels over z_length: one panel, which gets more nodes or is halved where the
   !> pressure needs this, as under laws with lengths of their own. Shapes with kinks have short
@@ -215,7 +235,8 @@ contains
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: digits, radius
 
-    kernel_digits = 1.2_wp*digits - 2 + 0.5_wp*log10(1 + adhesion_strength(problem))
+    kernel_digits = of_kernel*digits - fewer_of_kernel + &
+      for_decade*log10(1 + adhesion_strength(problem))
     if (.not. problem%body%is_homogeneous()) kernel_digits = kernel_digits + max(0.0_wp, &
       min(for_layers, log10(problem%coupling/coupling_over(problem, radius))))
     kernel_digits = max(5, ceiling(kernel_digits))

@@ -11,6 +11,8 @@ module mesh_tail
   !> Beginning of the tail, as a multiple of the radius at which the height of the bodies is H0: for
   !> a parabola the poles of the pressure, at rho**2 = -2 H0, are as far from there as the axis.
   real(wp), parameter :: beyond_poles = 1.3_wp
+  !> Nodes of the tail: this number, and for each digit.
+  real(wp), parameter :: tail_nodes = 1.5_wp, tail_nodes_of_digit = 0.6_wp
   !> The tail begins beyond the end of a body if the end is nearer than this multiple of the usual
   !> beginning of the tail.
   real(wp), parameter :: near_end = 100
@@ -34,9 +36,11 @@ contains
     real(wp), intent(in) :: from, widest, digits
     real(wp), intent(inout) :: reach, density
     type(mapped_shape_t), intent(inout) :: shape
+    integer :: nodes
 
+    nodes = ceiling(tail_nodes + tail_nodes_of_digit*digits)
     if (problem%law%tail_power < huge(1.0_wp)) then
-      shape%tail_order = ceiling(1.5_wp + 0.6_wp*digits)
+      shape%tail_order = nodes
       shape%decay = problem%shape%growth*problem%law%tail_power
       ! For some shapes the pressure over its power is not a polynomial in the inverse position.
       if (abs(problem%shape%growth - nint(problem%shape%growth)) > 0 .or. &
@@ -50,7 +54,7 @@ contains
       density = crowding*density
     end if
     if (.not. problem%film_gap > 0) return
-    shape%tail_order = max(shape%tail_order, ceiling(1.5_wp + 0.6_wp*digits))
+    shape%tail_order = max(shape%tail_order, nodes)
     shape%decay = min(merge(shape%decay, huge(1.0_wp), shape%decay > 0), film_decay)
     reach = max(reach, beyond_poles*problem%shape%position_of(problem%film_gap))
   end subroutine give_tail

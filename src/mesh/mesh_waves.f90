@@ -8,7 +8,7 @@
 module mesh_waves
   use kinds, only: wp
   use quadrature, only: wave_rule
-  use linear_algebra, only: multiply, multiply_left, add_by_transposed
+  use matrix_products, only: multiply, multiply_left, add_by_transposed
   use special_functions, only: bessel_t, new_bessel
   use discretisation, only: discretisation_t, axis_row, centre_row, first_node
   use wave_transforms, only: add_spectrum, find_wave, last_on

@@ -9,7 +9,7 @@
 module panel_kernel
   use kinds, only: wp, pi
   use elastic_kernel, only: kernel, kernel_log_coefficient
-  use linear_algebra, only: multiply_transposed
+  use matrix_products, only: multiply_transposed
   use logarithm_defect, only: logarithm_defects, feels_logarithm
   use quadrature, only: gauss_legendre, legendre_values
   use local_nodes, only: local_nodes_t

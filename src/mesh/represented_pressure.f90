@@ -18,7 +18,7 @@ module represented_pressure
   use discretisation, only: discretisation_t
   use local_nodes, only: local_nodes_t, gauss_nodes
   use panel_map, only: algebraic_map
-  use linear_algebra, only: multiply, multiply_left, add_by_transposed
+  use matrix_products, only: multiply, multiply_left, add_by_transposed
   implicit none
   private
   public :: pressure_slope_t, pressure_on, slope_on, panel_pressure, pressure_at_nodes

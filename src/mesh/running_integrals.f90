@@ -7,7 +7,7 @@ module running_integrals
   use kinds, only: wp
   use discretisation, only: discretisation_t
   use local_nodes, only: local_nodes_t
-  use linear_algebra, only: add_by_transposed
+  use matrix_products, only: add_by_transposed
   use panel_map, only: algebraic_map
   use quadrature, only: gauss_legendre
   implicit none

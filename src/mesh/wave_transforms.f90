@@ -6,7 +6,7 @@
 !> `mesh_waves` uses both for displacements, with other limits.
 module wave_transforms
   use kinds, only: wp
-  use linear_algebra, only: add_by_transposed
+  use matrix_products, only: add_by_transposed
   use special_functions, only: bessel_t
   use panel_map, only: algebraic_map
   use discretisation, only: discretisation_t

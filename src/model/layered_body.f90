@@ -3,7 +3,7 @@
 !> top layer. It is tabulated as series of powers on panels of k.
 module layered_body
   use kinds, only: wp, nan
-  use linear_algebra, only: multiply_transposed
+  use matrix_products, only: multiply_transposed
   use chebyshev, only: chebyshev_points, chebyshev_series, series_slope, series_integral, &
     power_series, power_value
   use quadrature, only: wave_rule

@@ -9,7 +9,7 @@ module column_names
   use units, only: split_unit
   implicit none
   private
-  public :: names_in, find_columns, plain_name, longest_name
+  public :: names_in, find_columns, longest_name
 
   integer, parameter :: longest_name = 64
 

@@ -17,8 +17,7 @@ module data_table
   use units, only: unit_in
   implicit none
   private
-  public :: data_table_t, style_t, read_data_table, take_data_table, largest_table, &
-    read_columns, plain_label
+  public :: data_table_t, style_t, take_data_table, largest_table, read_columns, plain_label
 
   !> How a file is read. skip_lines: number of lines at its begin that do not count. of_instrument:
   !> whether lines may stand before the names, words beside the numbers, and cells be empty.

@@ -34,8 +34,9 @@ module continuation
   !> define a smooth curve; small errors are best predicted from more states.
   real(wp), parameter :: miss_of_curve = 1.0e-7_wp, step_of_curve = 0.12_wp
   integer, parameter :: states_of_curve = 4
-  !> The least step for which steps are shortened so that they end on the mesh.
-  real(wp), parameter :: shortest_passage = 0.05_wp
+  !> The least step for which steps are shortened so that they end on the mesh, and the factor by
+  !> which they are.
+  real(wp), parameter :: shortest_passage = 0.05_wp, shortening = 0.6_wp
 
   !> The last states on the current mesh, newest last.
   type, extends(arc_t) :: continuation_t
@@ -122,7 +123,7 @@ contains
     logical, intent(out) :: lost
     type(state_t) :: state
     type(tangent_t) :: tangent
-    real(wp) :: step, s, miss(3), off(2)
+    real(wp) :: step, s, miss(2)
     logical :: converged
 
     lost = .false.
@@ -134,13 +135,10 @@ contains
       call solver%frozen%forget()
       call self%state_at(solver, s, state, tangent, converged, self%slope_error, miss)
       if (converged) then
-        ! The kind of guess that was better for this state is that for the next one.
-        self%moved = self%moved .neqv. miss(2) < miss(1)
-        off = [minval(miss(:2)), miss(3)]
         self%step = min(self%longest_step, &
-          step*factor_for(minval([wanted_miss, self%miss_of_curve]/max(off, tiny(1.0_wp))), &
+          step*factor_for(minval([wanted_miss, self%miss_of_curve]/max(miss, tiny(1.0_wp))), &
           2*self%extrapolated_from))
-        if (maxval(off) < too_far .or. step < short) exit
+        if (maxval(miss) < too_far .or. step < short) exit
       else
         self%step = shrinkage*self%step
       end if
@@ -187,7 +185,7 @@ contains
       do while (step > shortest_passage)
         if (radius_for(equations, mesh, mesh + 1, self%guess(equations%problem, &
           meshes%grid(mesh), s + step)) <= beyond_passage*meshes%passage(mesh)) exit
-        step = 0.6_wp*step
+        step = shortening*step
       end do
     end associate
   end function next_step

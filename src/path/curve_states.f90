@@ -17,7 +17,7 @@ module curve_states
   use undeformed, only: load_undeformed, load_slope_undeformed, energy_undeformed
   implicit none
   private
-  public :: states_of_points, state_of, state_where, states_where, find_turns, equilibrium_at
+  public :: states_of_points, state_of, state_where, states_where, find_turns
 
   !> Parts of an interval of undeformed bodies at whose ends the slope is evaluated.
   integer, parameter :: looks = 8

@@ -1,21 +1,18 @@
-!> The stable branches (pieces) of the path under a drive (h0, a spring or a dead load), and the
-!> jumps from their ends.
+!> The stable branches (pieces) of the path under a drive (h0, a spring or a dead load), the jumps
+!> from their ends, and the way of bodies along them: the drive moves inward or outward; where it
+!> turns at the end of a piece, the bodies jump to another piece. `piece_search` finds pieces and
+!> jumps.
 !>
 !> A state is stable at fixed Q = a h0 + b F (`drives`) if no mode of the bodies is unstable at
 !> fixed h0 and k - dF/dh0 > 0, the Schur complement of bodies and spring. On the path followed
 !> inward Q decreases there.
 module driven_pieces
-  use kinds, only: wp, nan
-  use interpolation, only: hermite_t
-  use solver, only: solver_t
-  use traced_path, only: traced_path_t
+  use kinds, only: wp
   use drives, only: drive_t
-  use path_state, only: path_state_t, path_place_t, part_of
-  use curve_states, only: state_of, state_where, find_turns
+  use path_state, only: path_state_t
   implicit none
   private
-  public :: driven_pieces_t, driven_piece_t, jump_t, find_pieces, find_jumps, interval_with, &
-    state_driven
+  public :: driven_pieces_t, driven_piece_t, jump_t, leg_t, walk_t, way_along
 
   !> A stable piece, from large separations inward; its ends are turning points of Q, or the ends of
   !> the known path.
@@ -54,9 +51,20 @@ module driven_pieces
     procedure :: piece_with
   end type driven_pieces_t
 
-  !> Least relative decrease of Q over a piece: where a turn is a state of the path on two meshes,
-  !> rounding leaves pieces over which Q hardly decreases.
-  real(wp), parameter :: least_fall = 1.0e-9_wp
+  !> The motion along one stable piece. jumps: it goes to the end of the piece, where the drive
+  !> turns, and a jump follows.
+  type :: leg_t
+    logical :: inward = .true.
+    integer :: piece = 0
+    logical :: jumps = .false.
+  end type leg_t
+
+  !> Legs in order. arrives: the last leg goes to where the way was to end; otherwise to the end of
+  !> its piece, from which no jump lands or at which the known path ends.
+  type :: walk_t
+    type(leg_t), allocatable :: leg(:)
+    logical :: arrives = .false.
+  end type walk_t
 
 contains
 
@@ -77,84 +85,6 @@ contains
     turns = merge(self%last_turns, self%first_turns, inward)
   end function turns
 
-  !> The stable pieces of a path under a drive. A piece ends where stability is lost or the known
-  !> path ends.
-  subroutine find_pieces(solver, path, drive, pieces)
-    class(solver_t), intent(inout) :: solver
-    type(traced_path_t), intent(in) :: path
-    type(drive_t), intent(in) :: drive
-    class(driven_pieces_t), intent(inout) :: pieces
-    type(driven_piece_t) :: piece
-    type(path_state_t) :: state
-    type(path_state_t), allocatable :: turns(:)
-    type(hermite_t) :: curve
-    type(path_place_t) :: before
-    real(wp), allocatable :: x(:)
-    real(wp) :: ends(2)
-    integer :: i, k
-    logical :: open, stable, solved
-
-    pieces%drive = drive
-    pieces%whole = .true.
-    if (allocated(pieces%piece)) deallocate (pieces%piece)
-    if (allocated(pieces%jump)) deallocate (pieces%jump)
-    allocate (pieces%piece(0), pieces%jump(0, 2))
-    open = .false.
-    do i = 1, path%last - 1
-      if (.not. path%point(i)%leads_on) cycle
-      ! Where a mode is unstable at fixed h0, no spring makes the path stable.
-      stable = path%point(i)%modes == 0
-      if (.not. (stable .or. open)) cycle
-      call path%curve_between(i, drive%weights, curve, ends)
-      if (allocated(turns)) deallocate (turns)
-      allocate (turns(0))
-      ! The extrema of h0 are points of the path.
-      if (stable .and. abs(drive%weights(2)) > 0) then
-        call find_turns(solver, path, i, drive%weights, turns, solved)
-        pieces%whole = pieces%whole .and. solved
-      end if
-      x = [ends(1), turns%x, ends(2)]
-      do k = 1, size(x) - 1
-        stable = path%point(i)%modes == 0 .and. curve%value(x(k + 1)) < curve%value(x(k))
-        if (stable .eqv. open) cycle
-        if (k > 1) then
-          state = turns(k - 1)
-        else
-          if (stable) before = path_place_t(i, ends(1))
-          call state_of(solver, path, before, state)
-        end if
-        if (stable) then
-          piece%first = state
-          piece%first_turns = i > 1 .or. k > 1
-        else
-          call close_piece(.true.)
-        end if
-        open = stable
-      end do
-      before = path_place_t(i, ends(2))
-    end do
-    if (.not. open) return
-    call state_of(solver, path, before, state)
-    call close_piece(.false.)
-
-  contains
-
-    !> Ends the piece at `state`.
-    subroutine close_piece(turns)
-      logical, intent(in) :: turns
-
-      piece%last = state
-      piece%last_turns = turns
-      if (.not. (piece%first%converged .and. piece%last%converged)) then
-        pieces%whole = .false.
-      else if (drive%position(piece%first) - drive%position(piece%last) > least_fall* &
-        dot_product(abs(drive%weights), abs([state%h0, state%load]))) then
-        pieces%piece = [pieces%piece, piece]
-      end if
-    end subroutine close_piece
-
-  end subroutine find_pieces
-
   !> The piece nearest to `from`, in the given direction, that has a state at a position of the
   !> drive; 0: there is none.
   pure integer function piece_with(self, position, from, inward) result(found)
@@ -173,79 +103,6 @@ contains
     end do
     found = 0
   end function piece_with
-
-  !> The interval of a piece in which weights(1) h0 + weights(2) load reaches a value. (Where the
-  !> path changes its mesh, the combination has a small jump, the difference of the meshes' errors,
-  !> and the value may be inside that jump.)
-  pure integer function interval_with(path, piece, weights, wanted) result(i)
-    type(traced_path_t), intent(in) :: path
-    type(driven_piece_t), intent(in) :: piece
-    real(wp), intent(in) :: weights(2), wanted
-
-    do i = piece%first%interval, piece%last%interval - 1
-      if (.not. path%point(i)%leads_on) cycle
-      associate (end => path%point(i + 1)%state)
-        if (dot_product(weights, [end%h0, end%load]) <= wanted) return
-      end associate
-    end do
-  end function interval_with
-
-  !> The state of a piece at a value of Q between those at the ends of the piece.
-  subroutine state_driven(solver, path, drive, piece, wanted, state)
-    class(solver_t), intent(inout) :: solver
-    type(traced_path_t), intent(in) :: path
-    type(drive_t), intent(in) :: drive
-    type(driven_piece_t), intent(in) :: piece
-    real(wp), intent(in) :: wanted
-    type(path_state_t), intent(out) :: state
-    real(wp) :: ends(2)
-    integer :: i
-
-    i = interval_with(path, piece, drive%weights, wanted)
-    ends = part_of(path%point(i:i + 1)%coordinate, i, piece%first, piece%last)
-    call state_where(solver, path, i, drive%weights, wanted, ends(1), ends(2), state)
-  end subroutine state_driven
-
-  !> The jumps from all ends of pieces at which Q turns.
-  subroutine find_jumps(solver, path, pieces)
-    class(solver_t), intent(inout) :: solver
-    type(traced_path_t), intent(in) :: path
-    class(driven_pieces_t), intent(inout) :: pieces
-    integer :: k, side
-
-    deallocate (pieces%jump)
-    allocate (pieces%jump(size(pieces%piece), 2))
-    do k = 1, size(pieces%piece)
-      do side = 1, 2
-        if (pieces%piece(k)%turns(side == 1)) &
-          call find_jump(solver, path, pieces, k, side == 1, pieces%jump(k, side))
-      end do
-    end do
-  end subroutine find_jumps
-
-  !> The jump from the turn at the inner or outer end of a piece: the bodies land on the nearest
-  !> stable piece with the same position of the drive.
-  subroutine find_jump(solver, path, pieces, from, inward, jump)
-    class(solver_t), intent(inout) :: solver
-    type(traced_path_t), intent(in) :: path
-    class(driven_pieces_t), intent(in) :: pieces
-    integer, intent(in) :: from
-    logical, intent(in) :: inward
-    type(jump_t), intent(out) :: jump
-
-    jump%inward = inward
-    jump%before = pieces%piece(from)%end_of(inward)
-    jump%energy = nan
-    associate (position => pieces%drive%position(jump%before))
-      jump%piece = pieces%piece_with(position, from, inward)
-      if (jump%piece == 0) return
-      call state_driven(solver, path, pieces%drive, pieces%piece(jump%piece), position, jump%after)
-    end associate
-    jump%landed = jump%after%converged
-    if (.not. jump%landed) return
-    jump%energy = pieces%drive%energy(jump%before) - pieces%drive%energy(jump%after)
-    jump%uncertainty = jump%before%uncertainty + jump%after%uncertainty
-  end subroutine find_jump
 
   !> The point of the path from which a jump at prescribed h0 starts.
   pure integer function fold(self)
@@ -276,5 +133,34 @@ contains
       end do
     end do
   end function jump_over
+
+  !> The way from a piece inward or outward to a position of the drive, to the piece `until`, or to
+  !> a position on this piece.
+  pure type(walk_t) function way_along(pieces, from, inward, position, until) result(walk)
+    class(driven_pieces_t), intent(in) :: pieces
+    integer, intent(in) :: from
+    logical, intent(in) :: inward
+    real(wp), intent(in), optional :: position
+    integer, intent(in), optional :: until
+    type(leg_t) :: leg
+    integer :: side
+
+    leg = leg_t(inward, from)
+    side = merge(1, 2, inward)
+    allocate (walk%leg(0))
+    do
+      walk%arrives = .true.
+      if (present(until)) walk%arrives = leg%piece == until
+      if (present(position) .and. inward) walk%arrives = walk%arrives .and. &
+        position >= pieces%drive%position(pieces%piece(leg%piece)%last)
+      if (present(position) .and. .not. inward) walk%arrives = walk%arrives .and. &
+        position <= pieces%drive%position(pieces%piece(leg%piece)%first)
+      leg%jumps = .not. walk%arrives .and. pieces%piece(leg%piece)%turns(inward)
+      walk%leg = [walk%leg, leg]
+      if (.not. leg%jumps) return
+      leg%piece = pieces%jump(leg%piece, side)%piece
+      if (leg%piece == 0) return
+    end do
+  end function way_along
 
 end module driven_pieces

@@ -4,8 +4,8 @@ module ending
   implicit none
   private
   public :: ending_t
-  public :: as_planned, touching, beyond_rounding, no_equilibrium, path_lost, steps_lost, &
-    fallen_before, beyond_path, nothing_afar, state_lost, turn_not_reached
+  public :: touching, beyond_rounding, no_equilibrium, path_lost, steps_lost, fallen_before, &
+    beyond_path, nothing_afar, state_lost, turn_not_reached
 
   !> The causes, and their messages in the same order; blank if the end was planned.
   integer, parameter :: as_planned = 0, touching = 1, beyond_rounding = 2, no_equilibrium = 3, &

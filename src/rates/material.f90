@@ -7,7 +7,7 @@ module material
   use kinds, only: wp
   use discretisation, only: discretisation_t
   use local_nodes, only: local_nodes_t, gauss_nodes
-  use linear_algebra, only: multiply
+  use matrix_products, only: multiply
   implicit none
   private
   public :: material_t, new_material

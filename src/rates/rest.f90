@@ -16,8 +16,9 @@ module rest
   public :: begin_at_rest, load_at_rest, longest_step
 
   !> Step of the position on the way to the initial state, over the gap; the shortest step over the
-  !> longest; ratio of a step to the one before if there was a solution.
-  real(wp), parameter :: part_of_gap = 0.1_wp, least_part = 1.0e-4_wp, longer = 1.5_wp
+  !> longest; ratio of a step to the one before, with and without a solution.
+  real(wp), parameter :: part_of_gap = 0.1_wp, least_part = 1.0e-4_wp, longer = 1.5_wp, &
+    shorter = 0.3_wp
 
 contains
 
@@ -50,7 +51,7 @@ contains
       if (found) then
         step = min(1.0_wp, longer*step)
       else
-        step = 0.3_wp*step
+        step = shorter*step
         found = step > least_part
         if (.not. found) exit
       end if

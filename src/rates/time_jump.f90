@@ -16,8 +16,10 @@ module time_jump
   private
   public :: step_along
 
-  !> First, longest and shortest step of the coordinate; largest number of steps along a path.
-  real(wp), parameter :: first = 0.01_wp, longest = 0.15_wp, shortest = 1.0e-6_wp
+  !> First, longest and shortest step of the coordinate; the ratio to the one before, with and
+  !> without a solution; largest number of steps along a path.
+  real(wp), parameter :: first = 0.01_wp, longest = 0.15_wp, shortest = 1.0e-6_wp, &
+    longer = 1.5_wp, shorter = 0.4_wp
   integer, parameter :: most_steps = 1000
   !> Distance from the position of the drive (law's lengths), in addition to the largest elongation
   !> of the spring on the way, beyond which the path is assumed to go to infinity.
@@ -84,13 +86,13 @@ contains
       missing_last = missing
       call advance(merge(ds, -ds, inwards), to)
       if (.not. found) then
-        ds = 0.4_wp*ds
+        ds = shorter*ds
         cycle
       end if
       way = way + ds
       missing = off(steps, to, position)
       if (passed()) exit
-      ds = min(longest, 1.5_wp*ds)
+      ds = min(longest, longer*ds)
       mesh = steps%mesh_for(to%mesh, to%state)
       if (mesh == to%mesh) cycle
       call change_mesh(to, found)

@@ -77,7 +77,10 @@ contains
 
     call judge_files()
     call judge_extent()
-    call judge_layers()
+    select type (body => problem%body)
+    type is (layered_body_t)
+      call judge_layers(body)
+    end select
 
   contains
 
@@ -109,35 +112,33 @@ contains
 
     !> Warns of layers thinner than the range of the force, of soft layers compressed by a part of
     !> their thickness that is not small, and of strains below the top layer that are not small.
-    subroutine judge_layers()
+    subroutine judge_layers(body)
+      type(layered_body_t), intent(in) :: body
       real(wp) :: reach, thinnest, total, strain
       integer :: i
 
-      select type (body => problem%body)
-      type is (layered_body_t)
-        reach = range_of(problem)
-        thinnest = huge(thinnest)
-        total = 0
-        strain = 0
-        do i = 1, 2
-          if (size(body%surface(i)%thickness) == 0) cycle
-          associate (thickness => body%surface(i)%thickness*problem%lateral)
-            thinnest = min(thinnest, minval(thickness))
-            total = total + sum(thickness)
-            strain = max(strain, strain_below(body%surface(i), thickness, quality%load, &
-              quality%contact_radius))
-          end associate
-        end do
-        if (thinnest < reach) call summary%warn('beyond the model: a layer of ' // &
-          rounded(thinnest) // ' m is thinner than the range of the force, ' // &
-          rounded(reach) // ' m; bulk elasticity does not hold for it')
-        if (body%bottom < 1 .and. quality%depth > strained*total) call summary%warn( &
-          'beyond the model: the bodies are pressed together by ' // &
-          rounded(quality%depth/total) // ' of the thickness of the layers; ' // &
-          'strains are no longer small')
-        if (strain > strained) call summary%warn('beyond the model: the strain below the ' // &
-          'top layer is about ' // rounded(strain) // ', which is not small')
-      end select
+      reach = range_of(problem)
+      thinnest = huge(thinnest)
+      total = 0
+      strain = 0
+      do i = 1, 2
+        if (size(body%surface(i)%thickness) == 0) cycle
+        associate (thickness => body%surface(i)%thickness*problem%lateral)
+          thinnest = min(thinnest, minval(thickness))
+          total = total + sum(thickness)
+          strain = max(strain, strain_below(body%surface(i), thickness, quality%load, &
+            quality%contact_radius))
+        end associate
+      end do
+      if (thinnest < reach) call summary%warn('beyond the model: a layer of ' // &
+        rounded(thinnest) // ' m is thinner than the range of the force, ' // &
+        rounded(reach) // ' m; bulk elasticity does not hold for it')
+      if (body%bottom < 1 .and. quality%depth > strained*total) call summary%warn( &
+        'beyond the model: the bodies are pressed together by ' // &
+        rounded(quality%depth/total) // ' of the thickness of the layers; ' // &
+        'strains are no longer small')
+      if (strain > strained) call summary%warn('beyond the model: the strain below the ' // &
+        'top layer is about ' // rounded(strain) // ', which is not small')
     end subroutine judge_layers
 
     !> Estimate of the largest strain below the top layer at a load [N] on a contact radius [m]:

@@ -5,7 +5,7 @@ module result_tables
     pietrement_troyon, layered_regime
   implicit none
   private
-  public :: tables, columns_of, result_listing
+  public :: columns_of, result_listing
 
   character(len=1), parameter :: nl = new_line('a')
 

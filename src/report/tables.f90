@@ -17,8 +17,8 @@ module tables
   use represented_pressure, only: pressure_at_nodes
   implicit none
   private
-  public :: table_t, cells, put_cells, direction_of, columns_of_curve, curve_row, &
-    columns_of_profiles, write_profile
+  public :: table_t, cells, direction_of, columns_of_curve, curve_row, columns_of_profiles, &
+    write_profile
 
   !> A table that is being written, one row a line, made with `cells`.
   type, extends(output_t) :: table_t

@@ -9,7 +9,7 @@ module curve_groups
   implicit none
   private
   public :: cycle_keys, take_loading, take_unloading, path_keys, profiles_keys, take_path, &
-    take_readings, take_regime, take_profiles, has_states, check_path, check_order
+    take_readings, take_regime, take_profiles, has_states, check_order
 
   !> Largest number of steps. A deck with more probably has a number in a wrong unit.
   integer, parameter :: most_steps = 10000000

@@ -8,12 +8,10 @@ module c_library
   private
   public :: c_open, c_read, c_write, c_sync, c_sync_in, c_sync_above, c_close, c_size, c_cut, &
     c_seek, c_make_folder, c_current_folder, c_own_path, c_is_absolute, c_use_slashes, c_lock, &
-    c_kind, c_same_file, c_rename, c_remove, &
-    c_remove_folder, c_beginning, c_free_disk, &
+    c_kind, c_same_file, c_rename, c_remove, c_remove_folder, c_beginning, c_free_disk, &
     c_is_terminal, c_prepare, c_end_with_parent, c_pause, c_openblas_threads, &
     c_openblas_end_threads, c_openblas_config, c_build_id, explain, check_status, nul, as_input, &
-    as_output, as_kept_output, as_folder, as_data, too_large, not_there, locked_elsewhere, &
-    not_regular
+    as_output, as_kept_output, as_folder, as_data, not_there, locked_elsewhere, not_regular
 
   !> How a path is opened: a file of any kind for reading; a regular file for reading and writing,
   !> created or emptied; the same, unchanged; a folder; a regular file for reading.

@@ -9,7 +9,7 @@ module forks
   use teams, only: team_t
   implicit none
   private
-  public :: forked_team_t, most_forks, can_fork
+  public :: forked_team_t, can_fork
 
   !> Largest number of processes; also in `forks.c`.
   integer, parameter :: most_forks = 1024

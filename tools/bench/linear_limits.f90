@@ -14,7 +14,8 @@ program linear_limits
   use controls, only: control_t
   use equilibrium, only: equations_t, residual
   use frozen_jacobian, only: frozen_jacobian_t, freeze
-  use linear_algebra, only: multiply, factorisation_t, factorise, solve
+  use linear_algebra, only: factorisation_t, factorise, solve
+  use matrix_products, only: multiply
   use mixing, only: solve_mixing
   use anderson, only: solve_anderson
   use solver_options, only: solver_options_t
