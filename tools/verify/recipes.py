@@ -30,6 +30,8 @@ import types
 from pathlib import Path
 
 TOP = Path(__file__).resolve().parents[2]
+# By its path: the package needs NumPy and a build.
+as_command = runpy.run_path(str(TOP / "pywrap/snapin/command.py"))["as_command"]
 PYTHON = "%d.%d" % sys.version_info[:2]
 # Packages of pip by their names in conda.
 OF_PIP = ("pip", "meson-python", "pyproject-metadata", "packaging", "meson", "ninja", "numpy")
@@ -188,4 +190,4 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(as_command(main)())
