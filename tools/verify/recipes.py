@@ -30,9 +30,8 @@ import types
 from pathlib import Path
 
 TOP = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(TOP / "pywrap"))
-from snapin.command import as_command  # noqa: E402
-
+# By its path: the package needs NumPy and a build.
+as_command = runpy.run_path(str(TOP / "pywrap/snapin/command.py"))["as_command"]
 PYTHON = "%d.%d" % sys.version_info[:2]
 # Packages of pip by their names in conda.
 OF_PIP = ("pip", "meson-python", "pyproject-metadata", "packaging", "meson", "ninja", "numpy")
