@@ -1,5 +1,7 @@
 """A package of Spack: the program, its library with modules, and the Python package."""
 
+from spack_repo.builtin.build_systems.meson import MesonPackage
+
 from spack.package import *
 
 
@@ -7,9 +9,11 @@ class Snapin(MesonPackage):
     """Elastic deformation and adhesion of two bodies in contact, under surface forces of finite
     range."""
 
-    # The owner fills in homepage and the address and checksum of the source distribution:
+    # The owner fills in homepage and maintainers, and the address and checksum of the source
+    # distribution:
     #   homepage = ...
     #   url = .../snapin-0.1.0.tar.gz
+    #   maintainers(...)
     #   version("0.1.0", sha256=...)
     # Without them: spack dev-build snapin@0.1.0 in an unpacked source distribution.
     version("0.1.0")

@@ -254,7 +254,7 @@ contains
     !> Makes the fit of &fit, its files and messages; without a fit the summary says why.
     subroutine report_fit()
       type(fit_outcome_t) :: outcome
-      type(line_t), allocatable :: lines(:)
+      type(line_t), allocatable :: doubts(:), lines(:)
       integer :: i
 
       call destination%say('fit: ' // scene%measured%understood)
@@ -268,12 +268,12 @@ contains
       call write_fit_rows(outcome, results)
       call results%write_text('fit.nml', fit_text(outcome, scene%title))
       if (allocated(outcome%problem)) call describe_problem(outcome%problem, summary)
-      lines = doubts_of(outcome)
+      doubts = doubts_of(outcome)
       if (.not. outcome%fitted%found) call summary%set('converged', .false.)
-      do i = 1, size(lines)
-        call summary%warn('fit: ' // lines(i)%text)
+      do i = 1, size(doubts)
+        call summary%warn('fit: ' // doubts(i)%text)
       end do
-      lines = words_of_fit(outcome)
+      lines = words_of_fit(outcome, doubts)
       do i = 1, size(lines)
         call destination%say('fit: ' // lines(i)%text)
       end do

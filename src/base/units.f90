@@ -17,9 +17,9 @@ module units
 
 contains
 
-  !> What a unit such as 'nm' or 'N' is in SI: base is 'm', 'N' or 'V', blank if `text` is no such
-  !> unit; factor is 1e-9 for nano.
-  pure subroutine find_unit(text, factor, base)
+  !> What a unit such as 'nm' or 'N' is in SI: base is 'm', 'N' or 'V', or 'R' for the unit N/m of a
+  !> force over a radius; blank if `text` is no such unit. factor is 1e-9 for nano.
+  pure recursive subroutine find_unit(text, factor, base)
     character(len=*), intent(in) :: text
     real(wp), intent(out) :: factor
     character, intent(out) :: base
@@ -35,6 +35,11 @@ contains
       return
     end if
     if (any(unit == [character(len=7) :: 'micron', 'microns'])) unit = 'um'
+    if (is_over_length(unit)) then
+      call find_unit(unit(:len(unit) - 2), factor, base)
+      base = 'R'
+      return
+    end if
     if (len(unit) < 1 .or. len(unit) > 2) return
     if (index(bases, unit(len(unit):)) == 0) return
     if (len(unit) == 2) then
@@ -44,6 +49,18 @@ contains
     end if
     base = unit(len(unit):)
   end subroutine find_unit
+
+  !> Whether a unit is that of a force over a length, such as 'mN/m'.
+  pure logical function is_over_length(unit) result(is)
+    character(len=*), intent(in) :: unit
+    integer :: last
+
+    is = .false.
+    last = len(unit) - 2
+    if (last < 1 .or. last > 2) return
+    is = unit(last:) == 'N/m'
+    if (is .and. last == 2) is = index(prefixes, unit(1:1)) > 0
+  end function is_over_length
 
   !> The unit in a column's name or in a cell of a line of units; '' if there is none.
   pure function unit_in(name) result(unit)
@@ -67,6 +84,11 @@ contains
     bare = name(:last)
     unit = ''
     if (last == 0) return
+    if (is_over_length(name(:last))) then
+      unit = bare
+      bare = ''
+      return
+    end if
     if (scan(name(last:last), closes) > 0) then
       first = scan(name(:last), opens, back=.true.)
       last = last - 1

@@ -16,7 +16,7 @@ module equilibrium
   use discretisation, only: axis_row, centre_row, first_node
   use contact_scales, only: largest_floor
   use contact_state, only: state_t, load_reach, gap_at_end, far_gap
-  use edge_locked, only: mesh_family_t
+  use mesh_family, only: mesh_family_t
   use controls, only: control_t, at_h0, at_axis_gap, at_edge_radius, at_h0_with_edge, &
     h0_is_prescribed, node_count, unpack
   use elastic_operator, only: elastic_operator_t

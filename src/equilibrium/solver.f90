@@ -1,5 +1,6 @@
 !> A problem on its meshes with the iteration that solves its states.
 module solver
+  use dimensionless_problem, only: problem_t
   use contact_state, only: state_t
   use controls, only: control_t
   use equilibrium, only: equations_t
@@ -17,11 +18,22 @@ module solver
     !> Factors of a previous state, used for the next one.
     type(frozen_jacobian_t) :: frozen
   contains
+    procedure :: set_up
     procedure :: solve
     procedure :: correct
   end type solver_t
 
 contains
+
+  !> Gives the solver its problem and options; meshes follow.
+  subroutine set_up(self, problem, options)
+    class(solver_t), intent(inout) :: self
+    type(problem_t), intent(in) :: problem
+    type(solver_options_t), intent(in) :: options
+
+    self%problem = problem
+    self%options = options
+  end subroutine set_up
 
   !> Solves for the equilibrium at `control`, beginning at `state`. converged: the residual is
   !> within options%tolerance, or for mixing the chosen stopping rule is met.

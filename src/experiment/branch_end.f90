@@ -39,16 +39,15 @@ module branch_end
 
   !> Largest distance of the state at h0 from its guess between two states, in the law's lengths.
   real(wp), parameter :: beside = 0.05_wp
-  !> Number of states that are always allowed, and the limit of further ones, in cubes of the number
-  !> of nodes (about ten seconds): where the edge passes node after node, there may be hundreds.
-  integer, parameter :: few_states = 40
-  real(wp), parameter :: most_cubes = 5.0e10_wp
+  !> Largest number of states: where the edge passes node after node, a step needs a hundred.
+  integer, parameter :: most_states = 500
   !> The first step over the distance to h0, its change after a state that is not joined to the one
   !> before, and its smallest length.
   real(wp), parameter :: first_step = 0.2_wp, shorter = 1.0_wp/3, least = 1.0e-6_wp
   !> The slope dh0/dQ below which folds may be near, and the largest change of the deformation in a
-  !> step there (law's lengths): a pair of folds is seen as a dip of the slope.
-  real(wp), parameter :: steep = 0.5_wp, small = 0.15_wp
+  !> step there (law's lengths): a pair of folds is seen as a dip of the slope. Steps are planned
+  !> for a part of this change, since it grows towards a fold.
+  real(wp), parameter :: steep = 0.5_wp, small = 0.15_wp, planned = 0.9_wp
   !> A step to a predicted fold, over the distance to it.
   real(wp), parameter :: just_beyond = 1.1_wp
   !> The slope dh0/dQ within a step, by Hermite's polynomial, over the slopes at its ends, below
@@ -72,7 +71,7 @@ contains
     type(point_t) :: here, there
     real(wp) :: sense, step, dip
     logical :: good
-    integer :: states, allowed
+    integer :: states
 
     memory = position
     here%state = position%state
@@ -86,8 +85,7 @@ contains
       return
     end if
     step = first_step*abs(h0 - here%state%h0)/here%tangent%h0
-    allowed = max(few_states, int(min(most_cubes/real(self%meshes%grid(1)%nodes, wp)**3, 1.0e3_wp)))
-    do states = 1, allowed
+    do states = 1, most_states
       if (.not. step > least*min(1.0_wp, abs(h0 - position%state%h0))) return
       call go(here, there, good)
       if (.not. good) then
@@ -125,6 +123,8 @@ contains
       call here%tangent%turn(passing(here%tangent, is_pinned(self)))
       ! The new coordinate has another length.
       step = min(step, 1.1_wp*abs(h0 - here%state%h0))/here%tangent%h0
+      if (here%tangent%h0 < steep) step = min(step, &
+        planned*small/maxval(abs(here%tangent%gap - here%tangent%h0)))
       here%q = here%state%h0 - dot_product(here%tangent%along, here%state%gap)
       there%q = here%q + sense*step
       if (maxval(abs(here%tangent%along)) > 0) then

@@ -9,7 +9,7 @@ module branch_tangent
   use beyond_mesh, only: load_slope_beyond
   use contact_state, only: state_t, gap_at_end, load_reach
   use controls, only: control_t
-  use control_derivatives, only: control_derivative
+  use jacobian, only: control_derivative
   use frozen_jacobian, only: frozen_jacobian_t, freeze
   use linear_algebra, only: solve, determinant_sign
   use represented_pressure, only: pressure_slope_t, slope_on

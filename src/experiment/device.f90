@@ -6,7 +6,7 @@ module device
   use solver, only: solver_t
   use path_tangent, only: of_h0
   use traced_path, only: traced_path_t
-  use curve_states, only: path_state_t
+  use path_state, only: path_state_t
   use drives, only: drive_t
   use driven_pieces, only: driven_pieces_t, jump_t, find_pieces, find_jumps, state_driven
   use walk, only: leg_t, walk_t, way_along

@@ -15,7 +15,7 @@ module experiment_result
   use timed_record, only: timed_result_t
   use path_tangent, only: h0_alone => of_h0, load_alone => of_load
   use walk, only: leg_t, walk_t, way_along
-  use curve_states, only: path_state_t
+  use path_state, only: path_state_t
   use driven_pieces, only: jump_t, state_driven
   use device, only: driven_t, driven_leg_t, states_on
   use path_stepper, only: path_stepper_t, known_path_t

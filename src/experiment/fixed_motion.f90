@@ -112,8 +112,6 @@ contains
       position%lost = nan
       call relax_at(self, options, h0, position%state, state, event%converged)
       call land(self, state, event%converged, position, event)
-      ! If the iteration does not reach the state, the row is none of its equilibria.
-      event%converged = event%converged .and. solved
     end select
 
   contains

@@ -9,9 +9,9 @@ module located_places
   use solver, only: solver_t
   use path_tangent, only: h0_alone => of_h0, load_alone => of_load
   use potential_energy, only: energy_of
-  use curve_states, only: path_state_t, path_place_t, state_of
+  use path_state, only: path_state_t, path_place_t, no_mesh
+  use curve_states, only: state_of
   use driven_pieces, only: jump_t
-  use traced_path, only: no_mesh
   use path_stepper, only: path_stepper_t
   use reported_place, only: place_t, of_h0, of_load, of_displacement, of_energy, of_radius, &
     of_edge, nowhere, rounding

@@ -9,7 +9,8 @@ module one_run
   use dimensionless_problem, only: problem_t
   use experiment_request, only: request_t
   use numerics_choice, only: choice_t, fixed_mesh
-  use edge_locked, only: mesh_family_t, new_mesh_family
+  use mesh_family, only: mesh_family_t
+  use edge_locked, only: new_mesh_family
   use mesh_store, only: mesh_store_t
   use ending, only: turn_not_reached, path_lost
   use stepper, only: stepper_t, branch_point_t, step_result_t
@@ -30,19 +31,9 @@ module one_run
   use records, only: observer_t
   implicit none
   private
-  public :: prepare, begin_run, run_once
+  public :: begin_run, run_once
 
 contains
-
-  !> Sets the parts that all steppers have.
-  subroutine prepare(steps, problem, chosen)
-    class(stepper_t), intent(inout) :: steps
-    type(problem_t), intent(in) :: problem
-    type(choice_t), intent(in) :: chosen
-
-    steps%problem = problem
-    steps%options = chosen%options
-  end subroutine prepare
 
   !> Lays out the meshes of a run and, under a law that attracts, traces the path. coarser: the
   !> meshes of a run with fewer digits; keep: see `new_mesh_family`.
@@ -57,7 +48,7 @@ contains
     logical, intent(in), optional :: keep
     type(demand_t), allocatable :: demand
 
-    call prepare(steps, problem, chosen)
+    call steps%set_up(problem, chosen%options)
     call steps%operator%forget()
     call steps%frozen%forget()
     call lay_out(.true.)

@@ -69,8 +69,9 @@ contains
     if (last < first) return
     widest = steps%known%path%point(last)%state%scale
     do i = first, last
-      row = row_of_point(steps, i)
-      if (i == first .and. present(h0_start)) row = row_at_h0(steps, i, h0_start)
+      row = row_of_point(steps%known%path, i)
+      if (i == first .and. present(h0_start)) &
+        row = row_at_h0(steps%solver_t, steps%known%path, i, h0_start)
       if (i == first) path%first_piece = piece_of(steps%known, i)
       row%profile = any(abs(profiles - row%state%h0) <= 0)
       ! Where the path passes to another mesh, two points exist on both.
@@ -79,13 +80,13 @@ contains
       if (.not. steps%known%path%point(i)%leads_on) cycle
       until = h0_end
       if (i < last) until = steps%known%path%point(i + 1)%state%h0
-      call rows_between(steps, i, row%state%h0, until, merge(widest, 0.0_wp, curve), profiles, &
-        between)
+      call rows_between(steps%solver_t, steps%known%path, i, row%state%h0, until, &
+        merge(widest, 0.0_wp, curve), profiles, between)
       do k = 1, size(between)
         call take(between(k))
       end do
       if (i < last) cycle
-      row = row_at_h0(steps, i, h0_end)
+      row = row_at_h0(steps%solver_t, steps%known%path, i, h0_end)
       row%profile = any(abs(profiles - h0_end) <= 0)
       call take(row)
     end do

@@ -8,7 +8,8 @@ module path_readings
   use path_sensitivity, only: rate_t
   use drives, only: drive_t, through_spring
   use path_tangent, only: of_load
-  use curve_states, only: path_state_t, states_of_points, states_where
+  use path_state, only: path_state_t
+  use curve_states, only: states_of_points, states_where
   use dimensionless_problem, only: problem_t
   use records, only: quality_t
   use device, only: driven_t, states_on, drive_bodies

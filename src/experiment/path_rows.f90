@@ -9,7 +9,7 @@ module path_rows
   use solver, only: solver_t
   use path_coordinate, only: path_control
   use path_span, only: path_span_t, new_path_span
-  use path_stepper, only: path_stepper_t
+  use traced_path, only: traced_path_t
   implicit none
   private
   public :: path_row_t, row_of_point, row_at_h0, rows_between
@@ -32,34 +32,36 @@ module path_rows
 contains
 
   !> The row of point i.
-  type(path_row_t) function row_of_point(steps, i) result(row)
-    type(path_stepper_t), intent(in) :: steps
+  type(path_row_t) function row_of_point(path, i) result(row)
+    type(traced_path_t), intent(in) :: path
     integer, intent(in) :: i
 
     row%point = i
-    row%modes = steps%known%path%modes_at(i)
-    row%mesh = steps%known%path%point(i)%mesh
-    row%state = steps%known%path%point(i)%state
+    row%modes = path%modes_at(i)
+    row%mesh = path%point(i)%mesh
+    row%state = path%point(i)%state
   end function row_of_point
 
   !> The row at h0 between point i and the next.
-  type(path_row_t) function row_at_h0(steps, i, h0) result(row)
-    class(path_stepper_t), intent(inout) :: steps
+  type(path_row_t) function row_at_h0(solver, path, i, h0) result(row)
+    class(solver_t), intent(inout) :: solver
+    type(traced_path_t), intent(in) :: path
     integer, intent(in) :: i
     real(wp), intent(in) :: h0
     type(path_span_t) :: span
 
-    span = new_path_span(steps%known%path, i)
+    span = new_path_span(path, i)
     row%mesh = span%mesh
-    row%modes = steps%known%path%point(i)%modes
-    call span%solve_at_h0(steps%solver_t, h0, row%state, row%converged)
+    row%modes = path%point(i)%modes
+    call span%solve_at_h0(solver, h0, row%state, row%converged)
   end function row_at_h0
 
   !> The rows between point i and the next, within a range of h0, in order: requested profiles, and
   !> rows for the curve. Rows for the curve that do not converge are omitted. widest: contact
   !> radius, lateral units; 0: there are no rows for the curve.
-  subroutine rows_between(steps, i, from, until, widest, profiles, rows)
-    class(path_stepper_t), intent(inout) :: steps
+  subroutine rows_between(solver, path, i, from, until, widest, profiles, rows)
+    class(solver_t), intent(inout) :: solver
+    type(traced_path_t), intent(in) :: path
     integer, intent(in) :: i
     real(wp), intent(in) :: from, until, widest, profiles(:)
     type(path_row_t), allocatable, intent(out) :: rows(:)
@@ -72,12 +74,12 @@ contains
     allocate (rows(0))
     if (size(stops) == 0 .and. .not. widest > 0) return
     deallocate (rows)
-    span = new_path_span(steps%known%path, i)
+    span = new_path_span(path, i)
     stop_at = [(span%at_h0(stops(k)), k=1, size(stops))]
     begin = span%at_h0(from)
     end = span%at_h0(until)
     allocate (places(0))
-    if (widest > 0) places = places_between(steps%solver_t, span, begin, end, widest)
+    if (widest > 0) places = places_between(solver, span, begin, end, widest)
     do k = 1, size(stops)
       stop = count((places - stop_at(k))*(end - begin) < 0)
       places = [places(:stop), stop_at(k), places(stop + 1:)]
@@ -86,10 +88,10 @@ contains
     do k = 1, size(places)
       stop = findloc(stop_at, places(k), 1)
       if (stop > 0) then
-        rows(k) = row_at_h0(steps, i, stops(stop))
+        rows(k) = row_at_h0(solver, path, i, stops(stop))
         rows(k)%profile = .true.
       else
-        rows(k) = row_for_curve(steps, i, span, places(k))
+        rows(k) = row_for_curve(solver, path, i, span, places(k))
       end if
     end do
     if (.not. all(rows%converged .or. rows%profile)) &
@@ -98,17 +100,18 @@ contains
 
   !> The row at the coordinate s of the span after point i: the predicted state, corrected if it is
   !> not an equilibrium to the tolerance.
-  type(path_row_t) function row_for_curve(steps, i, span, s) result(row)
-    class(path_stepper_t), intent(inout) :: steps
+  type(path_row_t) function row_for_curve(solver, path, i, span, s) result(row)
+    class(solver_t), intent(inout) :: solver
+    type(traced_path_t), intent(in) :: path
     integer, intent(in) :: i
     type(path_span_t), intent(in) :: span
     real(wp), intent(in) :: s
 
     row%for_curve = .true.
-    row%modes = steps%known%path%point(i)%modes
+    row%modes = path%point(i)%modes
     row%mesh = span%mesh
-    call span%expected(steps%solver_t, s, row%state)
-    call steps%correct(path_control(steps%problem, steps%meshes, span%mesh, s), &
+    call span%expected(solver, s, row%state)
+    call solver%correct(path_control(solver%problem, solver%meshes, span%mesh, s), &
       row%state, row%converged)
   end function row_for_curve
 

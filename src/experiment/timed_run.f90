@@ -7,7 +7,7 @@ module timed_run
   use dimensionless_problem, only: problem_t
   use discretisation, only: discretisation_t
   use equilibrium, only: cost_t
-  use edge_locked, only: new_mesh_family
+  use edge_locked, only: new_mesh_family, shape_for
   use mesh_digits, only: most_digits
   use records, only: observer_t
   use path_stepper, only: path_stepper_t
@@ -274,7 +274,7 @@ contains
       steps%cost = at_rest%cost
       associate (meshes => steps%meshes)
         do k = 1, size(meshes%grid)
-          if (meshes%waits(k)) call meshes%renew(k, meshes%shape_for(relaxed, k))
+          if (meshes%waits(k)) call meshes%renew(k, shape_for(meshes, relaxed, k))
         end do
       end associate
     end subroutine fit_to_path

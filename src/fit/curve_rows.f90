@@ -5,7 +5,7 @@ module curve_rows
   use text, only: counted, quoted, rounded
   use deck_source, only: source_t
   use data_table, only: data_table_t, style_t, take_data_table
-  use fit_request, only: measurement_t
+  use fit_request, only: measurement_t, of_position, of_separation, of_load, of_segment
   use units, only: find_unit
   implicit none
   private
@@ -18,7 +18,7 @@ module curve_rows
 
   !> z [m], signal [N, or V] of the complete rows in the order of the file, or first those of the
   !> approach; code: the index of each row's label in `label`, if the file has a column of segments;
-  !> kind: of each row's segment, once it is known. unit: of position and signal in the file;
+  !> kind: of each row's segment, once it is known. unit: of the columns in the file;
   !> signal_in: as in `measurement_t`.
   !> incomplete: number of rows that are left out. columns_read: a description for the user.
   type :: curve_rows_t
@@ -26,15 +26,14 @@ module curve_rows
     real(wp), allocatable :: z(:), signal(:)
     integer, allocatable :: code(:), kind(:)
     character(len=64), allocatable :: label(:)
-    real(wp) :: unit(2) = 1
+    real(wp), allocatable :: unit(:)
     character :: signal_in = ' '
     integer :: incomplete = 0
   end type curve_rows_t
 
 contains
 
-  !> Takes the columns of a measurement from the text of its file: position and signal; these and
-  !> the segment; or position and signal of the approach and of the retreat, side by side.
+  !> Takes the columns of a measurement from the text of its file.
   subroutine read_curve_rows(measurement, source, rows, error)
     type(measurement_t), intent(in) :: measurement
     type(source_t), intent(in) :: source
@@ -44,12 +43,18 @@ contains
     type(style_t) :: style
     character(len=:), allocatable :: what
     logical, allocatable :: whole(:), more(:)
-    integer :: n
+    integer :: z, signal, segment, n
+    logical :: side_by_side
 
+    n = size(measurement%columns)
+    z = findloc(measurement%quantity, of_position, 1)
+    if (z == 0) z = findloc(measurement%quantity, of_separation, 1)
+    signal = findloc(measurement%quantity, of_load, 1)
+    segment = findloc(measurement%quantity, of_segment, 1)
+    side_by_side = count(measurement%quantity == of_load) == 2
     style%of_instrument = .true.
     style%skip_lines = measurement%skip_lines
-    n = size(measurement%columns)
-    if (n == 3) style%labels = 3
+    if (segment > 0) style%labels = segment
     call take_data_table(source, measurement%columns, style, table, error)
     if (allocated(error)) return
     rows%file = table%source%file
@@ -62,15 +67,14 @@ contains
       call fail(error, bad_input, rows%file // ': ' // what)
       return
     end if
-    whole = .not. any(table%missing(:, :min(n, 3)), 2)
-    if (n == 4) whole = .not. any(table%missing(:, :2), 2)
-    rows%z = pack(table%value(:, 1), whole)
-    rows%signal = pack(table%value(:, 2), whole)
+    whole = .not. any(table%missing(:, :merge(2, n, side_by_side)), 2)
+    rows%z = pack(table%value(:, z), whole)
+    rows%signal = pack(table%value(:, signal), whole)
     rows%incomplete = count(.not. whole)
-    if (n == 3) then
-      rows%code = nint(pack(table%value(:, 3), whole))
+    if (segment > 0) then
+      rows%code = nint(pack(table%value(:, segment), whole))
       rows%label = table%label
-    else if (n == 4) then
+    else if (side_by_side) then
       more = .not. any(table%missing(:, 3:), 2)
       rows%kind = [spread(of_approach, 1, count(whole)), spread(of_retreat, 1, count(more))]
       rows%z = [rows%z, pack(table%value(:, 3), more)]
@@ -87,7 +91,8 @@ contains
       call fail(error, bad_input, rows%file // ': ' // what)
       return
     end if
-    rows%columns_read = 'position' // column_text(1) // ', signal' // column_text(2)
+    rows%columns_read = trim(merge('separation', 'position  ', measurement%has(of_separation))) // &
+      column_text(z) // ', signal' // column_text(signal)
 
   contains
 
@@ -100,10 +105,12 @@ contains
       if (table%name(i) /= '') text = ' ' // quoted(trim(table%name(i)))
       text = text // ' in '
       if (abs(rows%unit(i) - 1) > 0) text = text // rounded(rows%unit(i)) // ' '
-      if (i == 1) then
+      if (i == z) then
         text = text // 'm'
       else if (rows%signal_in == ' ') then
         text = text // 'V or m, times sensitivity'
+      else if (rows%signal_in == 'R') then
+        text = text // 'N/m, times the radius'
       else
         text = text // rows%signal_in
         if (allocated(measurement%sensitivity)) text = text // ', times sensitivity'
@@ -134,41 +141,43 @@ contains
     end associate
   end subroutine put_in_order
 
-  !> Scales positions and signals to SI by the deck's units, by those in the file, or not at all.
-  !> unit: those of the first position and signal. signal_in: as in `measurement_t`. what: why a
-  !> unit cannot be right.
+  !> Scales the columns to SI by the deck's units, by those in the file, or not at all. unit: the
+  !> factors. signal_in: as in `measurement_t`. what: why a unit cannot be right.
   subroutine scale_columns(measurement, table, unit, signal_in, what)
     type(measurement_t), intent(in) :: measurement
     type(data_table_t), intent(inout) :: table
-    real(wp), intent(out) :: unit(2)
+    real(wp), allocatable, intent(out) :: unit(:)
     character, intent(out) :: signal_in
     character(len=:), allocatable, intent(out) :: what
-    real(wp) :: factor
     character :: base
-    integer :: i, k
+    integer :: i
 
     signal_in = measurement%signal_in
-    if (.not. allocated(measurement%sensitivity)) signal_in = 'N'
-    do i = 1, size(measurement%columns)
-      if (i == 3 .and. size(measurement%columns) == 3) exit
-      k = 1 + mod(i - 1, 2)
-      call find_unit(table%unit(i), factor, base)
-      if (measurement%unit(k) > 0) then
-        factor = measurement%unit(k)
-      else if (k == 1 .and. scan(base, 'NV') > 0) then
-        what = 'the position ' // quoted(trim(table%name(i))) // &
-          ' is not a length; are the two columns exchanged?'
-        return
-      else if (k == 2 .and. scan(base, 'mV') > 0 .and. .not. allocated(measurement%sensitivity)) &
-        then
+    allocate (unit(size(measurement%columns)), source=1.0_wp)
+    do i = 1, size(unit)
+      if (measurement%quantity(i) == of_segment) cycle
+      call find_unit(table%unit(i), unit(i), base)
+      if (measurement%unit(i) > 0) then
+        unit(i) = measurement%unit(i)
+      else if (measurement%quantity(i) /= of_load) then
+        if (scan(base, 'NVR') > 0) what = 'the ' // &
+          trim(merge('position  ', 'separation', measurement%quantity(i) == of_position)) // ' ' &
+          // quoted(trim(table%name(i))) // ' is not a length; are the two columns exchanged?'
+      else if (allocated(measurement%sensitivity)) then
+        if (base == 'R') what = 'the signal ' // quoted(trim(table%name(i))) // ' is a force ' // &
+          'over a radius, and no deflection with sensitivity'
+      else if (scan(base, 'mV') > 0) then
         what = 'the signal ' // quoted(trim(table%name(i))) // ' is no force; sensitivity is ' // &
           'the deflection of the spring for one volt, or 1 for a deflection'
-        return
+      else if (base == 'R' .and. .not. measurement%radius > 0) then
+        what = 'the signal ' // quoted(trim(table%name(i))) // ' is a force over a radius: it ' // &
+          'needs radius in &bodies'
       end if
-      if (k == 2 .and. signal_in == ' ') signal_in = base
-      table%value(:, i) = table%value(:, i)*factor
-      if (i <= 2) unit(i) = factor
+      if (allocated(what)) return
+      if (measurement%quantity(i) == of_load .and. signal_in == ' ') signal_in = base
+      table%value(:, i) = table%value(:, i)*unit(i)
     end do
+    if (signal_in == ' ' .and. .not. allocated(measurement%sensitivity)) signal_in = 'N'
   end subroutine scale_columns
 
 end module curve_rows

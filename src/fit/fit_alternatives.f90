@@ -4,9 +4,10 @@ module fit_alternatives
   use kinds, only: wp
   use dimensionless_problem, only: problem_t
   use variation, only: problem_family_t
-  use fit_request, only: unknown_t, of_spring
+  use fit_request, only: unknown_t, of_spring, of_separation
   use baseline, only: ways_in
   use measured_jumps, only: find_jump
+  use part_slopes, only: slopes_of_parts
   use fit_starts, only: starts_like
   use theory_fits, only: suggested_characters
   use force_model, only: force_model_t
@@ -25,8 +26,6 @@ module fit_alternatives
     integer :: freedom = 0
   end type alternative_t
 
-  !> Parts of the travel over which slopes are taken, and the fewest samples of one.
-  integer, parameter :: parts = 10, fewest = 5
   !> A spring constant that differs by less than this factor is no mistake.
   real(wp), parameter :: other_spring = 1.1_wp
   !> The softest spring that is tried, over the deck's.
@@ -78,13 +77,16 @@ contains
 
       n = size(curve%unknown)
       if (.not. curve%is_force .or. any(curve%unknown%role == of_spring)) return
+      ! Separations do not show the spring.
+      if (curve%data%measured%has(of_separation)) return
       ! Jumps and starting values are those of a spring as stiff as the contact.
       trial = curve
       trial%spring = max(contact_slope(curve), softest*curve%spring)
-      trial%sensitivity = 1/trial%spring
-      associate (data => trial%data)
-        data%jump = [find_jump(data%measured, data%noise%deviation, trial%spring, .true.), &
-          find_jump(data%measured, data%noise%deviation, trial%spring, .false.)]
+      trial%sensitivity = curve%data%measured%load_of_unit()/trial%spring
+      trial%largest_slope = 1/trial%sensitivity
+      associate (data => trial%data, slope => trial%largest_slope)
+        data%jump = [find_jump(data%measured, data%noise%deviation, slope, .true.), &
+          find_jump(data%measured, data%noise%deviation, slope, .false.)]
         call data%take(1)
       end associate
       call starts_like(suggested_characters(trial, problem), family, trial%unknown, start)
@@ -121,33 +123,12 @@ contains
 
   end subroutine find_alternative
 
-  !> The steepest slope of the load [N/m] against the travel of the base in contact: the largest of
-  !> those of straight lines through the samples of a way over a part of the travel. In jumps the
-  !> load changes the other way.
+  !> The steepest slope of the load [N/m] against the travel of the base in contact.
   pure real(wp) function contact_slope(curve) result(slope)
     type(modelled_curve_t), intent(in) :: curve
-    real(wp) :: middle(2), low, width
-    logical, allocatable :: there(:)
-    integer :: i, way
 
-    slope = 0
-    associate (data => curve%data%measured)
-      associate (z => data%z, s => data%signal)
-        low = minval(z)
-        width = (maxval(z) - low)/parts
-        do way = 1, 2
-          do i = 0, 2*parts - 2
-            there = data%usable .and. (data%inward .eqv. way == 1) .and. &
-              abs(z - low - (0.5_wp*i + 0.5_wp)*width) <= 0.5_wp*width
-            if (count(there) < fewest) cycle
-            middle = [sum(z, there), sum(s, there)]/count(there)
-            slope = max(slope, -data%facing*sum((z - middle(1))*(s - middle(2)), there)/ &
-              max(sum((z - middle(1))**2, there), tiny(1.0_wp)))
-          end do
-        end do
-        slope = slope*curve%spring*curve%sensitivity
-      end associate
-    end associate
+    slope = max(0.0_wp, maxval(slopes_of_parts(curve%data%measured)))*curve%spring* &
+      curve%sensitivity
   end function contact_slope
 
 end module fit_alternatives

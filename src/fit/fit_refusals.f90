@@ -77,7 +77,7 @@ contains
     type(modelled_curve_t), intent(in) :: curve
     real(wp), intent(in) :: squares
     character(len=*), intent(in) :: suggestion
-    character(len=:), allocatable :: words
+    character(len=:), allocatable :: words, spring
     real(wp) :: slope
     integer :: freedom
 
@@ -86,10 +86,15 @@ contains
     words = 'no contact like that of the model in the data: wherever it is assumed, the model ' &
       // 'describes them no better than the baseline alone, whose residuals are ' // &
       rounded(sqrt(squares/freedom)) // ' times the noise; towards the other body the ' // &
-      'load rises by ' // rounded(slope) // ' N per metre of the travel at most, ' // &
-      rounded(100*slope/curve%spring) // ' % of spring_constant' // suggestion
+      'load rises by ' // rounded(slope) // ' N per metre of the travel at most'
+    spring = ''
+    if (curve%data%measured%spring_constant > 0) then
+      words = words // ', ' // rounded(100*slope/curve%spring) // ' % of spring_constant'
+      spring = 'spring_constant, '
+    end if
+    words = words // suggestion
     if (len(suggestion) == 0) words = words // ', and no closed form of a contact describes ' // &
-      'them either; check spring_constant, the radius, and whether the base came near enough'
+      'them either; check ' // spring // 'the radius, and whether the bodies came near enough'
   end function no_contact
 
   !> Sets `trouble` if the baseline alone describes the data as well as the model, whose contact

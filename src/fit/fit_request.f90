@@ -10,11 +10,19 @@ module fit_request
   public :: measurement_t, fit_t, unknown_t, of_model, of_contact_point, of_sensitivity, &
     of_spring, free_of, value_of, fitted_of, value_by_free, value_by_fitted, farthest_off, &
     is_at_end, is_beyond
+  public :: of_position, of_separation, of_load, of_segment
 
-  !> &measurement [SI]. sensitivity: of a signal in volts; not allocated: the signal is the force.
+  !> What a column of the file is: the position of the base of the spring; the separation of the
+  !> bodies (h0, but for a constant); the load, or the signal that shows it; the segment.
+  integer, parameter :: of_position = 1, of_separation = 2, of_load = 3, of_segment = 4
+
+  !> &measurement [SI]. sensitivity: of a signal in volts; not allocated: the signal is the force,
+  !> or the force over the radius. spring_constant: 0 without a spring.
   type :: measurement_t
     character(len=:), allocatable :: file, segment
     character(len=64), allocatable :: columns(:)
+    !> What each column is. Two loads: of approach and retreat, side by side.
+    integer, allocatable :: quantity(:)
     !> The column that numbers the curves of a file with several, and the number of the curve.
     character(len=:), allocatable :: curves
     integer, allocatable :: curve
@@ -27,11 +35,18 @@ module fit_request
     real(wp), allocatable :: sensitivity, contact_point
     !> Pairs of positions; the samples between them do not count.
     real(wp), allocatable :: skip(:)
-    !> Units of position and signal in the file; 0: as the names of the columns say, or SI.
-    !> signal_in: what the signal is, 'N', 'V' or 'm'; blank if neither deck nor file says it.
-    real(wp) :: unit(2) = 0
+    !> Units of the columns in the file; 0: as the names of the columns say, or SI. signal_in: what
+    !> the signal is, 'N', 'V', 'm', or 'R' for the force over the radius; blank if neither deck nor
+    !> file says it.
+    real(wp), allocatable :: unit(:)
     character :: signal_in = ' '
+    !> The radius of the deck; 0 if it has none.
+    real(wp) :: radius = 0
     type(baseline_t) :: baseline
+  contains
+    procedure :: has
+    procedure :: load_of_unit
+    procedure :: signal_unit
   end type measurement_t
 
   !> The role of an unknown: a number of the problem, contact point, detector, spring.
@@ -62,6 +77,30 @@ module fit_request
   end type fit_t
 
 contains
+
+  !> Whether a column is of this quantity.
+  pure logical function has(self, quantity)
+    class(measurement_t), intent(in) :: self
+    integer, intent(in) :: quantity
+
+    has = any(self%quantity == quantity)
+  end function has
+
+  !> The load of a unit of a signal that is the force [N], or the force over the radius [N/m].
+  pure real(wp) function load_of_unit(self) result(load)
+    class(measurement_t), intent(in) :: self
+
+    load = merge(self%radius, 1.0_wp, self%signal_in == 'R')
+  end function load_of_unit
+
+  !> The unit of the signal in words; blank if it is not known.
+  pure function signal_unit(self) result(unit)
+    class(measurement_t), intent(in) :: self
+    character(len=:), allocatable :: unit
+
+    unit = trim(self%signal_in)
+    if (unit == 'R') unit = 'N/m'
+  end function signal_unit
 
   !> The fitted number of a value: ln(value/scale), or (value - origin)/scale.
   elemental real(wp) function fitted_of(unknown, value) result(u)

@@ -13,6 +13,7 @@ module fit_run
   use measured_curve, only: measured_curve_t
   use measured_jumps, only: find_jump, find_far, off_baseline
   use measured_checks, only: check_measured
+  use part_slopes, only: steepest_slope
   use measured_loads, only: check_loads
   use turn_rest, only: leave_out_rest
   use noise, only: white_noise, rounding_of
@@ -55,6 +56,8 @@ module fit_run
 
   !> Smallest noise over the largest signal, for computed signals.
   real(wp), parameter :: least_noise = 1.0e-9_wp
+  !> Stiffness of a device without a spring [N/m], which no load deflects.
+  real(wp), parameter :: no_spring = 1.0e20_wp
   !> Works of adhesion of further starts, over the deck's.
   real(wp), parameter :: works(*) = [0.2_wp, 5.0_wp]
 
@@ -138,11 +141,14 @@ contains
       where (curve%unknown%role == of_contact_point) curve%unknown%scale = max(problem%length, &
         (maxval(measured%z) - minval(measured%z))/size(measured%z))
       curve%spring = measured%spring_constant
-      curve%sensitivity = 1/measured%spring_constant
+      if (.not. curve%spring > 0) curve%spring = no_spring
       curve%is_force = .not. allocated(measured%sensitivity)
+      curve%sensitivity = measured%load_of_unit()/curve%spring
       if (.not. curve%is_force) curve%sensitivity = measured%sensitivity
       if (allocated(measured%contact_point)) curve%contact_point = measured%contact_point
       slope = 1/curve%sensitivity
+      if (.not. measured%spring_constant > 0) slope = steepest_slope(measured)
+      curve%largest_slope = slope
       associate (data => curve%data%measured)
         call find_far(data, slope, curve%data%noise)
         curve%data%least_noise = least_noise*maxval(abs(data%signal))
@@ -156,7 +162,8 @@ contains
           curve%data%noise = white_noise(curve%data%least_noise)
         call leave_out_rest(data, curve%data%noise, slope)
         call check_measured(data, curve%data%noise, slope, trouble)
-        if (.not. allocated(trouble)) call check_loads(curve, trouble)
+        if (.not. allocated(trouble) .and. measured%spring_constant > 0) &
+          call check_loads(curve, trouble)
         if (allocated(trouble)) return
         curve%data%jump = [find_jump(data, curve%data%noise%deviation, slope, .true.), &
           find_jump(data, curve%data%noise%deviation, slope, .false.)]

@@ -5,7 +5,8 @@
 !> share.
 module held_numbers
   use kinds, only: wp
-  use fit_request, only: unknown_t, of_model, of_contact_point, of_sensitivity, of_spring
+  use fit_request, only: unknown_t, of_model, of_contact_point, of_sensitivity, of_spring, &
+    of_separation
   use failure, only: failure_t
   use variation, only: problem_family_t, variation_t, vary, to_search
   use experiment_request, only: numerics_t
@@ -110,8 +111,10 @@ contains
     do i = count(unknown%role == of_model) + 1, size(family%parameter)
       call add(family%parameter(i)%name, of_model, family%parameter(i)%value)
     end do
-    call add('measurement.spring_constant', of_spring, curve%spring)
-    if (allocated(curve%data%measured%sensitivity)) &
+    if (.not. curve%data%measured%has(of_separation)) &
+      call add('measurement.spring_constant', of_spring, curve%spring)
+    if (allocated(curve%data%measured%sensitivity) .and. &
+      .not. curve%data%measured%has(of_separation)) &
       call add('measurement.sensitivity', of_sensitivity, curve%sensitivity)
     call add('measurement.contact_point', of_contact_point, curve%contact_point)
 

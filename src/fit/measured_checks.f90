@@ -50,7 +50,7 @@ contains
         i == 1)) // ' at z = ' // rounded(back(i)%z) // ' m, by ' // &
         rounded(abs(back(i)%change)) // ' over ' // rounded(abs(measured%z(back(i)%after) - &
         measured%z(back(i)%before))) // ' m: the rows of the file are in reverse order, ' // &
-        'or the position is a separation and not that of the base'
+        'or the position is a separation and not that of the base (quantity = ''separation'')'
       return
     end if
     back = jumps_in(-measured%signal)

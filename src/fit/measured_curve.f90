@@ -8,7 +8,7 @@ module measured_curve
   use deck_source, only: source_t
   use curve_rows, only: curve_rows_t, read_curve_rows, fewest, of_approach, of_retreat, of_pause
   use curve_segments, only: find_segments
-  use fit_request, only: measurement_t
+  use fit_request, only: measurement_t, of_separation
   implicit none
   private
   public :: measured_curve_t, read_measured
@@ -49,19 +49,82 @@ contains
     outlier = .not. (self%usable .or. self%skipped)
   end function outlier
 
-  !> Reads the samples of a curve from the text of its file.
+  !> Reads the samples of a curve from the text of its file. Positions of the base follow from
+  !> separations behind a spring, once it is known in which direction they fall towards the other
+  !> body.
   subroutine read_measured(measured, source, error)
     type(measured_curve_t), intent(inout) :: measured
     type(source_t), intent(in) :: source
     type(failure_t), allocatable, intent(out) :: error
-    type(curve_rows_t) :: rows
-    logical, allocatable :: wanted(:), repeated(:)
+    type(failure_t), allocatable :: other
+    type(measured_curve_t) :: trial
+    type(curve_rows_t) :: rows, moved
+    real(wp) :: facing
     integer :: i
 
     call read_curve_rows(measured%measurement_t, source, rows, error)
     if (allocated(error)) return
     call check_columns(rows%file, rows%z, rows%signal, error)
     if (allocated(error)) return
+    if (.not. measured%has(of_separation) .or. .not. measured%spring_constant > 0) then
+      call take_rows(measured, rows, error)
+      return
+    end if
+    facing = likely_facing(rows%z)
+    do i = 1, 2
+      trial = measured
+      moved = rows
+      ! The deflection of the spring moves the bodies, but not the base.
+      moved%z = rows%z - facing*deflection_of(measured, rows)
+      call take_rows(trial, moved, other)
+      if (.not. allocated(other) .and. trial%facing*facing > 0) then
+        measured = trial
+        if (allocated(error)) deallocate (error)
+        return
+      end if
+      if (.not. allocated(error)) then
+        if (allocated(other)) then
+          error = other
+        else
+          call fail(error, bad_input, rows%file // ': with the deflection of the spring, the ' // &
+            'base moves back and forth; check spring_constant, and whether the separation has ' // &
+            'the deflection in it')
+        end if
+      end if
+      facing = -facing
+    end do
+
+  end subroutine read_measured
+
+  !> 1 if positions, beginning far away, fall towards the other body, else -1.
+  pure real(wp) function likely_facing(z) result(facing)
+    real(wp), intent(in) :: z(:)
+    real(wp) :: begin
+
+    begin = sum(z(:max(1, nint(end_part*size(z)))))/max(1, nint(end_part*size(z)))
+    facing = sign(1.0_wp, begin - z(maxloc(abs(z - begin), 1)))
+  end function likely_facing
+
+  !> The deflection of the spring in each row [m], positive under repulsion.
+  pure function deflection_of(measured, rows) result(deflection)
+    type(measured_curve_t), intent(in) :: measured
+    type(curve_rows_t), intent(in) :: rows
+    real(wp) :: deflection(size(rows%z)), newtons
+
+    newtons = 1
+    if (rows%signal_in == 'R') newtons = measured%radius
+    if (allocated(measured%sensitivity)) newtons = measured%sensitivity*measured%spring_constant
+    deflection = rows%signal*newtons/measured%spring_constant
+  end function deflection_of
+
+  !> Takes samples from rows.
+  subroutine take_rows(measured, rows, error)
+    type(measured_curve_t), intent(inout) :: measured
+    type(curve_rows_t), intent(inout) :: rows
+    type(failure_t), allocatable, intent(out) :: error
+    logical, allocatable :: wanted(:), repeated(:)
+    integer :: i
+
     call find_segments(rows, measured%measurement_t, error)
     if (allocated(error)) return
     associate (z => rows%z, signal => rows%signal, kind => rows%kind)
@@ -112,7 +175,7 @@ contains
       measured%understood = measured%understood // counted(n, 'row') // ' ' // which
     end subroutine add
 
-  end subroutine read_measured
+  end subroutine take_rows
 
   !> Refuses columns that are exchanged, and positions that are not in metres.
   subroutine check_columns(file, z, signal, error)

@@ -31,6 +31,8 @@ module modelled_curve
     real(wp) :: spring = 1, sensitivity = 1, contact_point = 0
     !> Whether the signal is the force, with the sensitivity 1/k for any k.
     logical :: is_force = .false.
+    !> The largest slope of the signal over z outside jumps: of the spring, or of the contact.
+    real(wp) :: largest_slope = huge(1.0_wp)
     !> The largest signal, without baseline, that the model must reach.
     real(wp) :: largest = 0
     type(response_t) :: response
@@ -137,7 +139,7 @@ contains
       i = self%data%sample(n)
       load = self%response%load_on(self%data%way(i), self%data%side(i), self%position_of(value, i))
       by(n, :) = 0
-      if (self%data%side(i) == 0 .and. abs(load%slope) > steep*k) cycle
+      if (self%data%side(i) == 0 .and. abs(load%slope) > steep*self%largest_slope*k*s) cycle
       by(n, :) = unfolded(self%unknown%role, load%rate/(k*s), &
         -self%data%measured%facing*load%slope/(k*s), -load%load/(k*s**2), &
         -(load%slope*load%load/k**2 + by_force*load%load/k)/(k*s))
@@ -250,7 +252,7 @@ contains
     class(modelled_curve_t), intent(in) :: self
     real(wp), intent(in) :: value(:)
 
-    newtons = 1
+    newtons = self%data%measured%load_of_unit()
     if (.not. self%is_force) newtons = self%number_of(value, of_spring, self%spring)* &
       self%number_of(value, of_sensitivity, self%sensitivity)
   end function newtons

@@ -14,7 +14,6 @@ module path_model
   use driven_pieces, only: driven_piece_t
   use device, only: driven_t, drive_bodies
   use experiment_request, only: request_t, numerics_t
-  use one_run, only: prepare
   use numerics_choice, only: choice_t, choose
   use path_demand, only: demand_of
   use path_stepper, only: path_stepper_t
@@ -106,7 +105,7 @@ contains
     request%device%z_start = farthest
     request%fixed_loads = [largest]
     chosen = choose(request, problem)
-    call prepare(self%steps, problem, chosen)
+    call self%steps%set_up(problem, chosen%options)
     self%steps%options%mixing = .false.
     self%steps%meshes = new_mesh_family(problem, chosen%high, chosen%low, chosen%digits, &
       store=self%store)

@@ -16,7 +16,6 @@ module stepped_model
   use stepper, only: branch_point_t, step_result_t
   use locked_stepper, only: unique_stepper_t
   use experiment_request, only: request_t, numerics_t
-  use one_run, only: prepare
   use numerics_choice, only: choice_t, choose
   use force_model, only: force_model_t, response_t, force_branch_t, inward, outward
   implicit none
@@ -139,7 +138,7 @@ contains
     allocate (request%path)
     request%path%h0_end = h0(size(h0))
     chosen = choose(request, problem)
-    call prepare(steps, problem, chosen)
+    call steps%set_up(problem, chosen%options)
     steps%options%mixing = .false.
     steps%meshes = new_mesh_family(problem, chosen%high, chosen%low, chosen%digits, &
       store=self%store)

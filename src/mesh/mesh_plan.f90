@@ -12,13 +12,12 @@
 module mesh_plan
   use kinds, only: wp
   use dimensionless_problem, only: problem_t
-  use mesh_rule, only: is_narrow
   use shape_panels, only: rim_passed_at
   use step_front, only: front_leads, first_front, last_front
   use contact_scales, only: largest_radius, contact_level, cohesive_width, lost_in_rounding
   implicit none
   private
-  public :: mesh_plan_t, new_mesh_plan
+  public :: mesh_plan_t, new_mesh_plan, is_narrow
   public :: approach, contact, band_of_waves
 
   !> The mesh before contact, and the first of those in contact or about a front.
@@ -108,6 +107,14 @@ contains
     plan%waits = plan%inserted
     if (plan%traceable) plan%waits(contact:) = is_narrow(problem)
   end function new_mesh_plan
+
+  !> Whether short panels cover all places with the law's special gaps, so that each mesh is for a
+  !> narrower band of radii and is laid out for seen gaps.
+  pure logical function is_narrow(problem)
+    type(problem_t), intent(in) :: problem
+
+    is_narrow = problem%law%period > 0 .or. problem%law%step_width > 0
+  end function is_narrow
 
   !> Inserts a mesh after another one: locked to a gap (0: about the axis), for radii of this gap
   !> between low and high. From the mesh before, the path passes to it at once.

@@ -10,10 +10,11 @@ module mesh_rule
   use shape_panels, only: panels_for, has_flat_face
   use step_front, only: front_leads, first_front, front_width
   use mapped_shape, only: mapped_shape_t
+  use mesh_plan, only: is_narrow
   use mesh_tail, only: give_tail, end_matters, beyond_poles
   implicit none
   private
-  public :: approach_shape, contact_shape, is_narrow
+  public :: approach_shape, contact_shape
 
   !> The length d over the smallest feature: errors change little between half this value and twice.
   real(wp), parameter :: finer = 0.5_wp
@@ -40,14 +41,6 @@ module mesh_rule
   real(wp), parameter :: of_foreseen = 1.5_wp, digits_of_broken = 4
 
 contains
-
-  !> Whether short panels cover all places with the law's special gaps, so that each mesh is for a
-  !> narrower band of radii and is laid out for seen gaps.
-  pure logical function is_narrow(problem)
-    type(problem_t), intent(in) :: problem
-
-    is_narrow = problem%law%period > 0 .or. problem%law%step_width > 0
-  end function is_narrow
 
   !> The mesh before contact, about the axis, for H0 up to h0_high and contacts up to the radius
   !> `widest`. seen: gaps of computed states. If these have an edge, which moves slowly over a

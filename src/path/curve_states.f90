@@ -10,53 +10,19 @@ module curve_states
   use path_tangent, only: tangent_t
   use path_extrema, only: find_extrema, may_turn
   use path_search, only: found_t, find_place
-  use traced_path, only: traced_path_t, no_mesh
+  use traced_path, only: traced_path_t
+  use path_state, only: path_state_t, path_place_t, no_mesh
   use path_span, only: path_span_t, new_path_span
   use potential_energy, only: energy_of
   use undeformed, only: load_undeformed, load_slope_undeformed, energy_undeformed
   implicit none
   private
-  public :: path_state_t, path_place_t, states_of_points, state_of, state_where, states_where, &
-    find_turns, equilibrium_at, part_of
-
-  !> A place between point `interval` of a path and the next, at the path's coordinate x.
-  type :: path_place_t
-    integer :: interval = 0
-    real(wp) :: x = 0
-  end type path_place_t
-
-  !> A solved equilibrium at a place: h0, load, gap on the axis, energy in the units of
-  !> `dimensionless_problem`, derivatives of h0 and load by x, modes unstable at fixed h0. radius:
-  !> of the contact, lateral units; uncertainty: error of the energy due to rounding and the
-  !> residual.
-  type, extends(path_place_t) :: path_state_t
-    real(wp) :: h0 = 0, load = 0, axis_gap = 0, radius = 0, energy = 0, uncertainty = 0
-    real(wp) :: slopes(2) = 0, residual = 0
-    integer :: modes = 0
-    logical :: converged = .false.
-    !> Whether this state is a point of the path that exists also on the next mesh.
-    logical :: again = .false.
-    !> The equilibrium and its mesh; with `no_mesh` there is no state.
-    type(state_t) :: state
-    integer :: mesh = no_mesh
-  end type path_state_t
+  public :: states_of_points, state_of, state_where, states_where, find_turns, equilibrium_at
 
   !> Parts of an interval of undeformed bodies at whose ends the slope is evaluated.
   integer, parameter :: looks = 8
 
 contains
-
-  !> The ends of the part of interval i, from ends(1) to ends(2), that is between two places.
-  pure function part_of(ends, i, from, to) result(part)
-    real(wp), intent(in) :: ends(2)
-    integer, intent(in) :: i
-    class(path_place_t), intent(in) :: from, to
-    real(wp) :: part(2)
-
-    part = ends
-    if (i == from%interval) part(1) = from%x
-    if (i == to%interval) part(2) = to%x
-  end function part_of
 
   !> The reported values at the points of a path, up to the end of its last stable piece. At a fold
   !> the number of modes is that of the more unstable side.

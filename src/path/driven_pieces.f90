@@ -10,8 +10,8 @@ module driven_pieces
   use solver, only: solver_t
   use traced_path, only: traced_path_t
   use drives, only: drive_t
-  use curve_states, only: path_state_t, path_place_t, state_of, state_where, find_turns, &
-    part_of
+  use path_state, only: path_state_t, path_place_t, part_of
+  use curve_states, only: state_of, state_where, find_turns
   implicit none
   private
   public :: driven_pieces_t, driven_piece_t, jump_t, find_pieces, find_jumps, interval_with, &

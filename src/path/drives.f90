@@ -6,7 +6,7 @@ module drives
   use quadrature, only: gauss_legendre
   use interpolation, only: hermite_t
   use traced_path, only: traced_path_t
-  use curve_states, only: path_state_t, path_place_t, part_of
+  use path_state, only: path_state_t, path_place_t, part_of
   implicit none
   private
   public :: drive_t, through_spring

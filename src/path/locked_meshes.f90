@@ -3,7 +3,7 @@ module locked_meshes
   use kinds, only: wp
   use shape, only: shape_t
   use controls, only: control_t, at_h0_with_edge
-  use edge_locked, only: mesh_family_t
+  use mesh_family, only: mesh_family_t
   use contact_scales, only: hertz_scale
   implicit none
   private

@@ -10,6 +10,7 @@ module mending
   use discretisation, only: discretisation_t
   use panel_map, only: algebraic_map
   use mapped_mesh, only: new_mapped_mesh
+  use edge_locked, only: shape_for
   use mapped_shape, only: mapped_shape_t
   use represented_pressure, only: pressure_on
   use law_panels, only: left_out
@@ -172,7 +173,7 @@ contains
             radius_of_step(problem, grid, state))
         end associate
       end do
-      shape = meshes%shape_for(problem, mesh, seen)
+      shape = shape_for(meshes, problem, mesh, seen)
     end associate
   end function shape_for_seen
 

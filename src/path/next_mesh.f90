@@ -5,6 +5,7 @@ module next_mesh
   use contact_scales, only: smallest_feature
   use contact_state, only: state_t, radius_of_gap, radius_of_step, felt_load
   use equilibrium, only: equations_t
+  use edge_locked, only: shape_for
   use mapped_shape, only: mapped_shape_t
   use seen_gaps, only: seen_gaps_t
   use arc, only: arc_t
@@ -115,7 +116,7 @@ contains
           call seen%try(radius, radius, radius, 0.0_wp)
         end if
       end if
-      shape = meshes%shape_for(problem, to, seen)
+      shape = shape_for(meshes, problem, to, seen)
     end associate
   end function shape_for_next
 

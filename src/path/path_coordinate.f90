@@ -10,7 +10,7 @@ module path_coordinate
   use dimensionless_problem, only: problem_t
   use contact_state, only: state_t
   use controls, only: control_t, at_axis_gap, at_edge_radius
-  use edge_locked, only: mesh_family_t
+  use mesh_family, only: mesh_family_t
   implicit none
   private
   public :: path_control, coordinate_of, axis_coordinate, axis_gap_rate

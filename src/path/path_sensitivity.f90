@@ -6,8 +6,8 @@ module path_sensitivity
   use dimensionless_problem, only: problem_t
   use equilibrium, only: equations_t
   use frozen_jacobian, only: frozen_jacobian_t
-  use traced_path, only: traced_path_t, no_mesh
-  use curve_states, only: path_state_t
+  use traced_path, only: traced_path_t
+  use path_state, only: path_state_t, no_mesh
   use undeformed, only: load_undeformed
   use variation, only: variation_t
   use state_sensitivity, only: change_t, place_on_path_t, differentiate

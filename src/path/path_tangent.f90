@@ -10,8 +10,7 @@ module path_tangent
   use equilibrium, only: equations_t
   use solver, only: solver_t
   use path_coordinate, only: path_control, axis_gap_rate
-  use control_derivatives, only: control_derivative
-  use jacobian, only: jacobian_times
+  use jacobian, only: jacobian_times, control_derivative
   use linear_algebra, only: solve
   use frozen_jacobian, only: frozen_jacobian_t, freeze
   implicit none

@@ -6,7 +6,7 @@ module reported_place
   use kinds, only: wp, pi, nan
   use dimensionless_problem, only: problem_t
   use contact_state, only: state_t
-  use curve_states, only: path_state_t
+  use path_state, only: path_state_t
   implicit none
   private
   public :: place_t, place_of_state, place_without_state, point_of_path, place_on_curve

@@ -11,7 +11,7 @@ module state_sensitivity
   use kinds, only: wp
   use dimensionless_problem, only: problem_t
   use contact_state, only: state_t, far_gap
-  use edge_locked, only: mesh_family_t
+  use mesh_family, only: mesh_family_t
   use controls, only: control_t, at_edge_radius
   use equilibrium, only: equations_t, residual
   use frozen_jacobian, only: frozen_jacobian_t, freeze

@@ -10,10 +10,11 @@ module traced_path
   use undeformed, only: load_undeformed, load_slope_undeformed
   use mesh_plan, only: approach
   use path_tangent, only: tangent_t
+  use path_state, only: no_mesh
   use arc, only: arc_t
   implicit none
   private
-  public :: traced_path_t, path_point_t, no_mesh
+  public :: traced_path_t, path_point_t
 
   !> One equilibrium of the path.
   type :: path_point_t
@@ -49,9 +50,7 @@ module traced_path
     procedure, private :: find_nearby
   end type traced_path_t
 
-  !> The mesh number of undeformed bodies; their coordinate is -log(h0). Ratio of h0 between such
-  !> points.
-  integer, parameter :: no_mesh = 0
+  !> Ratio of h0 between points of undeformed bodies.
   real(wp), parameter :: outer_ratio = 1.12_wp
   !> Number of points on either side of an interval for the polynomial in the interval: a fold or an
   !> extremum may be too close to its neighbour to add information.

@@ -54,12 +54,17 @@ contains
       lines = [lines, line]
     end subroutine add
 
-    !> The first value of a key with its error, if that is known.
+    !> The first value of a key with its error, if that is known. The points of a table leave an
+    !> error of their own in the tension.
     function of(key, unit) result(words)
       character(len=*), intent(in) :: key, unit
       character(len=:), allocatable :: words
+      real(wp) :: error
 
-      words = with_unit(summary%number(key), summary%error_of(row_of(key), 1), unit)
+      error = summary%error_of(row_of(key), 1)
+      if (key == 'max_tension' .and. summary%has('table_error')) &
+        error = error + summary%number('table_error')*abs(summary%number(key))
+      words = with_unit(summary%number(key), error, unit)
     end function of
 
     !> How far the nearest theory is off; each of them, if not all are known.

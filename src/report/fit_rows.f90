@@ -56,7 +56,7 @@ contains
         text = text // numbers('sigma', [adhesion_strength(outcome%problem)])
         text = text // numbers('tabor', [tabor_parameter(outcome%problem)])
       end if
-      signal_unit = trim(curve%data%measured%signal_in)
+      signal_unit = curve%data%measured%signal_unit()
       text = text // assignment_of('signal_unit', signal_unit)
       text = text // numbers('noise', [curve%data%noise%deviation])
       text = text // numbers('noise_correlation', curve%data%noise%correlation(1:))

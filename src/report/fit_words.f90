@@ -14,12 +14,15 @@ module fit_words
   !> Difference of chi squared up to which two fits are equally good; standard errors by which a
   !> part of the baseline that the data do not show must move an unknown to be told.
   real(wp), parameter :: as_well = 4, far = 4
+  !> Largest relative difference of a fitted value and a derived number that is the same.
+  real(wp), parameter :: same = 1.0e-9_wp
 
 contains
 
-  !> The fit in words, for the terminal.
-  function words_of_fit(outcome) result(lines)
+  !> The fit in words, for the terminal. doubts: the warnings about it.
+  function words_of_fit(outcome, doubts) result(lines)
     type(fit_outcome_t), intent(in) :: outcome
+    type(line_t), intent(in) :: doubts(:)
     type(line_t), allocatable :: lines(:)
     type(line_t) :: line
     integer :: i
@@ -27,12 +30,13 @@ contains
     allocate (lines(0))
     associate (curve => outcome%curve)
       line%text = counted(size(curve%data%sample), 'sample') // ', noise ' // &
-        with_unit(curve%data%noise%deviation, nan, trim(curve%data%measured%signal_in)) // &
+        with_unit(curve%data%noise%deviation, nan, curve%data%measured%signal_unit()) // &
         ', correlation of neighbours ' // &
         rounded(curve%data%noise%correlation(1)) // ', ' // counted(count( &
         curve%data%measured%outlier()), 'outlier') // ' left out'
       lines = [lines, line]
       do i = 1, size(curve%unknown)
+        if (is_derived(curve%unknown(i)%unit, outcome%fitted%value(i))) cycle
         line%text = curve%unknown(i)%name // ' = ' // with_unit(outcome%fitted%value(i), &
           outcome%fitted%deviation(i), curve%unknown(i)%unit)
         lines = [lines, line]
@@ -72,11 +76,30 @@ contains
 
   contains
 
-    !> Tells the part of the baseline that would move an unknown farthest if noise hid it.
+    !> Whether a fitted value is one of the derived numbers, which have a line each.
+    logical function is_derived(unit, value)
+      character(len=*), intent(in) :: unit
+      real(wp), intent(in) :: value
+      integer :: k
+
+      is_derived = .false.
+      do k = 1, size(outcome%derived)
+        if (outcome%derived(k)%unit == unit .and. abs(outcome%derived(k)%value - value) <= &
+          same*abs(value)) is_derived = .true.
+      end do
+    end function is_derived
+
+    !> Tells the part of the baseline that would move an unknown farthest if noise hid it, unless a
+    !> warning names a part that the data show.
     subroutine tell_hidden()
       real(wp) :: moves, most
       integer :: i, k, part, unknown
 
+      do i = 1, size(outcome%lacking)
+        do k = 1, size(doubts)
+          if (index(doubts(k)%text, outcome%lacking(i)%name // ' would lower') > 0) return
+        end do
+      end do
       most = far
       part = 0
       do i = 1, size(outcome%lacking)

@@ -5,7 +5,7 @@ module reading_rows
   use kinds, only: wp, nan
   use dimensionless_problem, only: problem_t, surface_energy
   use maugis, only: maugis_units_t, maugis_units
-  use curve_states, only: path_state_t
+  use path_state, only: path_state_t
   use device, only: driven_t, states_on
   use reported_place, only: of_h0, of_load, of_energy, of_radius, of_position, of_displacement
   use places, only: places_t

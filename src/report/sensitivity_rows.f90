@@ -7,7 +7,7 @@ module sensitivity_rows
   use dimensionless_problem, only: problem_t
   use variation, only: variation_t
   use reported_place, only: of_h0, of_displacement, of_radius
-  use curve_states, only: path_state_t
+  use path_state, only: path_state_t
   use experiment_result, only: experiment_result_t
   use reported_values, only: readings_t, read_numbers
   use path_sensitivity, only: rate_t, held

@@ -76,7 +76,6 @@ contains
   subroutine take_loading(scene)
     type(scene_t), intent(inout) :: scene
 
-    if (.not. scene%deck%has_group('loading')) return
     allocate (scene%loading)
     associate (deck => scene%deck, loading => scene%loading)
       call deck%get('loading', 'h0_start', loading%h0_start)
@@ -106,7 +105,6 @@ contains
     type(scene_t), intent(inout) :: scene
     integer :: i
 
-    if (.not. scene%deck%has_group('unloading')) return
     if (.not. allocated(scene%loading)) then
       call scene%deck%mistake('unloading', '', 'needs &loading, from whose states it starts')
       return
@@ -140,7 +138,6 @@ contains
   subroutine take_path(scene)
     type(scene_t), intent(inout) :: scene
 
-    if (.not. scene%deck%has_group('equilibrium_path')) return
     allocate (scene%path)
     associate (deck => scene%deck, path => scene%path)
       if (allocated(scene%loading)) then
@@ -186,8 +183,7 @@ contains
   subroutine take_regime(scene)
     type(scene_t), intent(inout) :: scene
 
-    scene%regime = scene%deck%has_group('regime')
-    if (.not. scene%regime) return
+    scene%regime = .true.
     if (.not. scene%shape%parabolic) call scene%deck%mistake('regime', '', &
       'the theories are those of the parabola; leave out this group or &shape')
     call check_path(scene, 'regime')

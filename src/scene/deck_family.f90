@@ -168,7 +168,6 @@ contains
     logical :: driven
     integer :: i
 
-    if (.not. scene%deck%has_group('sensitivity')) return
     scene%deck%varied = .true.
     driven = scene%deck%has_group('drive')
     why = ''

@@ -7,7 +7,7 @@ module fit_group
   use deck, only: deck_t
   use deck_numbers, only: find_number, present_name
   use deck_keys, only: key_spec, real_value, real_list, names_value
-  use fit_request, only: unknown_t, of_contact_point, of_sensitivity, of_spring
+  use fit_request, only: unknown_t, of_contact_point, of_sensitivity, of_spring, of_separation
   use deck_source, only: source_t, load_source
   use data_table, only: largest_table
   use curve_index, only: curve_index_t
@@ -226,6 +226,9 @@ contains
       call scene%deck%mistake('fit', 'parameters', quoted(unknown%name) // ' cannot be ' // &
         'fitted; of &measurement only contact_point, sensitivity and spring_constant can')
     end select
+    if (any(unknown%role == [of_sensitivity, of_spring]) .and. scene%measured%has(of_separation)) &
+      call scene%deck%mistake('fit', 'parameters', quoted(unknown%name) // ' cannot be fitted to ' &
+      // 'separations, which were computed with it; fit positions of the base')
     unknown%in_log = unknown%role /= of_contact_point
     if (unknown%in_log .and. unknown%value > 0) unknown%scale = unknown%value
   end subroutine take_measured

@@ -1,12 +1,13 @@
 !> &measurement: a measured force curve.
 module measurement_group
   use kinds, only: wp
-  use text, only: quoted, spelled, word_count, word_of
+  use text, only: lower, quoted, spelled, word_count, word_of
   use deck, only: deck_t
   use data_table, only: plain_label
   use deck_keys, only: key_spec, real_value, real_list, integer_value, logical_value, word_value, &
     text_value, names_value
   use baseline, only: baseline_t
+  use fit_request, only: of_position, of_separation, of_load, of_segment
   use scene_groups, only: scene_t
   use units, only: find_unit
   implicit none
@@ -16,6 +17,10 @@ module measurement_group
   integer, parameter :: most_skipped = 40, most_labels = 8
   !> The baselines by their degree, from 0.
   character(len=*), parameter :: kinds(*) = [character(len=9) :: 'constant', 'linear', 'quadratic']
+
+  !> The quantities of columns, by their numbers in `fit_request`.
+  character(len=*), parameter :: quantities(*) = [character(len=10) :: 'position', 'separation', &
+    'load', 'segment']
 
   !> The rows of &measurement.
   type(key_spec), parameter :: measurement_keys(*) = [ &
@@ -38,6 +43,9 @@ module measurement_group
       'base''s position, the signal (force, positive: repulsion, or deflection) and, if there ' // &
       'is one, the segment; or position and signal of approach and of retreat. A minus ' // &
       'changes the sign.', most=4, otherwise='the first two', spaced=.true.), &
+    key_spec('measurement', 'quantity', names_value, 'What the first column is, or all, in ' // &
+      'their order: position (of the base of the spring), separation (of the bodies), load ' // &
+      '(the signal), segment.', most=4, otherwise='position'), &
     key_spec('measurement', 'approach', names_value, 'Numbers or words that the approach has ' // &
       'in the column of segments.', most=most_labels, spaced=.true., &
       otherwise='0, a word for it, or by the position'), &
@@ -47,15 +55,15 @@ module measurement_group
     key_spec('measurement', 'skip_lines', integer_value, 'Number of lines at the begin of the ' // &
       'file that are left out.', default='0', low=0.0_wp, high=1.0e5_wp), &
     key_spec('measurement', 'spring_constant', real_value, 'Stiffness of the spring.', 'N/m', &
-      above=0.0_wp, required=.true.), &
+      above=0.0_wp, otherwise='required; none for separations'), &
     key_spec('measurement', 'sensitivity', real_value, 'Deflection of the spring for one ' // &
       'volt; 1 for a deflection in metres.', 'm/V', above=0.0_wp, &
       otherwise='the signal is the force'), &
     key_spec('measurement', 'contact_point', real_value, 'Position of the base at which ' // &
       'undeformed bodies would touch.', 'm', otherwise='an unknown of &fit, in its parameters'), &
     key_spec('measurement', 'units', names_value, 'Units of position (m, mm, um, nm, pm) and ' // &
-      'signal (N, mN, uN, nN, pN, V, mV, or as of position) in the file.', most=2, &
-      otherwise='those in the names, or m and N or V'), &
+      'signal (N, mN, uN, nN, pN; N/m, mN/m, ... for the force over the radius; V, mV, or as ' // &
+      'of position) in the file.', most=2, otherwise='those in the names, or m and N or V'), &
     key_spec('measurement', 'skip', real_list, 'Pairs of positions of the base, SI; samples ' // &
       'between the two of a pair are left out.', 'm', most=most_skipped, otherwise='none'), &
     key_spec('measurement', 'segment', word_value, 'The branches to fit.', &
@@ -75,6 +83,7 @@ contains
   subroutine take_measurement(scene)
     type(scene_t), intent(inout) :: scene
     character(len=:), allocatable :: names
+    real(wp), allocatable :: radius
     integer :: i
 
     associate (deck => scene%deck, measurement => scene%measured)
@@ -95,16 +104,18 @@ contains
       do i = 1, size(measurement%columns)
         measurement%columns(i) = spelled(word_of(names, i))
       end do
+      call take_quantities(deck, size(measurement%columns), measurement%quantity)
+      if (allocated(deck%error)) return
       call deck%get('measurement', 'skip_lines', measurement%skip_lines)
       call take_labels(deck, 'approach', measurement%approach)
       call take_labels(deck, 'retreat', measurement%retreat)
-      if (size(measurement%columns) /= 3) then
+      if (.not. measurement%has(of_segment)) then
         if (deck%is_set('measurement', 'approach')) call deck%mistake('measurement', 'approach', &
           'needs a column of segments, the third of columns')
         if (deck%is_set('measurement', 'retreat')) call deck%mistake('measurement', 'retreat', &
           'needs a column of segments, the third of columns')
       end if
-      call deck%get('measurement', 'spring_constant', measurement%spring_constant)
+      call take_spring(scene)
       call deck%get_optional('measurement', 'sensitivity', measurement%sensitivity)
       call deck%get_optional('measurement', 'contact_point', measurement%contact_point)
       call deck%get('measurement', 'segment', measurement%segment)
@@ -115,10 +126,81 @@ contains
         call deck%mistake('measurement', 'skip', 'the first of each pair must be the smaller')
       end if
       call take_baseline(deck, measurement%baseline)
-      call take_units(deck, measurement%unit, measurement%signal_in)
+      call take_units(deck, measurement%quantity, measurement%unit, measurement%signal_in)
+      call deck%get_optional('bodies', 'radius', radius)
+      if (allocated(radius)) measurement%radius = radius
+      if (measurement%signal_in == 'R' .and. .not. allocated(radius)) call deck%mistake( &
+        'measurement', 'units', 'a force over a radius needs radius in &bodies')
       call deck%get_optional('fit', 'noise', scene%fit%noise)
     end associate
   end subroutine take_measurement
+
+  !> Reads what the columns are.
+  subroutine take_quantities(deck, columns, quantity)
+    type(deck_t), intent(inout) :: deck
+    integer, intent(in) :: columns
+    integer, allocatable, intent(out) :: quantity(:)
+    character(len=:), allocatable :: names
+    integer :: i, k
+
+    call deck%get('measurement', 'quantity', names)
+    allocate (quantity(max(1, word_count(names))))
+    quantity = of_position
+    do i = 1, word_count(names)
+      quantity(i) = 0
+      do k = 1, size(quantities)
+        if (lower(word_of(names, i)) == trim(quantities(k))) quantity(i) = k
+      end do
+      if (quantity(i) == 0) call deck%mistake('measurement', 'quantity', &
+        quoted(word_of(names, i)) // ' is not a quantity; allowed are ' // listed_quantities())
+    end do
+    if (allocated(deck%error)) return
+    if (size(quantity) == 1 .and. any(quantity(1) == [of_position, of_separation])) then
+      quantity = [quantity, of_load, of_segment]
+      if (columns == 4) quantity = quantity([1, 2, 1, 2])
+      quantity = quantity(:columns)
+    else if (size(quantity) /= columns) then
+      call deck%mistake('measurement', 'quantity', 'give what the first column is, or one ' // &
+        'quantity for each of columns')
+    else if (count(quantity == of_position .or. quantity == of_separation) /= 1 .or. &
+      count(quantity == of_load) /= 1 .or. count(quantity == of_segment) > 1) then
+      call deck%mistake('measurement', 'quantity', 'a curve has a position or a separation, a ' // &
+        'load, and at most one segment')
+    end if
+  end subroutine take_quantities
+
+  !> 'position, separation, ...'
+  pure function listed_quantities() result(words)
+    character(len=:), allocatable :: words
+    integer :: k
+
+    words = trim(quantities(1))
+    do k = 2, size(quantities)
+      words = words // ', ' // trim(quantities(k))
+    end do
+  end function listed_quantities
+
+  !> Reads the spring. A separation is that of the bodies, whatever holds them.
+  subroutine take_spring(scene)
+    type(scene_t), intent(inout) :: scene
+
+    real(wp), allocatable :: spring_constant
+
+    associate (deck => scene%deck)
+      call deck%get_optional('measurement', 'spring_constant', spring_constant)
+      if (scene%sweeps('measurement.spring_constant') .and. .not. allocated(spring_constant)) &
+        spring_constant = 1
+      if (allocated(spring_constant)) then
+        scene%measured%spring_constant = spring_constant
+      else if (.not. scene%measured%has(of_separation)) then
+        call deck%mistake('measurement', 'spring_constant', 'missing; the position of the base ' &
+          // 'of a spring needs it; without a spring, quantity = ''separation''')
+      else if (deck%is_set('measurement', 'sensitivity')) then
+        call deck%mistake('measurement', 'sensitivity', 'a deflection is that of a spring, whose ' &
+          // 'spring_constant is missing')
+      end if
+    end associate
+  end subroutine take_spring
 
   !> Reads which curve of the file is meant.
   subroutine take_number(scene)
@@ -173,33 +255,40 @@ contains
       'slope_each_way', 'baseline = ''constant'' has no slope')
   end subroutine take_baseline
 
-  !> Reads the units of the file's columns: metres, newtons and volts, with SI prefixes.
-  subroutine take_units(deck, unit, signal_in)
+  !> Reads the units of the file's columns: metres, newtons, newtons over metres and volts, with SI
+  !> prefixes. The first is that of lengths, the second that of the signal.
+  subroutine take_units(deck, quantity, unit, signal_in)
     type(deck_t), intent(inout) :: deck
-    real(wp), intent(out) :: unit(2)
+    integer, intent(in) :: quantity(:)
+    real(wp), allocatable, intent(out) :: unit(:)
     character, intent(out) :: signal_in
-    character(len=*), parameter :: bases(2) = ['m  ', 'NVm']
+    character(len=*), parameter :: bases(2) = ['m   ', 'NVmR']
     character(len=:), allocatable :: names, name
     character :: base
+    real(wp) :: factor
     integer :: i
 
-    unit = 0
+    allocate (unit(size(quantity)), source=0.0_wp)
     signal_in = ' '
     call deck%get('measurement', 'units', names)
     do i = 1, min(2, word_count(names))
       name = word_of(names, i)
-      call find_unit(name, unit(i), base)
+      call find_unit(name, factor, base)
       if (base == ' ' .or. index(trim(bases(i)), base) == 0) &
         call deck%mistake('measurement', 'units', quoted(name) // ' is not a unit of ' // &
         trim(merge('position', 'signal  ', i == 1)) // ' such as ' // &
         trim(merge('nm', 'nN', i == 1)))
+      where ((quantity == of_load) .eqv. i == 2) unit = factor
     end do
     if (word_count(names) < 2) return
     signal_in = base
-    if (deck%is_set('measurement', 'sensitivity')) return
-    if (scan(base, 'Vm') > 0) call deck%mistake('measurement', 'units', 'a signal in ' &
-      // 'volts needs sensitivity, the deflection of the spring for one volt, and a ' // &
-      'deflection sensitivity = 1')
+    if (deck%is_set('measurement', 'sensitivity')) then
+      if (base == 'R') call deck%mistake('measurement', 'units', 'a force over a radius is no ' // &
+        'deflection, and has no sensitivity')
+    else if (scan(base, 'Vm') > 0) then
+      call deck%mistake('measurement', 'units', 'a signal in volts needs sensitivity, the ' // &
+        'deflection of the spring for one volt, and a deflection sensitivity = 1')
+    end if
   end subroutine take_units
 
 end module measurement_group

@@ -14,7 +14,7 @@ module scene
     take_path, take_readings, take_regime, take_profiles, has_states
   use deck_family, only: sensitivity_keys, take_sensitivity
   use rate_groups, only: rate_keys, take_rates
-  use theory_groups, only: theory_keys, take_theories
+  use theory_groups, only: theory_keys, take_approximations, take_classical
   use sweep_group, only: sweep_keys, take_sweep
   use fit_group, only: fit_keys, take_fit, load_curve
   use measurement_group, only: measurement_keys
@@ -82,7 +82,8 @@ contains
     call move_alloc(scene%deck%error, error)
   end subroutine read_scene
 
-  !> The scene of a deck that has been read; it is a mistake if keys contradict each other.
+  !> The scene of a deck that has been read, group by group; it is a mistake if keys contradict each
+  !> other.
   subroutine make_scene(deck, scene)
     type(deck_t), intent(in) :: deck
     type(scene_t), intent(out) :: scene
@@ -93,22 +94,23 @@ contains
     if (allocated(deck%error)) return
     call deck%get('scene', 'title', scene%title)
     call take_model(scene)
-    call take_loading(scene)
+    if (deck%has_group('loading')) call take_loading(scene)
     ! The groups below take defaults from &loading and are checked against it.
     if (allocated(scene%deck%error)) return
-    call take_unloading(scene)
-    call take_path(scene)
+    if (deck%has_group('unloading')) call take_unloading(scene)
+    if (deck%has_group('equilibrium_path')) call take_path(scene)
     if (allocated(scene%deck%error)) return
     call take_readings(scene)
-    call take_sensitivity(scene)
-    call take_regime(scene)
+    if (deck%has_group('sensitivity')) call take_sensitivity(scene)
+    if (deck%has_group('regime')) call take_regime(scene)
     call take_rates(scene)
-    call take_profiles(scene)
-    call take_theories(scene)
+    if (deck%has_group('profiles')) call take_profiles(scene)
+    if (deck%has_group('approximations')) call take_approximations(scene)
+    if (deck%has_group('classical')) call take_classical(scene)
     scene%stability = has_states(scene, 'stability')
-    call take_sweep(scene)
+    if (deck%has_group('sweep')) call take_sweep(scene)
     call take_numerics(scene)
-    call take_fit(scene)
+    if (deck%has_group('fit') .or. deck%has_group('measurement')) call take_fit(scene)
     if (.not. any([(deck%has_group(trim(computing(i))), i=1, size(computing))])) &
       call scene%deck%mistake('', '', 'nothing to compute; a deck needs at least one of ' // &
         listing(transfer(computing, all_names), '&', ''))

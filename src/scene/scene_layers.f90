@@ -60,7 +60,7 @@ contains
     logical :: has_coat(2)
     integer :: i
 
-    if (.not. scene%deck%has_group('layer') .or. allocated(scene%deck%error)) return
+    if (allocated(scene%deck%error)) return
     associate (deck => scene%deck, bodies => scene%bodies)
       call deck%assume('layer', 'base', trim(merge('rigid  ', 'elastic', bodies%rigid)))
       call deck%get('layer', 'body', body)
@@ -105,7 +105,6 @@ contains
     type(scene_t), intent(inout) :: scene
     real(wp), allocatable :: thickness(:)
 
-    if (.not. scene%deck%has_group('layer')) return
     call scene%deck%get('layer', 'thickness', thickness)
     associate (least => thinnest*sqrt(scene%shape%radius*scene%law%length))
       if (thickness(1) < least) call scene%deck%mistake('layer', 'thickness', 'the top layer ' // &

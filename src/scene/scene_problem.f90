@@ -101,10 +101,11 @@ contains
     type(scene_t), intent(inout) :: scene
 
     call take_bodies(scene)
-    call take_layer(scene)
+    if (scene%deck%has_group('layer')) call take_layer(scene)
     call read_laws(scene%deck, scene%law)
     if (allocated(scene%law)) call read_shapes(scene%deck, scene%law%length, scene%shape)
-    if (.not. allocated(scene%deck%error)) call check_thinness(scene)
+    if (scene%deck%has_group('layer') .and. .not. allocated(scene%deck%error)) &
+      call check_thinness(scene)
   end subroutine take_model
 
   !> The problem of a scene.

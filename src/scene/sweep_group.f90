@@ -58,7 +58,6 @@ contains
     type(scene_t), intent(inout) :: scene
     integer :: i
 
-    if (.not. scene%deck%has_group('sweep')) return
     scene%deck%varied = .true.
     allocate (scene%sweep)
     do i = 1, size(of_tables)

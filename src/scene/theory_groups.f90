@@ -7,7 +7,7 @@ module theory_groups
   use curve_groups, only: check_order
   implicit none
   private
-  public :: theory_keys, take_theories
+  public :: theory_keys, take_approximations, take_classical
 
   character(len=*), parameter :: no_range = 'missing; give h0_start and h0_end here, or a ' // &
     '&loading or &equilibrium_path to take the range from'
@@ -43,20 +43,26 @@ contains
         default='200')]
   end function range_keys
 
-  !> Reads &approximations and &classical.
-  subroutine take_theories(scene)
+  !> Reads &approximations.
+  subroutine take_approximations(scene)
     type(scene_t), intent(inout) :: scene
 
-    if (scene%deck%has_group('approximations') .and. .not. scene%shape%parabolic) &
+    if (.not. scene%shape%parabolic) &
       call scene%deck%mistake('approximations', '', 'the approximations are those of the ' // &
                               'parabola; leave out this group or &shape')
-    if (scene%deck%has_group('approximations') .and. scene%deck%has_group('layer')) &
+    if (scene%deck%has_group('layer')) &
       call scene%deck%mistake('approximations', '', 'the approximations are those of ' // &
                               'half-spaces; leave out this group or &layer')
     call take_range(scene, 'approximations', scene%approximations)
+  end subroutine take_approximations
+
+  !> Reads &classical.
+  subroutine take_classical(scene)
+    type(scene_t), intent(inout) :: scene
+
     call take_range(scene, 'classical', scene%classical)
     if (scene%deck%is_set('classical', 'theories')) call take_names(scene)
-  end subroutine take_theories
+  end subroutine take_classical
 
   !> Reads the theories to show.
   subroutine take_names(scene)
@@ -102,7 +108,6 @@ contains
     character(len=*), intent(in) :: group
     type(range_t), allocatable, intent(inout) :: range
 
-    if (.not. scene%deck%has_group(group)) return
     allocate (range)
     associate (deck => scene%deck)
       if (allocated(scene%loading)) then

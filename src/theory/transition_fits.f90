@@ -31,19 +31,40 @@ module transition_fits
     procedure :: load_at_displacement
   end type transition_fit_t
 
+  !> Scales of lambda and alpha in lambda = -0.924 ln(1 - 1.02 alpha), of both publications.
+  real(wp), parameter :: lambda_scale = 0.924_wp, alpha_scale = 1.02_wp
+  !> Pull-off and radius without load of Carpick, Ogletree and Salmeron by lambda (`step_of`).
+  real(wp), parameter :: carpick_pull_off(4) = [-1.75_wp, 0.25_wp, 4.04_wp, 1.4_wp], &
+    carpick_radius(4) = [1.54_wp, 0.279_wp, 2.28_wp, 1.3_wp]
+  !> Coefficients of the powers of alpha from 0: Pietrement and Troyon's radius without load,
+  !> magnitude of the pull-off, and beta.
+  real(wp), parameter :: radius_terms(*) = [1.264_wp, 0.950_wp, -1.365_wp, 1.417_wp, -0.451_wp], &
+    pull_off_terms(*) = [2.0_wp, -0.767_wp, 0.267_wp], &
+    beta_terms(*) = [0.0_wp, 0.429_wp, 0.235_wp, -0.683_wp, 0.516_wp]
+  !> Their S: factors and exponents of three powers of alpha.
+  real(wp), parameter :: s_factors(*) = [-2.160_wp, 2.7531_wp, 0.073_wp], &
+    s_exponents(*) = [0.019_wp, 0.064_wp, 1.919_wp]
+
 contains
 
   !> The fit of Carpick, Ogletree and Salmeron.
   elemental type(transition_fit_t) function carpick_fit(theory) result(fit)
     type(maugis_t), intent(in) :: theory
-    real(wp) :: load, width
 
-    load = 4.04_wp*theory%lambda**1.4_wp
-    width = 2.28_wp*theory%lambda**1.3_wp
     fit = new_fit(theory)
-    fit%pull_off = fit%pull_off*(-1.75_wp + 0.25_wp*(load - 1)/(load + 1))
-    fit%radius = fit%radius*(1.54_wp + 0.279_wp*(width - 1)/(width + 1))
+    fit%pull_off = fit%pull_off*step_of(theory%lambda, carpick_pull_off)
+    fit%radius = fit%radius*step_of(theory%lambda, carpick_radius)
   end function carpick_fit
+
+  !> A smooth step between two limits: terms(1) + terms(2) (x - 1)/(x + 1), with
+  !> x = terms(3) lambda^terms(4).
+  pure real(wp) function step_of(lambda, terms) result(value)
+    real(wp), intent(in) :: lambda, terms(4)
+    real(wp) :: x
+
+    x = terms(3)*lambda**terms(4)
+    value = terms(1) + terms(2)*(x - 1)/(x + 1)
+  end function step_of
 
   !> The fit of Pietrement and Troyon.
   elemental type(transition_fit_t) function pietrement_fit(theory) result(fit)
@@ -51,20 +72,29 @@ contains
     real(wp) :: width
 
     fit = new_fit(theory)
-    associate (alpha => fit%alpha)
-      width = 1.264_wp + alpha*(0.950_wp + alpha*(-1.365_wp + alpha*(1.417_wp - alpha*0.451_wp)))
-      fit%pull_off = -fit%pull_off*(2 + alpha*(-0.767_wp + alpha*0.267_wp))
-    end associate
+    width = polynomial(radius_terms, fit%alpha)
+    fit%pull_off = -fit%pull_off*polynomial(pull_off_terms, fit%alpha)
     fit%radius = fit%radius*width
     fit%sunk = fit%sunk*width**2
   end function pietrement_fit
+
+  !> The sum of powers of x from 0, with the given coefficients.
+  pure real(wp) function polynomial(terms, x) result(value)
+    real(wp), intent(in) :: terms(:), x
+    integer :: k
+
+    value = 0
+    do k = size(terms), 1, -1
+      value = terms(k) + x*value
+    end do
+  end function polynomial
 
   !> A fit with the numbers of Maugis' units.
   elemental type(transition_fit_t) function new_fit(theory) result(fit)
     type(maugis_t), intent(in) :: theory
 
-    fit = transition_fit_t((1 - exp(-theory%lambda/0.924_wp))/1.02_wp, theory%unit%load, &
-      theory%unit%radius, theory%unit%displacement, theory%unit%load)
+    fit = transition_fit_t((1 - exp(-theory%lambda/lambda_scale))/alpha_scale, &
+      theory%unit%load, theory%unit%radius, theory%unit%displacement, theory%unit%load)
   end function new_fit
 
   !> z at a load [N]; NaN below the pull-off, and for a load that does not exist.
@@ -91,12 +121,12 @@ contains
   elemental real(wp) function displacement_at_load(self, load) result(displacement)
     class(transition_fit_t), intent(in) :: self
     real(wp), intent(in) :: load
-    real(wp) :: pull, beta
+    real(wp) :: s, beta
 
-    associate (alpha => self%alpha, z => self%state_at_load(load))
-      pull = -2.160_wp*alpha**0.019_wp + 2.7531_wp*alpha**0.064_wp + 0.073_wp*alpha**1.919_wp
-      beta = alpha*(0.429_wp + alpha*(0.235_wp + alpha*(-0.683_wp + alpha*0.516_wp)))
-      displacement = self%sunk*(z**(4.0_wp/3) - pull*z**(2*beta/3))
+    s = sum(s_factors*self%alpha**s_exponents)
+    beta = polynomial(beta_terms, self%alpha)
+    associate (z => self%state_at_load(load))
+      displacement = self%sunk*(z**(4.0_wp/3) - s*z**(2*beta/3))
     end associate
   end function displacement_at_load
 

@@ -76,6 +76,20 @@ def test_a_curve_that_is_steep_but_has_no_fold_has_no_jump(run):
         assert "jump_in_h0" not in found and "jump_out_h0" not in found
 
 
+@pytest.mark.slow
+def test_the_end_of_a_branch_far_from_the_row_before_is_found_on_many_nodes(run):
+    """The edge passes sixty nodes between two rows. The search stopped before the fold, the number
+    of its states was limited by the number of nodes; the row was then said not to converge."""
+    groups = {"loading": loading(5.5, 3.0, 0.5), "unloading": {"h0_end": 8.5, "h0_step": 0.5}}
+    found = run(lennard_jones(4.3586, **groups, numerics={
+        "grid": "uniform", "nodes": 744, "r_max": 6.39, "accuracy": 0.02}))
+    exact = run(lennard_jones(4.3586, equilibrium_path={"h0_end": 3.0})).summary
+    assert found.curve["converged"].all()
+    for key in ("jump_in_h0", "jump_out_h0"):
+        assert found.summary[key] == pytest.approx(exact[key], abs=found.summary[f"{key}_error"])
+        assert found.summary[f"{key}_error"] < 0.05
+
+
 def right_or_missing(result, exact):
     """Compare the jumps that a run has found; a warning says if one is missing. Return how many."""
     found = [key for key in ("jump_in_h0", "jump_out_h0") if key in result.summary]

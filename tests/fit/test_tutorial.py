@@ -48,6 +48,9 @@ def test_the_curve_gives_the_numbers_of_the_page(fit):
         for text, expected in zip(found[1::2], re.findall(number, line)):
             assert float(text) == pytest.approx(float(expected), rel=2e-2)
     assert "warning" not in said
+    # A fitted value that also follows from the fit, in the field's words, is told once.
+    assert said.count("0.042") == 1, said
+    assert "force.work_of_adhesion =" not in said
 
 
 @pytest.mark.slow
@@ -57,6 +60,8 @@ def test_a_spoilt_curve_has_the_message_of_the_page(fit, name):
     for phrase in phrases(name):
         start = re.sub(r"\d.*", "", phrase)
         assert start in said, (phrase, said)
+    # What noise might hide is not told beside what the data show.
+    assert "by as little as noise hides" not in said
 
 
 @pytest.mark.parametrize(("name", "keys", "columns"), [

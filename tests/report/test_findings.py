@@ -2,6 +2,7 @@
 
 import re
 
+import numpy as np
 import pytest
 from support.scenes import deck, loading, read_groups
 
@@ -55,6 +56,21 @@ def test_a_tension_in_the_last_row_is_no_pull_off(snapin, tmp_path):
     assert re.search("largest tension .*N, in the first or last row: no pull-off force", text)
     assert "pull-off force " not in text.replace("no pull-off force", "").replace(
         "max_tension is no pull-off", "") and " theory" not in text
+
+
+def test_the_pull_off_of_a_noisy_table_has_the_error_of_its_points(snapin, tmp_path):
+    """The line had the error of the calculation alone, ten million times smaller."""
+    gap = np.geomspace(0.4e-9, 5e-9, 200)
+    noise = np.random.default_rng(3).standard_normal(200)
+    pressure = 1e-20/(6*np.pi*gap**3)*((0.5e-9/gap)**6 - 1)*(1 + 3e-3*noise)
+    np.savetxt(tmp_path / "law.csv", np.transpose([gap, pressure]), delimiter=",")
+    text, summary = said(snapin, tmp_path, {
+        "bodies": SCENE["bodies"], "tabulated": {"file": "law.csv", "tail_exponent": 3},
+        "equilibrium_path": {"h0_end": 0.0}})
+    value, error, prefix = re.search(f"pull-off force {VALUE}N", text).groups()
+    of_points = summary["table_error"]*summary["max_tension"]
+    assert of_points > 100*summary["max_tension_error"] > 0
+    assert float(error)*PREFIX[prefix] == pytest.approx(of_points, rel=0.02)
 
 
 def test_numerics_are_told_if_asked_for(snapin, tmp_path):

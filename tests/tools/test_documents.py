@@ -128,3 +128,13 @@ def test_every_note_on_the_compiler_that_code_cites_is_in_the_list_and_none_is_i
 def test_every_module_says_what_it_is_for():
     for path in (ROOT / "src").rglob("*.f90"):
         assert path.read_text(encoding="utf-8").startswith("!> "), path
+
+
+def test_the_paper_cites_its_whole_bibliography_and_has_the_sections_of_its_journal():
+    paper = (ROOT / "docs/paper.md").read_text(encoding="utf-8")
+    cited = set(re.findall(r"@(\w+)", paper))
+    assert cited == set(re.findall(r"^@\w+{(\w+),$", (ROOT / "docs/paper.bib").read_text(), re.M))
+    assert re.findall(r"^# (.*)$", paper, re.M) == [
+        "Summary", "Statement of need", "State of the field", "Software design",
+        "Research impact statement", "AI usage disclosure", "Acknowledgements", "References"]
+    assert 750 <= len(paper.split()) <= 1750

@@ -16,6 +16,7 @@ from support.processes import HANG
 pytest.importorskip("matplotlib")
 from snapin.plots.device_curve import draw_device_curve  # noqa: E402 (needs matplotlib)
 from snapin.plots.drawing import scale, smooth  # noqa: E402 (needs matplotlib)
+from snapin.plots.fit import _numbers_of as numbers_of  # noqa: E402 (needs matplotlib)
 from snapin.plots.force_curve import Curve, draw_force_curve  # noqa: E402 (needs matplotlib)
 from snapin.plots.force_law import OTHERS  # noqa: E402 (needs matplotlib)
 from snapin.plots.map import draw_map  # noqa: E402 (needs matplotlib)
@@ -309,6 +310,38 @@ def test_largest_tensions_at_an_end_are_no_pull_offs_in_pictures(tmp_path):
     table(f"{i},0,1,2,{i + 1},1,\n" for i in range(10))
     with pytest.raises(snapin.results.ResultsError, match="no pull-offs"):
         draw_map(tmp_path, over=["a.x"])
+
+
+def test_a_fitted_number_is_in_the_picture_once_in_the_words_of_the_field():
+    fit = {"parameters": ["bodies.young(2)", "measurement.contact_point"], "units": ["Pa", "m"],
+           "estimate": [8.19e8, 3.2e-6], "standard_error": [1.6e7, 1e-10],
+           "young_of_sample": [8.19e8], "young_of_sample_error": [1.6e7]}
+    names = [line.split(" 0.")[0].split(" 3.")[0] for line in numbers_of(fit)]
+    assert names == ["contact point", "Young's modulus of the sample"]
+
+
+def test_a_map_ends_where_its_logarithmic_axis_begins_and_has_no_comb_there(tmp_path):
+    """Where the next case was negative, the whole cell was left out: the lower edge was a comb."""
+    (tmp_path / "summary.nml").write_text("&summary\n  converged = .true.\n/\n&cost\n/\n")
+    # A column that falls through zero along each line of the sweep, at another place in each.
+    rows = [f"{i},{j},1,{i + 1},{30 * (20 - j) ** 2 / 20 + 0.01 - 0.37 * i - (j > 18)},{i + j + 1},\n"
+            for i in range(20) for j in range(21)]
+    (tmp_path / "sweep.csv").write_text(
+        "# title:\na.x,a.y,converged,across,down,max_tension,failure\n" + "".join(rows))
+    axes = draw_map(tmp_path, over=["across", "down"]).axes[0]
+    (mesh,) = [of for of in axes.collections if hasattr(of, "_triangulation")]
+    places = mesh._triangulation
+    corners = places.y[places.triangles]
+    begin = corners.min()
+    # Each line of cases, and each cell between two of them, comes down to the begin of the axis.
+    for left in np.arange(1, 20):
+        inside = (places.x[places.triangles] >= left).all(axis=1) & (
+            places.x[places.triangles] <= left + 1).all(axis=1)
+        assert corners[inside].min() == pytest.approx(begin), left
+        for side in (left, left + 1):
+            at = inside[:, None] & (places.x[places.triangles] == side)
+            assert corners[at].min() == pytest.approx(begin), (left, side)
+    assert begin == round(begin)
 
 
 def test_a_curve_that_ends_before_its_pull_off_has_a_mark(tmp_path):

@@ -15,6 +15,7 @@
     starts      fits of strongly adhering bodies from starts that are up to ten times off
     fits        fits of curves with several kinds of noise and baseline
     untold      the same without the keys for the baseline: wrong without a warning
+    separations fits of forces over the radius against separation, with and without a spring
 
 The program is $SNAPIN, else build/snapin. Ends with status 1 if a study finds an error.
 """
@@ -33,7 +34,7 @@ sys.path.insert(0, str(ROOT / "tests"))
 
 from snapin.command import as_command  # noqa: E402
 from support import study_bodies, study_cycles, study_estimates, study_fits  # noqa: E402
-from support import study_folds, study_laws  # noqa: E402
+from support import study_folds, study_laws, study_separations  # noqa: E402
 from support.comparison import is_bad  # noqa: E402
 from support.decks_in_units import program_path  # noqa: E402
 from support.spread import spread  # noqa: E402
@@ -56,8 +57,11 @@ STUDIES = {
     "starts": (study_fits, study_fits.clean_jobs, 200, lambda finding: finding.wrong),
     "fits": (study_fits, study_fits.noisy_jobs, 150, lambda finding: finding.wrong),
     "untold": (study_fits, study_fits.untold_jobs, 150, lambda finding: finding.wrong),
+    "separations": (study_separations, study_separations.separation_jobs, 120,
+                    lambda finding: finding.wrong),
 }
-SEEDED = ("starts", "fits", "untold", "cycles", "cusp", "laws", "layers", "experiments", "shapes")
+SEEDED = ("starts", "fits", "untold", "separations", "cycles", "cusp", "laws", "layers",
+          "experiments", "shapes")
 
 
 def study(name, arguments, folder):

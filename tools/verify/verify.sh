@@ -1,6 +1,6 @@
 #!/bin/sh
-# tools/verify/verify.sh [STAGE ...]: checks that take too long for ./test. docs/testing.md has the
-# results.
+# tools/verify/verify.sh [STAGE ...]: checks that take too long for ./test. docs/testing.md and
+# docs/records/verification.md have the results.
 #
 # A stage is the function below with its name. Without a stage: all stages, about two hours on two
 # cores. Ends with status 1 if one fails. EXTREMES (200) is the number of random decks, FIRST (5000)

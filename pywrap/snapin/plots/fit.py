@@ -75,12 +75,15 @@ def _numbers_of(fit):
     """Return lines with the fitted values and what follows from them, of a group of fit.nml."""
     names, values, errors, units = (np.atleast_1d(fit[key]) for key in (
         "parameters", "estimate", "standard_error", "units"))
+    derived = [(words, fit[key][0], fit[key + "_error"][0], unit)
+               for key, words, unit in _DERIVED if key in fit]
+    # A work of adhesion or a modulus that is fitted itself is there once, in the field's words.
     rows = [(name.split(".", 1)[1].replace("_", " "), *row)
-            for name, *row in zip(names, values, errors, units)]
-    # A work of adhesion or a modulus that is fitted itself is there once.
-    rows += [(words, fit[key][0], fit[key + "_error"][0], unit) for key, words, unit in _DERIVED
-             if key in fit and not np.isclose(fit[key], values, rtol=1e-9, atol=0).any()]
-    return [f"{name} {_with_error(value, error, unit)}" for name, value, error, unit in rows]
+            for name, *row in zip(names, values, errors, units)
+            if not any(np.isclose(row[0], number, rtol=1e-9, atol=0) and unit == row[2]
+                       for _, number, _, unit in derived)]
+    return [f"{name} {_with_error(value, error, unit)}"
+            for name, value, error, unit in [*rows, *derived]]
 
 
 def _with_error(value, error, unit):

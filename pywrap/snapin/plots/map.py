@@ -15,7 +15,7 @@ import re
 
 import numpy as np
 from matplotlib import colormaps
-from matplotlib.colors import LogNorm
+from matplotlib.colors import LogNorm, Normalize
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, MaxNLocator
 from matplotlib.tri import Triangulation
@@ -51,6 +51,9 @@ _NO_PULL_OFF = {"color": GREY, "marker": "o", "markersize": 4, "fillstyle": "non
 _DECADES = 30.0
 # With more values of the second column a map is drawn, not curves; as many curves have labels.
 _MOST_CURVES = 7
+# The share of the positive values of a column that may be below the begin of its logarithmic axis,
+# if others are not positive: a few values near zero must not take decades of the picture.
+_BELOW = 0.02
 # A triangle with less than this, twice its area over that of the picture, is flat.
 _FLAT = 1e-12
 
@@ -146,22 +149,39 @@ def _chosen(columns, keys, where):
 
 def _draw_colours(figure, axes, places, keys, values, good, failed, at_end, label):
     """Draw values over two columns: colours, contours, and marks of cases without a value."""
-    x, y = (_as_drawn(place, axis) for place, axis in zip(places, (axes.xaxis, axes.yaxis)))
+    lowest = [_lowest(place) for place in places]
+    x, y = map(_as_drawn, places, lowest)
+    for begin, axis in zip(lowest, (axes.xaxis, axes.yaxis)):
+        if begin is not None:
+            axis.set_major_locator(MaxNLocator(integer=True))
+            axis.set_major_formatter(lambda power, _: f"$10^{{{power:.0f}}}$")
     there = np.isfinite(x) & np.isfinite(y)
     x, y = (np.where(there, of, of[there].mean()) for of in (x, y))
     triangles = _triangles(x / (np.ptp(x) or 1.0), y / (np.ptp(y) or 1.0), there, keys)
     # A triangle with a corner without value or place is left out.
-    mesh = Triangulation(x, y, triangles, mask=~(good & there)[triangles].all(axis=1))
+    placed = good & np.isfinite(places).all(axis=0)
+    triangles = triangles[placed[triangles].all(axis=1)]
+    points = np.where(placed, np.stack([*places, values]), np.stack([*places, values])[
+        :, placed].mean(axis=1, keepdims=True)).T
+    for column, begin in enumerate(lowest):
+        if begin is not None:
+            triangles, points = _cut(triangles, points, column, begin)
+    if not len(triangles):
+        triangles = np.full((1, 3), np.flatnonzero(placed)[0])
+    used, triangles = np.unique(triangles, return_inverse=True)
+    points, triangles = points[used], triangles.reshape(-1, 3)
+    mesh = Triangulation(*(_as_drawn(np.maximum(of, begin or -np.inf), begin)
+                           for of, begin in zip(points.T, lowest)), triangles)
+    filled = points[:, 2]
     good, failed, at_end = good & there, failed & there, at_end & there
     nothing = there & ~good & ~failed & ~at_end
     low, high = values[good].min(), values[good].max()
-    norm = LogNorm() if _wide(values[good]) else None
-    filled = np.where(good, values, low)
+    norm = LogNorm(low, high) if _wide(values[good]) else Normalize(low, high)
     colours = axes.tripcolor(mesh, filled, shading="gouraud", cmap="viridis", norm=norm,
                              rasterized=True)
     bar = figure.colorbar(colours, ax=axes, label=label)
     if high > low:
-        levels = LogLocator(subs=(1, 2, 5)) if norm else MaxNLocator(8)
+        levels = LogLocator(subs=(1, 2, 5)) if _wide(values[good]) else MaxNLocator(8)
         levels = levels.tick_values(low, high)
         bar.add_lines(axes.tricontour(mesh, filled, levels=levels, colors="white", linewidths=0.7))
     axes.plot(x[failed], y[failed], "x", color=VERMILION, markersize=4)
@@ -191,15 +211,39 @@ def _triangles(x, y, there, keys):
     return found
 
 
-def _as_drawn(place, axis):
-    """Return a column as it is drawn: the logarithm if the column spans decades, with powers of
-    ten at the axis and without negative values."""
+def _cut(triangles, points, column, begin):
+    """Return triangles without their parts below the begin of an axis, and points with those where
+    their sides pass it, interpolated between two neighbours."""
+    above = points[:, column] >= begin
+    count = above[triangles].sum(axis=1)
+    kept, new = [triangles[count == 3]], []
+    for corners in triangles[(count == 1) | (count == 2)]:
+        polygon = []
+        for one, other in zip(corners, np.roll(corners, -1)):
+            if above[one]:
+                polygon.append(one)
+            if above[one] != above[other]:
+                step = points[other] - points[one]
+                polygon.append(len(points) + len(new))
+                new.append(points[one] + (begin - points[one, column]) / step[column] * step)
+        kept.append(np.array([[polygon[0], *pair] for pair in zip(polygon[1:], polygon[2:])]))
+    return np.concatenate(kept), np.vstack([points, *new])
+
+
+def _lowest(place):
+    """Return where the logarithmic axis of a column begins that spans decades; None: the axis is
+    linear."""
     positive = place[place > 0]
     if 2 * len(positive) < len(place) or not _wide(positive):
-        return place
-    axis.set_major_locator(MaxNLocator(integer=True))
-    axis.set_major_formatter(lambda power, _: f"$10^{{{power:.0f}}}$")
-    return np.log10(np.where(place > 0, place, np.nan))
+        return None
+    if len(positive) == len(place):
+        return positive.min()
+    return 10 ** np.floor(np.log10(np.quantile(positive, _BELOW, method="lower")))
+
+
+def _as_drawn(place, begin):
+    """Return a column as it is drawn: the logarithm if its axis begins at a positive value."""
+    return place if begin is None else np.log10(np.where(place >= begin, place, np.nan))
 
 
 def _draw_curves(axes, x, values, good, others, *, joined, at_end):

@@ -20,6 +20,8 @@ module steric
 
   !> Boltzmann's constant [J/K].
   real(wp), parameter :: boltzmann = 1.380649e-23_wp
+  !> Exponents of Alexander and de Gennes: osmotic pressure, and elasticity of the chains.
+  real(wp), parameter :: osmotic = 9/4.0_wp, elastic = 3/4.0_wp
 
   !> The rows of &steric.
   type(key_spec), parameter :: keys(*) = [ &
@@ -78,16 +80,16 @@ contains
       case (of_slope)
         value = -1/u**3 - 1 + 2*u**3
       case default
-        value = 0.5_wp/u + 0.5_wp*u**2 - 0.1_wp*u**5 - 0.9_wp
+        value = (5/u + 5*u**2 - u**5 - 9)/10
       end select
     else
       select case (quantity)
       case (of_pressure)
-        value = u**(-2.25_wp) - u**0.75_wp
+        value = u**(-osmotic) - u**elastic
       case (of_slope)
-        value = -2.25_wp*u**(-3.25_wp) - 0.75_wp*u**(-0.25_wp)
+        value = -osmotic*u**(-osmotic - 1) - elastic*u**(elastic - 1)
       case default
-        value = 0.8_wp*u**(-1.25_wp) + 4*u**1.75_wp/7 - 48.0_wp/35
+        value = (u**(1 - osmotic) - 1)/(osmotic - 1) + (u**(elastic + 1) - 1)/(elastic + 1)
       end select
     end if
     where (gap >= 1) value = 0

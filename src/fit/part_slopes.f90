@@ -1,0 +1,51 @@
+!> Slopes of a measured curve: of straight lines through the samples of a way over parts of the
+!> travel.
+module part_slopes
+  use kinds, only: wp
+  use measured_curve, only: measured_curve_t
+  implicit none
+  private
+  public :: slopes_of_parts, steepest_slope
+
+  !> Parts of the travel, of which each overlaps the next by half, and the fewest samples of one.
+  integer, parameter :: parts = 10, fewest = 5
+
+contains
+
+  !> The slopes of the parts with enough samples, units of signal over z; positive where the signal
+  !> rises towards the other body, as in contact. In jumps it changes the other way.
+  pure function slopes_of_parts(measured) result(slope)
+    type(measured_curve_t), intent(in) :: measured
+    real(wp), allocatable :: slope(:)
+    real(wp) :: middle(2), low, width
+    logical, allocatable :: there(:)
+    integer :: i, way
+
+    allocate (slope(0))
+    associate (z => measured%z, s => measured%signal)
+      low = minval(z)
+      width = (maxval(z) - low)/parts
+      do way = 1, 2
+        do i = 0, 2*parts - 2
+          there = measured%usable .and. (measured%inward .eqv. way == 1) .and. &
+            abs(z - low - (0.5_wp*i + 0.5_wp)*width) <= 0.5_wp*width
+          if (count(there) < fewest) cycle
+          middle = [sum(z, there), sum(s, there)]/count(there)
+          slope = [slope, -measured%facing*sum((z - middle(1))*(s - middle(2)), there)/ &
+            max(sum((z - middle(1))**2, there), tiny(1.0_wp))]
+        end do
+      end do
+    end associate
+  end function slopes_of_parts
+
+  !> The steepest slope of any part, or of the whole curve.
+  pure real(wp) function steepest_slope(measured) result(slope)
+    type(measured_curve_t), intent(in) :: measured
+
+    associate (z => measured%z, s => measured%signal)
+      slope = max(maxval(abs(slopes_of_parts(measured))), (maxval(s, measured%usable) - &
+        minval(s, measured%usable))/max(maxval(z) - minval(z), tiny(1.0_wp)))
+    end associate
+  end function steepest_slope
+
+end module part_slopes
