@@ -26,7 +26,10 @@ def test_the_estimate_of_path_and_cycle_bounds_the_error_within_a_hundred(tmp_pa
         assert len(others) >= (8 if sigma > 0.2911 else 2), found.deviations
         assert max(found.estimate, *(one.relative for one in others)) <= found.accuracy
         errors = [one.relative for one in others if one.known]
-        assert not errors or max(errors) <= found.estimate <= 100 * max(errors), found
+        # At finer accuracies every error may be below that of the independent solution.
+        assert errors or found.accuracy < 1e-5
+        if errors:
+            assert max(errors) <= found.estimate <= 100 * max(errors), found
 
 
 @pytest.mark.parametrize("big_lambda", [1.0, 216.0])
@@ -35,13 +38,16 @@ def test_the_estimate_of_a_repulsion_bounds_the_error_within_a_hundred(run, big_
     exact, *found = (run(exponential(big_lambda, loading=loading, numerics={"accuracy": accuracy}))
                      for accuracy in (1e-10, *ACCURACIES))
     load, displacement = exact.curve["load"], exact.curve["displacement"]
+    judged = 0
     for one, accuracy in zip(found, ACCURACIES):
         off = abs(one.curve["displacement"] - displacement)
         error = max(off[-1] / displacement[-1], *abs(one.curve["load"] / load - 1)[[0, -1]])
         # Displacements at some rows are part of the estimate, here at all of them.
         widest = max(error, (off / np.maximum(displacement, 1.0)).max())
         assert error <= accuracy
+        judged += error > KNOWN
         assert error <= KNOWN or error <= one.summary["error_estimate"] <= 100 * widest
+    assert judged >= 2
 
 
 def test_the_energy_lost_is_known_where_the_bodies_land_under_the_largest_tension(run):

@@ -52,7 +52,7 @@ def test_outliers_are_left_out_and_marked(branches, tmp_path):
     assert np.abs(jumps_off(result, branches)).max() < 4
     assert result.fitted["fit"]["noise"][0] == pytest.approx(NOISE, rel=0.1)
     marked = result.fit["outlier"] == 1
-    assert result.fitted["fit"]["outliers"][0] == marked.sum()
+    assert result.fitted["fit"]["outliers"][0] == marked.sum() >= 0.9 * spoilt.sum()
     assert (result.fit["used"][marked] == 0).all()
     # All that count are good, and next to no good sample is marked.
     assert not (spoilt & (result.fit["used"] == 1)).any()
@@ -178,7 +178,8 @@ def test_a_retreat_that_ends_before_the_bodies_part_is_named(branches, tmp_path)
         result = fitted(tmp_path, (z[kept], force[kept], segment[kept]), started(), TRUTH)
         told = [text for text in result.summary.get("warnings", []) if "retreat ends below" in text]
         assert bool(told) == named, result.summary.get("warnings")
-        assert named or np.abs(errors_off(result)).max() < 4
+        if not named:
+            assert np.abs(errors_off(result)).max() < 4
 
 
 def test_gaps_between_samples_are_no_gain_of_energy(branches, tmp_path):

@@ -116,6 +116,7 @@ def test_before_the_jump_the_load_is_that_of_undeformed_bodies():
     assert before["load"].max() == pytest.approx(highest, rel=0.01)
     # Outside the barrier the load lies between those of the gap that was and of the gap that is.
     before = before[before["h0"] > 2e-9]
+    assert len(before) > 200
     ends = np.array([sphere * law(before[gap])[2] for gap in ("h0", "h_centre")])
     slack = 1e-6 * abs(deepest)
     assert (before["load"] >= ends.min(axis=0) - slack).all()

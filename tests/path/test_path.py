@@ -43,6 +43,8 @@ def test_the_first_and_last_fold_bound_exactly_the_unstable_stretch(run, sigma):
     # The folds are on the curve, and neither side of them is taken for the other.
     np.testing.assert_allclose(curve["h0"][at_fold], folds[[0, -1]], rtol=1e-12)
     first, last = at_fold
+    before_contact = curve["h_centre"] > 1.3
+    assert 10 <= first < last < len(curve) - 10 and before_contact.sum() > 10
     assert (curve["stable"][:first] == 1).all()
     assert (curve["stable"][first : last + 1] == 0).all()
     assert (curve["stable"][last + 1 :] == 1).all()
@@ -50,7 +52,6 @@ def test_the_first_and_last_fold_bound_exactly_the_unstable_stretch(run, sigma):
     assert (np.diff(curve["h0"][: first + 1]) < 0).all()
     assert (np.diff(curve["h0"][last:]) < 0).all()
     # Along the whole path the gap on the axis only falls until contact.
-    before_contact = curve["h_centre"] > 1.3
     assert (np.diff(curve["h_centre"][before_contact]) < 0).all()
 
 

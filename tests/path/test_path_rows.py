@@ -84,6 +84,7 @@ def test_every_row_is_an_equilibrium_and_there_are_not_too_many(run, sigma):
     before_contact = curve["h_centre"] > 1.3
     assert (np.diff(curve["h_centre"][before_contact]) < 0).all()
     in_contact = curve["contact_radius"] > 1
+    assert before_contact.sum() > 10 and in_contact.sum() > 10
     assert (np.diff(curve["contact_radius"][in_contact]) > 0).all()
 
 

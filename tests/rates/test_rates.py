@@ -197,8 +197,9 @@ def test_a_spring_driven_slowly_is_the_device(run):
                                device={"stiffness": 0.4, "z_end": -1.0})).summary
     found = run(scene(2.0, stiffness=0.4, start=60.0, velocity=1.0)).summary
     assert near(found, "energy_dissipated", device["device_energy_lost"], 2.0)
-    assert near(found, "max_tension", -device["device_jump_out_load"], 30.0) or \
-        found["max_tension"] > -device["device_jump_out_load"]
+    # The slowly driven bodies part under no less than the tension of the device.
+    assert found["max_tension"] >= (
+        -device["device_jump_out_load"] - 30 * found["max_tension_error"])
 
 
 def test_h0_at_the_end_of_a_drive_has_an_error_only_behind_a_spring(run):
