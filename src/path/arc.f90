@@ -12,6 +12,7 @@ module arc
   use mesh_plan, only: approach
   use path_coordinate, only: path_control
   use path_tangent, only: tangent_t, tangent_along
+  use moved_gaps, only: moved_outside, move_with_edge
   implicit none
   private
   public :: arc_t, between, most_states
@@ -22,6 +23,9 @@ module arc
   !> s), in the order of s.
   type :: arc_t
     integer :: mesh = approach, held = 0
+    !> Whether guesses are at constant distance from the contact edge: outside the edge to which the
+    !> mesh is locked or, about the axis, on both sides of the edge.
+    logical :: moved = .false.
     !> Number of states from which a state beyond an end is extrapolated.
     integer :: extrapolated_from = 3
     real(wp) :: coordinate(most_states) = 0
@@ -33,6 +37,7 @@ module arc
     procedure :: drop_first
     procedure :: guess
     procedure :: guess_from
+    procedure, private :: has_moving_parts
     procedure :: curve
     procedure :: slope
     procedure :: curvature
@@ -47,9 +52,10 @@ contains
 
   !> The state at the coordinate s, with its tangent. The guess from the arc is corrected to
   !> rounding or, where rounding is not reached, to the tolerance of the options, so that load and
-  !> position on the path are both exact. slope_error: if present, the options' tolerance is enough,
-  !> and the tangent may have this relative error. miss: the largest change of a gap from the guess,
-  !> relative or in the law's lengths; and that of h0 and load.
+  !> position on the path are both exact; if that fails, the other kind of guess is tried (see
+  !> `moved`). slope_error: if present, the options' tolerance is enough, and the tangent may have
+  !> this relative error. miss: the largest change of a gap from the guess and from the other kind
+  !> of guess (huge if there is none), relative or in the law's lengths; and that of h0 and load.
   subroutine state_at(self, solver, s, state, tangent, converged, slope_error, miss)
     class(arc_t), intent(in) :: self
     class(solver_t), intent(inout) :: solver
@@ -58,28 +64,56 @@ contains
     type(tangent_t), intent(out) :: tangent
     logical, intent(out) :: converged
     real(wp), intent(in), optional :: slope_error
-    real(wp), intent(out), optional :: miss(2)
-    type(state_t) :: guess
+    real(wp), intent(out), optional :: miss(3)
+    type(state_t) :: tried(2)
     type(hermite_t) :: load
+    integer :: k, guesses
 
-    associate (problem => solver%problem, &
+    guesses = 1
+    if (self%has_moving_parts(solver)) guesses = 2
+    converged = .false.
+    associate (problem => solver%problem, grid => solver%meshes%grid(self%mesh), &
       control => path_control(solver%problem, solver%meshes, self%mesh, s))
-      guess = self%guess(problem, solver%meshes%grid(self%mesh), s)
-      state = guess
-      if (present(slope_error)) then
-        call solver%correct(control, state, converged)
-      else
-        call solver%correct(control, state, converged, tightened(solver%options))
-        converged = converged .or. state%residual <= solver%options%tolerance
-      end if
+      do k = 1, guesses
+        if (converged .and. .not. present(miss)) exit
+        tried(k) = self%guess(problem, grid, s, self%moved .neqv. k == 2)
+        if (converged) cycle
+        state = tried(k)
+        if (present(slope_error)) then
+          call solver%correct(control, state, converged)
+        else
+          call solver%correct(control, state, converged, tightened(solver%options))
+          converged = converged .or. state%residual <= solver%options%tolerance
+        end if
+      end do
       if (present(miss)) then
+        miss = huge(miss)
+        miss(:guesses) = [(distance(state, tried(k)), k=1, guesses)]
         load = self%curve([0.0_wp, 1.0_wp], s)
-        miss = [distance(state, guess), max(abs(state%h0 - guess%h0)/(1 + abs(guess%h0)), &
-          abs(state%load - load%value(s))/(abs(state%load) + pi*problem%law%adhesion))]
+        miss(3) = max(abs(state%h0 - tried(1)%h0)/(1 + abs(tried(1)%h0)), &
+          abs(state%load - load%value(s))/(abs(state%load) + pi*problem%law%adhesion))
       end if
     end associate
     if (converged) call tangent_along(solver, self%mesh, s, state, tangent, converged, slope_error)
   end subroutine state_at
+
+  !> Whether the gaps change mainly by a movement of the edge: on meshes about the axis, if there is
+  !> a contact; on those that are locked to the edge the rings of an oscillating pressure and the
+  !> front of a step move with the edge or, around a small contact, hardly at all.
+  pure logical function has_moving_parts(self, solver)
+    class(arc_t), intent(in) :: self
+    class(solver_t), intent(in) :: solver
+
+    associate (law => solver%problem%law)
+      if (solver%meshes%is_about_axis(self%mesh)) then
+        has_moving_parts = law%edge_gap > 0
+        if (has_moving_parts) has_moving_parts = &
+          maxval(self%state(:self%held)%axis_gap) < law%edge_gap
+      else
+        has_moving_parts = max(law%period, law%step_width) > 0
+      end if
+    end associate
+  end function has_moving_parts
 
   !> The largest difference of a gap between a state and its guess, relative or in the law's
   !> lengths.
@@ -148,16 +182,17 @@ contains
     end associate
   end subroutine support
 
-  !> The state at s by the polynomial of the arc; grid: the arc's mesh.
-  pure type(state_t) function guess(self, problem, grid, s) result(expected)
+  !> The state at s by the polynomial of the arc; grid: the arc's mesh; moved: see `guess_from`.
+  pure type(state_t) function guess(self, problem, grid, s, moved) result(expected)
     class(arc_t), intent(in) :: self
     type(problem_t), intent(in) :: problem
     type(discretisation_t), intent(in) :: grid
     real(wp), intent(in) :: s
+    logical, intent(in), optional :: moved
     integer :: nodes(most_hermite_nodes), n
 
     call self%support(s, nodes, n)
-    call self%guess_from(problem, grid, nodes(:n), s, expected)
+    call self%guess_from(problem, grid, nodes(:n), s, expected, moved)
   end function guess
 
   !> The state at s by the polynomial through the states `nodes` of the arc, in the arrays that
@@ -166,14 +201,17 @@ contains
   !> heights is subtracted from the guess. Near an end of the bodies or a kink of their profile this
   !> error is most of the error of the guess. Inside the edge bodies in contact follow each other's
   !> shape, so that the gap is smooth where the shape is not. A parabola's heights are proportional
-  !> to the square of the scale and need no such correction.
-  pure subroutine guess_from(self, problem, grid, nodes, s, expected)
+  !> to the square of the scale and need no such correction. moved: gaps outside the edge are those
+  !> of `moved_outside` or, about the axis, gaps near the edge those of `move_with_edge`; .false. if
+  !> absent.
+  pure subroutine guess_from(self, problem, grid, nodes, s, expected, moved)
     class(arc_t), intent(in) :: self
     type(problem_t), intent(in) :: problem
     type(discretisation_t), intent(in) :: grid
     integer, intent(in) :: nodes(:)
     real(wp), intent(in) :: s
     type(state_t), intent(inout) :: expected
+    logical, intent(in), optional :: moved
     real(wp), dimension(most_hermite_nodes) :: at, of_value, of_slope
     real(wp) :: h0, scale
     integer :: j, n, from
@@ -201,6 +239,17 @@ contains
       if (grid%centre > 0 .and. .not. shape%parabolic) &
         expected%pressure(from:) = expected%pressure(from:) + shape%height(scale*grid%x(from:))
     end associate
+    if (present(moved)) then
+      associate (gap => expected%pressure)
+        if (moved .and. grid%centre > 0) then
+          gap(from:) = moved_outside(problem%shape, grid, self%state, self%tangent, nodes, &
+            of_value(:n), of_slope(:n), scale)
+        else if (moved) then
+          call move_with_edge(problem, grid, self%state, self%tangent, nodes, of_value(:n), &
+            of_slope(:n), gap)
+        end if
+      end associate
+    end if
     call take_if_sound(h0, scale, expected)
   end subroutine guess_from
 

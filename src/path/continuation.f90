@@ -123,7 +123,7 @@ contains
     logical, intent(out) :: lost
     type(state_t) :: state
     type(tangent_t) :: tangent
-    real(wp) :: step, s, miss(2)
+    real(wp) :: step, s, miss(3), off(2)
     logical :: converged
 
     lost = .false.
@@ -135,10 +135,13 @@ contains
       call solver%frozen%forget()
       call self%state_at(solver, s, state, tangent, converged, self%slope_error, miss)
       if (converged) then
+        ! The kind of guess that was better for this state is that for the next one.
+        self%moved = self%moved .neqv. miss(2) < miss(1)
+        off = [minval(miss(:2)), miss(3)]
         self%step = min(self%longest_step, &
-          step*factor_for(minval([wanted_miss, self%miss_of_curve]/max(miss, tiny(1.0_wp))), &
+          step*factor_for(minval([wanted_miss, self%miss_of_curve]/max(off, tiny(1.0_wp))), &
           2*self%extrapolated_from))
-        if (maxval(miss) < too_far .or. step < short) exit
+        if (maxval(off) < too_far .or. step < short) exit
       else
         self%step = shrinkage*self%step
       end if

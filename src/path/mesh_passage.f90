@@ -96,6 +96,7 @@ contains
     logical :: done
 
     next%mesh = arc%mesh + 1
+    next%moved = arc%moved
     next%extrapolated_from = arc%extrapolated_from
     do j = arc%held - 1, arc%held
       state = arc%state(j)

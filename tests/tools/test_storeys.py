@@ -54,7 +54,7 @@ SEAMS = {
 }
 
 # The longest chain of `use`, in modules: what a reader must know who begins at its end.
-LONGEST_CHAIN = 30
+LONGEST_CHAIN = 31
 
 
 def is_beyond(name):
