@@ -21,7 +21,7 @@ module forecast
   use progress, only: duration
   implicit none
   private
-  public :: advice_t, advice_on, advice_on_stiffness
+  public :: advice_t, advice_on
 
   type :: advice_t
     character(len=:), allocatable :: text
@@ -40,14 +40,16 @@ module forecast
 
 contains
 
-  !> The advice on a scene; for a sweep on its last case.
-  function advice_on(scene) result(advice)
+  !> The advice on a scene and its problem; on numerical choices of a sweep, that on its last case.
+  function advice_on(scene, problem) result(advice)
     type(scene_t), intent(in) :: scene
+    type(problem_t), intent(in) :: problem
     type(advice_t), allocatable :: advice(:)
     type(scene_t) :: last
     type(failure_t), allocatable :: error
 
     allocate (advice(0))
+    if (advice_on_stiffness(problem) /= '') call add(advice, advice_on_stiffness(problem))
     if (.not. prescribes_numerics(scene)) return
     if (allocated(scene%sweep)) then
       call swept_scene(scene, scene%sweep%names, scene%sweep%last(), last, error)

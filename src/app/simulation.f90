@@ -16,7 +16,7 @@ module simulation
   use sweep_case, only: sweep_tally_t
   use ranks, only: crew_t
   use preflight, only: check_room, large_results
-  use forecast, only: advice_t, advice_on, advice_on_stiffness
+  use forecast, only: advice_t, advice_on
   use machine, only: thread_count
   use linear_algebra, only: claim_buffers
   use equilibrium, only: cost_t
@@ -141,12 +141,10 @@ contains
       type(advice_t), allocatable :: advice(:)
       integer :: i
 
-      advice = advice_on(scene)
+      advice = advice_on(scene, problem)
       do i = 1, size(advice)
         call destination%say('warning: ' // advice(i)%text)
       end do
-      if (advice_on_stiffness(problem) /= '') call destination%say('warning: ' // &
-        advice_on_stiffness(problem))
     end subroutine warn_before
 
     !> Locks the folder for this run and begins its tables.

@@ -21,7 +21,7 @@ program snapin
   use ranks, only: crew_t
   use case_columns, only: left_out
   use preflight, only: check_room, check_inputs, large_results
-  use forecast, only: advice_t, advice_on, advice_on_stiffness
+  use forecast, only: advice_t, advice_on
   use scene_problem, only: problem_of
   use build_info, only: version, compiler, blas, options_of_build => options
   implicit none
@@ -163,7 +163,7 @@ contains
   end function run_decks
 
   !> Prints what `--check` says of a valid deck: how its curve is understood, what its results need
-  !> and leave out, and the numerical choices that will fail or take long.
+  !> and leave out, and the choices that will fail or take long.
   subroutine print_notes(scene, name, folder)
     type(scene_t), intent(in) :: scene
     character(len=*), intent(in) :: name, folder
@@ -180,11 +180,10 @@ contains
     if (allocated(trouble)) call print_note(name, trouble%message)
     call print_note(name, large_results(scene))
     call print_note(name, left_out(scene))
-    advice = advice_on(scene)
+    advice = advice_on(scene, problem_of(scene))
     do i = 1, size(advice)
       call print_note(name, 'warning: ' // advice(i)%text)
     end do
-    call print_note(name, advice_on_stiffness(problem_of(scene)))
   end subroutine print_notes
 
   !> Prints what is to be said of a deck, if anything.
