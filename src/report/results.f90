@@ -2,6 +2,7 @@
 !> (`result_folder`). The curve, the profiles and the tables are written row by row.
 module results
   use kinds, only: wp
+  use text, only: quoted, word_of
   use failure, only: failure_t
   use dimensionless_problem, only: problem_t
   use discretisation, only: discretisation_t
@@ -14,7 +15,6 @@ module results
   use tables, only: table_t, cells, columns_of_curve, curve_row, columns_of_profiles, write_profile
   use result_folder, only: result_folder_t
   use result_tables, only: columns_of
-  use text, only: quoted, word_of
   use summary, only: summary_t, summary_text
   use progress, only: progress_t
   implicit none
