@@ -137,26 +137,31 @@ contains
     real(wp), intent(in) :: value(:)
     real(wp) :: by(size(self%data%sample), size(value))
     type(load_at_t) :: load
-    real(wp) :: k, s, by_force
+    real(wp) :: k, compliance, newtons, by_force
     integer :: i, n
 
     k = self%number_of(value, of_spring, self%spring)
-    s = self%newtons(value)/k
+    ! Under loads there is no spring.
+    compliance = 0
+    if (k > 0) compliance = 1/k
+    newtons = self%newtons(value)
     ! A signal that is the force does not depend on the spring otherwise.
-    by_force = merge(0.0_wp, 1.0_wp, self%is_force)
+    by_force = merge(0.0_wp, compliance, self%is_force)
     do n = 1, size(self%data%sample)
       i = self%data%sample(n)
       load = self%response%load_on(self%data%way(i), self%data%side(i), self%position_of(value, i))
       by(n, :) = 0
-      if (self%data%side(i) == 0 .and. abs(load%slope) > steep*self%largest_slope*k*s) cycle
+      if (k > 0 .and. self%data%side(i) == 0 .and. &
+        abs(load%slope)/(steep*newtons) > self%largest_slope) cycle
       if (self%data%measured%observed(i) == of_radius) then
         by(n, :) = unfolded(self%unknown%role, load%radius_rate, &
-          -self%data%measured%facing*load%radius_slope, 0.0_wp, load%radius_slope*load%load/k**2)
+          -self%data%measured%facing*load%radius_slope, 0.0_wp, &
+          load%radius_slope*load%load*compliance**2)
         cycle
       end if
-      by(n, :) = unfolded(self%unknown%role, load%rate/(k*s), &
-        -self%data%measured%facing*load%slope/(k*s), -load%load/(k*s**2), &
-        -(load%slope*load%load/k**2 + by_force*load%load/k)/(k*s))
+      by(n, :) = unfolded(self%unknown%role, load%rate/newtons, &
+        -self%data%measured%facing*load%slope/newtons, -load%load*k/newtons**2, &
+        -(load%slope*compliance**2 + by_force)*load%load/newtons)
     end do
   end function signal_rates
 
