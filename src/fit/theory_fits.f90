@@ -149,15 +149,31 @@ contains
     type(modelled_curve_t), intent(in) :: measured
     type(classical_model_t), intent(inout) :: model
     type(character_t), intent(in) :: start
-    type(unknown_t) :: unknown(2)
+    integer :: i, n
 
     model%work = start%work
     model%stiffness = start%stiffness
     model%range = start%range
-    unknown(1) = unknown_of('work_of_adhesion', 'J/m^2', model%work)
-    unknown(2) = unknown_of('stiffness', 'Pa', model%stiffness)
-    curve%unknown = [pack(unknown, [model%finds_work, model%finds_stiffness]), &
-      pack(measured%unknown, measured%unknown%role /= of_model)]
+    if (allocated(curve%unknown)) deallocate (curve%unknown)
+    allocate (curve%unknown(count([model%finds_work, model%finds_stiffness]) + &
+      count(measured%unknown%role /= of_model)))
+    n = 0
+    if (model%finds_work) call add(unknown_of('work_of_adhesion', 'J/m^2', model%work))
+    if (model%finds_stiffness) call add(unknown_of('stiffness', 'Pa', model%stiffness))
+    do i = 1, size(measured%unknown)
+      if (measured%unknown(i)%role /= of_model) call add(measured%unknown(i))
+    end do
+
+  contains
+
+    !> One by one: an array made of arrays would not free the texts of its elements.
+    subroutine add(unknown)
+      type(unknown_t), intent(in) :: unknown
+
+      n = n + 1
+      curve%unknown(n) = unknown
+    end subroutine add
+
   end subroutine take_unknowns
 
   !> A positive unknown of a theory.

@@ -57,7 +57,7 @@ contains
   !> deck leaves out is a factor of its default.
   type(deck_family_t) function widened(family) result(wider)
     type(deck_family_t), intent(in) :: family
-    type(parameter_t) :: new
+    type(parameter_t) :: new, without_name
     type(failure_t), allocatable :: error
     character(len=:), allocatable :: names
     integer :: i, k, row, term
@@ -65,7 +65,9 @@ contains
     wider = family
     names = parameters_of(family%deck)
     do i = 1, word_count(names)
-      new = parameter_t(name=word_of(names, i))
+      ! Not by a structure constructor: compiler note 1.
+      new = without_name
+      new%name = word_of(names, i)
       if (any([(present_name(family%deck, family%parameter(k)%name) == new%name, &
         k=1, size(family%parameter))])) cycle
       call take_value(family%deck, new, error)
