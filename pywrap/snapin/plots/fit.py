@@ -32,15 +32,16 @@ def draw_fit(folder, whole=False):
     alike = table["radius"] == table["radius"][0]
     table = {name: column[alike] for name, column in table.items()}
     across, up = "position of the base, from its least", "signal less baseline"
-    if table["radius"][0] == 1:
-        across, up = "load, from its least", "contact radius"
+    under_loads, least = table["radius"][0] == 1, table["z"].min()
+    if under_loads:
+        across, up, least = "load", "contact radius", 0.0
     force = table["measured"] - table["baseline"]
-    lengths = scale(np.ptp(table["z"]), "N" if up == "contact radius" else "m")
+    lengths = scale(np.ptp(table["z"]), "N" if under_loads else "m")
     fit = files.fit()
     unit = fit["signal_unit"][0] if "signal_unit" in fit else None
     signals = _scale_of_signal(force, unit)
     lefts = _scale_of_signal(table["residual"][table["used"] == 1], unit)
-    z = (table["z"] - table["z"].min()) / lengths[0]
+    z = (table["z"] - least) / lengths[0]
 
     outlier = table["outlier"] == 1
     edge = _EDGE * np.abs(table["residual"][table["used"] == 1]).max()
@@ -52,7 +53,8 @@ def draw_fit(folder, whole=False):
             continue
         used = mine & (table["used"] == 1)
         kept = mine & ~outlier
-        panel.plot(z[kept], force[kept] / signals[0], ".", markersize=2.5, color=color, label=name)
+        panel.plot(z[kept], force[kept] / signals[0], ".", markersize=2.5, color=color,
+                   label="data" if under_loads else name)
         model = (table["model"] - table["baseline"])[mine] / signals[0]
         panel.plot(z[mine], model, color=VERMILION, linewidth=1.0,
                    label="model" if way == table["direction"][0] else None)
