@@ -103,18 +103,9 @@ contains
     integer :: way, first
 
     way = merge(1, 2, inward)
-    associate (data => self%measured)
-      keep = data%inward .eqv. inward
-      first = findloc(keep, .true., 1) - 1
-      data%z = pack(data%z, keep)
-      data%signal = pack(data%signal, keep)
-      data%far = pack(data%far, keep)
-      data%usable = pack(data%usable, keep)
-      data%skipped = pack(data%skipped, keep)
-      data%rested = pack(data%rested, keep)
-      data%observed = pack(data%observed, keep)
-      data%inward = pack(data%inward, keep)
-    end associate
+    keep = self%measured%inward .eqv. inward
+    first = findloc(keep, .true., 1) - 1
+    call self%measured%retain(keep)
     self%jump(3 - way) = measured_jump_t()
     if (self%jump(way)%before > 0) then
       self%jump(way)%before = self%jump(way)%before - first

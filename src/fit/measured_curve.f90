@@ -36,6 +36,7 @@ module measured_curve
     procedure :: outlier
     procedure :: add_radii
     procedure :: of_signal
+    procedure :: retain
   end type measured_curve_t
 
   !> Median over mean of the changes from part to part of a curve, and the number of parts: a base
@@ -82,16 +83,23 @@ contains
 
     other = self
     keep = self%observed == self%observed(1)
-    if (all(keep)) return
-    other%z = pack(self%z, keep)
-    other%signal = pack(self%signal, keep)
-    other%inward = pack(self%inward, keep)
-    other%skipped = pack(self%skipped, keep)
-    other%rested = pack(self%rested, keep)
-    other%far = pack(self%far, keep)
-    other%usable = pack(self%usable, keep)
-    other%observed = pack(self%observed, keep)
+    if (.not. all(keep)) call other%retain(keep)
   end function of_signal
+
+  !> Drops the samples that are not to be kept.
+  pure subroutine retain(self, keep)
+    class(measured_curve_t), intent(inout) :: self
+    logical, intent(in) :: keep(:)
+
+    self%z = pack(self%z, keep)
+    self%signal = pack(self%signal, keep)
+    self%inward = pack(self%inward, keep)
+    self%skipped = pack(self%skipped, keep)
+    self%rested = pack(self%rested, keep)
+    self%far = pack(self%far, keep)
+    self%usable = pack(self%usable, keep)
+    self%observed = pack(self%observed, keep)
+  end subroutine retain
 
   !> Reads the samples of a curve from the text of its file. Positions of the base follow from
   !> separations behind a spring, once it is known in which direction they fall towards the other

@@ -1,7 +1,7 @@
 !> &measurement: a measured force curve.
 module measurement_group
   use kinds, only: wp
-  use text, only: lower, quoted, spelled, word_count, word_of
+  use text, only: listing, lower, quoted, spelled, word_count, word_of
   use deck, only: deck_t
   use data_table, only: plain_label
   use deck_keys, only: key_spec, real_value, real_list, integer_value, logical_value, word_value, &
@@ -19,8 +19,7 @@ module measurement_group
   character(len=*), parameter :: kinds(*) = [character(len=9) :: 'constant', 'linear', 'quadratic']
 
   !> The quantities of columns, by their numbers in `fit_request`.
-  character(len=*), parameter :: quantities(*) = [character(len=14) :: 'position', 'separation', &
-    'load', 'segment', 'contact_radius']
+  character(len=*), parameter :: quantities = 'position separation load segment contact_radius'
 
   !> The rows of &measurement.
   type(key_spec), parameter :: measurement_keys(*) = [ &
@@ -149,11 +148,12 @@ contains
     quantity = of_position
     do i = 1, word_count(names)
       quantity(i) = 0
-      do k = 1, size(quantities)
-        if (lower(word_of(names, i)) == trim(quantities(k))) quantity(i) = k
+      do k = 1, word_count(quantities)
+        if (lower(word_of(names, i)) == word_of(quantities, k)) quantity(i) = k
       end do
       if (quantity(i) == 0) call deck%mistake('measurement', 'quantity', &
-        quoted(word_of(names, i)) // ' is not a quantity; allowed are ' // listed_quantities())
+        quoted(word_of(names, i)) // ' is not a quantity; allowed are ' // &
+        listing(quantities, '', ''))
     end do
     if (allocated(deck%error)) return
     if (size(quantity) == 1 .and. any(quantity(1) == [of_position, of_separation])) then
@@ -164,7 +164,7 @@ contains
       call deck%mistake('measurement', 'quantity', 'give what the first column is, or one ' // &
         'quantity for each of columns')
     else if (count(quantity == of_position .or. quantity == of_separation) > 1 .or. &
-      any([(count(quantity == k) > 1, k=1, size(quantities))])) then
+      any([(count(quantity == k) > 1, k=1, word_count(quantities))])) then
       call deck%mistake('measurement', 'quantity', 'a curve has each quantity once, and a ' // &
         'position or a separation')
     else if (.not. any(quantity == of_load)) then
@@ -175,21 +175,9 @@ contains
     end if
   end subroutine take_quantities
 
-  !> 'position, separation, ...'
-  pure function listed_quantities() result(words)
-    character(len=:), allocatable :: words
-    integer :: k
-
-    words = trim(quantities(1))
-    do k = 2, size(quantities)
-      words = words // ', ' // trim(quantities(k))
-    end do
-  end function listed_quantities
-
   !> Reads the spring. A separation is that of the bodies, whatever holds them.
   subroutine take_spring(scene)
     type(scene_t), intent(inout) :: scene
-
     real(wp), allocatable :: spring_constant
 
     associate (deck => scene%deck)
