@@ -47,9 +47,11 @@ contains
     type(advice_t), allocatable :: advice(:)
     type(scene_t) :: last
     type(failure_t), allocatable :: error
+    character(len=:), allocatable :: stiffness
 
     allocate (advice(0))
-    if (advice_on_stiffness(problem) /= '') call add(advice, advice_on_stiffness(problem))
+    stiffness = advice_on_stiffness(problem)
+    if (stiffness /= '') call add(advice, stiffness)
     if (.not. prescribes_numerics(scene)) return
     if (allocated(scene%sweep)) then
       call swept_scene(scene, scene%sweep%names, scene%sweep%last(), last, error)
