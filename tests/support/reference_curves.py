@@ -26,10 +26,11 @@ class Truth(NamedTuple):
     energy: float
     stiffness: float
     spring: float
+    radius: float = RADIUS
 
     @property
     def load_unit(self):
-        return self.energy * RADIUS
+        return self.energy * self.radius
 
 
 def truth(sigma, softness, modulus=1e10):

@@ -5,12 +5,11 @@ by something much stiffer than the contact. Intervals must hold the truth."""
 import math
 import tempfile
 import warnings
-from typing import NamedTuple
 
 import numpy as np
 import snapin
 from support.measured import write
-from support.reference_curves import Z0, Driven
+from support.reference_curves import Z0, Driven, Truth
 from support.study_fits import FAR, PARAMETERS, Finding, Job, cpu, table  # noqa: F401
 
 RADIUS = 0.01
@@ -18,19 +17,6 @@ STRENGTHS = (0.3, 1.0, 5.0, 20.0, 60.0)
 # Noise over the pull-off, and samples of a way.
 NOISE, SAMPLES = 0.02, (100, 400)
 KINDS = ("spring", "stiff")
-
-
-class Held(NamedTuple):
-    """The true values of a curve, in SI units; as `reference_curves.Truth`, for other radii."""
-
-    sigma: float
-    energy: float
-    stiffness: float
-    spring: float
-
-    @property
-    def load_unit(self):
-        return self.energy * RADIUS
 
 
 def separation_jobs(count, folder=None, *, seed=0):
@@ -48,7 +34,7 @@ def made(job):
     spring = math.inf
     if job.kind == "spring":
         spring = 1.5 * math.pi * energy * RADIUS / (10 ** rng.uniform(-1, 1.5) * length)
-    true = Held(sigma, energy, stiffness, spring)
+    true = Truth(sigma, energy, stiffness, spring, RADIUS)
     driven = Driven(true)
     pulled = driven.load.argmin()
     near = np.interp(rng.uniform(0.3, 2) * driven.pull_off, driven.load[pulled:],
