@@ -8,17 +8,16 @@ module beyond_mesh
   use quadrature, only: gauss_legendre
   implicit none
   private
-  public :: load_beyond, load_slope_beyond, energy_beyond, energy_density, falls_slowly, farthest
+  public :: load_beyond, load_slope_beyond, energy_density, falls_slowly, farthest
 
-  !> Number of points of the quadrature; and for the energy of the parabola, where the gap is a
-  !> power of the variable.
-  integer, parameter :: points = 24, few = 8
+  !> Number of points of the quadrature.
+  integer, parameter :: points = 24
   !> Largest gap with a force; powers of this gap do not overflow.
   real(wp), parameter :: farthest = 1.0e30_wp
 
-  !> The points: gap, position, and the weight of g in Int g(H) r dr.
+  !> The points: gap, and the weight of g in Int g(H) r dr.
   type :: rule_t
-    real(wp), allocatable :: gap(:), at(:), weight(:)
+    real(wp), allocatable :: gap(:), weight(:)
   end type rule_t
 
 contains
@@ -53,23 +52,6 @@ contains
     slope(2) = slope(2) - problem%shape%slope(from)*slope(1)
   end function load_slope_beyond
 
-  !> Int e(H) r dr, where e is the `energy_density` above that of undeformed bodies at `reference`.
-  pure real(wp) function energy_beyond(problem, gap, from, reference) result(energy)
-    type(problem_t), intent(in) :: problem
-    real(wp), intent(in) :: gap, from, reference
-    real(wp) :: node(few), weight(few)
-    type(rule_t) :: rule
-
-    if (problem%shape%parabolic .and. .not. falls_slowly(problem)) then
-      ! With H = gap/x the interval is finite.
-      call gauss_legendre(node, weight)
-      energy = gap*sum(weight*problem%law%energy(gap/node)/node**2)
-    else
-      rule = rule_beyond(problem, gap, from)
-      energy = sum(rule%weight*energy_density(problem, rule%gap, rule%at, reference))
-    end if
-  end function energy_beyond
-
   !> The energy of the surface force per area, at gaps and positions. If it falls slowly, the energy
   !> of undeformed bodies at the H0 `reference` is subtracted, since only differences of energies
   !> matter.
@@ -101,7 +83,6 @@ contains
 
     call gauss_legendre(x, weight)
     rule%gap = min(gap + (problem%shape%height(from/x) - problem%shape%height(from)), farthest)
-    rule%at = from/x
     rule%weight = weight*(from/x)**2/x
   end function rule_beyond
 

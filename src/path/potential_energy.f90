@@ -4,10 +4,10 @@
 !> difference between its ends, so no integral along the path is needed.
 module potential_energy
   use kinds, only: wp, pi
-  use beyond_mesh, only: energy_beyond, energy_density, falls_slowly
+  use beyond_mesh, only: energy_density, falls_slowly
   use dimensionless_problem, only: calm_gap
   use undeformed, only: energy_undeformed
-  use contact_state, only: state_t, load_reach, gap_at_end
+  use contact_state, only: state_t
   use equilibrium, only: equations_t
   implicit none
   private
@@ -40,7 +40,9 @@ contains
     end associate
   end subroutine energy_of
 
-  !> The part of the surface force, 2 pi Int e(H) rho drho.
+  !> The part of the surface force, 2 pi Int e(H) rho drho. Beyond a bounded mesh bodies count as
+  !> undeformed and have the same energy at both ends of a jump, so that nothing is added: pressures
+  !> there, which deform nothing, would shift both branches by nearly the same h0.
   real(wp) function energy_of_surface(equations, mesh, state) result(energy)
     type(equations_t), intent(in) :: equations
     integer, intent(in) :: mesh
@@ -71,8 +73,6 @@ contains
       terms = 2*pi*c**2*grid%weight(:n)*energy_density(problem, state%gap, c*grid%x(:n), reference)
       energy = sum(terms)
       whole = sum(abs(terms))
-      if (grid%is_bounded()) energy = energy + 2*pi*energy_beyond(problem, &
-        gap_at_end(problem%shape, grid, state), load_reach(grid, state), reference)
       ! At 1 it is zero.
       if (reference > 1) energy = energy + energy_undeformed(problem, reference)
     end associate

@@ -185,3 +185,16 @@ def test_a_largest_tension_under_the_papers_rule_is_known_to_within_rows(run, pr
         status=1).summary
     assert summary["max_tension_h0"] in h0
     assert summary["max_tension_h0_error"] >= step
+
+
+@pytest.mark.parametrize("sigma", [0.71, 0.94, 2.8])
+def test_a_small_grid_hardly_changes_the_energy_lost(run, sigma):
+    """Pressures beyond the grid shift both branches by the same h0: with their own energy at the
+    deformation of the last node, which falls beyond it, the energy was 1.8e-3 too large."""
+    groups = {"loading": loading(10, -6, 0.4), "unloading": {}}
+    exact = run(lennard_jones(sigma, **groups)).summary["energy_lost"]
+    for r_max in (5.7, 8.5):
+        found = run(lennard_jones(sigma, **groups, numerics={
+            "grid": "uniform", "nodes": int(45*r_max), "r_max": r_max, "accuracy": 0.1}),
+            status=None).summary["energy_lost"]
+        assert found == pytest.approx(exact, rel=6e-4)
