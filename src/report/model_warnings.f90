@@ -19,7 +19,7 @@ module model_warnings
   real(wp), parameter :: noted = 0.1_wp, warned = 1.0_wp/3, strained = 0.1_wp
   !> Radius [m] and range of a force [m] that no measurement has together: lenses are smaller, and
   !> who takes other lengths for a unit has longer ranges.
-  real(wp), parameter :: huge_radius = 0.5_wp, short_range = 1.0e-6_wp
+  real(wp), parameter :: huge_radius = 0.1_wp, short_range = 1.0e-6_wp
 
 contains
 
