@@ -10,9 +10,9 @@ so do the kinds of change in a room. Work is in a copy of the checkout with its 
 2. A few decks are run, up to the first difference. Where no number differs by 1e-9 of itself or of
    its column's largest, the decks do not see the change: only the tests of its room are run, and it
    counts as `same` if they pass.
-3. Otherwise quick tests are run up to the first failure: those of the room, those that have noticed
-   other changes, and then the other rooms, first those that have noticed most. The change is
-   `noticed`, or `missed`.
+3. Otherwise quick tests are run up to the first failure, without those of time and memory: those of
+   the room, those that have noticed other changes, and then the other rooms, first those that have
+   noticed most. The change is `noticed`, or `missed`.
 
 Outcomes are kept in FOLDER, and what has one is not tried again, `missed` and `same` only with
 --again. --first leaves out changes of the seed, so that several folders may share them. Prints each
@@ -217,7 +217,7 @@ class Copy:
         """The first of these tests that fails, or None."""
         done = subprocess.run(
             [ROOT / ".venv/bin/python", "-m", "pytest", "-q", "-x", "-n", "0", "-p",
-             "no:cacheprovider", "-m", "not slow and not long", *tests], cwd=self.top,
+             "no:cacheprovider", "-m", "not slow and not long and not alone", *tests], cwd=self.top,
             capture_output=True, text=True, errors="replace", check=False)
         if done.returncode in (0, 5):
             return None
