@@ -211,13 +211,25 @@ def test_criterion_28_is_that_of_the_surface_that_attracts(run, sigma):
 
 def test_criterion_28_does_not_depend_on_the_nodes(run):
     """It was the largest value at the nodes: 2.2198 to 2.2544 with the accuracy."""
-    for accuracy in (1e-2, 1e-3, 1e-5, 1e-8):
+    def found(accuracy):
         result = run(lennard_jones(
             1.1, equilibrium_path={"h0_end": -3.0}, stability={}, profiles={"h0": [-1.5]},
             numerics={"accuracy": accuracy}))
         row = np.flatnonzero(abs(result.curve["h0"] + 1.5) < 1e-9)[0]
-        error = result.summary["criterion_28_error"]
-        assert abs(result.curve["criterion_28"][row] - 2.254551) < min(error + 1e-6, 2e-3)
+        return (result, result.curve["criterion_28"][row], result.summary["criterion_28_error"])
+
+    result, value, error = found(1e-8)
+    (_, r, gap), = states_of(result)
+    edge = np.interp(EDGE, gap, r)
+    at = np.linspace(edge, edge + 1, 10001)[1:]
+    between = interpolated(r, gap, edge, 0.3, at)
+    ratio = 3 * (1 - 3 * between ** -6) / (between * (1 - between ** -6))
+    largest = (abs(between + 1.5 - at**2 / 2) * ratio).max()
+    assert value == pytest.approx(largest, rel=1e-6)
+    assert error < 2e-4
+    for accuracy in (1e-2, 1e-3, 1e-5):
+        _, value, error = found(accuracy)
+        assert abs(value - largest) < min(error + 1e-6, 2e-3)
 
 
 def test_criteria_in_contact_do_not_depend_on_the_mesh(run):

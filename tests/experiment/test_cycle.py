@@ -5,6 +5,7 @@ import pytest
 from support.half_space import lennard_jones as lennard_jones_law
 from support.half_space import exponential as exponential_law
 from support.half_space import path_by_axis
+from support.known import BY_SIGMA
 from support.scenes import JKR, deck, exponential, lennard_jones, loading, several
 
 # sigma of the two rows of the reference table: attraction with a jump, and with much adhesion.
@@ -60,8 +61,8 @@ def test_jump_is_found_on_a_fixed_grid_whatever_the_step(run, step):
     scene = lennard_jones(
         WEAK, loading=loading(8, 2, step), numerics={"grid": "uniform", "nodes": 300})
     summary = run(scene).summary
-    # 3.0886872, as well as 300 nodes have it; the finite mesh moves it by some 1e-4.
-    assert summary["jump_in_h0"] == pytest.approx(3.0886872, abs=2e-3)
+    # As well as 300 nodes have it; the finite mesh moves it by some 1e-4.
+    assert summary["jump_in_h0"] == pytest.approx(BY_SIGMA[WEAK][2], abs=2e-3)
     assert summary["jump_in_uncertainty"] <= 1e-3
 
 

@@ -153,7 +153,8 @@ def test_a_sphere_is_no_parabola_where_the_contact_is_wide(run):
 def test_a_punch_adheres_as_jkr_theory_says(run):
     shape = {"kind": "rounded_punch", "radius": 1.0, "flat_radius": 3.0}
     summary = run(adhesive(shape, 20.0, equilibrium_path={"h0_end": -1.0})).summary
-    assert summary["max_tension"] / summary["jkr_pull_off"] == pytest.approx(1.0027, abs=1e-4)
+    # Forces of a finite range give a little more, as under a sphere.
+    assert 1 < summary["max_tension"] / summary["jkr_pull_off"] < 1.005
     assert "tabor" not in summary
 
 

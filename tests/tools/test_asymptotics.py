@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 from conftest import ROOT
+from support.reference import CUSP
 from support.scenes import lennard_jones, read_table
 
 
@@ -55,4 +56,4 @@ def test_jumps_begin_at_the_cusp(run):
                                   numerics={"accuracy": 1e-10})).summary
         gaps.append((found["folds_h0"][1] - found["folds_h0"][0]) ** (2 / 3))
     cusp = np.polynomial.polynomial.polyfit(gaps, sigmas, 4)[0]
-    assert cusp == pytest.approx(0.291085, abs=5e-7)
+    assert cusp == pytest.approx(CUSP, abs=5e-7)
