@@ -265,10 +265,11 @@ def _read(folder):
             if path.suffix == ".csv" and path.name != "costs.csv":
                 found[path.name] = results.read_table(path.parent, path.name)
             elif path.name == "summary.nml":
-                for group, keys in namelist_groups(path.read_text()).items():
-                    if group != "cost":
-                        found[f"summary {group}"] = {key: np.array(value)
-                                                     for key, value in keys.items()}
+                # Costs and the deck follow, with comments.
+                text = path.read_text(encoding="utf-8").partition("\n&cost\n")[0]
+                for group, keys in namelist_groups(text).items():
+                    found[f"summary {group}"] = {key: np.array(value)
+                                                 for key, value in keys.items()}
         except Exception:  # A changed program may write anything. # noqa: BLE001
             found[path.name] = path.read_bytes()
     return found
