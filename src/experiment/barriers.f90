@@ -7,19 +7,19 @@ module barriers
   private
   public :: pass_barrier
 
-  !> Slope of the bodies at the edge of a contact above which a drive does not bring them through a
-  !> barrier: it is no longer small, and paths through such wide contacts take minutes.
+  !> Slope of the bodies at the edge of a contact above which a drive stops before a barrier: the
+  !> slope is no longer small, and paths through such wide contacts take minutes.
   real(wp), parameter :: too_steep = 0.1_wp
-  !> Gaps at which the pressure of a barrier is evaluated, and their ratio; radii of a contact
-  !> (lateral units) and gaps between undeformed bodies at which loads are, their ratio, and the
-  !> smallest radius.
+  !> Number of gaps at which the pressure of a barrier is evaluated, and their ratio. Number of
+  !> contact radii (lateral units) and gaps of undeformed bodies at which loads are evaluated, their
+  !> ratio, and the smallest radius.
   integer, parameter :: gaps = 600, radii = 400, distances = 200
   real(wp), parameter :: gap_ratio = 1.02_wp, ratio = 1.1_wp, smallest_radius = 1/ratio**60
 
 contains
 
-  !> Estimates of the h0 and the load at which the highest barrier outside contact gives way: under
-  !> undeformed bodies, or where the pressure on the axis of a Hertz contact is that of the barrier.
+  !> Estimates of the h0 and the load at which the highest barrier outside contact is overcome: by
+  !> undeformed bodies, or by a Hertz contact whose pressure on the axis is that of the barrier.
   !> passed: the contact behind it is within the model.
   pure subroutine pass_barrier(problem, h0, load, passed)
     type(problem_t), intent(in) :: problem

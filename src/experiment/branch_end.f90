@@ -1,8 +1,8 @@
 !> The end of a branch of stable equilibria on a mesh fixed in space.
 !>
-!> A branch ends at a fold of h0. `follow` takes states along the curve of equilibria, in the
-!> coordinate Q of `branch_tangent`, each joined to the one before; the branch ends where dh0/dQ
-!> passes zero. So an end is found or excluded whatever the step of the experiment is, and a state
+!> A branch ends at a fold of h0. `follow` solves states along the curve of equilibria, in the
+!> coordinate Q of `branch_tangent`, each connected with the one before. The branch ends where
+!> dh0/dQ passes zero. So an end is found or excluded for any step of the experiment, and a state
 !> that does not converge is no end.
 module branch_end
   use kinds, only: wp
@@ -18,11 +18,11 @@ module branch_end
   private
   public :: follow, branch_end_t, arrived, at_fold, lost
 
-  !> How `follow` ends: at h0; at a fold before it; or neither is known.
+  !> How `follow` ends: at h0, at a fold before it, or undecided.
   integer, parameter :: lost = 0, arrived = 1, at_fold = 2
 
-  !> The end of `follow`. state: the state at h0, or the last stable state before the fold; fold:
-  !> the state nearest to the fold, on either side of it; h0 and load of the fold, and the
+  !> The end of `follow`. state: the state at h0, or the last stable state before the fold. fold:
+  !> the state nearest to the fold, on either side of it. Then h0 and load of the fold, and the
   !> uncertainty of its h0.
   type :: branch_end_t
     integer :: outcome = lost
@@ -41,18 +41,18 @@ module branch_end
   real(wp), parameter :: beside = 0.05_wp
   !> Largest number of states: where the edge passes node after node, a step needs a hundred.
   integer, parameter :: most_states = 500
-  !> The first step over the distance to h0, its change after a state that is not joined to the one
-  !> before, and its smallest length.
+  !> The first step over the distance to h0, its change after a state that is not connected with the
+  !> one before, and its smallest length.
   real(wp), parameter :: first_step = 0.2_wp, shorter = 1.0_wp/3, least = 1.0e-6_wp
   !> The slope dh0/dQ below which folds may be near, and the largest change of the deformation in a
-  !> step there (law's lengths): a pair of folds is seen as a dip of the slope. Steps are planned
-  !> for a part of this change, since it grows towards a fold.
+  !> step there (law's lengths), so that the minimum of the slope at a pair of folds is not missed.
+  !> Steps are planned for a part of this change, since it grows towards a fold.
   real(wp), parameter :: steep = 0.5_wp, small = 0.15_wp, planned = 0.9_wp
   !> A step to a predicted fold, over the distance to it.
   real(wp), parameter :: just_beyond = 1.1_wp
-  !> The slope dh0/dQ within a step, by Hermite's polynomial, over the slopes at its ends, below
-  !> which a state decides about a pair of folds; and the part of a step that such a state keeps
-  !> from its ends.
+  !> If the slope dh0/dQ of Hermite's polynomial within a step is below this part of the slopes at
+  !> its ends, a state is solved there to decide about a pair of folds; and the least distance of
+  !> such a state from the ends, over the step.
   real(wp), parameter :: flat = 0.5_wp, apart = 0.02_wp
   !> Error of the h0 of a fold (law's lengths), and largest number of states for it.
   real(wp), parameter :: exact = 1.0e-9_wp
@@ -112,7 +112,7 @@ contains
 
   contains
 
-    !> Takes a step from one point to the next. good: they are joined.
+    !> Takes a step from one point to the next. good: the points are connected.
     subroutine go(here, there, good)
       type(point_t), intent(inout) :: here
       type(point_t), intent(out) :: there
@@ -166,8 +166,8 @@ contains
     deallocate (self%along)
   end subroutine reach
 
-  !> The part of the step at which the slope dh0/dQ of Hermite's polynomial through h0 is lowest, if
-  !> it is so low there that a state has to decide; otherwise 0.
+  !> The part of the step at which the slope dh0/dQ of Hermite's polynomial is lowest, if it is so
+  !> low that a state has to be solved there; otherwise 0.
   pure real(wp) function lowest_within(here, there) result(part)
     type(point_t), intent(in) :: here, there
     real(wp) :: slope(3)
@@ -196,7 +196,8 @@ contains
     if (fall*next > there%tangent%h0) next = just_beyond*there%tangent%h0/fall
   end function next_step
 
-  !> Coefficients of the slope dh0/dQ between two points, as a polynomial of the part of the way.
+  !> Coefficients of the slope dh0/dQ between two points, as a polynomial of the fraction of the
+  !> distance.
   pure function slope_between(here, there) result(slope)
     type(point_t), intent(in) :: here, there
     real(wp) :: slope(3)

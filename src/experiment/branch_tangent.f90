@@ -1,5 +1,5 @@
 !> The tangent of the curve of equilibria at a state on a mesh fixed in space, and whether this
-!> curve joins two states.
+!> curve connects two states.
 !>
 !> The coordinate of the curve is Q = h0 - sum(along*gap). A branch that is stable at prescribed h0
 !> ends at a fold of h0, where gaps change infinitely fast with h0. With `along` against this change
@@ -34,10 +34,10 @@ module branch_tangent
     procedure :: turn
   end type branch_tangent_t
 
-  !> Two states are joined by the curve if at both of them the tangent's change, over the whole
-  !> distance in Q, differs from their difference by at most these parts of the difference and of
-  !> the distance. About the cusp at which a pair of folds begins, where h0 is a cubic of the
-  !> coordinate, at least one tangent is off by two thirds of the difference, whatever the step.
+  !> The curve connects two states if, at both of them, the tangent times the distance in Q differs
+  !> from the difference of the states by at most these parts of the difference and of the distance.
+  !> Near the cusp at which a pair of folds begins, h0 is a cubic of the coordinate, and the error
+  !> of at least one tangent is two thirds of the difference, for any step.
   real(wp), parameter :: of_difference = 0.25_wp, of_distance = 0.05_wp
   !> Differences, in the law's lengths and of the relative load, that are too small for a jump.
   real(wp), parameter :: too_small = 1.0e-3_wp
@@ -112,9 +112,9 @@ contains
   end function has_factors_at
 
   !> Weights with which Q increases with h0 here and past the next fold. Near a fold the attraction
-  !> changes fast with h0: the weights are those of the attractive part of the load. Where the load
-  !> decreases with h0 no fold is near, and Q is h0. Where the edge is pinned between nodes, a fold
-  !> concerns a few nodes and hardly the load: the weights are then the changes of the gaps.
+  !> changes fast with h0, so the weights are those of the attractive part of the load. If the load
+  !> decreases with h0, no fold is near, and Q is h0. If the edge is pinned between nodes, a fold
+  !> affects a few nodes and hardly the load, and the weights are the changes of the gaps.
   pure function passing(tangent, pinned) result(along)
     type(branch_tangent_t), intent(in) :: tangent
     logical, intent(in) :: pinned
@@ -143,7 +143,7 @@ contains
     self%gap = self%gap/length
   end subroutine turn
 
-  !> Whether the curve joins two states: their tangents, in the same coordinate, agree with the
+  !> Whether the curve connects two states: their tangents, in the same coordinate, agree with the
   !> change of load and displacement from one to the other.
   pure logical function joins(from, at_from, to, at_to)
     type(state_t), intent(in) :: from, to

@@ -1,6 +1,6 @@
-!> Approach and retract with a spring (cantilever) or a dead load: along the stable
-!> pieces of the equilibrium path, with a jump from the end of each piece to the next stable piece
-!> at the same position of the drive; and the energy that is dissipated.
+!> Approach and retract with a spring (cantilever) or a dead load, and the energy that is
+!> dissipated. The bodies move along the stable pieces of the equilibrium path, and jump from the
+!> end of each piece to the next stable piece at the same position of the drive.
 module device
   use kinds, only: wp, nan
   use solver, only: solver_t
@@ -80,7 +80,7 @@ contains
 
   contains
 
-    !> Moves along a way to the position `at`, if the way arrives there.
+    !> Moves along the legs to the position `at`, if they lead there.
     subroutine go(walk, at)
       type(walk_t), intent(in) :: walk
       real(wp), intent(in) :: at
@@ -93,7 +93,7 @@ contains
         leg%from = state
         here = leg%piece
         if (walk%arrives .and. i == size(walk%leg)) then
-          ! Positions that are already passed mean the present one.
+          ! A position that is already passed is replaced by the present one.
           call move_to(here, merge(min(at, drive%position(state)), at, leg%inward))
         else
           state = driven%piece(here)%end_of(leg%inward)
@@ -122,8 +122,8 @@ contains
       driven%solved = driven%solved .and. state%converged
     end subroutine move_to
 
-    !> The position at which the motion inward ends on the innermost piece: at h0_end or at the end
-    !> of the known path, whichever is farther out; -huge if the drive turns before.
+    !> The position at which the motion inward ends on the innermost piece: h0_end or the end of the
+    !> known path, whichever is farther out; -huge if the drive turns before.
     subroutine find_innermost(at)
       real(wp), intent(out) :: at
       type(path_state_t) :: there

@@ -1,5 +1,6 @@
-!> Time steps over one way of a drive with a squeeze film between the bodies. The fluid resists
-!> every motion, so that no motion is instantaneous: the time steps resolve snap-in and snap-off.
+!> Time steps over one segment of a drive (approach, dwell or retract) with a squeeze film between
+!> the bodies. The fluid resists every motion, so that no motion is instantaneous: the time steps
+!> resolve snap-in and snap-off.
 module drained_way
   use kinds, only: wp, pi
   use mesh_plan, only: approach
@@ -13,10 +14,10 @@ module drained_way
   public :: step_drained
 
   !> Largest deviation in a step from a straight line through the two previous instants: of the
-  !> load, over the largest load or a pull-off; of the gap on the axis, over the gap; and largest
+  !> load, over the largest load or a pull-off, and of the gap on the axis, over the gap. Largest
   !> motion of the edge, over the smallest feature there. A step with `rejected` times these values
-  !> is repeated as a shorter step, unless the deviation of the shorter step is more than `no_less`
-  !> times as large: for continuous loads, a third of the step has a third of the deviation.
+  !> is repeated as a shorter step, unless the shorter step has a deviation of more than `no_less`
+  !> times that: for continuous loads a third of the step has a third of the deviation.
   real(wp), parameter :: bend = 2.0e-3_wp, bend_of_gap = 1.0e-2_wp, edge_moves = 1, rejected = 4, &
     no_less = 0.5_wp
   !> Largest and smallest ratio of a step to the previous step.
@@ -24,9 +25,10 @@ module drained_way
   !> The part of the step with the permitted deviation that is taken next, and after a step that is
   !> repeated; the ratio after a step that did not converge.
   real(wp), parameter :: safety = 0.9_wp, repeated = 0.7_wp, lost_step = 0.3_wp
-  !> A remainder of a way below this part of a step is added to the step.
+  !> A remainder of the segment below this part of a step is added to the step.
   real(wp), parameter :: remainder = 0.01_wp
-  !> The first step over the duration of a way: the fluid's pressure jumps where the drive turns.
+  !> The first step over the duration of a segment: the fluid's pressure jumps where the drive
+  !> turns.
   real(wp), parameter :: first_drained = 1.0e-7_wp
   !> The shortest step in roundings of the time; largest change of the path's coordinate in such a
   !> step.
@@ -34,17 +36,17 @@ module drained_way
   !> Fraction of a contact's radius by which the edge may move, even if the smallest feature is
   !> smaller.
   real(wp), parameter :: part_of_radius = 0.01_wp
-  !> Rounding of the rate of gaps, in roundings of the gap over the step: the rate is that of a
-  !> parabola through three gaps, each with an error of a few roundings.
+  !> Rounding error of the rate of a gap, over that of the gap divided by the step: the rate is that
+  !> of a parabola through three gaps, each with an error of a few roundings.
   real(wp), parameter :: of_rate = 8
 
 contains
 
-  !> Takes a step from an instant, or chooses a shorter one for the next attempt. Where bodies jump
-  !> together, the gap closes at a time that differs slightly from pass to pass, with ever shorter
-  !> steps. Therefore each pass chooses its own steps, half as long as those of the previous pass.
-  !> Steps follow the motion and are at most `longest_part` of a way. If the deck gives the step, it
-  !> is shortened only if it does not converge.
+  !> Takes a step from an instant, or chooses a shorter one for the next attempt. At snap-in the gap
+  !> closes at a time that differs slightly from pass to pass, with ever shorter steps. Therefore
+  !> each pass chooses its own steps, half as long as those of the previous pass. Steps follow the
+  !> motion and are at most `longest_part` of a segment. If the deck gives the step, it is shortened
+  !> only if it does not converge.
   subroutine step_drained(longest_part, steps, now)
     real(wp), intent(in) :: longest_part
     type(time_stepper_t), intent(inout) :: steps
@@ -107,8 +109,8 @@ contains
     finest = steps%finest(radius)
     if (now%at%mesh > approach) finest = max(finest, part_of_radius*radius)
     missed = (moved(steps, now%at, next)/(edge_moves*finest))**2
-    ! The difference between two meshes at one state is not a motion, and shorter steps do not
-    ! reduce it.
+    ! The difference between two meshes at one state is no motion, and does not become smaller with
+    ! the step.
     if (now%at%since_turn < 2 .or. next%mesh /= now%at%mesh) return
     ahead = (next%time - now%at%time)/(now%at%time - steps%before%time)
     unit = max(now%result%largest_load, abs(next%state%load), tiny(1.0_wp), &
@@ -123,7 +125,7 @@ contains
   end function missed
 
   !> The distance by which the edge of a contact about the axis moves; 0 for a contact that begins
-  !> or ends away from the axis, since it has no radius from which it grows.
+  !> or ends away from the axis.
   real(wp) function moved(steps, at, next)
     type(time_stepper_t), intent(in) :: steps
     type(instant_t), intent(in) :: at, next

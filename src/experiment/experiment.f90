@@ -26,17 +26,17 @@ module experiment
   private
   public :: run_experiment, run_again
 
-  !> The coupling for rigid bodies: it is so small that the bodies do not deform noticeably, even
-  !> under the pressure of a fluid, which may be much larger than that of the law.
+  !> The coupling for rigid bodies, so small that they do not deform noticeably even under the
+  !> pressure of a fluid, which may be much larger than that of the law.
   real(wp), parameter :: unyielding = 1.0e-18_wp
 
   !> Largest number of runs with more digits. If a run with more digits does not reduce the largest
-  !> error to this fraction, the error has another cause, such as rounding, and further ones are
-  !> useless, unless there are numbers that one of the runs does not have.
+  !> error to this fraction, the error has another cause, such as rounding, and further runs are
+  !> useless, unless one of the two runs lacks some numbers.
   integer, parameter :: most_rounds = 4
   real(wp), parameter :: helped = 0.5_wp
-  !> Least number of digits of a run that is compared under a law with a step: with fewer, the nodes
-  !> of two runs may miss the same part of the front of the step, which moves folds.
+  !> Least number of digits of the run for comparison under a law with a step: with fewer, the nodes
+  !> of both runs may miss the same part of the step, which moves folds.
   real(wp), parameter :: digits_at_steps = 9.5_wp
 
 contains
@@ -181,8 +181,8 @@ contains
   end subroutine run_again
 
   !> Runs a scene with more and more digits until the numbers of two successive runs agree within
-  !> the accuracy: the coarser of these, outcome, is the result, and ahead is the other. steps: the
-  !> stepper of the result, one of the two that are given.
+  !> the accuracy. The coarser of these, outcome, is the result, and ahead is the other. steps: the
+  !> stepper of the result, one of the two given.
   subroutine agree(one, other, request, problem, observer, outcome, ahead, steps, store)
     class(locked_stepper_t), intent(inout), target :: one, other
     class(request_t), intent(in) :: request
@@ -238,8 +238,8 @@ contains
     end do
   end subroutine agree
 
-  !> Runs the cycle on a grid that is fixed in space, then on a coarser one and on a smaller one,
-  !> one at a time, so that their differences cannot cancel. outcome: has the numbers of the path.
+  !> Runs the cycle on a grid that is fixed in space, then on a coarser and on a smaller grid; their
+  !> errors are added, so that they cannot cancel. outcome: has the numbers of the path.
   subroutine run_fixed(steps, request, problem, observer, outcome)
     type(fixed_stepper_t), intent(inout) :: steps
     class(request_t), intent(in) :: request
@@ -276,7 +276,7 @@ contains
       steps%cost = coarse%cost
     end do
     call outcome%places%judge_by(others(:runs), chance_on_grids)
-    ! The other grids may not lead a cycle back to its beginning, where the energy is known.
+    ! On the other grids the cycle may not return to its beginning, where the energy is known.
     outcome%error_estimate = largest_error(pack(outcome%places%number, &
       outcome%places%number%name /= 'energy_lost'))
     steps%cost%estimate_seconds = steps%cost%estimate_seconds + seconds() - began

@@ -64,7 +64,7 @@ module experiment_request
     !> &sensitivity: the parameters, each with its varied problems.
     type(variation_t), allocatable :: varied(:)
     type(drive_request_t), allocatable :: drive
-    !> &viscoelastic: the bodies' memory; not allocated: they have none.
+    !> &viscoelastic: the creep of the bodies; not allocated: they are elastic.
     type(creep_t), allocatable :: creep
     !> &fluid; not allocated: there is no fluid.
     type(fluid_request_t), allocatable :: fluid

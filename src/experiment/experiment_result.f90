@@ -1,7 +1,6 @@
-!> Results of the experiments of a scene, in the units of `dimensionless_problem`. The places at
-!> which their numbers are read are entered into the table of places, under the names in
-!> `result_rows`: those of springs, given loads, energies, and some rows of the table of stable
-!> states.
+!> Results of the experiments of a scene, in the units of `dimensionless_problem`. The places of
+!> their numbers (springs, given loads, energies, some rows of the table of stable states) are
+!> entered into the table of places, under the names in `result_rows`.
 module experiment_result
   use kinds, only: wp
   use numerics_choice, only: choice_t
@@ -124,9 +123,8 @@ contains
     end do
   end subroutine enter_driven
 
-  !> Enters the energy that a cycle dissipates: for a path from large separation through all its
-  !> jumps, or for a loading and the first unloading that end on the outermost piece, where they
-  !> began.
+  !> Enters the energy that a cycle dissipates: a path from large separation through all its jumps,
+  !> or a loading and the first unloading if they end on the outermost piece, where they began.
   subroutine enter_energy(known, outcome)
     type(known_path_t), intent(in) :: known
     type(experiment_result_t), intent(inout) :: outcome
@@ -181,8 +179,8 @@ contains
     end do
   end subroutine enter_turns
 
-  !> Enters rows of the table as places: some of each leg, or at the h0 that are entered in the
-  !> table of another run (like).
+  !> Enters some rows of each leg of the table as places; if `like` is present, at the h0 of the
+  !> rows that it has.
   subroutine enter_table(steps, readings, places, like)
     class(path_stepper_t), intent(inout) :: steps
     type(path_readings_t), intent(inout) :: readings
@@ -248,9 +246,9 @@ contains
 
   end subroutine enter_table
 
-  !> A measure of the error of the cubic between each row and the next, up to a factor that is the
-  !> same for all: the larger change of its third derivative to a neighbour over their distance,
-  !> times the fourth power of its width.
+  !> The error of the cubic between each row and the next, up to a common factor: the width to the
+  !> fourth power, times the larger change of the third derivative to a neighbour over their
+  !> distance.
   pure function bends(rows) result(bend)
     type(path_state_t), intent(in) :: rows(:)
     real(wp), dimension(size(rows) - 1) :: bend, width, third

@@ -9,14 +9,15 @@ module fixed_branch
   private
   public :: expected_at, is_expected, is_pinned, change, same_state
 
-  !> Largest difference between the deformations of two states that are the same, in the law's
-  !> lengths: far more than iterations leave, and less than a jump.
+  !> Two states are the same if their deformations differ by less than this, in the law's lengths:
+  !> far more than the error of an iteration, and less than a jump.
   real(wp), parameter :: same_state = 1.0e-3_wp
-  !> On a mesh that pins the edge, a state continues the branch if its distance from the expected
-  !> one is at most half the expected change plus this many of the law's lengths.
+  !> If the mesh pins the edge, a state continues the branch if it differs from the expected state
+  !> by at most half the expected change plus this many of the law's lengths.
   real(wp), parameter :: slip = 0.05_wp
-  !> Ratio of the spacing to the width of the neck up to which the edge is not pinned between nodes;
-  !> and the change of the gaps, in the law's lengths, after which the factorisation is renewed.
+  !> The edge is not pinned between nodes if their spacing is below this fraction of the width of
+  !> the cohesive zone. Change of the gaps, in the law's lengths, after which the factorisation is
+  !> renewed.
   real(wp), parameter :: resolved = 0.25_wp, large_change = 0.2_wp
 
 contains
@@ -40,12 +41,13 @@ contains
       expected = extrapolated(position, h0)
     else
       expected = moved_with_edge(self%problem, self%meshes%grid(1), position, h0)
-      ! The factorisation is no longer good after the edge has moved by a good part of the neck.
+      ! The factorisation is no longer useful after the edge has moved by a large part of the
+      ! cohesive zone.
       if (change(position%state, expected) > large_change) call self%frozen%forget()
     end if
   end function expected_at
 
-  !> Whether a state differs little enough from the expected one; `before`: the state before it.
+  !> Whether a state is close enough to the expected one; `before`: the state before it.
   pure logical function is_expected(before, expected, state)
     type(state_t), intent(in) :: before, expected, state
 

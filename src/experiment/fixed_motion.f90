@@ -1,6 +1,6 @@
 !> The motion of bodies in equilibrium from one h0 to another on a mesh fixed in space: along a
-!> branch, from its end by a relaxation to another branch, and so on. Where a branch ends depends on
-!> neither the steps of the experiment nor those of the iteration (`branch_end`).
+!> branch, from its end by a relaxation to another branch, and so on. The end of a branch depends
+!> neither on the steps of the experiment nor on the iteration (`branch_end`).
 module fixed_motion
   use kinds, only: wp, nan
   use dimensionless_problem, only: over_neck => spacing_over_neck
@@ -21,14 +21,14 @@ module fixed_motion
 
   !> Distance beyond a fold at which the relaxation begins, in the law's lengths.
   real(wp), parameter :: beyond_fold = 1.0e-3_wp
-  !> The largest change of the deformation in which no jump can hide: about a pair of folds the
-  !> deformation changes by a fifth of the law's length in a hundredth of it.
+  !> A change of the deformation below this cannot contain a jump: near a pair of folds the
+  !> deformation changes by a fifth of the law's length while h0 changes by a hundredth of it.
   real(wp), parameter :: unnoticed = 0.02_wp
-  !> A contact edge that is pinned between nodes jumps many times from one to the next; in steps
-  !> longer than this (in the law's lengths) these jumps are not located individually.
+  !> A contact edge that is pinned between nodes slips many times from one to the next; in steps
+  !> longer than this (in the law's lengths) these slips are not located individually.
   real(wp), parameter :: short_step = 0.11_wp
-  !> The largest ratio of the spacing to the width of the neck for this: with larger spacing each
-  !> jump changes the load noticeably, and the jumps are few.
+  !> The largest ratio of the spacing to the width of the cohesive zone for this: with larger
+  !> spacing each slip changes the load noticeably, and the slips are few.
   real(wp), parameter :: fine_enough = 0.4_wp
 
 contains
@@ -48,7 +48,8 @@ contains
     end do
   end subroutine advance
 
-  !> Moves to h0 or, resting = .true., to the state before h0 in which the bodies rest after a jump.
+  !> Moves to h0 or, resting = .true., to the state in which the bodies come to rest after a jump
+  !> before h0.
   subroutine advance_to_jump(self, options, h0, position, event, resting)
     class(stepper_t), intent(inout) :: self
     type(solver_options_t), intent(in) :: options
@@ -162,8 +163,8 @@ contains
   end subroutine leave
 
   !> Adds the energy that bodies lose in a jump from a fold: the difference between the energies of
-  !> both states at the h0 of the fold. It is not known if the branch on which they land does not
-  !> lead back there.
+  !> both states at the h0 of the fold. It is not known if the branch after the jump does not extend
+  !> back to this h0.
   subroutine lose_energy(self, options, found, landed, position)
     class(stepper_t), intent(inout) :: self
     type(solver_options_t), intent(in) :: options

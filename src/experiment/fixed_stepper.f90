@@ -1,6 +1,6 @@
 !> A quasi-static experiment on a mesh fixed in space: the paper's method. The contact edge moves
-!> across the nodes; if their spacing is not small relative to the neck, the edge is pinned between
-!> nodes.
+!> across the nodes; if their spacing is not small relative to the cohesive zone, the edge is pinned
+!> between nodes.
 !>
 !> The deck's iteration solves the rows. A jump is a fold between two rows that converged
 !> (`fixed_motion`); rows that did not converge are no jump and no end of a branch.
@@ -32,8 +32,9 @@ module fixed_stepper
   integer, parameter :: most_approach = 400
   !> Number of consecutive failed steps of the approach after which the rest is one step.
   integer, parameter :: most_lost = 3
-  !> With the paper's stopping rule states are not accurate enough for a search for folds; a change
-  !> of deformation above a law's length and this many times the change of h0 then counts as a jump.
+  !> With the paper's stopping rule states are not accurate enough for a search for folds. Then a
+  !> change of deformation above the law's length, and above this many times the change of h0,
+  !> counts as a jump.
   real(wp), parameter :: paper_jump = 5
   !> Largest residual of states between which folds are looked for, in the law's lengths.
   real(wp), parameter :: accurate = 1.0e-8_wp
@@ -74,7 +75,8 @@ contains
     type(branch_point_t), intent(inout) :: position
     type(step_result_t), intent(out) :: event
 
-    ! Behind a turn of the experiment, what came before rows that did not converge tells nothing.
+    ! After a turn of the experiment, states before the rows that did not converge are no longer
+    ! relevant.
     if (position%held > 0 .and. .not. is_equilibrium(position)) then
       associate (last => position%state%h0, known => position%h0(position%held))
         if ((last - known)*(h0 - last) <= 0) position%held = 0
@@ -111,9 +113,10 @@ contains
     call remember(position, state, 1, event%jumped)
   end subroutine paper_step
 
-  !> A step by mixing. If it converges the bodies are also moved from the last row that converged:
-  !> mixing does not tell a jump from a branch that continues. Plain mixing begins at constant
-  !> separation and is itself a relaxation, which says where bodies land; accelerated mixing is not.
+  !> A step by mixing. If it converges, the bodies are also moved from the last row that converged,
+  !> since mixing does not distinguish a jump from a branch that continues. Plain mixing begins at
+  !> constant separation and is itself a relaxation, which gives the state after a jump; accelerated
+  !> mixing is not.
   subroutine mixing_step(self, h0, position, event)
     class(fixed_stepper_t), intent(inout) :: self
     real(wp), intent(in) :: h0
@@ -146,7 +149,8 @@ contains
       moved = position
       call move(self, h0, moved, event)
       if (event%ending%early()) return
-      ! Where the branch continues the state is on it; where it ends, mixing says where bodies land.
+      ! If the branch continues, the state is on it; if it ends, mixing gives the state after the
+      ! jump.
       joined = .not. event%jumped .and. .not. event%unsure
       position%lost = moved%lost
       position%lost_error = moved%lost_error
@@ -188,7 +192,7 @@ contains
     call take(position, state, event%converged)
   end subroutine move
 
-  !> Makes a state that follows no other the state of the position.
+  !> Makes a state without predecessor the state of the position.
   subroutine take(position, state, converged)
     type(branch_point_t), intent(inout) :: position
     type(state_t), intent(in) :: state

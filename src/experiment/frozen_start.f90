@@ -1,6 +1,6 @@
-!> What a drive of viscoelastic bodies keeps of its start. A drive begins with relaxed bodies; if it
-!> begins near, the attraction has already drawn them out towards each other. In a fast drive they
-!> keep this bulge, so that their tips are sharper, or blunter, than those of undeformed bodies.
+!> The effect of the start on a drive of viscoelastic bodies. A drive begins with relaxed bodies. If
+!> they are near each other, the attraction has already deformed them. In a fast drive they keep
+!> this deformation, so that their tips are sharper, or blunter, than those of undeformed bodies.
 module frozen_start
   use kinds, only: wp
   use contact_state, only: state_t
@@ -15,10 +15,10 @@ module frozen_start
 
 contains
 
-  !> Estimate of the relative change of the largest tension by what is left of the first deformation
-  !> at that time. The tension of a contact of radius a is about proportional to the radius of
-  !> curvature of the bodies, so the change is that of their height over a. row: of the drive, SI
-  !> units, with times since its start; position: of the start.
+  !> Estimate of the relative change of the largest tension by the part of the initial deformation
+  !> that remains at that time. The tension of a contact of radius a is about proportional to the
+  !> radius of curvature of the bodies, so the relative change is that of their height over a. row:
+  !> of the drive, SI units, with times since its start; position: of the start.
   real(wp) function effect_of_start(steps, position, row) result(effect)
     type(time_stepper_t), intent(inout) :: steps
     real(wp), intent(in) :: position

@@ -10,8 +10,8 @@ module h0_schedule
   !> Number of states of a path that is stepped in h0.
   integer, parameter :: path_states = 100
 
-  !> The values of h0 of a branch, in the law's lengths; those with a profile; and those whose
-  !> errors represent the errors of all.
+  !> The values of h0 of a branch, in the law's lengths; those with a profile; and samples whose
+  !> errors represent those of all.
   type :: h0_schedule_t
     character(len=:), allocatable :: name
     real(wp), allocatable :: h0(:)
@@ -86,7 +86,7 @@ contains
       request%unloading%h0_step, request, law)
   end function unloading_plan
 
-  !> The plan without the rows that no number is read at: those left are the ends, the samples, the
+  !> The plan with only those rows from which numbers are taken: the ends, the samples, the
   !> profiles, and the rows nearest to the values `kept`.
   type(h0_schedule_t) function thinned(plan, kept)
     type(h0_schedule_t), intent(in) :: plan

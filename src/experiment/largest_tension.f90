@@ -1,6 +1,5 @@
-!> The largest tension of an experiment, as the place of the lowest load. On a stretch of the path
-!> the load is lowest at an end or at an extremum, and the extrema of the path's polynomials are
-!> points of the path.
+!> The largest tension of an experiment, as the place of the lowest load. On a part of the path the
+!> load is lowest at an end or at an extremum, and all extrema are points of the path.
 module largest_tension
   use kinds, only: wp
   use traced_path, only: traced_path_t
@@ -27,8 +26,8 @@ contains
     if (present(lowered)) lowered = .true.
   end subroutine lower
 
-  !> The same for the extrema and folds among the points `first` to `last` of a path, if h0 is given
-  !> with h0 between these two values.
+  !> The same for the extrema and folds among the points `first` to `last` of a path; if `h0` is
+  !> present, only those with h0 between its two values.
   pure subroutine lower_along(path, first, last, lowest, h0)
     type(traced_path_t), intent(in) :: path
     integer, intent(in) :: first, last

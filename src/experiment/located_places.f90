@@ -23,15 +23,15 @@ module located_places
 
   !> Error of h0 after a search for a state along the path (law's lengths).
   real(wp), parameter :: tight = 3.0e-11_wp
-  !> A residual that differs from node to node may move a state this many times as far as a uniform
+  !> A residual that varies from node to node may move a state this many times as far as a uniform
   !> one, which acts like a change of h0.
   real(wp), parameter :: worst_residual = 3
 
 contains
 
   !> Sets the values at all places, except those that another stepper, on other meshes, has located.
-  !> like: the table of another run of the same scene, whose profiles say at which radii gaps are
-  !> read; without it, they are read at the nodes.
+  !> like: the table of another run of the same scene, whose profiles have the radii at which gaps
+  !> are wanted; without it, these are the nodes.
   subroutine locate_places(steps, places, like)
     class(solver_t), intent(inout) :: steps
     type(places_t), intent(inout) :: places
@@ -117,7 +117,7 @@ contains
     end associate
   end subroutine find_on_path
 
-  !> Reads the contact radius, and adds what iteration and rounding leave. The rounding of large
+  !> Sets the contact radius, and adds the errors of iteration and rounding. The rounding of large
   !> gaps has no effect.
   subroutine add_leftovers(steps, place)
     class(solver_t), intent(in) :: steps

@@ -14,8 +14,8 @@ module numerics_choice
   public :: choice_t, choose, size_grid, fixed_mesh, more_digits, with_fewer_nodes, with_less_extent
   public :: grid_names, unchosen, edge_locked, uniform, panels, comfortable
 
-  !> The grids are none, for rigid bodies; panels locked to the contact edge; two that are fixed in
-  !> space. Their names in results.
+  !> The grids: none, for rigid bodies; panels locked to the contact edge; two grids that are fixed
+  !> in space. Their names in results.
   integer, parameter :: unchosen = 0, no_grid = 1, edge_locked = 2, uniform = 3, panels = 4
   character(len=*), parameter :: grid_names(*) = [character(len=11) :: 'none', 'edge_locked', &
     'uniform', 'panels']
@@ -42,18 +42,18 @@ module numerics_choice
   !> the number of nodes, which limits the automatic choice.
   real(wp), parameter :: comfortable = 0.2_wp
   integer, parameter :: fewest = 200, most = 1500
-  !> Additional digits of a finer run on edge-locked meshes. Part of the nodes, and of the extent,
-  !> of other runs on a fixed grid, since a finer one would cost many times as much; the smaller
-  !> extent should still contain the contact.
+  !> Additional digits of a finer run on edge-locked meshes. On a fixed grid a finer run would cost
+  !> many times as much: the other runs have this part of the nodes, and of the extent, which should
+  !> still contain the contact.
   real(wp), parameter :: more_digits = 1.5_wp, part_of_nodes = 2/3.0_wp, part_of_extent = 5/6.0_wp
-  !> Tolerance of residuals over the accuracy, and its largest value. Without mixing, and not on
-  !> uniform grids, it is at most this smaller part of the accuracy, but not below this value.
+  !> Tolerance of residuals over the accuracy, and its largest value. Except for mixing and on
+  !> uniform grids, it is at most a smaller part of the accuracy, but not below a least value.
   real(wp), parameter :: part_of_accuracy = 0.01_wp, largest_tolerance = 1.0e-8_wp, &
     small_part = 1.0e-4_wp, small_tolerance = 1.0e-10_wp
   !> Depth of the accelerated mixing.
   integer, parameter :: mixing_depth = 10
-  !> Error of an extremum's place over the accuracy: the error of the load is a few times larger.
-  !> Its largest value; and the error of slopes over that of places.
+  !> Error of the place of an extremum over the accuracy (the error of the load is a few times
+  !> larger), and its largest value. Error of slopes over that of places.
   real(wp), parameter :: place_over_accuracy = 1.0e-5_wp, largest_place_error = 1.0e-7_wp, &
     slope_over_place = 0.1_wp
   !> Nodes of a panel on a grid that is fixed in space: this number, for each decade of accuracy,
@@ -127,10 +127,10 @@ contains
 
     options%mixing = mixes(numerics%method)
     options%tolerance = min(largest_tolerance, part_of_accuracy*numerics%accuracy)
-    ! The residual at which an iteration stops, below its tolerance, depends on rounding. This
-    ! changes the digits of a load beyond a thousandth of the tolerance; with the lower tolerance
-    ! these are beyond the requested digits, at the cost of a few products. For mixing the cost
-    ! would be larger, and on uniform grids the error of the mesh is far larger.
+    ! The residual at which an iteration stops, below its tolerance, depends on rounding, which
+    ! changes loads by a thousandth of the tolerance. The lower tolerance moves this change beyond
+    ! the requested digits, at the cost of a few products. For mixing the cost would be larger, and
+    ! on uniform grids the error of the mesh is far larger.
     if (.not. options%mixing .and. numerics%grid /= 'uniform') &
       options%tolerance = min(options%tolerance, max(small_tolerance, &
       small_part*numerics%accuracy))

@@ -56,7 +56,7 @@ contains
     class is (path_stepper_t)
       if (request%reads_path()) allocate (demand, source=demand_of(request, problem))
       call trace()
-      ! A front to which meshes are locked may recede.
+      ! The radius to which meshes are locked may decrease.
       if (steps%known%ending%cause == path_lost .and. steps%meshes%fronts) then
         call lay_out(.false.)
         call trace()
@@ -100,8 +100,8 @@ contains
   end subroutine begin_run
 
   !> Runs the path, and the cycle if the scene has one and `with_cycle`. rows: whether all rows are
-  !> wanted, or only those at which numbers are read. outcome: has the numbers of other steppers;
-  !> readings that exist are not made again. like: the numbers of a run to which this one is
+  !> wanted, or only those from which numbers are taken. outcome: may have the numbers of other
+  !> steppers, which are not computed again. like: the numbers of a run with which this one is
   !> compared.
   subroutine run_once(steps, request, with_cycle, rows, observer, outcome, like)
     class(stepper_t), intent(inout), target :: steps
@@ -243,7 +243,7 @@ contains
     type(step_result_t) :: event
     type(place_t) :: place
 
-    ! A path has its own energy. Without a jump no energy is lost, and NaN is not known.
+    ! With a path, the energy is that of the path. Without a jump none is lost; NaN means unknown.
     if (places%has('energy_lost') .or. ieee_is_nan(position%lost)) return
     if (.not. abs(position%lost) > 0) return
     if (unloading%ending%early() .or. .not. allocated(start%state%gap)) return

@@ -26,8 +26,8 @@ module path
     !> Largest tension, which is the pull-off at controlled load; the first state; the last state,
     !> if it is stable.
     type(place_t), allocatable :: lowest, start, finish
-    !> The least h0 below the end at which the bodies are stable outside a barrier; the end if the
-    !> path does not go there.
+    !> The least h0 below the end at which the bodies are stable outside a barrier; the end itself
+    !> if there is none.
     real(wp) :: deepest_outside = 0
     !> The stable pieces on which the path begins and ends; 0 if it is unstable there.
     integer :: first_piece = 0, last_piece = 0
@@ -188,7 +188,8 @@ contains
       end associate
     end subroutine take
 
-    !> Notes how far the path goes below its end while a barrier keeps the bodies apart.
+    !> Records how far below the requested end the path continues while a barrier keeps the bodies
+    !> apart.
     subroutine look_outside(state)
       type(state_t), intent(in) :: state
 

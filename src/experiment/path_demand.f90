@@ -13,8 +13,8 @@ module path_demand
   private
   public :: path_start, range_of, demand_of, h0_in_contact
 
-  !> Deformation of the bodies, as a fraction of that at the jump, that no longer affects the load;
-  !> at larger separations closed forms replace the path.
+  !> Where the deformation of the bodies is below this fraction of that at the jump, it no longer
+  !> affects the load, and closed forms replace the path.
   real(wp), parameter :: no_yielding = 1.0e-9_wp
   !> Ratio of successive trial radii of the contact; and margin for the error of an h0 of JKR
   !> theory.
@@ -39,8 +39,8 @@ contains
     end if
   end function path_start
 
-  !> An h0 beyond another one, and beyond the largest tension of undeformed bodies that are as far
-  !> apart: over a barrier bodies may pull most far outside contact.
+  !> An h0 beyond another one, and beyond the largest tension of undeformed bodies farther out:
+  !> outside a barrier the tension may be largest far from contact.
   pure real(wp) function beyond_pull(problem, from) result(h0)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: from
@@ -127,8 +127,8 @@ contains
 
   contains
 
-    !> Adds a spring that yields by `softness` under the unit of load. Its base comes to z_end or,
-    !> if there is none, closer than to where the highest barrier gives way.
+    !> Adds a spring with the compliance `softness`. Its base moves to z_end or, if there is none,
+    !> beyond the position at which the highest barrier is overcome.
     subroutine add_spring(softness)
       real(wp), intent(in) :: softness
 
@@ -190,7 +190,7 @@ contains
   end function gap_of_load
 
   !> A tension that no pull-off exceeds: for parabolas that of rigid bodies; for other shapes the
-  !> larger one of rigid bodies and JKR theory. Thin films reach up to twice this tension.
+  !> larger one of rigid bodies and JKR theory, doubled because of thin films.
   pure real(wp) function largest_pull(problem) result(tension)
     type(problem_t), intent(in) :: problem
     real(wp) :: well

@@ -37,12 +37,12 @@ module path_readings
     type(loaded_state_t), allocatable :: loaded(:)
     !> Derivatives at the nodes by each parameter of &sensitivity, (parameters, nodes).
     type(rate_t), allocatable :: rate(:, :)
-    !> The h0 from which the path was traced, and the h0 from which the bodies are undeformed up to
-    !> there; -huge: none.
+    !> The h0 from which the path was traced, and the larger h0 from which the bodies are undeformed
+    !> up to there; -huge: none.
     real(wp) :: traced_from = -huge(1.0_wp), undeformed_from = -huge(1.0_wp)
     !> For the table, the largest error of cubic interpolation of the load between rows.
     real(wp) :: table_interpolation_error = 0
-    !> Of the states that are read, which may be beyond the path's rows: what tells of strains.
+    !> The strains of the states of springs and loads, which may be beyond the path's rows.
     type(quality_t) :: quality
     !> Whether the path has more than one point and all its states were solved.
     logical :: solved = .true.
@@ -75,7 +75,8 @@ contains
 
   contains
 
-    !> &table: moves bodies at prescribed h0 to the end of the path; springs may need more of it.
+    !> &table: moves bodies at prescribed h0 to the end of the path that is shown; springs may need
+    !> a longer path.
     subroutine make_table()
       integer :: whole, last
 
@@ -138,7 +139,7 @@ contains
             readings%device(i), device%z_start, device%z_end)
           readings%device(i)%stiffness = stiffness(i)
           readings%solved = readings%solved .and. readings%device(i)%solved
-          ! The path goes on beyond the states of the drive, as far as its last step happened to go.
+          ! The path extends beyond the states of the drive by a part of its last step.
           do k = 1, size(readings%device(i)%leg)
             call cover(states_on(readings%node, readings%device(i)%leg(k)), problem, &
               readings%quality)

@@ -1,6 +1,6 @@
-!> The rows of the equilibrium path: points of the path, states at given h0, and as many states
-!> between them as straight lines from row to row need to show load and contact radius against h0,
-!> also near folds and at large separations.
+!> The rows of the equilibrium path: points of the path, states at given h0, and so many states
+!> between them that straight lines from row to row show load and contact radius against h0
+!> accurately, also near folds and at large separations.
 module path_rows
   use kinds, only: wp
   use dimensionless_problem, only: contact_level_of
@@ -26,7 +26,8 @@ module path_rows
   !> Largest distance of the curve from a line, in fractions of h0 and load at the ends of the span
   !> (which are small at large separations) and of the widest contact.
   real(wp), parameter :: allowed = 0.003_wp
-  !> Parts of a span at whose ends the curve is evaluated; largest number of lines of a span.
+  !> Number of parts of a span at whose ends the curve is evaluated; largest number of lines of a
+  !> span.
   integer, parameter :: parts = 4, most_lines = 16
 
 contains
@@ -115,8 +116,8 @@ contains
       row%state, row%converged)
   end function row_for_curve
 
-  !> Coordinates of a span between `from` and `to`, in order, at equal distances: the distance of
-  !> the curve from a line is proportional to the square of the line's length. widest: contact
+  !> Coordinates of a span between `from` and `to`, in order, at equal distances, since the distance
+  !> of the curve from a line is proportional to the square of the line's length. widest: contact
   !> radius, lateral units.
   pure function places_between(solver, span, from, to, widest) result(places)
     class(solver_t), intent(in) :: solver

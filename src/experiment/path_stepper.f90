@@ -1,10 +1,10 @@
 !> A quasi-static experiment under a law that attracts. All equilibria lie on one path, which is
-!> traced before the experiment. The path gives the way of the bodies along its stable pieces
+!> traced before the experiment. The path gives the motion of the bodies along its stable pieces
 !> (`walk`) and the largest tension.
 !>
 !> The iteration solves the states; its result is accepted if it is the state on the path. Usually
 !> one correction of the predicted state and a check are enough, with one factorisation for many
-!> steps; near a fold the state is found by a search along the path.
+!> steps. Near a fold the state is found by a search along the path.
 module path_stepper
   use kinds, only: wp
   use listener, only: listener_t
@@ -50,9 +50,9 @@ module path_stepper
     procedure, private :: solve_on_piece
   end type path_stepper_t
 
-  !> Near a fold h0 is proportional to the square of the coordinate, and iterations at fixed h0 do
-  !> not converge: fraction of the interval next to a fold in which a state is found by a search
-  !> along the path.
+  !> Near a fold h0 is a quadratic function of the coordinate, and iterations at fixed h0 do not
+  !> converge. In this fraction of the interval next to a fold a state is found by a search along
+  !> the path.
   real(wp), parameter :: beside_fold = 0.3_wp
   !> Change of the path's coordinate by which a state may lie outside its interval: meshes with
   !> different numbers of nodes differ by their errors.
@@ -151,7 +151,7 @@ contains
     position%held = 0
   end subroutine jump_with
 
-  !> The way at prescribed h0 from a stable piece to an h0.
+  !> The legs at prescribed h0 from a stable piece to an h0.
   pure type(walk_t) function way_to(self, piece, h0) result(way)
     class(known_path_t), intent(in) :: self
     integer, intent(in) :: piece

@@ -39,11 +39,11 @@ module places
     procedure :: judge_by
   end type places_t
 
-  !> Differences of energies, whose relative errors do not tell how accurate a run is.
+  !> Differences of energies: their relative errors are no measure of the accuracy of a run.
   character(len=*), parameter :: of_energies(*) = [character(len=name_length) :: 'energy_lost', &
     'device_energy']
-  !> Numbers of which the error of the profile is read, and those of which the contact radius is
-  !> reported, in the summary or, for fixed loads, in a table.
+  !> Numbers that report the error of the profile, and those that report the contact radius, in the
+  !> summary or, for fixed loads, in a table.
   character(len=*), parameter :: of_profiles(*) = pack(rows%place, rows%quantity == of_profile)
   character(len=*), parameter :: with_radius(*) = [character(len=name_length) :: 'fixed_load', &
     pack(rows%place, rows%quantity == of_radius)]
@@ -51,7 +51,7 @@ module places
 contains
 
   !> Finds a place in the table, or adds it, after the place from which its jump started. A row that
-  !> is also the place of a search is as uncertain as that.
+  !> is also the result of a search has the uncertainty of the search.
   recursive subroutine keep(self, place, i)
     class(places_t), intent(inout) :: self
     type(place_t), intent(in) :: place
@@ -176,8 +176,8 @@ contains
       self%place(self%entry(findloc(self%entry%name == name, .true., 1))%place)
   end function place_of
 
-  !> All elements of all numbers, with the errors that iteration and rounding leave. problem: they
-  !> are in SI units.
+  !> All elements of all numbers, with the errors of iteration and rounding; in SI units if
+  !> `problem` is present.
   pure function numbers(self, problem) result(all)
     class(places_t), intent(in) :: self
     type(problem_t), intent(in), optional :: problem

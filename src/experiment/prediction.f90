@@ -15,10 +15,10 @@ module prediction
   private
   public :: extrapolated, moved_with_edge, missed_t, expect
 
-  !> The errors of a span at the past states of an experiment: number and h0 of each state, which
-  !> identify it (numbers alone repeat from branch to branch), its coordinate, and the corrections
-  !> of H0, scale and gaps (one column for each state). The errors depend on the span and the past
-  !> only, and are computed when these change.
+  !> The errors of a span at the past states of an experiment. Number and h0 identify a state, since
+  !> numbers alone repeat from branch to branch. Then its coordinate, and the corrections of H0,
+  !> scale and gaps (one column for each state). The errors depend on the span and the past only,
+  !> and are computed when these change.
   type :: missed_t
     private
     integer :: held = 0, number(memory) = 0
@@ -46,9 +46,9 @@ contains
     expected%h0 = h0
   end function extrapolated
 
-  !> The extrapolated state, with the deformation extrapolated at fixed distances relative to the
-  !> contact radius, which is extrapolated too: sharp features at the edge move with it. Without
-  !> contact the extrapolation is node by node.
+  !> The extrapolated state. Contact radius, and deformation at a fixed ratio of radius to contact
+  !> radius, are extrapolated, so that sharp features at the edge move with it. Without contact the
+  !> extrapolation is node by node.
   type(state_t) function moved_with_edge(problem, mesh, position, h0) result(expected)
     type(problem_t), intent(in) :: problem
     type(discretisation_t), intent(in) :: mesh
@@ -169,8 +169,8 @@ contains
     self%held = position%held
   end subroutine follow
 
-  !> The first past state from which the span's errors can be extrapolated to the coordinate s; one
-  !> more than their number: there is none.
+  !> The first past state from which the span's errors can be extrapolated to the coordinate s; the
+  !> number of past states plus one if there is none.
   pure integer function first_of_use(self, span, s) result(first)
     class(missed_t), intent(in) :: self
     type(path_span_t), intent(in) :: span
@@ -178,7 +178,7 @@ contains
 
     associate (at => self%at(:self%held), last => self%held)
       do first = 1, last
-        ! A span's polynomial is accurate within its own length only; and states whose coordinates
+        ! A span's polynomial is accurate within its own length only. States whose coordinates
         ! differ only by rounding are useless for an extrapolation.
         if (abs(at(first) - s) > abs(span%ends(2) - span%ends(1))) cycle
         if (any(abs(at(first + 1:) - at(first:last - 1)) <= 0)) cycle

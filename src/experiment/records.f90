@@ -28,10 +28,10 @@ module records
     real(wp), allocatable :: eigenvalue, local_criterion, axis_criterion
   end type record_t
 
-  !> The quality of some rows: the largest residual, the widest spacing of nodes at the contact edge
-  !> over the neck width, the widest contact [m], the largest magnitude of pressure, in the law's
-  !> unit, the deepest approach below h0 = 0 [m], the largest magnitude of load [N], and the
-  !> smallest gap, in the law's unit.
+  !> The quality of some rows: largest residual, widest spacing of nodes at the contact edge over
+  !> the width of the cohesive zone, widest contact [m], largest magnitude of pressure (law's unit),
+  !> deepest approach below h0 = 0 [m], largest magnitude of load [N], and smallest gap (law's
+  !> unit).
   type :: quality_t
     real(wp) :: residual = 0, spacing = 0, contact_radius = 0, pressure = 0, depth = 0, load = 0
     real(wp) :: gap = huge(1.0_wp)
@@ -65,7 +65,7 @@ contains
     call self%cover_extent(record%contact_radius, record%h0, record%load, state)
   end subroutine cover
 
-  !> Includes what tells of strains in a state. contact_radius and h0 [m], load [N].
+  !> Includes the measures of strain of a state. contact_radius and h0 [m], load [N].
   pure subroutine cover_extent(self, contact_radius, h0, load, state)
     class(quality_t), intent(inout) :: self
     real(wp), intent(in) :: contact_radius, h0, load

@@ -1,6 +1,6 @@
 !> Named numbers of a run, and their errors from other runs of the same scene. The error of a number
-!> is a multiple of its difference from the same number, by name and element, of another run; a
-!> number that another run does not have, or has more often, is not known.
+!> is a multiple of its difference from the same number, by name and element, of another run. A
+!> number that the other run lacks, or has more often, is not known.
 module reported_numbers
   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
   use kinds, only: wp, nan
@@ -33,27 +33,26 @@ module reported_numbers
     real(wp), allocatable, dimension(:, :) :: rate, rate_error
   end type number_t
 
-  !> The numbers of another run. part: the error of a number over its difference from this run, if
-  !> errors are as regular as they should be: 1 for a run that is much finer, or one of which this
-  !> cannot be said.
+  !> The numbers of another run. part: the expected error of a number over its difference from this
+  !> run; 1 if that run is much finer or nothing is known.
   type :: run_numbers_t
     type(number_t), allocatable :: number(:)
     real(wp) :: part = 1
   end type run_numbers_t
 
-  !> Factor of the differences. It accounts for the error of the other run, which is a tenth or less
-  !> for a finer mesh, and for differences that are small by chance.
+  !> Safety factor of the differences, for the error of the other run (a tenth or less on a finer
+  !> mesh) and for differences that are small by chance.
   real(wp), parameter :: margin = 3
   !> Kinds of quantities whose relative errors are alike: 1 h0 and displacements, 2 loads and
   !> energies, 3 radii, 4 profiles.
   integer, parameter :: kind_of(quantities) = [1, 2, 1, 2, 3, 3, 2, 1, 2, 2, 4]
-  !> Part of the median error below which no error is, on meshes of other digits, which seldom agree
-  !> by chance; and on grids that are fixed in space, whose errors depend on where the contact edge
-  !> is between nodes. Of 1025 numbers on meshes locked to the edge under random laws, 1.5 % had
-  !> errors above such estimates and 3.1 % below a thirtieth of them; with one median of all kinds
+  !> The least error, over the median error: on meshes of other digits, which seldom agree by
+  !> chance, and on grids that are fixed in space, whose errors depend on the place of the contact
+  !> edge between nodes. Of 1025 numbers on meshes locked to the edge under random laws, 1.5 % had
+  !> errors above such estimates and 3.1 % below a thirtieth of them. With one median of all kinds
   !> it is 1.7 % and 7.2 %, without a least error 2.0 % and 0.6 %.
   real(wp), parameter :: chance = 0.1_wp, chance_on_grids = 1
-  !> The relative error that stands for an unknown value.
+  !> The relative error of an unknown value.
   real(wp), parameter :: most = 1.0e6_wp
   !> The loads of a table, whose errors are relative to the largest of them; and turns of the path,
   !> which count only if other runs do not have them.
@@ -64,9 +63,9 @@ module reported_numbers
 
 contains
 
-  !> Sets the errors of the numbers that are not judged yet, which at first have what iteration and
-  !> rounding leave. Two meshes may agree by chance: no error is smaller than a part of the median
-  !> of the relative errors of the same kind.
+  !> Adds the differences from other runs to the errors of numbers that so far have only those of
+  !> iteration and rounding. Two meshes may agree by chance, so no relative error is smaller than a
+  !> part of the median of the same kind.
   pure subroutine judge(number, others, part)
     type(number_t), intent(inout) :: number(:)
     type(run_numbers_t), intent(in) :: others(:)
@@ -146,9 +145,9 @@ contains
   end function place_among
 
   !> Sets derivative j of `parameters` from the numbers, in SI units, of runs with other values of
-  !> the parameter: the sums over the runs with `weight` are the derivatives, those with `coarser`
-  !> have a larger error; what iteration and rounding leave in the runs is added. A number that some
-  !> run does not have, or has more often, has no derivative, and found = .false.
+  !> the parameter. The derivatives are sums over the runs with `weight`; their errors are the
+  !> differences from the sums with `coarser`, plus the errors of iteration and rounding. A number
+  !> that some run lacks, or has more often, has no derivative, and found = .false.
   pure subroutine differentiate(number, runs, weight, coarser, j, parameters, found)
     type(number_t), intent(inout) :: number(:)
     type(run_numbers_t), intent(in) :: runs(:)

@@ -24,9 +24,9 @@ module rigid_bodies
   private
   public :: run_rigid
 
-  !> Distance of successive sampled gaps, as a fraction of the distance from the law's pole, or of
-  !> `least` if that is larger; without a pole (smallest gap below `no_pole`), as a fraction of the
-  !> gap or of the law's length. Least number of sampled gaps in a period.
+  !> Distance of successive sampled gaps, as a fraction of the distance from the law's pole or of
+  !> `least`, whichever is larger. Without a pole (smallest gap below `no_pole`) it is a fraction of
+  !> the gap or of the law's length. Least number of sampled gaps in a period.
   real(wp), parameter :: part = 0.02_wp, least = 1.0e-3_wp, of_period = 12, no_pole = -60
   !> Extent of a profile, in units of the larger one of its h0 and the law's length.
   real(wp), parameter :: far_out = 1000
@@ -107,8 +107,8 @@ contains
       call enter_ends(branch, fresh, places)
     end subroutine run_branch
 
-    !> Notes whether the tension is largest in the first or in the last row. It cannot grow beyond
-    !> if it is level there, or where bodies touch that a repulsion does not keep apart.
+    !> Records whether the tension is largest in the first or in the last row. It does not grow
+    !> beyond if its slope is zero there, or where bodies touch under a law without repulsion.
     pure subroutine judge_ends(first, last, branch)
       real(wp), intent(in) :: first, last
       type(branch_t), intent(inout) :: branch
@@ -195,7 +195,7 @@ contains
       slopes = [load_slope_undeformed(problem, low), load_slope_undeformed(problem, high)]
       found = place_at(h0)
       if (.not. (slopes(1) < 0 .and. slopes(2) > 0)) then
-        ! A minimum between neighbours that was not resolved.
+        ! The minimum between these neighbours was not resolved.
         if (low < h0 .and. h0 < high) then
           found%left(of_h0) = high - low
           found%left(of_radius) = radius_error(h0, high - low)

@@ -18,11 +18,11 @@ module stepped_branch
   !> The results of a branch, in the units of `dimensionless_problem`. A component that is not
   !> allocated does not exist.
   type :: branch_t
-    !> Largest tension (a negative load), and whether it is that of the first or of the last row,
-    !> beyond which the tension may grow.
+    !> Largest tension (a negative load), and whether it is in the first or in the last row, so that
+    !> the tension may grow beyond.
     type(place_t), allocatable :: lowest
     logical :: lowest_first = .false., lowest_last = .false.
-    !> Whether it stands beside states that did not converge, towards which the tension grows.
+    !> Whether the tension grows towards neighbouring states that did not converge.
     logical :: lowest_beside_lost = .false.
     !> The first jump: h0 and the load just before it; and the uncertainty of h0 if the path is not
     !> known.
@@ -46,9 +46,9 @@ contains
 
   !> Steps through plan%h0. A new experiment (fresh) begins with an approach from large separation
   !> to the first value; otherwise the branch begins at `position`. `kept` returns the positions at
-  !> the steps nearest to the values `keep`: a plan merges values that differ by less than a rounded
-  !> step. The states with a requested profile become places of the table; if the path is not known,
-  !> also the samples.
+  !> the steps nearest to the values `keep` (a plan merges values that differ by less than a rounded
+  !> step). The states with a requested profile become places of the table; without a known path, so
+  !> do the samples.
   subroutine run_branch(steps, plan, fresh, position, observer, branch, places, keep, kept)
     class(stepper_t), intent(inout), target :: steps
     type(h0_schedule_t), intent(in) :: plan
@@ -157,7 +157,7 @@ contains
       end if
     end subroutine note
 
-    !> Notes a part of the branch in which the bodies may have jumped.
+    !> Records a part of the branch in which the bodies may have jumped.
     subroutine doubt(from, to)
       real(wp), intent(in) :: from, to
 

@@ -43,9 +43,8 @@ module stepper
     !> Whether the bodies jumped; h0 and load just before the first jump, and the uncertainty of h0.
     logical :: jumped = .false.
     real(wp) :: jump_h0 = 0, jump_load = 0, jump_uncertainty = 0
-    !> Whether a contact edge slipped from one node to the next, and whether it may have slipped at
-    !> places that were not looked for; of the states just before jumps and slips, the one of
-    !> largest tension.
+    !> Whether a contact edge slipped from one node to the next, and whether it may have slipped
+    !> unnoticed. Of the states just before jumps and slips, the one of largest tension.
     logical :: slipped = .false., jagged = .false.
     type(extreme_t) :: before = extreme_t()
     !> Whether it is not known if the bodies jumped between unsure_from and the end of the step.
@@ -88,8 +87,8 @@ module stepper
 
 contains
 
-  !> Makes `lowest` the place of the lowest load on the way from h0 = from, on a stable piece of the
-  !> path, to another h0 if that load is lower; does nothing if the path is not known. The states at
+  !> Makes `lowest` the place of the lowest load between h0 = from, on a stable piece of the path,
+  !> and another h0, if that load is lower. Does nothing if the path is not known. The states at
   !> both ends are not considered.
   subroutine find_lowest(self, piece, from, to, lowest)
     class(stepper_t), intent(in) :: self
@@ -108,8 +107,8 @@ contains
   end function grid
 
   !> Makes `state` the position's present state. The past is removed if the mesh changes or the
-  !> bodies jumped. predicted: the state was predicted from the past and needed no correction; it is
-  !> not added to the past.
+  !> bodies jumped. predicted: the state needed no correction of its prediction, and is not added to
+  !> the past.
   subroutine remember(position, state, mesh, jumped, predicted)
     type(branch_point_t), intent(inout) :: position
     type(state_t), intent(in) :: state

@@ -19,9 +19,9 @@ module tension_search
     procedure, private :: end_stretch
   end type tension_search_t
 
-  !> Number of stretches of a branch that are searched immediately. Further stretches, which an
-  !> unresolved contact edge causes by jumps from node to node, are not; only the one of largest
-  !> tension is searched at the end.
+  !> Number of stretches of a branch that are searched immediately. Further ones are due to an
+  !> unresolved contact edge that slips from node to node; of these only the one of largest tension
+  !> is searched, at the end.
   integer, parameter :: searched_at_once = 3
 
 contains

@@ -39,10 +39,10 @@ module tension_stretch
     procedure, private :: search_jump_by_jump
   end type found_tension_t
 
-  !> Halvings of a stretch before the slope of the load has both signs, and the part of the stretch
-  !> that ends them: the tension is then largest at an end of the stretch, which is a jump, whose
-  !> load is known, or an end of the experiment. States of the search for the root, and the error of
-  !> h0 that ends it unless the tolerance is larger.
+  !> Largest number of halvings of a stretch until the slope of the load has both signs, and the
+  !> smallest part of the stretch. If they are exhausted, the tension is largest at an end of the
+  !> stretch: a jump, whose load is known, or an end of the experiment. Number of states of the
+  !> search for the root, and the error of h0 that ends it unless the tolerance is larger.
   integer, parameter :: most_halvings = 12, most_rounds = 12
   real(wp), parameter :: enough = 1.0e-3_wp, exact = 1.0e-9_wp
   !> Smallest bracket of a search, relative or in the law's lengths.
@@ -77,8 +77,9 @@ contains
     call self%note_place(place)
   end subroutine note_jump
 
-  !> Searches for the largest tension between stretch%before and stretch%after: where the slope
-  !> dF/dh0 is zero. (The load is flat there, and tells the place only to the root of its error.)
+  !> Searches for the largest tension between stretch%before and stretch%after, where the slope
+  !> dF/dh0 is zero. (From loads alone the place would be known only to the square root of their
+  !> error.)
   subroutine refine(self, steps, stretch)
     class(found_tension_t), intent(inout) :: self
     class(stepper_t), intent(inout) :: steps
@@ -109,9 +110,9 @@ contains
     end associate
   end subroutine refine
 
-  !> Goes from a state down the slope of the load towards `bound`, by halves, until the slope has
-  !> the other sign. lost: whether states beyond the bound did not converge; onward: the sense of
-  !> the branch.
+  !> Moves from a state towards lower loads and `bound`, by halving the distance, until the slope
+  !> has the other sign. lost: whether states beyond the bound did not converge; onward: the sense
+  !> of the branch.
   subroutine descend(self, steps, onward, bound, slope, lost, best)
     class(found_tension_t), intent(inout) :: self
     class(stepper_t), intent(inout) :: steps
@@ -180,7 +181,7 @@ contains
     do round = 1, most_rounds
       if (.not. search%is_open()) exit
       call steps%step_to(search%place(), trial, event)
-      ! A jump between two states of one branch is the work of an iteration that failed.
+      ! A jump between two states of one branch means that an iteration failed.
       if (leaps(event) .or. .not. event%converged) exit
       call find_load_slope(steps, trial%state, slope)
       if (abs(trial%state%h0 - last) > 0) bend = (slope - last_slope)/(trial%state%h0 - last)
@@ -201,8 +202,9 @@ contains
     call self%note_place(place)
   end subroutine find_root
 
-  !> Steps again from stretch%before, or from the lowest state if a jump came before it, to
-  !> stretch%after and locates every jump of the contact edge: the tension is largest before one.
+  !> Repeats the steps from stretch%before (from the lowest state if a jump came before it) to
+  !> stretch%after and locates every slip of the contact edge, since the tension is largest just
+  !> before one.
   subroutine search_jump_by_jump(self, steps, stretch)
     class(found_tension_t), intent(inout) :: self
     class(stepper_t), intent(inout) :: steps

@@ -1,6 +1,6 @@
-!> One pass of a drive through its motion, step by step, with its readings. The steps follow the
-!> change of the load and, of viscoelastic bodies, the motion of the contact edge, or are those of
-!> the deck; a pass after a complete one halves the steps of that pass.
+!> One pass of a drive through its motion, step by step, with its results. The steps follow the
+!> change of the load and, for viscoelastic bodies, the motion of the contact edge, or are those of
+!> the deck. A pass after a complete one halves its steps.
 module timed_pass
   use kinds, only: wp, pi
   use mesh_plan, only: contact
@@ -19,21 +19,21 @@ module timed_pass
 
   !> Largest deviation of the load from a line in a step, over the unit of load; largest motion of
   !> the contact edge in a step of viscoelastic bodies, over the smallest feature there. Longest and
-  !> first step, as fractions of a way.
+  !> first step, as fractions of a segment (approach, dwell or retract).
   real(wp), parameter :: bend = 8.0e-3_wp, edge_moves = 2, longest_part = 0.05_wp, &
     first_part = 1.0e-3_wp
-  !> Smallest and largest ratio of a step to the previous one, and the part of the step with the
-  !> permitted deviation that is taken; deviation from a line that does not count.
+  !> Smallest and largest ratio of a step to the previous one; safety factor of the step with the
+  !> permitted deviation; deviation from a line that is neglected.
   real(wp), parameter :: least_ratio = 0.3_wp, most_ratio = 2, safety = 0.9_wp, straight = 0.05_wp
-  !> The shortest step that the choice takes over the shortest time of retardation, and its limits
-  !> as fractions of a way.
+  !> The shortest chosen step over the shortest retardation time, and its limits as fractions of a
+  !> segment.
   real(wp), parameter :: shortest_chosen = 1.0e-4_wp, shortest_of_way(2) = [1.0e-8_wp, 1.0e-5_wp]
-  !> A remainder of a way below this part of a step is added to the step.
+  !> A remainder of the segment below this part of a step is added to the step.
   real(wp), parameter :: remainder = 0.01_wp
   !> Number of steps after a rejected one before longer steps are tried again.
   integer, parameter :: patience = 3
-  !> The shortest step over the shortest time of retardation, its motion over the law's length, and
-  !> the step in roundings of the time, below which a step would not be one.
+  !> Limits below which a step is not divided further: over the shortest retardation time; its
+  !> motion over the law's length; in roundings of the time.
   real(wp), parameter :: shortest_part = 1.0e-3_wp, shortest_way = 1.0e-6_wp, roundings = 4
 
 contains
@@ -46,8 +46,8 @@ contains
     type(pass_t), intent(inout) :: now
     integer :: way
 
-    ! A pass that halves steps and needs far more than twice as many, or has many more jumps, moves
-    ! back and forth in details that are not resolved.
+    ! If a pass that halves steps needs far more than twice as many, or has many more jumps, it
+    ! oscillates in details that are not resolved.
     if (before%held > 0 .and. .not. allocated(steps%drainage)) then
       now%most = 6*before%held + 2000
       now%most_jumps = before%result%jumps + 10
@@ -69,8 +69,8 @@ contains
       ! The motion before a turn does not predict the motion after it; rates and loads of a fluid
       ! jump.
       steps%before = now%at
-      ! A path also leads inward from a turn close to a fold, along unstable states; the third way
-      ! is back.
+      ! From a turn close to a fold a path also leads inward, along unstable states; the third
+      ! segment is the retract.
       if (way == 3) now%inwards = .false.
       now%at%since_turn = 0
       if (.not. allocated(steps%drainage)) call take_row(now)
@@ -131,7 +131,7 @@ contains
       real(wp) :: line, unit
 
       missed = straight
-      ! Creeping bodies are stiffer than bodies at rest.
+      ! Viscoelastic bodies in motion are stiffer than relaxed ones.
       unit = now%load_unit
       if (.not. steps%meshes%traceable) unit = max(unit, now%result%largest_load)
       associate (r => now%recent)
@@ -149,9 +149,9 @@ contains
         (edge_moves*steps%finest(from%state%scale)))**2)
     end function missed
 
-    !> The unit of load for the choice of steps: a pull-off or, without adhesion, the load at rest
-    !> at the lowest position, which the largest load of the drive exceeds. Compared with it, the
-    !> loads of bodies far apart are small from the beginning, and steps are long there.
+    !> The unit of load for the choice of steps: a pull-off or, without adhesion, the relaxed load
+    !> at the lowest position, which the largest load of the drive exceeds. Loads of bodies far
+    !> apart are small against it, so steps are long there.
     real(wp) function unit_of_load(drive, before, steps) result(unit)
       type(motion_t), intent(in) :: drive
       type(pass_t), intent(in) :: before
@@ -177,8 +177,8 @@ contains
       end associate
     end subroutine halve_step
 
-    !> Moves to a time since the beginning of the way, in shorter steps where bodies move too far in
-    !> one step, and over instantaneous jumps.
+    !> Moves to a time since the beginning of the segment, in shorter steps where bodies move too
+    !> far in one step, and over instantaneous jumps.
     subroutine go_to(time)
       real(wp), intent(in) :: time
       type(instant_t) :: next

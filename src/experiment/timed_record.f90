@@ -1,4 +1,4 @@
-!> The readings of a drive: its rows, the reported numbers, and their quality.
+!> The results of a drive: its rows, the reported numbers, and their quality.
 module timed_record
   use kinds, only: wp, nan
   use equilibrium, only: holds
@@ -34,7 +34,7 @@ module timed_record
     real(wp) :: suction_at(3) = 0
     type(quality_t) :: quality
     real(wp) :: memory_tail = 0, largest_load = 0
-    !> Whether a start was found, whether the bodies were lost, whether the reason was the number of
+    !> Whether a start was found, whether the motion was lost, whether the reason was the number of
     !> steps or jumps, and the time [s] of the loss.
     logical :: begun = .false., lost = .false., too_many = .false.
     real(wp) :: lost_at = 0
@@ -45,9 +45,9 @@ module timed_record
     real(wp) :: of_start = 0
   end type timed_result_t
 
-  !> A pass: its results and rows, whose times are those since the beginning of a way; the last
-  !> three loads, the present way and the time [s] at which it began, the length of the next step
-  !> [s], and the row of the previous pass whose step is halved.
+  !> A pass: its results and rows, whose times count from the beginning of a segment; the last three
+  !> loads, the present segment and the time [s] at which it began, the length of the next step [s],
+  !> and the row of the previous pass whose step is halved.
   type :: pass_t
     type(timed_result_t) :: result
     integer :: held = 0, way = 0, halved = 1
@@ -186,9 +186,10 @@ contains
     call move_alloc(longer, now%row)
   end subroutine make_room
 
-  !> Enters the numbers of a pass. The errors of loads are relative to the largest load, those of
-  !> the energy to the largest load times the law's length if that is larger, and those of the
-  !> suction to the part of the law's pressure that is the accuracy: smaller suctions are not felt.
+  !> Enters the numbers of a pass. The errors of loads are relative to the largest load. Those of
+  !> the energy are relative to the energy or to the largest load times the law's length, whichever
+  !> is larger; those of the suction to the suction or to accuracy times the law's pressure, below
+  !> which a suction has no effect.
   subroutine enter_numbers(result, accuracy, with_work, with_suction, places)
     type(timed_result_t), intent(in) :: result
     real(wp), intent(in) :: accuracy
@@ -206,7 +207,7 @@ contains
       call places%enter('end', 1, place)
       place%at = nan
       if (number(of_tension) > 0) then
-        ! The load turns there, which the last place does not know.
+        ! The load has an extremum there, which the last place does not say.
         place%turn_of = [0.0_wp, 1.0_wp]
         place%at([of_h0, measured_load]) = [number(of_tension_h0), -number(of_tension)]
         call places%enter('max_tension', 1, place)

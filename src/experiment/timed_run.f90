@@ -40,13 +40,15 @@ module timed_run
   !> Number of passes in which the bodies may be lost before two consecutive passes are complete.
   integer, parameter :: most_tries = 3
   real(wp), parameter :: farthest = 0.3_wp
-  !> Length of panels of the memory's mesh over the width of the neck, and their additional nodes;
-  !> largest number of nodes, beyond which a warning reports unresolved details.
+  !> Length of panels of the mesh for internal variables over the width of the cohesive zone, and
+  !> their additional nodes; largest number of nodes, beyond which a warning reports unresolved
+  !> details.
   real(wp), parameter :: over_neck = 3
   integer, parameter :: over_order = 3, most_nodes = 5000
-  !> Largest quadrature error of a pressure on long panels of the memory's mesh, over the accuracy.
+  !> Largest quadrature error of a pressure on long panels of this mesh, over the accuracy.
   real(wp), parameter :: left_out = 1.0e-3_wp
-  !> Extent of the memory of a fluid's pressure, over the width of the film.
+  !> Extent of the mesh for internal variables under the pressure of a fluid, over the width of the
+  !> film.
   real(wp), parameter :: far_out = 50
   !> Additional digits of the meshes in each pass.
   real(wp), parameter :: more_digits = 0.7_wp
@@ -54,8 +56,8 @@ module timed_run
 contains
 
   !> Simulates the motion of request%drive, and shows the rows of the last pass. places: the
-  !> numbers, with their errors; passes: the number of passes, if the numbers are to have no errors;
-  !> error: the largest relative one, huge if the motion was lost.
+  !> numbers, with their errors. passes: if present, the number of passes, and the numbers get no
+  !> errors. error: the largest relative error, huge if the motion was lost.
   subroutine run_timed(request, problem, chosen, observer, result, places, error, cost, nodes, &
     passes)
     class(request_t), intent(in) :: request
@@ -138,8 +140,8 @@ contains
 
   contains
 
-    !> Makes the two passes before the present one the other runs. A suction that the last one did
-    !> not determine, at an unresolved jump of the one before, says nothing about later ones.
+    !> Compares with the two passes before the present one. A suction that the last one did not
+    !> determine, at an unresolved jump of the one before, is no measure for later ones.
     subroutine keep_passes()
       integer :: i
 
@@ -199,8 +201,8 @@ contains
       relaxed%coupling = steps%instant*steps%creep%relaxed()
     end function relaxed_problem
 
-    !> Lays out meshes for relaxed bodies, whose neck is the narrowest, with more digits in each
-    !> pass; and for the memory panels fixed in space, with one more node each.
+    !> Lays out meshes for relaxed bodies, whose cohesive zone is the narrowest, with more digits in
+    !> each pass; and panels fixed in space for the internal variables, with one more node each.
     subroutine lay_out()
       type(problem_t) :: relaxed
       type(numerics_t) :: numerics
@@ -210,12 +212,13 @@ contains
 
       relaxed = relaxed_problem()
       high = maxval(blank%drive%position)
-      ! The memory uses the pressure at the nodes, which has half as many digits as its integrals.
+      ! Internal variables follow the pressure at the nodes, which has half as many digits as its
+      ! integrals.
       digits = chosen%digits
       if (allocated(request%creep) .or. allocated(request%fluid)) digits = 2*digits
       if (allocated(steps%drainage)) relaxed%film_gap = high + farthest_pole(steps%drainage%fluid_t)
       associate (meshes => steps%meshes)
-        ! A drive inserts no meshes on the way of an edge to a rim.
+        ! A drive inserts no meshes while the edge moves towards a rim.
         meshes = new_mesh_family(relaxed, high, low, &
           min(most_digits, digits + more_digits*(pass - 1)), further=.false.)
         if (any(meshes%waits) .or. may_pass_early(relaxed)) call fit_to_path(relaxed, high)
@@ -249,9 +252,9 @@ contains
       may_pass_early = .not. (problem%body%is_homogeneous() .or. problem%shape%parabolic)
     end function may_pass_early
 
-    !> Lays out the meshes on the path of relaxed bodies, for the gaps of its states, as laws with a
-    !> step or waves need it, and bodies whose path passes early to the mesh of the contact edge.
-    !> Meshes that the path does not reach are laid out without seen gaps.
+    !> Lays out the meshes for the gaps of the path of relaxed bodies. This is needed for laws with
+    !> a step or oscillations, and for bodies whose path passes early to the mesh of the contact
+    !> edge. Meshes that the path does not reach are laid out without computed gaps.
     subroutine fit_to_path(relaxed, high)
       type(problem_t), intent(in) :: relaxed
       real(wp), intent(in) :: high
@@ -266,7 +269,8 @@ contains
       at_rest%cost = steps%cost
       at_rest%meshes = steps%meshes
       at_rest%meshes%grows = .false.
-      ! Without the pieces of the path and their landings, which `know_path` solves too.
+      ! The pieces of the path and the jumps between them, which `know_path` solves too, are not
+      ! needed.
       call at_rest%begin_afar(high, afar, event)
       if (.not. event%ending%early()) call trace(at_rest%solver_t, afar%state, low, .true., &
         request%numerics%accuracy, observer, traced)

@@ -23,8 +23,8 @@ module arc
   !> s), in the order of s.
   type :: arc_t
     integer :: mesh = approach, held = 0
-    !> Whether guesses are at constant distance from the contact edge: outside the edge to which the
-    !> mesh is locked or, about the axis, on both sides of the edge.
+    !> Whether guesses are made at constant distance from the contact edge. On a mesh locked to the
+    !> edge this concerns the gaps outside it, on a mesh about the axis the gaps on both sides.
     logical :: moved = .false.
     !> Number of states from which a state beyond an end is extrapolated.
     integer :: extrapolated_from = 3
@@ -51,11 +51,11 @@ module arc
 contains
 
   !> The state at the coordinate s, with its tangent. The guess from the arc is corrected to
-  !> rounding or, where rounding is not reached, to the tolerance of the options, so that load and
-  !> position on the path are both exact; if that fails, the other kind of guess is tried (see
-  !> `moved`). slope_error: if present, the options' tolerance is enough, and the tangent may have
-  !> this relative error. miss: the largest change of a gap from the guess and from the other kind
-  !> of guess (huge if there is none), relative or in the law's lengths; and that of h0 and load.
+  !> rounding or, if rounding is not reached, to the tolerance of the options. If that fails, the
+  !> other kind of guess is tried (see `moved`). slope_error: if present, the options' tolerance is
+  !> enough, and the tangent may have this relative error. miss: the largest change of a gap from
+  !> the guess; from the other kind of guess (huge if there is none); and of h0 and load. Changes
+  !> are relative or in the law's lengths.
   subroutine state_at(self, solver, s, state, tangent, converged, slope_error, miss)
     class(arc_t), intent(in) :: self
     class(solver_t), intent(inout) :: solver
@@ -97,9 +97,9 @@ contains
     if (converged) call tangent_along(solver, self%mesh, s, state, tangent, converged, slope_error)
   end subroutine state_at
 
-  !> Whether the gaps change mainly by a movement of the edge: on meshes about the axis, if there is
-  !> a contact; on those that are locked to the edge the rings of an oscillating pressure and the
-  !> front of a step move with the edge or, around a small contact, hardly at all.
+  !> Whether the gaps change mainly because the edge moves. On meshes about the axis this is so if
+  !> there is a contact. On meshes locked to the edge, the rings of an oscillating pressure and the
+  !> step of a pressure move with the edge, except around a small contact.
   pure logical function has_moving_parts(self, solver)
     class(arc_t), intent(in) :: self
     class(solver_t), intent(in) :: solver
@@ -159,8 +159,9 @@ contains
     end do
   end subroutine drop_first
 
-  !> The states of the polynomial about s: the ends of the interval that contains s, with the
-  !> nearest state on either side at a sufficient distance; beyond an end, the nearest few.
+  !> The states of the polynomial about s: the ends of the interval that contains s, and on either
+  !> side the nearest state that is far enough away. Beyond an end of the arc: the nearest few
+  !> states.
   pure subroutine support(self, s, nodes, n)
     class(arc_t), intent(in) :: self
     real(wp), intent(in) :: s
@@ -196,14 +197,13 @@ contains
   end function guess
 
   !> The state at s by the polynomial through the states `nodes` of the arc, in the arrays that
-  !> `expected` has. The gaps are interpolated and, outside the edge, so are the heights of the
-  !> shape at the nodes; since the exact heights are known, the error of the polynomial in the
-  !> heights is subtracted from the guess. Near an end of the bodies or a kink of their profile this
-  !> error is most of the error of the guess. Inside the edge bodies in contact follow each other's
-  !> shape, so that the gap is smooth where the shape is not. A parabola's heights are proportional
-  !> to the square of the scale and need no such correction. moved: gaps outside the edge are those
-  !> of `moved_outside` or, about the axis, gaps near the edge those of `move_with_edge`; .false. if
-  !> absent.
+  !> `expected` has. The gaps are interpolated. Outside the edge the heights of the shape at the
+  !> nodes are interpolated too: their exact values are known, and the error of the interpolated
+  !> heights is subtracted from the guess. It is most of the error of the guess near an end of the
+  !> bodies or a kink of their profile. Inside the edge the gap is smooth even where the shape is
+  !> not. A parabola's heights are proportional to the square of the scale and need no such
+  !> correction. moved: gaps outside the edge are those of `moved_outside` or, about the axis, gaps
+  !> near the edge those of `move_with_edge`; .false. if absent.
   pure subroutine guess_from(self, problem, grid, nodes, s, expected, moved)
     class(arc_t), intent(in) :: self
     type(problem_t), intent(in) :: problem
@@ -273,9 +273,9 @@ contains
     call take_if_sound(h0, scale, expected)
   end function between
 
-  !> Replaces gaps, H0 and scale of an expected state, which are those of the nearest known state,
-  !> by extrapolated values, unless these leave the law's domain. The extrapolated gaps are in the
-  !> array of pressures, since the pressures are computed anew from the gaps.
+  !> Replaces gaps, H0 and scale of an expected state, so far those of the nearest known state, by
+  !> extrapolated values, unless these leave the law's domain. The extrapolated gaps are passed in
+  !> the array of pressures, which are computed anew later.
   pure subroutine take_if_sound(h0, scale, expected)
     real(wp), intent(in) :: h0, scale
     type(state_t), intent(inout) :: expected

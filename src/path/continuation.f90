@@ -20,29 +20,28 @@ module continuation
   !> coordinate).
   integer, parameter :: memory = 4
   real(wp), parameter :: first_step = 0.04_wp, shortest_step = 1.0e-6_wp, longest_step = 0.5_wp
-  !> Largest distance between the guess and the state, relative or in the law's lengths, that two or
-  !> three iterations correct, and the same of h0 and load; limits of the ratio of successive steps,
-  !> and the factor of which this ratio is a power.
+  !> Largest distance between guess and state that two or three iterations correct: of gaps
+  !> (relative or in the law's lengths), and of h0 and load. Then the limits of the ratio of
+  !> successive steps, and the factor of which this ratio is a power.
   real(wp), parameter :: wanted_miss = 1.5e-3_wp, growth = 2.5_wp, shrinkage = 0.3_wp, &
     rung = 1.2_wp
-  !> Distance between the guess and the state beyond which a step may have passed folds unseen, and
-  !> is repeated as a shorter one; length of a step that is not repeated.
+  !> If guess and state differ by more than this, the step may have passed folds unnoticed and is
+  !> repeated as a shorter one; steps below the second value are not repeated.
   real(wp), parameter :: too_far = 0.01_wp, short = 1.0e-3_wp
   !> Relative error of slopes that serve only for predictions.
   real(wp), parameter :: slope_error = 1.0e-7_wp
-  !> Distance between guess and state in h0 and load, and longest step, on a path whose points
-  !> define a smooth curve; small errors are best predicted from more states.
+  !> Largest distance between guess and state in h0 and load, and longest step, on a path whose
+  !> points define a smooth curve, and the number of states for such small errors.
   real(wp), parameter :: miss_of_curve = 1.0e-7_wp, step_of_curve = 0.12_wp
   integer, parameter :: states_of_curve = 4
-  !> The least step for which steps are shortened so that they end on the mesh, and the factor by
-  !> which they are.
+  !> Steps longer than this are shortened, by the given factor, so that they end on the mesh.
   real(wp), parameter :: shortest_passage = 0.05_wp, shortening = 0.6_wp
 
   !> The last states on the current mesh, newest last.
   type, extends(arc_t) :: continuation_t
     real(wp) :: step = first_step, longest_step = longest_step, miss_of_curve = wanted_miss, &
       slope_error = slope_error
-    !> Part of the load that the nodes of a mesh may miss where the path comes to it.
+    !> Part of the load that the nodes of a mesh may miss where the path enters it.
     real(wp) :: most = huge(1.0_wp)
     !> Whether no step on the current mesh converged.
     logical :: stuck = .false.
@@ -135,7 +134,7 @@ contains
       call solver%frozen%forget()
       call self%state_at(solver, s, state, tangent, converged, self%slope_error, miss)
       if (converged) then
-        ! The kind of guess that was better for this state is that for the next one.
+        ! The better kind of guess for this state is used for the next one.
         self%moved = self%moved .neqv. miss(2) < miss(1)
         off = [minval(miss(:2)), miss(3)]
         self%step = min(self%longest_step, &
@@ -154,8 +153,8 @@ contains
     call self%add(s, state, tangent)
   end subroutine advance
 
-  !> The ratio of the next step to this one; ratio: the miss that is allowed over the miss of this
-  !> step; order: of the error of an extrapolation, two for each state with its tangent. The result
+  !> The ratio of the next step to this one. ratio: the allowed miss over the miss of this step;
+  !> order: that of the error of the extrapolation, two for each state with its tangent. The result
   !> is a power of `rung`, so that rounding does not change the positions of points.
   pure real(wp) function factor_for(ratio, order) result(factor)
     real(wp), intent(in) :: ratio
@@ -176,7 +175,7 @@ contains
       step = min(self%step, self%step_past_step(equations%problem, meshes%is_about_axis(mesh)))
       if (.not. equations%problem%law%edge_gap > 0) return
       s = self%coordinate(self%held)
-      ! The last mesh, if it is about the axis, has no end at which another one begins.
+      ! No other mesh follows the last mesh if that is about the axis.
       if (mesh == size(meshes%grid) .and. meshes%is_about_axis(mesh)) return
       ! Does the coordinate end where the mesh does?
       locked = mesh == size(meshes%grid) .or. meshes%is_in_outer_contact(mesh)

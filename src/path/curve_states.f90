@@ -1,5 +1,6 @@
 !> Single equilibria of the path: at a place, or where Q = weights(1) h0 + weights(2) load has a
-!> value or an extremum; on the path's meshes or, farther out, of undeformed bodies.
+!> given value or an extremum. They are on the path's meshes or, farther out, those of undeformed
+!> bodies.
 module curve_states
   use kinds, only: wp
   use dimensionless_problem, only: problem_t

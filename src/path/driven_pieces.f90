@@ -1,7 +1,6 @@
 !> The stable branches (pieces) of the path under a drive (h0, a spring or a dead load), the jumps
-!> from their ends, and the way of bodies along them: the drive moves inward or outward; where it
-!> turns at the end of a piece, the bodies jump to another piece. `piece_search` finds pieces and
-!> jumps.
+!> from their ends, and the motion of bodies along them. The drive moves inward or outward; at the
+!> end of a piece the bodies jump to another piece. `piece_search` finds pieces and jumps.
 !>
 !> A state is stable at fixed Q = a h0 + b F (`drives`) if no mode of the bodies is unstable at
 !> fixed h0 and k - dF/dh0 > 0, the Schur complement of bodies and spring. On the path followed
@@ -24,9 +23,9 @@ module driven_pieces
     procedure :: turns
   end type driven_piece_t
 
-  !> A jump from the end of a piece, and the energy that the jump dissipates, in units of load times
-  !> length; landed = .false.: no piece of the known path has the drive's position, or the state
-  !> there was not solved.
+  !> A jump from the end of a piece, and the energy that it dissipates, in units of load times
+  !> length. landed = .false.: no piece of the known path reaches this position of the drive, or the
+  !> state there was not solved.
   type :: jump_t
     logical :: inward = .true., landed = .false.
     type(path_state_t) :: before, after
@@ -59,8 +58,8 @@ module driven_pieces
     logical :: jumps = .false.
   end type leg_t
 
-  !> Legs in order. arrives: the last leg goes to where the way was to end; otherwise to the end of
-  !> its piece, from which no jump lands or at which the known path ends.
+  !> Legs in order. arrives: the last leg ends at the requested position. Otherwise it ends at the
+  !> end of its piece, from which no jump leads to a known state or at which the known path ends.
   type :: walk_t
     type(leg_t), allocatable :: leg(:)
     logical :: arrives = .false.

@@ -59,7 +59,7 @@ contains
     end if
   end function energy
 
-  !> The integral of the conjugate of Q (the load; for a dead load h0) over Q from one place to
+  !> The integral of the conjugate of Q (the load, or h0 for a dead load) over Q from one place to
   !> another place farther in.
   pure real(wp) function work_between(self, path, from, to) result(work)
     class(drive_t), intent(in) :: self

@@ -1,8 +1,8 @@
 !> Meshes that are inserted while the path is traced. A new mesh about the axis begins where the
-!> present one misses too much of the load, unless meshes are locked to the front of a step. A law
-!> with several minima of its energy has metastable contact in a secondary minimum, whose edge is
-!> where the tension outside the minimum is largest. While this edge moves faster than the axis,
-!> meshes are locked to it.
+!> present one misses too much of the load, unless meshes are locked to the radius of a step of the
+!> pressure. A law with several minima of its energy has metastable contact in a secondary minimum,
+!> whose edge is where the tension outside the minimum is largest. While this edge moves faster than
+!> the axis, meshes are locked to it.
 module further_meshes
   use kinds, only: wp
   use force_law, only: force_law_t
@@ -16,8 +16,8 @@ module further_meshes
   private
   public :: further_mesh_t, further_mesh
 
-  !> Whether a mesh is to be inserted; the gap to which it is locked (0: about the axis) and its
-  !> reach, see `mesh_plan_t`.
+  !> Whether a mesh is to be inserted, the gap to which it is locked (0: about the axis), and its
+  !> reach (`mesh_plan_t`).
   type :: further_mesh_t
     logical :: wanted = .false.
     real(wp) :: locked = 0, reach(2) = 0
@@ -73,7 +73,7 @@ contains
       if (level > 0) then
         further%reach = [radius(1), band_of_waves*radius(2)]
       else
-        ! The poles of the pressure are as far from the axis at h0 as at -h0.
+        ! The poles of the pressure have the same distance from the axis at h0 and at -h0.
         further%reach = [max(meshes%reach(1, 1), deeper*abs(arc%state(arc%held)%h0)), 0.0_wp]
       end if
     end associate

@@ -22,8 +22,8 @@ module mending
   private
   public :: mender_t, new_mender, left_on_path, left_in_state, too_much
 
-  !> Tolerated quadrature error, over the accuracy, where meshes cannot be refined: `left_out` is an
-  !> upper bound under oscillating laws. At a fold the error of the load is between a thousandth of
+  !> Tolerated quadrature error, over the accuracy, if meshes cannot be refined (`left_out` is an
+  !> upper bound under oscillating laws). At a fold the error of the load is between a thousandth of
   !> the square of the tail and a few times this square.
   real(wp), parameter :: too_much = 30
 
@@ -32,7 +32,7 @@ module mending
     real(wp) :: most = 0
     !> Number of refinements of each mesh.
     integer, allocatable :: rounds(:)
-    !> Part of the load that each mesh missed when this fell for the last time, and its number of
+    !> Part of the load that each mesh missed when a refinement last reduced it, and its number of
     !> nodes then.
     real(wp), allocatable :: left(:)
     integer, allocatable :: nodes(:)
@@ -51,15 +51,15 @@ module mending
   !> Growth of the number of nodes at which halving stops until the path has been traced again: the
   !> estimated errors of a path that is lost may require any number of nodes.
   real(wp), parameter :: most_growth = 1.5_wp
-  !> A refinement has helped if the quadrature error fell below this fraction of the earlier one. If
-  !> it has not, a mesh on which the path is lost is not refined again; others are refined until
+  !> A refinement has helped if the quadrature error fell below this fraction of the earlier one.
+  !> Otherwise a mesh on which the path is lost is not refined again, and other meshes only until
   !> their number of nodes has grown by `most_growth`.
   real(wp), parameter :: helped = 0.9_wp
 
 contains
 
-  !> The refinement of meshes for a path with a given accuracy. `left_out` counts waves in
-  !> full, while only a part of their error affects the load. Errors by a step change quickly as
+  !> The refinement of meshes for a path with a given accuracy. `left_out` counts oscillations in
+  !> full, while only a part of their error affects the load. Errors due to a step change quickly as
   !> the step passes from node to node, so that they shift extrema of the load more than the load.
   pure type(mender_t) function new_mender(accuracy, law) result(mender)
     real(wp), intent(in) :: accuracy
@@ -72,8 +72,8 @@ contains
   end function new_mender
 
   !> Refines a mesh whose end the path has reached, or on which the path is lost, if the nodes miss
-  !> too much. leaving: the path passes to the next mesh, which takes over its newest state. mended:
-  !> the path is to be continued from its entry into the mesh.
+  !> too much of the load. leaving: the path passes to the next mesh, which takes over its newest
+  !> state. mended: the path has to be traced again from its entry into the mesh.
   subroutine mend(self, equations, path, mesh, leaving, lost, mended)
     class(mender_t), intent(inout) :: self
     type(equations_t), intent(inout) :: equations
@@ -84,7 +84,7 @@ contains
     type(mapped_shape_t) :: shape
     real(wp) :: left
 
-    ! Meshes may have been inserted, all of them after those that were judged before.
+    ! Inserted meshes follow all those that were examined before.
     do while (size(self%rounds) < mesh)
       self%rounds = [self%rounds, 0]
       self%left = [self%left, huge(1.0_wp)]

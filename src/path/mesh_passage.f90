@@ -21,9 +21,9 @@ contains
 
   !> Whether the contact radius has crossed the passage to the next mesh, and the previous state is
   !> near the passage or beyond it. A path stays on its first mesh for two steps, since the last
-  !> step before a passage is on the next mesh. Where no step converged, the gap on the axis may
-  !> have a fold as a coordinate: between blunt bodies on layers it may rise again while the contact
-  !> grows. There a contact that grows is enough, if the next mesh is locked to its edge.
+  !> step before a passage is on the next mesh. If no step converged, the gap on the axis may have
+  !> turned: between blunt bodies on layers it may rise again while the contact grows. Then a
+  !> growing contact is enough, if the next mesh is locked to its edge.
   pure logical function has_come_to_next(walker, equations) result(come)
     type(continuation_t), intent(in) :: walker
     type(equations_t), intent(in) :: equations
@@ -43,11 +43,11 @@ contains
     end associate
   end function has_come_to_next
 
-  !> Passes to the next mesh if the path has come to it (to be called after each `advance`). The
+  !> Passes to the next mesh if the path has reached it (to be called after each `advance`). The
   !> last two states are transferred, so that the next mesh has the interval between them too. A
-  !> mesh that was laid out for predicted gaps is laid out anew for those of the path if it does not
-  !> resolve the first of the two states, or if the path comes to it before the passage. h0 and load
-  !> must change in the same sense on both meshes there.
+  !> mesh that was laid out for predicted gaps is laid out anew for the computed ones if it does not
+  !> resolve the first of the two states, or if the path reaches it early. h0 and load must change
+  !> in the same sense on both meshes.
   subroutine pass_to_next(walker, solver, lost)
     type(continuation_t), intent(inout) :: walker
     class(solver_t), intent(inout) :: solver
@@ -72,12 +72,12 @@ contains
     if (lost .or. next%held < 2) return
     associate (old => walker%tangent(walker%held - 1), new => next%tangent(1))
       if (.not. old%goes_with(new)) return
-      ! The next mesh may not have the step of a law where the path enters it.
+      ! The gap may not reach the step of a law where the path enters the next mesh.
       if (solver%problem%law%step_width > 0 .and. .not. old%is_alike(new) .and. &
         left_in_state(solver%equations_t, walker%mesh, walker%state(walker%held - 1)) <= &
         walker%most) return
     end associate
-    ! Steps in time know no fold of the gap on the axis, and pass by radii alone.
+    ! Steps in time use radii alone.
     if (walker%stuck) solver%meshes%passage(walker%mesh) = next%state(1)%scale
     walker%arc_t = next
     walker%step = 0.5_wp*walker%step

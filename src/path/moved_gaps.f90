@@ -19,8 +19,8 @@ contains
 
   !> The gaps outside the edge to which a mesh is locked, at a given scale, by polynomials of the
   !> coordinate at constant distance from the edge, with the weights of values and slopes of the
-  !> states `nodes`. Rings of an oscillating pressure and the front of a step keep their distance
-  !> approximately, while they pass many nodes.
+  !> states `nodes`. Rings of an oscillating pressure, and the step of a pressure, keep their
+  !> distance from the edge approximately, while they pass many nodes.
   pure function moved_outside(shape, grid, states, tangents, nodes, of_value, of_slope, scale) &
     result(gap)
     class(shape_t), intent(in) :: shape
@@ -50,8 +50,8 @@ contains
 
   !> Replaces gaps near the edge, on a mesh about the axis, by polynomials of the coordinate at
   !> constant distance from the edge, with the weights of values and slopes of the states `nodes`.
-  !> Inside the edge bodies follow each other's shape: there the gaps move, outside it the gaps less
-  !> the heights of the shape. Far from the edge gaps change in place.
+  !> Inside the edge the gaps move with it; outside, the gaps less the heights of the shape do. Far
+  !> from the edge gaps change at a fixed radius.
   pure subroutine move_with_edge(problem, grid, states, tangents, nodes, of_value, of_slope, gap)
     type(problem_t), intent(in) :: problem
     type(discretisation_t), intent(in) :: grid
@@ -91,8 +91,8 @@ contains
 
   contains
 
-    !> Adds the part of state j to a quantity at some positions, which has the given values and
-    !> derivatives by the coordinate at the nodes in this state.
+    !> Adds the term of state j to an interpolated quantity at some positions. In this state the
+    !> quantity has the given values and derivatives by the coordinate at the nodes.
     pure subroutine move(value, slope, sum, x)
       real(wp), intent(in) :: value(:), slope(:), x(:)
       real(wp), intent(inout) :: sum(:)

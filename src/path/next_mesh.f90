@@ -20,22 +20,23 @@ module next_mesh
   !> Largest distance by which the edge may move in contact on a mesh about the axis, over the
   !> smallest feature of the pressure.
   real(wp), parameter :: widths_ahead = 2
-  !> Largest number of digits of a layout for seen gaps: the polynomials of neighbouring panels meet
-  !> in kinks, which no panel of another mesh resolves.
+  !> Largest number of digits of a layout for computed gaps: they have kinks where the polynomials
+  !> of neighbouring panels meet, which no panel of another mesh resolves.
   real(wp), parameter :: most_digits_seen = 10
-  !> Number of nodes for half a band over that for all of it below which the band is divided, and
-  !> number of nodes over that of the mesh before above which it is; unless the ratio of its radii
-  !> would be less than `narrowest`.
+  !> A band is divided if half of it needs less than this fraction of its nodes, or if it needs more
+  !> than the second value times the nodes of the mesh before; unless the ratio of its radii would
+  !> be less than `narrowest`.
   real(wp), parameter :: fewer = 0.8_wp, many_more = 1.5_wp, narrowest = 1.02_wp
 
 contains
 
   !> Lays out the mesh after that of an arc for the gaps of its newest state. An inserted mesh is
   !> for the state before, since the old nodes may miss too much of the newest one; about the axis
-  !> it is also for states extrapolated from that state. A band of an edge is halved as long as it
-  !> needs many more nodes than the mesh before, as around a small contact far inside a sharp rim;
-  !> under a law that does not oscillate also if half of it needs clearly fewer nodes. (Rings that
-  !> appear as an oscillating contact grows are foreseen less well on many narrow bands.)
+  !> it is also for states extrapolated from that state. A band of radii of the edge is halved as
+  !> long as it needs many more nodes than the mesh before, for example around a small contact far
+  !> inside a sharp rim. Under a law that does not oscillate it is also halved if half of it needs
+  !> clearly fewer nodes. (Many narrow bands predict less well the rings that appear as a contact
+  !> grows under an oscillating law.)
   subroutine lay_out_next(equations, arc)
     type(equations_t), intent(inout), target :: equations
     type(arc_t), intent(in) :: arc
@@ -48,7 +49,7 @@ contains
     i = arc%held
     if (equations%meshes%inserted(to) .and. i > 2) i = i - 1
     associate (meshes => equations%meshes)
-      ! The last two states of the arc pass to the mesh, and may have passed all of its band.
+      ! The last two states of the arc pass to the mesh; they may lie beyond its band.
       if (.not. meshes%is_about_axis(to)) then
         low = radius_for(equations, arc%mesh, to, arc%state(arc%held - 1))
         high = radius_for(equations, arc%mesh, to, arc%state(arc%held))

@@ -1,9 +1,8 @@
 !> The coordinate s of the equilibrium path, in which the path has no folds and which increases
-!> inward. On meshes about the axis s is minus the logarithm of the gap on the axis, less nine
-!> tenths of the equilibrium separation; at smaller gaps, to which flat faces may be pressed, it
-!> goes on with the same slope and curvature, and far within it changes in proportion to the gap. On
-!> other meshes it is the logarithm of the radius of the edge or front to which they are locked
-!> (`mesh_plan`).
+!> inward. On meshes about the axis s is minus the logarithm of the gap on the axis less nine tenths
+!> of the equilibrium separation. At smaller gaps, to which flat faces may be pressed, it continues
+!> with the same slope and curvature, and finally linearly in the gap. On other meshes it is the
+!> logarithm of the radius to which they are locked (`mesh_plan`).
 module path_coordinate
   use kinds, only: wp
   use force_law, only: force_law_t

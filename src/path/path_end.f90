@@ -21,10 +21,10 @@ module path_end
   private
   public :: demand_t, touches, outer_end, astray, collapsed
 
-  !> What is read from a path: undeformed bodies fill the range from h0 = `farthest` to its start,
-  !> and at its end Q = by_h0*h0 - by_load*load is at most `until`, for each element. If `closes`,
-  !> the bodies are also in contact within all barriers, and Q is below all its earlier values, so
-  !> that bodies that jump anywhere on the path land on it.
+  !> What a path must contain: undeformed bodies from h0 = `farthest` to its start, and at its end Q
+  !> = by_h0*h0 - by_load*load <= `until`, for each element. If `closes`, the bodies are also in
+  !> contact within all barriers at the end, and Q is below all its earlier values, so that every
+  !> jump ends on the path.
   type :: demand_t
     real(wp) :: farthest = 0
     real(wp), allocatable :: by_h0(:), by_load(:), until(:)
@@ -44,7 +44,7 @@ module path_end
 
 contains
 
-  !> Whether a path, as it is, goes as far as is read from it.
+  !> Whether a path goes far enough for a demand.
   pure logical function is_met(self, equations, path)
     class(demand_t), intent(in) :: self
     type(equations_t), intent(in) :: equations
@@ -129,8 +129,7 @@ contains
   end function rests_outside
 
   !> Whether the bodies are in contact, within all barriers, at a point of the path. Under a law
-  !> with repulsion, bodies in contact repel each other somewhere. Bodies that are only near, as
-  !> just before a barrier gives way, do not.
+  !> with repulsion, bodies in contact repel each other somewhere; bodies that are only near do not.
   pure logical function touches(equations, point)
     type(equations_t), intent(in) :: equations
     type(path_point_t), intent(in) :: point
@@ -144,8 +143,8 @@ contains
     end associate
   end function touches
 
-  !> Whether the contact is much larger than expected: on a mesh that is too coarse folds can be
-  !> lost, and then no later state counts as stable.
+  !> Whether the contact is much larger than expected. This ends a path that has missed folds on a
+  !> coarse mesh, since no later state would count as stable.
   pure logical function astray(equations, path)
     type(equations_t), intent(in) :: equations
     type(traced_path_t), intent(in) :: path
@@ -156,8 +155,8 @@ contains
     end associate
   end function astray
 
-  !> Whether the newest state of a path belongs to a collapse. A path that is lost on an unstable
-  !> branch within the attraction has no other end.
+  !> Whether the newest state of a path belongs to a collapse: the path was lost on an unstable
+  !> branch within the attraction.
   pure logical function collapsed(problem, path, lost)
     type(problem_t), intent(in) :: problem
     type(traced_path_t), intent(in) :: path

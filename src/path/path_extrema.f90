@@ -14,8 +14,8 @@ module path_extrema
   private
   public :: find_extrema, may_turn
 
-  !> Places of an interval at which the slope of the curve is evaluated; multiple of the slope's
-  !> error within which the sign of the least slope is doubtful.
+  !> Number of places of an interval at which the slope is evaluated; the sign of the least slope is
+  !> doubtful within this multiple of its error.
   integer, parameter :: places = 16
   real(wp), parameter :: doubtful = 2
   !> Steps of the search for the least slope; fraction of an interval that counts as its end.
@@ -69,8 +69,8 @@ contains
 
   contains
 
-    !> Two extrema are doubtful also if the cubic between the two states alone has them: it does not
-    !> smooth what happens between them by what was before.
+    !> Two extrema are doubtful also if only the cubic between the two states has them, which is not
+    !> smoothed by earlier states.
     subroutine look_at(near)
       type(arc_t), intent(in) :: near
       real(wp) :: value(2), slope(2)
@@ -116,8 +116,8 @@ contains
     ! only.
     turns = (ends(1) < 0) .neqv. (ends(2) < 0)
     doubt = .false.
-    ! Multiplied by the sign `course`, the slope is positive except between two extrema. If the ends
-    ! differ in sign, `course` changes its sign at the first extremum.
+    ! The slope times the sign `course` is positive except between two extrema. If the slopes at the
+    ! ends differ in sign, `course` changes its sign at the first extremum.
     course = merge(-1.0_wp, 1.0_wp, ends(1) < 0)
     step = (x(2) - x(1))/places
     least = merge(0.0_wp, minval(abs(ends)), turns)

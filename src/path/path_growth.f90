@@ -2,11 +2,10 @@
 !> these states are inserted.
 !>
 !> A fold is an extremum of h0 along the path. The change of stability at a fold follows from the
-!> sense of turning in the plane of h0 and load (Maddocks, Arch. Rational Mech. Anal. 99, 1987):
-!> with primes for derivatives along the path, an eigenvalue of the operator increases through zero
-!> where h0'' F' > 0. At large separations no eigenvalue is negative. Alternating signs would be
-!> wrong: of the two folds after snap-in at large sigma, the first makes a second mode
-!> unstable.
+!> sense of turning in the plane of h0 and load (Maddocks, Arch. Rational Mech. Anal. 99, 1987).
+!> With primes for derivatives along the path, an eigenvalue of the operator increases through zero
+!> where h0'' F' > 0. At large separations no eigenvalue is negative. The changes need not
+!> alternate: of the two folds after snap-in at large sigma, the first makes a second mode unstable.
 module path_growth
   use kinds, only: wp
   use solver, only: solver_t

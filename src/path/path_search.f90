@@ -16,14 +16,14 @@ module path_search
   private
   public :: found_t, find_place, place_on
 
-  !> Largest number of states solved in one search; change of place below which rounding may keep
-  !> the residual from falling; and the largest change of place, over the interval, that follows
-  !> the tangent of a state without another solve: the error of the moved state is its square.
+  !> Largest number of states solved in one search. A change of place below which rounding may keep
+  !> the residual from falling. The largest change of place, over the interval, for which a state is
+  !> moved along its tangent without another solve; the error is the square of the change.
   integer, parameter :: most_rounds = 60
   real(wp), parameter :: rounding_rules = 1.0e-6_wp, along_tangent = 1.0e-6_wp
-  !> Relative distance from the wanted value of Q, or distance in the law's lengths, that rounding
-  !> allows; correction of the coordinate that rounding of the load causes; and the largest
-  !> correction that may remain after the last round.
+  !> Difference from the wanted value of Q that rounding allows, relative or in the law's lengths;
+  !> correction of the coordinate that rounding of the load causes; and largest correction that may
+  !> remain at the end.
   real(wp), parameter :: near_enough = 2.0e-13_wp, found_at = 1.0e-12_wp, left_over = 1.0e-5_wp
 
   !> A solution on one of the meshes: its coordinate, state and tangent; miss: Q minus the wanted
@@ -41,11 +41,11 @@ contains
 
   !> The state between two places at which Q, monotonic there, has the value `wanted` or, if
   !> `wanted` is absent, the one extremum of Q there. For a value the iteration is Newton's, since
-  !> the slope of Q is exact at a state; for an extremum each state joins the arc, whose polynomial
-  !> gives the next place. A small last step is along the tangent, without another solve. Where
-  !> steps do not reduce the miss, for example under a force that changes by orders of magnitude,
-  !> the bracket is halved. A value outside the bracket, which rounding may cause, is found at the
-  !> nearer end. done = .false.: there is no such state, or a solve failed.
+  !> the slope of Q is exact at a state. For an extremum each state joins the arc, whose polynomial
+  !> gives the next place. A small last step is along the tangent, without another solve. If steps
+  !> do not reduce the miss, for example under a force that changes by orders of magnitude, the
+  !> bracket is halved. A value just outside the bracket, due to rounding, is found at the nearer
+  !> end. done = .false.: there is no such state, or a solve failed.
   subroutine find_place(solver, arc, ends, weights, found, done, wanted)
     class(solver_t), intent(inout) :: solver
     type(arc_t), intent(in) :: arc

@@ -1,6 +1,6 @@
-!> Derivatives of h0 and load by parameters of the problem, in SI units, at every point of the path:
-!> at a fixed value x of the coordinate along the path. At a fixed h0, or position of a drive, x
-!> changes too; `held` includes this change.
+!> Derivatives of h0 and load by parameters of the problem, in SI units, at every point of the path,
+!> for a fixed coordinate x along the path. `held` converts them to derivatives at a fixed h0 or
+!> position of a drive, where x changes too.
 module path_sensitivity
   use kinds, only: wp
   use dimensionless_problem, only: problem_t

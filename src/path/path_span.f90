@@ -99,8 +99,8 @@ contains
     state%h0 = h0
   end subroutine solve_at_h0
 
-  !> Solves with h0 prescribed where the contact is wide and far from a fold: there the last digit
-  !> of the coordinate changes h0 by more than the tolerance.
+  !> Solves at prescribed h0 if the contact is wide and far from a fold, where the last digit of the
+  !> coordinate changes h0 by more than the tolerance.
   subroutine finish_at_h0(solver, mesh, h0, s, state)
     class(solver_t), intent(inout) :: solver
     integer, intent(in) :: mesh

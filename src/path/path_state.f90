@@ -24,7 +24,7 @@ module path_state
     real(wp) :: slopes(2) = 0, residual = 0
     integer :: modes = 0
     logical :: converged = .false.
-    !> Whether this state is a point of the path that exists also on the next mesh.
+    !> Whether this state is a point of the path that is also on the next mesh.
     logical :: again = .false.
     !> The equilibrium and its mesh; with `no_mesh` there is no state.
     type(state_t) :: state

@@ -32,9 +32,9 @@ module path_tangent
     procedure :: become
   end type tangent_t
 
-  !> Largest last correction of a tangent, over the permitted error, since the next correction would
-  !> be smaller by a larger factor. Largest ratio of successive corrections, and largest number of
-  !> corrections, for which factors are kept.
+  !> The last correction of a tangent over the permitted error: the next one would be smaller by a
+  !> larger factor. Largest ratio of successive corrections, and largest number of corrections, for
+  !> which factors are kept.
   real(wp), parameter :: last_over_error = 100, shrinking = 0.3_wp
   integer, parameter :: most_corrections = 12
 
@@ -60,8 +60,8 @@ contains
     of = dot_product(weights, [self%h0, self%load])
   end function of
 
-  !> Whether h0 and load change in the same sense along two tangents. Where the path passes to
-  !> another mesh, an extremum would otherwise be found twice or not at all.
+  !> Whether h0 and load change in the same sense along two tangents. Otherwise an extremum would be
+  !> found twice or not at all where the path passes to another mesh.
   pure logical function goes_with(self, other)
     class(tangent_t), intent(in) :: self
     type(tangent_t), intent(in) :: other

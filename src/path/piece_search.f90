@@ -13,8 +13,8 @@ module piece_search
   private
   public :: find_pieces, find_jumps, interval_with, state_driven
 
-  !> Least relative decrease of Q over a piece: where a turn is a state of the path on two meshes,
-  !> rounding leaves pieces over which Q hardly decreases.
+  !> Least relative decrease of Q over a piece. If a turn is a state of the path on two meshes,
+  !> rounding makes spurious pieces over which Q hardly decreases.
   real(wp), parameter :: least_fall = 1.0e-9_wp
 
 contains
@@ -98,8 +98,8 @@ contains
   end subroutine find_pieces
 
   !> The interval of a piece in which weights(1) h0 + weights(2) load reaches a value. (Where the
-  !> path changes its mesh, the combination has a small jump, the difference of the meshes' errors,
-  !> and the value may be inside that jump.)
+  !> path changes its mesh this combination has a small jump, due to the errors of the meshes, and
+  !> the value may be inside it.)
   pure integer function interval_with(path, piece, weights, wanted) result(i)
     type(traced_path_t), intent(in) :: path
     type(driven_piece_t), intent(in) :: piece

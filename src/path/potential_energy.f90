@@ -52,10 +52,10 @@ contains
     call find_energy_of_surface(equations, mesh, state, energy, whole)
   end function energy_of_surface
 
-  !> The energy of the surface force, and the sum of the magnitudes of its terms. From an energy
-  !> that falls slowly that of undeformed bodies is subtracted at each node, and added as an exact
-  !> integral. Their H0 is the height at the contact edge, or a gap beyond the law's features, so
-  !> that their energy per area is smooth on the mesh.
+  !> The energy of the surface force, and the sum of the magnitudes of its terms. If the energy
+  !> falls slowly, that of undeformed bodies is subtracted at each node and added as an exact
+  !> integral. The H0 of these bodies is chosen such that their energy per area is smooth on the
+  !> mesh: the height at the contact edge, or a gap beyond the law's features.
   subroutine find_energy_of_surface(equations, mesh, state, energy, whole)
     type(equations_t), intent(in) :: equations
     integer, intent(in) :: mesh

@@ -15,11 +15,10 @@ module reported_place
     of_position, of_tension, of_work, of_profile
   public :: read_of_states, quantities, nowhere, least, rounding
 
-  !> Quantities that are read at a state: h0, load, displacement, energy of the bodies, contact
-  !> radius, radius to which the mesh is locked (0: about the axis), suction of a fluid; and
-  !> quantities that follow from these: position of the drive, tension, effective work of adhesion
-  !> (tension over 1.5 pi R), error of the profile. At a place, `of_energy` is the energy of bodies
-  !> and drive.
+  !> Quantities of a state: h0, load, displacement, energy of the bodies, contact radius, radius to
+  !> which the mesh is locked (0: about the axis), suction of a fluid. Quantities that follow from
+  !> these: position of the drive, tension, effective work of adhesion (tension over 1.5 pi R),
+  !> error of the profile. At a place, `of_energy` is the energy of bodies and drive.
   integer, parameter :: read_of_states = 7, of_h0 = 1, of_load = 2, of_displacement = 3, &
     of_energy = 4, of_radius = 5, of_edge = 6, of_suction = 7, of_position = 8, of_tension = 9, &
     of_work = 10, of_profile = 11, quantities = 11
@@ -35,9 +34,9 @@ module reported_place
     !> The equilibrium and its mesh; mesh 0: undeformed bodies.
     integer :: mesh = nowhere
     type(state_t) :: state
-    !> The weights of h0 and load in Q; turn_of: the weights in the combination that turns here
-    !> along the path, which is Q or h0, or zeros; after: the place in the table at which the jump
-    !> started that ended here at the same Q.
+    !> The weights of h0 and load in Q. turn_of: the weights of the combination (Q or h0) that turns
+    !> here along the path, or zeros. after: the place in the table from which a jump at the same Q
+    !> led here.
     real(wp) :: drive(2) = [1.0_wp, 0.0_wp], turn_of(2) = 0
     integer :: after = 0
     !> Values at the place, and what the iteration and rounding leave of them as an error; both are
@@ -46,8 +45,8 @@ module reported_place
     real(wp), dimension(read_of_states) :: at = 0, left = 0
     !> Magnitudes to which errors are relative where quantities are smaller.
     real(wp) :: scale(quantities) = 0
-    !> in_time: of a drive in time, whose accuracy is that of loads, energies and suctions, since
-    !> positions are those at given times.
+    !> in_time: of a drive in time. Its accuracy is that of loads, energies and suctions, since
+    !> positions are given functions of time.
     logical :: in_time = .false.
     !> Whether a profile is read at the place.
     logical :: with_profile = .false.
@@ -169,7 +168,7 @@ contains
     all(of_profile) = 0
   end function leftovers
 
-  !> The quantities whose relative errors tell how accurate the place is. with_radius: whether the
+  !> The quantities whose relative errors are the accuracy of the place. with_radius: whether the
   !> contact radius is reported.
   pure function compared(self, with_radius)
     class(place_t), intent(in) :: self
@@ -188,8 +187,8 @@ contains
       compared(of_radius) = with_radius .and. self%at(of_radius) > 0
     if (self%after > 0) return
     compared(merge(of_position, of_h0, product(self%drive) < 0)) = .true.
-    ! At an extremum h0 or the load is stationary and the displacement is not: the position on the
-    ! flat top does not change the curve, and no displacement is reported there.
+    ! At an extremum h0 or the load is stationary, but the displacement is not, so no displacement
+    ! is reported there.
     if (.not. self%turns()) compared(of_displacement) = self%has_state()
   end function compared
 

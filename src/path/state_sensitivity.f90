@@ -4,9 +4,8 @@
 !>
 !> The equations of the varied problems are evaluated at states that change linearly with the
 !> parameter; positions and separations are in SI units. Along the correct line the derivative of
-!> the equations is zero; corrections with the Jacobian's factors change the line until the
-!> derivative is zero to rounding. Only linear equations are solved, and the remaining derivative is
-!> known.
+!> the equations is zero; the line is corrected with the Jacobian's factors until this holds to
+!> rounding. Only linear equations are solved, and the remaining derivative is known.
 module state_sensitivity
   use kinds, only: wp
   use dimensionless_problem, only: problem_t

@@ -1,7 +1,7 @@
 !> The equilibrium path: its points in order from large separations inward, among them every fold in
 !> h0 and every extremum of the load, and the number of unstable modes between one point and the
-!> next. Each point is on one mesh; where the path passes to the next mesh, two points exist on
-!> both. Beyond the first traced point the points are of undeformed bodies.
+!> next. Each point is on one mesh; where the path passes to the next mesh, two points are on both.
+!> Before the first traced point the points are those of undeformed bodies.
 module traced_path
   use kinds, only: wp
   use dimensionless_problem, only: problem_t
@@ -52,8 +52,8 @@ module traced_path
 
   !> Ratio of h0 between points of undeformed bodies.
   real(wp), parameter :: outer_ratio = 1.12_wp
-  !> Number of points on either side of an interval for the polynomial in the interval: a fold or an
-  !> extremum may be too close to its neighbour to add information.
+  !> Number of points on either side of an interval for the polynomial in it. One would not do: a
+  !> fold or an extremum may be too close to its neighbour to add information.
   integer, parameter :: either_side = 2
 
 contains

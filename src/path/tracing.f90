@@ -32,8 +32,8 @@ module tracing
 
   !> Number of points beyond which a path is given up.
   integer, parameter :: longest = 3000
-  !> Part of the load missed by the nodes at which a mesh is refined before the path has reached its
-  !> end, since later states would mean nothing; and number of steps between these checks.
+  !> If the nodes miss this part of the load, a mesh is refined before the path has reached its end,
+  !> since later states would be useless; and number of steps between these checks.
   real(wp), parameter :: most_adrift = 0.1_wp
   integer, parameter :: steps_a_check = 8
   !> Number of steps between messages to the listener: a message takes a tenth of the time of a
@@ -41,8 +41,8 @@ module tracing
   integer, parameter :: steps_a_message = 8
   !> Largest residual of the path's points, in the law's lengths, even if the deck allows larger
   !> ones for the experiment's states; and that of points that define a smooth curve. Extrapolation
-  !> multiplies differences within the residual a hundred times, and no step is short enough if
-  !> these exceed the distance from the curve.
+  !> multiplies the residual a hundred times; if this exceeded the permitted miss, no step would be
+  !> short enough.
   real(wp), parameter :: path_tolerance = 1.0e-8_wp, curve_tolerance = 1.0e-10_wp
 
 contains
@@ -50,7 +50,7 @@ contains
   !> Traces the path from a state at large separation, on the mesh for the approach, until it is
   !> stable at h0_low; into_contact: until the bodies are also in contact, which may be an outer
   !> contact at h0_end, or at h0_low if h0_end is absent. Meshes that miss too much of the load for
-  !> the accuracy are refined. demand: if present, the path goes as far as is read from it, and its
+  !> the accuracy are refined. demand: if present, the path goes as far as the demand says, and its
   !> points are close enough for a smooth curve.
   subroutine trace(solver, start, h0_low, into_contact, accuracy, listener, known, demand, h0_end)
     class(solver_t), intent(inout) :: solver
@@ -102,8 +102,8 @@ contains
         if (adrift) adrift = left_in_state(solver%equations_t, walker%mesh, &
           walker%state(walker%held)) > most_adrift
         leaving = has_come_to_next(walker, solver%equations_t)
-        ! A mesh was judged when the next one was inserted. The path may stay on it for some steps,
-        ! past an extremum, and would come to the inserted one earlier each time it is mended.
+        ! This mesh was examined when the next one was inserted. The path may stay on it for some
+        ! steps; if it were refined again, the path would reach the inserted one earlier each time.
         if (leaving) leaving = .not. solver%meshes%inserted(walker%mesh + 1)
         if (further%wanted .or. adrift .or. leaving) call mender%mend(solver%equations_t, &
           known%path, walker%mesh, .not. adrift, .false., mended)
