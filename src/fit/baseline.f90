@@ -1,6 +1,7 @@
 !> The baseline of a measured curve, the signal without a force: a polynomial of the position, with
-!> a constant of its own on each way, and a ripple, which interference of light makes in a detector.
-!> A drift in time is a slope of its own on each way.
+!> one constant for the approach and one for the retract, and a ripple, as interference of light
+!> makes it in a detector. A drift in time gives the two ways (approach and retract) different
+!> slopes.
 module baseline
   use kinds, only: wp, pi
   implicit none
@@ -64,7 +65,7 @@ contains
     column = reshape([column, new], [size(new), size(column, 2) + 1])
   end subroutine add
 
-  !> Cosine and sine of a period, each on one way alone.
+  !> Cosine and sine of a period, each on one of the two ways.
   pure function waves_of(z, inward, period) result(wave)
     real(wp), intent(in) :: z(:), period
     logical, intent(in) :: inward(:)

@@ -1,8 +1,8 @@
 !> Tests whether a fit lacks a part of its baseline: a bow, a slope of its own on each way, a
-!> ripple. Each is a direction in the space of the residuals r. The unknowns and the present
-!> baseline explain a part of it; if g is the rest as a unit vector, the part would lower chi
-!> squared by (g.r)^2 and move the unknowns by known amounts. No further fit is needed (as in
-!> `held_numbers`).
+!> ripple. Each is a direction in the space of the residuals r. Let g be the unit vector of this
+!> direction without the components that the unknowns and the present baseline explain. The part
+!> would then lower chi squared by (g.r)^2 and move the unknowns by known amounts. No further fit is
+!> needed (as in `held_numbers`).
 module baseline_test
   use kinds, only: wp
   use root_finding, only: bracket_t
@@ -15,18 +15,18 @@ module baseline_test
   private
   public :: lacking_t, test_baseline, settle_ripple
 
-  !> A part that the baseline does not have. name: what adds it in &measurement. gain: by how much
-  !> it would lower chi squared. chance: logarithm of the probability that chance does this. shift:
-  !> by how much it would move each unknown, in the unit of its key. hidden: by how much a part of
-  !> one column would that chance hides, one of `unseen` standard deviations. period [m]: of a
-  !> ripple, otherwise 0.
+  !> A part that the baseline does not have. name: the key of &measurement that adds it. gain: the
+  !> decrease of chi squared. chance: logarithm of the probability that noise does this. shift: the
+  !> change of each unknown, in the unit of its key. hidden: its change by a part of one column that
+  !> is hidden in the noise, one of `unseen` standard deviations. period [m]: of a ripple, otherwise
+  !> 0.
   type :: lacking_t
     character(len=:), allocatable :: name
     real(wp) :: gain = 0, period = 0, chance = 0
     real(wp), allocatable :: shift(:), hidden(:)
   end type lacking_t
 
-  !> Standard deviations of a part that noise makes in one fit of twenty.
+  !> Noise alone makes a part of so many standard deviations in one fit of twenty.
   real(wp), parameter :: unseen = 2
 
   !> The residuals of a fit and an orthonormal basis of their derivatives by the unknowns, which the
@@ -35,11 +35,11 @@ module baseline_test
     real(wp), allocatable :: residual(:), basis(:, :), triangle(:, :)
   end type model_tangent_t
 
-  !> Smallest part of a direction that must remain; rounding of the derivatives leaves less.
+  !> Smallest part of a direction that must remain: smaller ones are rounding of the derivatives.
   real(wp), parameter :: rounding = 1.0e-4_wp
-  !> Ripples have from one to `most_periods` periods over the travel, and `fewest_samples` samples
-  !> in a period; periods tried for each of these; sections that refine the best one; number of
-  !> samples with which one is searched for.
+  !> Ripples have from one to `most_periods` periods over the travel, and at least `fewest_samples`
+  !> samples in a period. Number of trials for each of these, number of sections that refine the
+  !> best one, and number of samples for the search.
   integer, parameter :: most_periods = 64, fewest_samples = 5, oversampling = 4, sections = 25, &
     enough = 40
   !> Change of the phase of a ripple over the travel that does not matter.
@@ -92,8 +92,8 @@ contains
 
   end subroutine test_baseline
 
-  !> Tests for a ripple. Noise with it may have been taken for correlated noise; so the noise is
-  !> found again without the ripple.
+  !> Tests for a ripple. It may have been taken for correlated noise, so the noise is found again
+  !> without the ripple.
   subroutine test_ripple(residuals, value, lacking)
     type(curve_residuals_t), intent(in) :: residuals
     real(wp), intent(in) :: value(:)
@@ -244,8 +244,8 @@ contains
       max(1, size(tangent%residual) - size(tangent%basis, 2))
   end function left_of
 
-  !> What further columns of the baseline, at all samples, would do to a fit. amplitude: of these
-  !> columns.
+  !> The effect of further columns of the baseline, given at all samples, on a fit. amplitude: of
+  !> these columns.
   type(lacking_t) function explained(data, tangent, column, amplitude) result(new)
     type(fit_samples_t), intent(in) :: data
     type(model_tangent_t), intent(in) :: tangent

@@ -17,13 +17,12 @@ module classical_model
   !> Panels of the branch in contact; relative step of the differences.
   integer, parameter :: panels = 200
   real(wp), parameter :: step = 1.0e-4_wp
-  !> Contact radii that are tried to find the largest position (the first over the largest radius),
-  !> and sections that refine it.
+  !> Number of contact radii that are tried to find the largest position, the first over the largest
+  !> radius, and number of sections that refine it.
   integer, parameter :: tried = 400, sections = 60
 
-  !> The unknowns are the work of adhesion [J/m^2] and the stiffness [Pa], as far as the fit finds
-  !> them; otherwise the values here hold. radius [m]; range [m]: of the tension in Maugis-Dugdale
-  !> theory.
+  !> The unknowns are the work of adhesion [J/m^2] and the stiffness [Pa]; one that is not fitted
+  !> has the value here. radius [m]; range [m]: of the tension in Maugis-Dugdale theory.
   type, extends(force_model_t) :: classical_model_t
     character(len=14) :: theory = 'jkr'
     real(wp) :: radius = 1, work = 1, stiffness = 1, range = 1

@@ -15,8 +15,8 @@ module contact_check
 
 contains
 
-  !> Sets `trouble` if a straight line on each way describes the samples: single ones, means over
-  !> neighbours, and those nearest to the other body. left: the signal off the baseline.
+  !> Sets `trouble` if straight lines describe approach and retract: single samples, means over
+  !> neighbours, and the samples nearest to the other body. left: the signal less the baseline.
   subroutine check_contact(measured, left, noise, stiffness, trouble)
     type(measured_curve_t), intent(in) :: measured
     real(wp), intent(in) :: left(:), stiffness
@@ -30,7 +30,7 @@ contains
     integer :: k
 
     if (maxval(abs(left), measured%usable) > stands_out*noise%deviation) return
-    ! A bend of a contact that reaches far would count as noise there.
+    ! Otherwise the bend of a long-range contact would count as noise.
     white = white_noise(min(noise%deviation, rough_deviation(pack(measured%signal, &
       measured%usable))))
     off_line = measured%signal
@@ -64,9 +64,9 @@ contains
     end if
   end subroutine check_contact
 
-  !> By how many standard errors the mean of the nearest samples of a way is above a straight line
-  !> through the others: the most of 2, 4, 8 and more samples. A short contact of weak samples shows
-  !> best there.
+  !> By how many standard errors the mean of the nearest samples of a way exceeds a straight line
+  !> through the others: the maximum over 2, 4, 8 and more samples. This finds a short, weak contact
+  !> best.
   pure real(wp) function end_off_line(measured, inward, deviation) result(off)
     type(measured_curve_t), intent(in) :: measured
     logical, intent(in) :: inward

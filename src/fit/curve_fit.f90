@@ -16,11 +16,12 @@ module curve_fit
   private
   public :: fit_curve
 
-  !> Contact points that are tried where the nearest sample is in contact, and where it is not;
-  !> samples used for each, and sections that refine the best ones.
+  !> Number of contact points tried for which the nearest sample is in contact, and for which it is
+  !> not; number of samples used for each, and of sections that refine the best ones.
   integer, parameter :: tried = 160, tried_apart = 40, samples = 250, sections = 25
-  !> Contact points kept for each candidate; searches from the best candidates; results of searches
-  !> that are followed up; rounds in which the data are examined again.
+  !> Largest numbers of contact points kept for each candidate, of searches from the best
+  !> candidates, of their results that are followed up, and of rounds in which the data are examined
+  !> again.
   integer, parameter :: most_points = 2, most_fits = 8, most_looks = 3, most_rounds = 8
   !> Number of searches with the same result that ends the search. Relative differences between sums
   !> of squares: below `same` they are equal, above `apart` they belong to different minima.
@@ -31,7 +32,7 @@ contains
 
   !> Fits the model, starting from several candidates, start(unknown, candidate), and from several
   !> contact points if that is unknown. The search ends when a fit describes the data; the best fit
-  !> is kept. renew: the model is used to find noise (unless it is given), outliers and jumps again.
+  !> is kept. renew: noise (unless it is given), outliers and jumps are found again by the model.
   subroutine fit_curve(curve, model, start, renew, fitted)
     type(modelled_curve_t), intent(inout) :: curve
     class(force_model_t), intent(inout), target :: model
@@ -67,7 +68,7 @@ contains
       ! Other searches with the same minimum are left out.
       where (left < (1 + apart)*left(k)) left = huge(left)
     end do
-    ! Of a model that does not describe the data, residuals tell neither errors nor better values.
+    ! If the model does not describe the data, residuals give neither errors nor better values.
     if (renew .and. allocated(fitted%effect) .and. fitted%lack%is_noise()) call examine()
 
   contains
@@ -109,7 +110,7 @@ contains
         k = minloc(cost, 1)
         cost(k) = huge(cost)
         call search(residuals, value(:, k), left(k), found(k))
-        ! Residuals far below a noise show that the noise is too large, and prove nothing.
+        ! Residuals far below the noise only show that the noise is too large.
         if (found(k) .and. abs(left(k) - freedom) < 3*sqrt(2.0_wp*freedom)) return
         if (count(left < (1 + same)*minval(left)) == enough) return
       end do
@@ -185,9 +186,9 @@ contains
   end subroutine find_candidates
 
   !> The contact points with the lowest sums of squares, and these sums. ends: as of `reach`; points
-  !> between the first two are evenly spaced, and from there to the last one their distances grow.
-  !> role: the index of the contact point among the unknowns. Many points are tried, since the model
-  !> is not solved again when only the contact point changes.
+  !> are evenly spaced between the first two, and at growing distances from there to the last. role:
+  !> the index of the contact point among the unknowns. Many points are tried, since the model is
+  !> not solved again if only the contact point changes.
   subroutine lowest_points(residuals, value, role, ends, points, costs)
     type(curve_residuals_t), intent(inout) :: residuals
     real(wp), intent(in) :: value(:), ends(3)

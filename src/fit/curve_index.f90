@@ -1,5 +1,5 @@
 !> A file with several measured curves, which a column numbers: where the rows of each curve are.
-!> Only these places are kept, and the lines before the rows, however large the file is.
+!> Only these positions and the lines before the rows are kept, however large the file is.
 module curve_index
   use, intrinsic :: iso_c_binding, only: c_int, c_long
   use kinds, only: wp, long
@@ -27,7 +27,7 @@ module curve_index
     integer(long) :: digest = 0
     character(len=:), allocatable, private :: file, column, heading
     integer, private :: skip = 0, heading_lines = 0
-    !> The first byte of each curve, counted from 0, that behind its last one, and the number of
+    !> The first byte of each curve, counted from 0, the one after its last byte, and the number of
     !> lines before it.
     integer(long), allocatable, private :: first(:), behind(:)
     integer, allocatable, private :: lines(:)

@@ -1,7 +1,7 @@
 !> The residuals of a measured curve under a model (`modelled_curve`), in standard deviations.
-!> Baselines and slope enter linearly; the best ones are removed by projection (variable projection;
-!> Golub and Pereyra, 1973; `fit_samples`). The samples are whitened first. The start of a jump is
-!> one more datum, and so is a prior of an unknown. Samples within a jump do not count.
+!> Baselines and slope enter linearly, and are removed by projection (variable projection; Golub and
+!> Pereyra, 1973; `fit_samples`), after the samples are whitened. The position of a jump is one more
+!> datum, and so is a prior of an unknown. Samples within a jump do not count.
 module curve_residuals
   use kinds, only: wp
   use fit_request, only: unknown_t, value_of, value_by_free, value_by_fitted, fitted_of, &

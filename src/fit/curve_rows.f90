@@ -20,13 +20,12 @@ module curve_rows
   !> Smallest number of samples of a curve, and of an approach or a retreat.
   integer, parameter :: fewest = 20
 
-  !> z [m], signal [N, or V] of the complete rows in the order of the file, or first those of the
-  !> approach; radius [m]: of the contact, 0 where it was not seen, if the file has it beside these.
+  !> z [m] and signal [N, or V] of the complete rows, in the order of the file, or the approach
+  !> first. radius [m]: contact radius if the file has it beside these; 0 where it was not seen.
   !> Without positions z is the load and `signal` the radius. code: the index of each row's label in
-  !> `label`, if the file has a column of segments;
-  !> kind: of each row's segment, once it is known. unit: of the columns in the file;
-  !> signal_in: as in `measurement_t`.
-  !> incomplete: number of rows that are left out. columns_read: a description for the user.
+  !> `label`, if the file has a column of segments. kind: of each row's segment, once it is known.
+  !> unit: of the columns in the file. signal_in: as in `measurement_t`. incomplete: number of rows
+  !> left out. columns_read: a description for the user.
   type :: curve_rows_t
     character(len=:), allocatable :: file, columns_read
     real(wp), allocatable :: z(:), signal(:), radius(:)
@@ -98,7 +97,7 @@ contains
       rows%kind = [spread(of_approach, 1, count(whole)), spread(of_retreat, 1, count(more))]
       rows%z = [rows%z, pack(table%value(:, 3), more)]
       rows%signal = [rows%signal, pack(table%value(:, 4), more)]
-      ! The shorter of two ways ends before the file.
+      ! Of two segments side by side the shorter one ends before the file.
       rows%incomplete = gaps_in(whole) + gaps_in(more)
       call put_in_order(count(whole), rows)
     end if
@@ -153,8 +152,8 @@ contains
     if (.not. any(whole)) gaps = size(whole)
   end function gaps_in
 
-  !> A retreat beside the approach may be in the order of the position and not of time. n: number of
-  !> rows of the approach.
+  !> A retract beside the approach may be sorted by position instead of time. n: number of rows of
+  !> the approach.
   pure subroutine put_in_order(n, rows)
     integer, intent(in) :: n
     type(curve_rows_t), intent(inout) :: rows

@@ -1,6 +1,6 @@
 !> The segments of a measured curve: which of its rows belong to the approach and which to the
-!> retract. Labels in the file say so, or the direction in which the position of the base changes;
-!> it rests in a pause.
+!> retract. This follows from labels in the file, or from the direction in which the base moves; in
+!> a pause it rests.
 module curve_segments
   use kinds, only: wp
   use failure, only: failure_t, fail, bad_input
@@ -17,14 +17,14 @@ module curve_segments
     ' pause hold dwell wait ', &
     ' 0 false approach extend extending ext advance advancing forward load loading ', &
     ' 1 true retreat retract retracting ret withdraw withdrawing backward unload unloading ']
-  !> The base rests where it travels less than this part of its range.
+  !> The base rests in a segment if it travels less than this part of its range.
   real(wp), parameter :: resting = 0.1_wp
   !> The part of a curve at either end within which a turn does not count.
   real(wp), parameter :: end_part = 0.1_wp
 
 contains
 
-  !> Finds the kind of each row's segment. error: why the segments cannot be told.
+  !> Finds the kind of each row's segment. error: why it cannot be found.
   subroutine find_segments(rows, measurement, error)
     type(curve_rows_t), intent(inout) :: rows
     type(measurement_t), intent(in) :: measurement
@@ -41,7 +41,7 @@ contains
     if (allocated(what)) then
       continue
     else if (size(of_label) <= 1 .and. .not. chosen) then
-      ! One label for all rows tells nothing if the base turns.
+      ! One label for all rows is useless if the base turns.
       rows%kind = merge(of_approach, of_retreat, before_turn(rows%z, measurement%segment))
       if (size(of_label) == 1 .and. all(rows%kind == rows%kind(1))) then
         if (of_label(1) >= of_approach) rows%kind = of_label(1)

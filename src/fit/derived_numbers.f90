@@ -104,7 +104,7 @@ contains
       associate (part => by*fitted%fitted_deviation)
         new%error = sqrt(max(0.0_wp, dot_product(part, matmul(fitted%correlation, part))))
       end associate
-      ! A number that no unknown changes is held, and needs no mention.
+      ! A number that does not depend on the unknowns is not reported.
       if (new%error > 0) derived = [derived, new]
     end subroutine add
 

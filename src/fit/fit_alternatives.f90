@@ -1,5 +1,5 @@
 !> Other fits of data that the model does not describe: with another spring constant, of the retract
-!> alone, of the approach alone. One that describes its data tells what is wrong.
+!> alone, of the approach alone. If one of them describes its data, it shows what is wrong.
 module fit_alternatives
   use kinds, only: wp
   use dimensionless_problem, only: problem_t
@@ -66,9 +66,9 @@ contains
       call accept(name, other)
     end subroutine try_way
 
-    !> Fits the spring constant too, if the signal is the force; of a deflection the data cannot
-    !> show it. In contact with a much stiffer body the signal changes by the spring constant times
-    !> the travel.
+    !> Fits the spring constant too, if the signal is the force (a deflection does not depend on
+    !> it). In contact with a much stiffer body the signal changes by the spring constant times the
+    !> travel.
     subroutine try_spring()
       type(modelled_curve_t) :: trial
       type(fitted_t) :: other

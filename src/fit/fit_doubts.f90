@@ -19,10 +19,10 @@ module fit_doubts
   !> Limits: correlation of two unknowns; smallest singular value; standard deviation of a
   !> logarithm; distance of a jump in standard deviations.
   real(wp), parameter :: alike = 0.98_wp, lost = 1.0e-3_wp, vague = 0.7_wp, far = 4
-  !> The chance of a part of the baseline that is told if it would move an unknown far: of any part,
-  !> so that a good fit has this false alarm once in a hundred fits at most.
+  !> A part of the baseline with a smaller chance than this, over all parts, is reported if it would
+  !> move an unknown far: at most one false alarm in a hundred good fits.
   real(wp), parameter :: unlikely = 0.01_wp
-  !> The part of the excess of chi squared that is most of it.
+  !> A part of the baseline is the main cause if it explains this part of the excess of chi squared.
   real(wp), parameter :: most_of = 0.5_wp
   character(len=*), parameter :: not_described = ': the model does not describe these data, ' // &
     'and the true errors are larger than the standard errors'
@@ -40,7 +40,7 @@ contains
     associate (fitted => outcome%fitted, unknown => outcome%curve%unknown)
       do i = 1, size(fitted%value)
         if (.not. is_at_end(unknown(i), fitted%value(i))) cycle
-        ! Where the data hardly depend on it, a start that is nearer does not help.
+        ! If the data hardly depend on it, a nearer start does not help.
         if (fitted%lack%is_noise() .and. fitted%fitted_deviation(i) > vague) cycle
         call add(unknown(i)%name // ' ends at ' // rounded(fitted%value(i)) // ', the ' // &
           trim(merge('largest ', 'smallest', fitted_of(unknown(i), fitted%value(i)) > 0)) // &
@@ -117,8 +117,8 @@ contains
       end associate
     end subroutine doubt_alternative
 
-    !> What the baseline lacks. Where the model does not describe the data, only a part that is most
-    !> of what it leaves.
+    !> What the baseline lacks. If the model does not describe the data, only a part that is the
+    !> main cause.
     subroutine doubt_baseline()
       character(len=:), allocatable :: words
       integer :: i, k
@@ -208,8 +208,8 @@ contains
       end associate
     end subroutine doubt_unknown
 
-    !> Doubt about a retreat that ends before the bodies part: the model takes its end for a part of
-    !> the baseline.
+    !> Doubt about a retract that ends before the bodies separate: the model treats its end as
+    !> baseline.
     subroutine doubt_end()
       real(wp) :: below
 

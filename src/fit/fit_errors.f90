@@ -1,5 +1,5 @@
-!> The result of a fit, and the errors of its values: from the derivatives of the residuals, and
-!> from the profile likelihood where these do not describe the residuals over a few standard errors.
+!> The result of a fit, and the errors of its values: from the derivatives of the residuals, or from
+!> the profile likelihood if the residuals are nonlinear over a few standard errors.
 module fit_errors
   use kinds, only: wp
   use linear_algebra, only: singular_values
@@ -13,23 +13,23 @@ module fit_errors
   !> Half-width of a 95 % interval in standard deviations.
   real(wp), parameter :: within_95 = 1.959964_wp
 
-  !> An unknown has no effect if a change of its fitted number (`fit_request`) by 1 makes fewer
-  !> standard deviations of all data than this.
+  !> An unknown has no effect if a change of its fitted number (`fit_request`) by 1 changes the data
+  !> by less than this, in standard deviations.
   real(wp), parameter :: least_effect = 0.1_wp
-  !> Standard errors to which the residuals are examined; the part of its expected rise that the sum
-  !> of squares may lack; steps of one examination, and corrections of the other unknowns in a step.
+  !> Number of standard errors to which the residuals are examined; the part of its expected rise
+  !> that the sum of squares may lack; number of steps of one examination, and of corrections of the
+  !> other unknowns in a step.
   real(wp), parameter :: out_to = 3, lacking = 0.2_wp
   integer, parameter :: most_steps = 6, corrections = 3
 
   !> The result of a fit. value, deviation: each unknown and its standard deviation, in the unit of
   !> its key. fitted_deviation, correlation: the same for the fitted numbers (`fit_request`), whose
   !> errors are symmetric. identifiable: the smallest singular value of their Jacobian with columns
-  !> of length 1; 1 if the data tell all unknowns apart, 0 if they do not. effect: the change of the
-  !> curve, in standard deviations of all data together, if the fitted number changes by 1.
-  !> side(:, i): standard deviations of fitted number i downward and upward; fitted_deviation(i) is
-  !> the larger of both.
-  !> has_path: the model has a path for some start. has_curve: one of them describes the samples
-  !> better with a contact among them than without one.
+  !> of length 1; 1 if the data determine all unknowns, 0 if they do not. effect: the change of the
+  !> curve, in standard deviations of all data together, if the fitted number changes by 1. side(:,
+  !> i): standard deviations of fitted number i downward and upward; fitted_deviation(i) is the
+  !> larger one. has_path: the model has a path for some start. has_curve: for some start it
+  !> describes the samples better with a contact among them than without.
   type :: fitted_t
     logical :: found = .false., has_curve = .false., has_path = .false.
     real(wp), allocatable :: value(:), deviation(:), fitted_deviation(:), correlation(:, :), &
@@ -54,8 +54,8 @@ module fit_errors
 
 contains
 
-  !> Whether a fit has errors, and every unknown an effect, and is more likely than another, each
-  !> with its own noise.
+  !> Whether a fit has errors, each of its unknowns has an effect, and it is more likely than
+  !> another fit, each with its own noise.
   pure logical function is_better_than(self, other)
     class(fitted_t), intent(in) :: self
     type(fitted_t), intent(in) :: other
@@ -138,12 +138,12 @@ contains
       abs([(value_by_fitted(unknown(j), fitted%value(j)), j=1, size(unknown))])
   end subroutine set_deviations
 
-  !> Widens the errors where the sum of squares rises less than its derivatives promise: a modulus
-  !> to which a curve is hardly sensitive has no upper end, whatever the derivatives at the best
-  !> value. The deviation of a side then is that with which three of it have the rise of nine; if
-  !> bounds are nearer, or values of which there is no model, that by the rise of the farthest ones.
-  !> better: allocated if a smaller sum of squares was found on the way, with its values; if it is
-  !> absent, a smaller sum counts as one that does not rise.
+  !> Increases errors if the sum of squares rises less than its derivatives predict (profile
+  !> likelihood): a modulus to which a curve is hardly sensitive has no upper limit. The deviation
+  !> of a side is a third of the distance at which the sum rises by nine; if bounds, or values
+  !> without a model, are nearer, it follows from the rise at the farthest values. better: allocated
+  !> if a smaller sum of squares was found, with its values; if the argument is absent, such a sum
+  !> counts as no rise.
   subroutine widen(residuals, fitted, better)
     type(curve_residuals_t), intent(inout) :: residuals
     type(fitted_t), intent(inout) :: fitted
@@ -172,7 +172,7 @@ contains
           end if
           call widen_others(residuals%curve%unknown, j)
           if (rise > (1 - lacking)*(far/fitted%side(way, j))**2) exit
-          ! A rise that has ended would make this step endless.
+          ! Without a rise this step would be infinite.
           fitted%side(way, j) = min(2*fitted%side(way, j), far/sqrt(max(rise, tiny(rise))))
         end do
       end do
@@ -181,8 +181,8 @@ contains
 
   contains
 
-    !> Widens the errors of numbers other than j at values with a known rise. On a curved valley a
-    !> number may move far with number j, where it finds no way by its own derivatives.
+    !> Increases the errors of numbers other than j at values with a known rise. Along a curved
+    !> valley a number may move far together with number j, which its own derivatives do not show.
     subroutine widen_others(unknown, j)
       type(unknown_t), intent(in) :: unknown(:)
       integer, intent(in) :: j
@@ -273,8 +273,8 @@ contains
     if (allocated(unknown%upper)) bounded = min(bounded, unknown%upper)
   end function bounded
 
-  !> The end of the interval of `sign` standard deviations about unknown i, at a bound at most. For
-  !> a positive unknown the standard deviations are of the logarithm.
+  !> The end of the interval of `sign` standard deviations about unknown i, limited by its bounds.
+  !> For a positive unknown the standard deviations are those of the logarithm.
   pure real(wp) function end_of(self, i, unknown, sign) result(value)
     class(fitted_t), intent(in) :: self
     integer, intent(in) :: i

@@ -71,8 +71,8 @@ contains
     squares = sum(left**2)
   end function bare_squares
 
-  !> What the data show where the baseline alone, with this chi squared, describes them as well as
-  !> the model.
+  !> The message if the baseline alone, with this chi squared, describes the data as well as the
+  !> model.
   function no_contact(curve, squares, suggestion) result(words)
     type(modelled_curve_t), intent(in) :: curve
     real(wp), intent(in) :: squares
@@ -97,8 +97,8 @@ contains
       'them either; check ' // spring // 'the radius, and whether the bodies came near enough'
   end function no_contact
 
-  !> Sets `trouble` if the baseline alone describes the data as well as the model, whose contact
-  !> may be at any of many samples.
+  !> Sets `trouble` if the baseline alone describes the data as well as the model. (The search over
+  !> many contact points also fits noise.)
   subroutine check_gain(curve, fitted, suggestion, trouble)
     type(modelled_curve_t), intent(in) :: curve
     type(fitted_t), intent(in) :: fitted

@@ -13,8 +13,8 @@ module fit_request
   public :: of_position, of_separation, of_load, of_segment, of_radius
 
   !> What a column of the file is: the position of the base of the spring; the separation of the
-  !> bodies (h0, but for a constant); the load, or the signal that shows it; the segment; the
-  !> contact radius.
+  !> bodies (h0 plus a constant); the load, or the signal that measures it; the segment; the contact
+  !> radius.
   integer, parameter :: of_position = 1, of_separation = 2, of_load = 3, of_segment = 4, &
     of_radius = 5
 
@@ -28,8 +28,8 @@ module fit_request
     !> The column that numbers the curves of a file with several, and the number of the curve.
     character(len=:), allocatable :: curves
     integer, allocatable :: curve
-    !> Labels of the approach and of the retreat in the column of segments, in lower case; not
-    !> allocated: those that are known, or what the position does.
+    !> Labels of approach and retract in the column of segments, in lower case; not allocated: known
+    !> labels, or the motion of the position.
     character(len=64), allocatable :: approach(:), retreat(:)
     !> Number of lines at the begin of the file that do not count.
     integer :: skip_lines = 0
@@ -37,9 +37,9 @@ module fit_request
     real(wp), allocatable :: sensitivity, contact_point
     !> Pairs of positions; the samples between them do not count.
     real(wp), allocatable :: skip(:)
-    !> Units of the columns in the file; 0: as the names of the columns say, or SI. signal_in: what
-    !> the signal is, 'N', 'V', 'm', or 'R' for the force over the radius; blank if neither deck nor
-    !> file says it.
+    !> Units of the columns in the file; 0: those in the names of the columns, or SI. signal_in:
+    !> what the signal is, 'N', 'V', 'm', or 'R' for the force over the radius; blank if neither
+    !> deck nor file says it.
     real(wp), allocatable :: unit(:)
     character :: signal_in = ' '
     !> The radius of the deck; 0 if it has none.
@@ -60,9 +60,9 @@ module fit_request
   real(wp), parameter :: farthest_off = 5
 
   !> An unknown, in the unit of its key. in_log: it is positive and its logarithm is fitted;
-  !> otherwise its difference from `origin`, over `scale`. prior: prior standard deviation about the
-  !> deck's value; 0: none. farthest: the largest logarithms of a trial below and above the deck's
-  !> value.
+  !> otherwise the fitted number is its difference from `origin`, over `scale`. prior: prior
+  !> standard deviation about the deck's value; 0: none. farthest: the largest logarithms of a trial
+  !> below and above the deck's value.
   type :: unknown_t
     character(len=:), allocatable :: name, unit
     integer :: role = of_model
@@ -90,7 +90,7 @@ contains
     has = any(self%quantity == quantity)
   end function has
 
-  !> Whether the load is what other quantities depend on, since there is no position.
+  !> Whether the load is the independent variable, since there is no position.
   pure logical function under_loads(self)
     class(measurement_t), intent(in) :: self
 

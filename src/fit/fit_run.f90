@@ -45,7 +45,7 @@ module fit_run
     type(theory_fit_t), allocatable :: theory(:)
     !> The test of each number that the deck holds fixed.
     type(held_t), allocatable :: held(:)
-    !> What the baseline may lack; and another fit that describes the data where this one does not.
+    !> What the baseline may lack; and another fit that describes the data if this one does not.
     type(lacking_t), allocatable :: lacking(:)
     type(alternative_t), allocatable :: alternative
     !> Numbers that follow from the fitted values.
@@ -138,7 +138,7 @@ contains
       curve%data%measured = measured
       curve%unknown = fit%unknown
       do i = 1, size(fit%unknown)
-        ! A signal that is a force, or a deflection, has no volts.
+        ! A signal that is a force or a deflection is not in volts.
         if (fit%unknown(i)%role == of_sensitivity .and. scan(measured%signal_in, 'Nm') > 0) &
           curve%unknown(i)%unit = 'm/' // measured%signal_in
       end do
@@ -192,8 +192,8 @@ contains
       call finish_curve()
     end subroutine take_curve
 
-    !> Takes a curve of contact radii under loads: no baseline, no jump, and the load is what the
-    !> model is to reach.
+    !> Takes a curve of contact radii under loads: no baseline, no jump; the model must reach the
+    !> largest load.
     subroutine take_radii()
       associate (data => curve%data%measured)
         data%far = spread(.false., 1, size(data%z))
@@ -217,8 +217,8 @@ contains
         outcome%trouble = 'too few samples for so many parameters'
     end subroutine finish_curve
 
-    !> Whether a search from the values of a similar curve describes the data. Its ends are about
-    !> these values too.
+    !> Whether a search from the values of a similar curve describes the data. The limits of the
+    !> search include a range about these values.
     logical function is_like() result(found)
       type(modelled_curve_t) :: trial
       integer :: i
@@ -238,8 +238,8 @@ contains
       if (found) curve = trial
     end function is_like
 
-    !> Moves the ends of a search, which are about the deck's value, so that they are about another
-    !> value too.
+    !> Extends the limits of a search, a range about the deck's value, by the same range about
+    !> another value.
     subroutine reach_for(unknown, value)
       type(unknown_t), intent(inout) :: unknown
       real(wp), intent(in) :: value
@@ -250,7 +250,7 @@ contains
       unknown%farthest = max(unknown%farthest, farthest_off + [-off, off])
     end subroutine reach_for
 
-    !> Sets the starting values, and the ends of the search, which are about the deck's values and
+    !> Sets the starting values, and the limits of the search: ranges about the deck's values and
     !> about those that the data suggest.
     subroutine find_starts()
       type(character_t), allocatable :: likely(:)
@@ -289,7 +289,7 @@ contains
       end do
     end function values_of
 
-    !> The number that is held and that the data contradict most; '' without any.
+    !> The fixed number that the data contradict most; '' without any.
     function asked_most(held) result(name)
       type(held_t), intent(in) :: held(:)
       character(len=:), allocatable :: name

@@ -1,5 +1,5 @@
 !> The samples of a measured curve that count in a fit, and the side of a jump on which each one is.
-!> Their residuals are whitened, and the baseline is removed from them.
+!> Residuals are whitened and freed of the baseline.
 !>
 !> The baseline is a sum of given columns (`baseline`). It does not depend on the unknowns of a
 !> model, so one projection removes it from residuals and from their derivatives.
@@ -31,7 +31,7 @@ module fit_samples
     !> The columns of the baseline at all samples; an orthonormal basis of the whitened columns at
     !> the samples that count, and the triangle that maps these to the basis.
     real(wp), allocatable, private :: column(:, :), basis(:, :), triangle(:, :)
-    !> Of the samples that count: the factor that gives all the noise of the signal.
+    !> For each sample that counts, the factor that gives its residual the noise of the signal.
     real(wp), allocatable, private :: weight(:)
   contains
     procedure :: take

@@ -1,6 +1,6 @@
-!> Starting values of a model's unknowns: the deck's, and those that give the work of adhesion,
-!> stiffness and range of force that the data and the classical theories suggest. Where bodies do
-!> not attract each other, only the stiffness counts.
+!> Starting values of a model's unknowns: the deck's, and values with the work of adhesion,
+!> stiffness and range of force that the data and the classical theories suggest. If bodies do not
+!> attract each other, only the stiffness counts.
 module fit_starts
   use kinds, only: wp
   use failure, only: failure_t
@@ -18,8 +18,8 @@ module fit_starts
     real(wp) :: work = 0, stiffness = 0, range = 0
   end type character_t
 
-  !> Largest number of steps of the secant method; the size of a last step and of the first
-  !> differences; the largest logarithm of a start over the deck's value; starts that differ by less
+  !> Secant method: largest number of steps, size of the last step, and size of the first
+  !> differences. The largest logarithm of a start over the deck's value; starts that differ by less
   !> than `alike` are the same.
   integer, parameter :: steps = 6
   real(wp), parameter :: near = 0.01_wp, change = 1.0e-3_wp, farthest = 4.5_wp, alike = 0.05_wp

@@ -1,11 +1,10 @@
-!> The prediction of a model for bodies that a spring drives towards each other and back: the load
-!> along each stable piece as a function of the drive's position, with derivatives by the unknowns
-!> of the model, and likewise the contact radius. SI units.
+!> The prediction of a model for bodies that a spring drives towards each other and back: load and
+!> contact radius along each stable piece as functions of the drive's position, with derivatives by
+!> the unknowns of the model. SI units.
 !>
-!> On each panel of a branch h0, load and the square of the contact radius are Hermite's polynomials
-!> of a coordinate x, which pass through nodes: for the path its points, so that they are the path's
-!> own polynomials. Newton's method finds the x of a given position h0 - load/stiffness, or of a
-!> given -load.
+!> On each panel of a branch, h0, load and the square of the contact radius are Hermite's
+!> polynomials of a coordinate x through nodes. For the path the nodes are its points. Newton's
+!> method finds the x of a given position h0 - load/stiffness, or of a given -load.
 module force_model
   use kinds, only: wp
   use interpolation, only: interval_of, hermite_t, hermite_through, polynomial_weights, &
@@ -86,9 +85,9 @@ module force_model
     logical :: with_radius = .false.
   contains
     !> The response for values of the unknowns, behind a spring of `stiffness`, from the position
-    !> `farthest` [m] to a contact under the load `largest` [N] at least. stiffness = 0: in contact
-    !> under dead loads, by positions -load. with_rates: with
-    !> derivatives by the unknowns. found = .false.: there is no response.
+    !> `farthest` [m] to a contact under a load of at least `largest` [N]. stiffness = 0: in contact
+    !> under dead loads, with -load as position. with_rates: with derivatives by the unknowns. found
+    !> = .false.: there is no response.
     procedure(respond_to), deferred :: respond
   end type force_model_t
 
@@ -216,8 +215,8 @@ contains
     rate = self%weights(1)*self%panel(i)%h0_rate + self%weights(2)*self%panel(i)%load_rate
   end function position_rate
 
-  !> The load at a position. Beyond a turn the load stays constant. Beyond an end of the path it
-  !> continues along a straight line inward, and stays constant outward.
+  !> The load at a position. Beyond a turn the load stays constant. Beyond an end of the path it is
+  !> continued linearly inward, and stays constant outward.
   pure type(load_at_t) function at(self, position) result(found)
     class(force_branch_t), intent(in) :: self
     real(wp), intent(in) :: position

@@ -1,8 +1,8 @@
 !> A test whether the data contradict a number that a fit holds fixed. A change of the number
 !> changes the residuals r in some direction. The unknowns can compensate a part of this change; g
-!> is the rest as a unit vector. If the value is right, g.r is a standard normal number (the score
-!> test; Rao, 1948). The test needs no further fit, and detects a small deviation that all samples
-!> share.
+!> is the unit vector of the rest. If the value is right, g.r is a standard normal number (the score
+!> test; Rao, 1948). The test needs no further fit, and detects a small deviation common to all
+!> samples.
 module held_numbers
   use kinds, only: wp
   use fit_request, only: unknown_t, of_model, of_contact_point, of_sensitivity, of_spring, &
@@ -25,7 +25,7 @@ module held_numbers
     real(wp) :: asked = 0
   end type held_t
 
-  !> Smallest part of a direction that must remain; rounding of the derivatives leaves less.
+  !> Smallest part of a direction that must remain: smaller ones are rounding of the derivatives.
   real(wp), parameter :: rounding = 1.0e-4_wp
 
 contains

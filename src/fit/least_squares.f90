@@ -51,9 +51,9 @@ module least_squares
     end subroutine lmder
   end interface
 
-  !> The search ends where a step changes the sum of squares by no more than a change of x by this
-  !> part of its standard errors does: one standard error changes the sum by its mean square. Along
-  !> a badly determined combination of x later steps could still go farther.
+  !> The search ends if a step changes the sum of squares by less than a change of x by this part of
+  !> a standard error, which changes the sum by its mean square. Along a badly determined
+  !> combination of x later steps could still go farther.
   real(wp), parameter :: of_error = 1.0e-3_wp
   !> Relative change of x at which the search ends too; length of the first step.
   real(wp), parameter :: nearer = 1.0e-10_wp, first_step = 0.3_wp
@@ -64,9 +64,9 @@ module least_squares
 
 contains
 
-  !> Moves x to the smallest sum of squares. A change of x by 1 should be large: the first step is
-  !> shorter. found = .false.: there are no residuals at the first x, or the evaluations did not
-  !> suffice.
+  !> Moves x to the smallest sum of squares. x should be scaled such that a change by 1 is large:
+  !> the first step is shorter. found = .false.: there are no residuals at the first x, or the
+  !> evaluations did not suffice.
   subroutine minimise(residuals, x, residual, found)
     class(residuals_t), intent(inout), target :: residuals
     real(wp), intent(inout) :: x(:)

@@ -12,8 +12,8 @@ module measured_checks
   public :: check_measured, open_end, find_saturated
 
   !> Limits: a signal in standard deviations of the noise; the part of the travel that counts as an
-  !> end; the slope of an end in contact, over that of the spring; standard errors of a certain
-  !> statement; a part that is most of a sum.
+  !> end; the slope of an end in contact, over that of the spring; standard errors that make a
+  !> statement certain; the main part of a sum.
   real(wp), parameter :: stands_out = 8, nearest_part = 0.05_wp, steep = 0.2_wp, surely = 5, &
     most_part = 0.5_wp
   integer, parameter :: parts = nint(1/nearest_part)
@@ -35,13 +35,14 @@ contains
 
     left = off_baseline(measured)
     call check_contact(measured, left, noise, stiffness, trouble)
-    ! Under a ripple, means and lines through the far samples say nothing of small contacts.
+    ! Under a ripple, means and lines through the far samples do not show small contacts.
     if (allocated(trouble) .or. measured%baseline%ripple) return
     call check_ways()
     if (allocated(trouble)) return
     call nearest()
     if (near >= 0 .or. near >= before .or. .not. falls) then
-      ! Backwards in time a contact lies at the far end, and seems pressed relative to its line.
+      ! In a curve that is backwards in time, the contact is at the far end and appears repulsive
+      ! relative to its line.
       jump = jumps_in(left)
       back = jumps_in(-left)
       if (.not. maxval(abs(back%change)) > maxval(abs(jump%change))) return
@@ -80,7 +81,7 @@ contains
     end function jumps_in
 
     !> Sets `trouble` if approach and retreat are exchanged. A cycle dissipates energy: between its
-    !> ends, where the ways meet, the approach lies above the retreat, for any baseline. If the
+    !> ends, where both segments meet, the approach lies above the retract, for any baseline. If the
     !> difference is within the noise, a contact at the far end decides.
     subroutine check_ways()
       real(wp) :: position(size(measured%z)), slope(2), slope_error(2), taken(2), sure
@@ -128,8 +129,8 @@ contains
     end subroutine slope_at
 
     !> The mean residual of the samples nearest to the other body, that of as many before them, the
-    !> distance between the two groups, and whether the signal falls among the nearest ones too:
-    !> after a contact that pulls before it presses it rises there.
+    !> distance between the two groups, and whether the signal falls among the nearest ones too.
+    !> (After a contact that first attracts and then repels it rises there.)
     subroutine nearest()
       real(wp) :: position(size(left)), low, width
       logical :: mask(size(left))
@@ -148,9 +149,9 @@ contains
 
   end subroutine check_measured
 
-  !> Whether what looks like a jump tells nothing of the order of rows: the base hardly moves there,
-  !> as at the turn, where a load relaxes; or its neighbours scatter as much, as contacts do that
-  !> slip.
+  !> Whether an apparent jump is no evidence for the order of rows. Either the base hardly moves
+  !> there, as at the turn, where a load relaxes; or the neighbours scatter as much, as in contacts
+  !> that slip.
   pure logical function no_jump(measured, jump)
     type(measured_curve_t), intent(in) :: measured
     type(measured_jump_t), intent(in) :: jump
@@ -214,8 +215,8 @@ contains
     end do
   end subroutine compare_ways
 
-  !> How far the retreat ends below the approach; 0 if this is within the noise, or less than half
-  !> of the largest distance between them. A retreat that ends before the bodies part ends below.
+  !> How far the retract ends below the approach, as it does if the bodies have not separated; 0 if
+  !> this is within the noise, or less than half of the largest distance between them.
   pure real(wp) function open_end(measured, noise) result(below)
     type(measured_curve_t), intent(in) :: measured
     type(noise_t), intent(in) :: noise
@@ -231,8 +232,9 @@ contains
       above(last) > 0.5_wp*maxval(above)) below = above(last)
   end function open_end
 
-  !> The first and last of the most samples in a row that have the smallest or the largest signal,
-  !> far from the baseline; 0 if these are few, or if a signal of few digits has as many elsewhere.
+  !> The first and last sample of the longest row with the smallest or the largest signal, far from
+  !> the baseline; 0 if the row is short, or if a signal of few digits has equally long rows
+  !> elsewhere.
   pure subroutine find_saturated(measured, noise, first, last)
     type(measured_curve_t), intent(in) :: measured
     type(noise_t), intent(in) :: noise

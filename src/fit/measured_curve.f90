@@ -39,9 +39,9 @@ module measured_curve
     procedure :: retain
   end type measured_curve_t
 
-  !> Median over mean of the changes from part to part of a curve, and the number of parts: a base
-  !> moves evenly, and a signal changes mostly near contact. Shortest and longest travel of a base
-  !> [m].
+  !> Limit of the median over the mean of the changes from part to part of a curve, and the number
+  !> of parts: a base moves evenly, while a signal changes mostly near contact. Shortest and longest
+  !> travel of a base [m].
   real(wp), parameter :: even = 0.5_wp, uneven = 0.25_wp, shortest = 1.0e-12_wp, longest = 1.0e-3_wp
   integer, parameter :: parts = 20
   !> The part of a way's samples at either end over which the ends are averaged.
@@ -101,9 +101,8 @@ contains
     self%observed = pack(self%observed, keep)
   end subroutine retain
 
-  !> Reads the samples of a curve from the text of its file. Positions of the base follow from
-  !> separations behind a spring, once it is known in which direction they fall towards the other
-  !> body.
+  !> Reads the samples of a curve from the text of its file. For separations behind a spring,
+  !> positions of the base are computed once the direction towards the other body is known.
   subroutine read_measured(measured, source, error)
     type(measured_curve_t), intent(inout) :: measured
     type(source_t), intent(in) :: source
@@ -311,8 +310,8 @@ contains
     measured%facing = merge(1.0_wp, -1.0_wp, sum(travel) < 0)
   end subroutine find_facing
 
-  !> Whether z goes much farther, back and forth, than from one end of a way to the other: rows
-  !> that are not in order, or of several curves.
+  !> Whether z moves back and forth by much more than the distance between the ends of a segment:
+  !> rows are not in order, or belong to several curves.
   pure logical function goes_back(z)
     real(wp), intent(in) :: z(:)
     real(wp), parameter :: much = 1.5_wp

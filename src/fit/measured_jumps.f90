@@ -2,10 +2,10 @@
 !> The force falls in a jump inward and rises in a jump outward, over less travel of the base than
 !> the spring alone would need.
 !>
-!> Before a model is known, the mean of some samples before a place is compared with the mean of as
-!> many after it: of few samples if the difference exceeds the noise, otherwise of more.
+!> Before a model is known, means of equally many samples before and after a place are compared: of
+!> few samples if the difference exceeds the noise, otherwise of more.
 !>
-!> Once both branches are known, each place between two samples has a likelihood: that the samples
+!> Once both branches are known, each place between two samples has a likelihood that the samples
 !> before it lie on one branch and those after it on the other. Samples taken during the jump lie on
 !> neither.
 module measured_jumps
@@ -32,18 +32,18 @@ module measured_jumps
 
   !> Largest number of samples within a smoothed jump. A sample is within the jump, or an outlier,
   !> if it is farther from both branches than this part of the jump and this many standard
-  !> deviations. A single one is either with equal likelihood; each further neighbour favours the
+  !> deviations. For a single sample both are equally likely; each further neighbour favours the
   !> jump by `together`, in squares of standard deviations.
   integer, parameter :: most_within = 6
   real(wp), parameter :: off_part = 0.2_wp, off = 4, together = 4
-  !> The side of a sample is known if the other side has less than this chance; the jump is known if
-  !> less than this part of the way's samples is doubtful.
-  !> A normal number exceeds `normal_end` standard deviations with that chance.
+  !> The side of a sample is known if the other side has less than this probability (a normal number
+  !> exceeds `normal_end` standard deviations with it). The jump is known if less than this part of
+  !> the samples is doubtful.
   real(wp), parameter :: doubtful = 1.0e-3_wp, known_part = 0.2_wp, normal_end = 3.09_wp
 
-  !> With fewer far samples the noise comes from their differences, and no slope is found. The part
-  !> of the travel that may be far from contact; it is halved while the farther half varies by less
-  !> than this part of the whole.
+  !> With fewer far samples the noise is found from their differences, and no slope. The part of the
+  !> travel that may be far from contact, which is halved while the farther half varies by less than
+  !> a given part of the whole.
   integer, parameter :: fewest_far = 12
   real(wp), parameter :: far_part = 1.0_wp/3, less = 0.6_wp
   !> A spike differs from its neighbours by this many deviations, plus this many times the change of
@@ -174,8 +174,8 @@ contains
     jump%z = sum(leaves*middle)
     jump%uncertainty = sqrt(sum(leaves*((middle - jump%z)**2 + typical**2/12)))
     jump%before = first_beyond(leaves)
-    ! One sample with much noise may leave a small chance to the next place, farther away than a
-    ! normal distribution of this width reaches.
+    ! Because of one sample with much noise a distant place may have a small probability, outside a
+    ! normal distribution of this width.
     i = n + 1 - first_beyond(leaves(n:1:-1))
     jump%uncertainty = max(jump%uncertainty, &
       maxval(abs(z([jump%before, min(n, i + 1)]) - jump%z))/normal_end)

@@ -13,11 +13,11 @@ module modelled_curve
   private
   public :: modelled_curve_t, beyond, level_of
 
-  !> Least distance of the ends of contact over the travel of the base: a model with a single branch
-  !> may end its contact outside Z = 0.
+  !> Least distance between the ends of contact, over the travel of the base: the contact of a model
+  !> with a single branch may end outside Z = 0.
   real(wp), parameter :: least_reach = 0.01_wp
   !> Slope over the stiffness of the spring above which a sample is at the turn of its branch, where
-  !> derivatives have no limit and tell nothing.
+  !> derivatives are unbounded and useless.
   real(wp), parameter :: steep = 10
   !> The model is solved up to this many times the largest signal, since a trial may be too soft.
   real(wp), parameter :: beyond = 1.2_wp
@@ -64,8 +64,8 @@ contains
     if (allocated(self%asked)) deallocate (self%asked)
   end subroutine use_model
 
-  !> Whether the model must reach a larger signal than it did. If so, it will. The spring cannot be
-  !> bent by more than the travel.
+  !> Whether the model must reach a larger signal than so far, which it then will. The spring cannot
+  !> be bent by more than the travel.
   logical function needs_more(self, signal)
     class(modelled_curve_t), intent(inout) :: self
     real(wp), intent(in) :: signal
@@ -220,8 +220,8 @@ contains
     model = model + baseline
   end subroutine split
 
-  !> The contact points for which the nearest sample lies at the end of the model's contact, at the
-  !> outermost state in contact, and as far beyond this state as the samples span.
+  !> The contact points for which the nearest sample lies at the inner end of the model's contact,
+  !> at the outermost state in contact, and beyond this state by the travel of the samples.
   subroutine reach(self, value, ends, found)
     class(modelled_curve_t), intent(inout) :: self
     real(wp), intent(in) :: value(:)

@@ -11,15 +11,15 @@ module noise
   public :: noise_t, white_noise, noise_of, noise_of_steps, noise_of_residuals, contradicts, &
     rough_deviation, rounding_of, normal_median, whiten
 
-  !> Deviation over that of second differences above which residuals are no noise. A filter with
-  !> this ratio would average over 60 samples.
+  !> If the standard deviation exceeds that from second differences by this factor, residuals are no
+  !> noise: a filter would have to average over 60 samples.
   real(wp), parameter :: smooth = 10
   !> Number of samples that are many for a parabola: ten for each of its unknowns.
   integer, parameter :: many = 30
   !> Largest number of samples that a prediction uses.
   integer, parameter :: longest = 8
 
-  !> Gain n ln(left^2) of any order that chance hardly explains.
+  !> Gain n ln(left^2), for any order, that is hardly due to chance.
   real(wp), parameter :: by_chance = 10
   !> The median of the magnitude of a standard normal number.
   real(wp), parameter :: normal_median = 0.6745_wp
@@ -30,9 +30,9 @@ module noise
   type :: noise_t
     real(wp) :: deviation = 0, correlation(0:longest) = 0
     integer :: order = 0
-    !> Number of independent samples that give the deviation, whether the steps between samples give
-    !> it, whether residuals were no noise, so that second differences do, and whether a model's
-    !> residuals give deviation and correlation.
+    !> Number of independent samples behind the deviation. Its source: the steps between samples;
+    !> second differences, if residuals were no noise; or a model's residuals, with their
+    !> correlation.
     real(wp) :: known_by = huge(1.0_wp)
     logical :: of_steps = .false., of_differences = .false., of_residuals = .false.
     real(wp) :: weight(longest, longest) = 0, left(0:longest) = 1
@@ -58,11 +58,10 @@ contains
     noise%left = deviation
   end function white_noise
 
-  !> The noise of a signal at equal steps, which is a straight line in z over each run, or a
-  !> parabola where there are many samples: a bow is no noise. Neither is what differs so little
-  !> from sample to sample that no filter explains it, a ripple, a drift, or the bend of a contact;
-  !> then the noise is the white one of the second differences. run(i): number of the run of sample
-  !> i.
+  !> The noise of a signal at equal steps, which is a straight line in z over each run or, with many
+  !> samples, a parabola: a bow is no noise. Ripples, drifts and the bend of a contact are no noise
+  !> either: they differ so little from sample to sample that no filter explains it. Then the noise
+  !> is white, from second differences. run(i): number of the run of sample i.
   pure type(noise_t) function noise_of(z, signal, run) result(noise)
     real(wp), intent(in) :: z(:), signal(:)
     integer, intent(in) :: run(:)
@@ -125,8 +124,8 @@ contains
   end subroutine remove_lines
 
   !> Whether samples, which would lie on straight lines or parabolas without noise, contradict a
-  !> noise: white noise of their own deviation is so much more likely that chance does not explain
-  !> it (the test of likelihood ratios; Neyman and Pearson, 1933).
+  !> given noise: white noise of their own deviation is much more likely (likelihood-ratio test;
+  !> Neyman and Pearson, 1933).
   pure logical function contradicts(z, signal, run, noise)
     real(wp), intent(in) :: z(:), signal(:)
     integer, intent(in) :: run(:)

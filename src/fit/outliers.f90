@@ -6,7 +6,8 @@ module outliers
   private
   public :: stand_apart
 
-  !> Number of neighbours on each side, whose median is compared: one of three may be an outlier.
+  !> Number of neighbours on each side whose median is compared, so that one of three may be an
+  !> outlier.
   integer, parameter :: neighbours = 3
 
 contains
@@ -23,7 +24,7 @@ contains
     integer :: i, pass
 
     good = usable
-    ! The second pass leaves out the outliers of the first, which may have hidden others.
+    ! The second pass ignores the outliers of the first, which may have hidden others.
     do pass = 1, 2
       apart = .false.
       do i = 1, size(signal)

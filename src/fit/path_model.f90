@@ -26,10 +26,10 @@ module path_model
   private
   public :: path_model_t
 
-  !> The edge of the contact at a point of the path, where the gap is that of `contact_level_of`:
-  !> the square of its radius, with derivatives by the path's coordinate and by that separation [m]
-  !> at a fixed place; its radius over the scale of the mesh; and the derivatives of the square by
-  !> the unknowns at a fixed coordinate.
+  !> The edge of the contact at a point of the path, where the gap is that of `contact_level_of`.
+  !> The square of its radius, with derivatives by the path's coordinate, by that separation [m] at
+  !> a fixed state, and by the unknowns at a fixed coordinate; and its radius over the scale of the
+  !> mesh.
   type :: edge_t
     real(wp) :: square(2) = 0, by_level = 0, place = 0
     real(wp), allocatable :: rate(:)

@@ -23,15 +23,15 @@ module second_look
   end type lack_t
 
   !> Smallest number of blocks that is tested. The excess that noise reaches in one fit of two
-  !> hundred with about seven widths.
+  !> hundred, with about seven widths.
   integer, parameter :: fewest_blocks = 8
   real(wp), parameter :: hardly_ever = 3.2_wp
 
   !> Standard deviations above which a sample is an outlier; one good sample in 150,000 exceeds
   !> this.
   real(wp), parameter :: apart = 4.5_wp
-  !> Number of far samples that suffices to find a correlation of the noise; standard errors by
-  !> which the noise far from contact must differ from the noise elsewhere.
+  !> Number of far samples needed to find a correlation of the noise; standard errors by which the
+  !> noise far from contact must differ from the noise elsewhere.
   integer, parameter :: enough = 50
   real(wp), parameter :: differs = 4
 
@@ -74,7 +74,8 @@ contains
       if (width == 1) blocks = max(1, freedom)
       if (width > 1 .and. blocks < fewest_blocks) return
       ! The ratio of the variance of all samples to that of their steps has the variance 1/n (von
-      ! Neumann, 1941), half that of the variance of all samples, as if n were twice as large.
+      ! Neumann, 1941). This is half that of the variance of all samples, as if n were twice as
+      ! large.
       excess = normal_of(total, blocks, noise%known_by)
       if (width == 1 .and. noise%of_steps) excess = normal_of(2*total, 2*blocks, huge(1.0_wp))
       if (excess > worst%excess) worst = lack_t(width, excess, sqrt(total/blocks))
@@ -91,8 +92,8 @@ contains
     normal_of = ((total/n)**(1.0_wp/3) - 1 + 2.0_wp/(9*n))/sqrt(2.0_wp/(9*n) + 2/9.0_wp/known_by)
   end function normal_of
 
-  !> The logarithm of the probability that noise lowers chi squared so much by further columns, one
-  !> or an even number, the best of `trials` choices of them. left: chi squared per degree of
+  !> The logarithm of the probability that noise alone lowers chi squared so much by further columns
+  !> (one or an even number), the best of `trials` choices of them. left: chi squared per degree of
   !> freedom with them, which is the scale if it exceeds that of noise.
   pure real(wp) function chance_of(gain, left, columns, trials) result(chance)
     real(wp), intent(in) :: gain, left
@@ -139,7 +140,7 @@ contains
     call curve%split(value, model, baseline)
     left = curve%data%measured%signal - model
     associate (data => curve%data)
-      ! The model must reach all loads; where it does not, it continues on a straight line.
+      ! The model must reach all loads; beyond, it continues on a straight line.
       signal = [(.not. data%is_beside(way), way=1, size(left))]
       settled = .not. curve%needs_more(maxval(data%measured%signal - baseline, &
         data%measured%usable .and. signal))
@@ -149,7 +150,7 @@ contains
       spread = max(deviation, median_of(abs(pack(left(data%sample), signal(data%sample))))/ &
         normal_median)
       if (any(.not. signal)) call renew_radii(curve, left, signal)
-      ! Near a jump, on whose side the model may be wrong, outliers are kept.
+      ! Near a jump outliers are kept, since the model may be on the wrong side.
       data%measured%usable = merge(usable, .not. (data%measured%skipped .or. &
         stand_apart(left, 3*data%way + data%side + merge(0, 100, signal), &
         .not. data%measured%skipped, apart*merge(spread, 2*data%noise_radius, signal))), &
@@ -187,10 +188,9 @@ contains
     end associate
   end subroutine renew_radii
 
-  !> Finds the noise of the residuals. The samples far from contact show their noise without a
-  !> model: what a model adds to it there is the model's misfit. Where they are too few to show a
-  !> correlation, the residuals of all samples do, if this correlation explains them and the far
-  !> samples do not contradict it.
+  !> Finds the noise of the residuals. The samples far from contact show the noise without a model;
+  !> larger residuals there are misfit. If they are too few to show a correlation, that of all
+  !> residuals is used, if it explains them and the far samples do not contradict it.
   subroutine renew_noise(curve, left)
     type(modelled_curve_t), intent(inout) :: curve
     real(wp), intent(in) :: left(:)
@@ -244,9 +244,9 @@ contains
       end associate
     end function explains
 
-    !> Whether residuals have the same variance in each part of the travel: a misfit is largest in
-    !> contact. The variance of that of m samples of a correlated noise is 2/m times the sum of its
-    !> squared correlations (Bartlett, 1946).
+    !> Whether residuals have the same variance in each part of the travel (a misfit is largest in
+    !> contact). For m samples of correlated noise the relative variance of the variance is 2/m
+    !> times the sum of the squared correlations (Bartlett, 1946).
     pure logical function is_even(z, residual, noise)
       real(wp), intent(in) :: z(:), residual(:)
       type(noise_t), intent(in) :: noise

@@ -23,13 +23,13 @@ module stepped_model
   public :: stepped_model_t
 
   !> Numbers of panels where bodies do not deform, from there to the beginning of contact, and in
-  !> contact; neighbours of a load on each side that give its slope.
+  !> contact. Number of neighbours of a load on each side that determine its slope.
   integer, parameter :: afar = 24, near = 32, within = 48, neighbours = 2
-  !> Distance from contact in the law's lengths at which bodies do not deform: an exponential is
-  !> then rounding. Natural logarithm of the widest contact that is searched for.
+  !> Distance from contact, in the law's lengths, beyond which bodies do not deform, since an
+  !> exponential is below rounding. Natural logarithm of the widest contact in the search.
   real(wp), parameter :: no_deformation = 36, widest_power = 60
   !> Relative step of the differences; the depth over that of Hertz' contact under the largest load;
-  !> the largest number of times that it is doubled where this is not enough.
+  !> how often it is doubled at most if this is not enough.
   real(wp), parameter :: change = 1.0e-3_wp, deeper = 1.3_wp
   integer, parameter :: most_doublings = 12
 
@@ -90,9 +90,9 @@ contains
     end do
   end subroutine respond
 
-  !> Values of h0 [m], from large to small: spaced evenly in the logarithm where bodies do not
-  !> deform, denser towards the h0 where the contact begins, and spaced as squares in contact, where
-  !> Hertz' load is a power of the depth. The depth is that of Hertz' theory for a half-space.
+  !> Values of h0 [m], from large to small: evenly spaced in the logarithm where bodies do not
+  !> deform, denser towards the beginning of contact, and spaced as squares in contact, where Hertz'
+  !> load is a power of the depth. The depth is that of Hertz' theory for a half-space.
   subroutine lay_out_h0(problem, farthest, largest, h0)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: farthest, largest

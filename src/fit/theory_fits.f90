@@ -1,5 +1,5 @@
-!> Fits of the classical theories to a measured curve: beside the fit of the model, to show their
-!> errors, and before it, for starting values.
+!> Fits of the classical theories to a measured curve: before the fit of the model, for starting
+!> values, and after it, for comparison.
 module theory_fits
   use kinds, only: wp, pi
   use dimensionless_problem, only: problem_t
@@ -31,10 +31,11 @@ module theory_fits
 
 contains
 
-  !> Works of adhesion, stiffnesses and ranges of force that the data suggest: from the pull-off
-  !> below the mean of the baseline and below its slope, and from JKR and DMT fits, each with the
-  !> range of the deck's force and with others; without attraction stiffnesses from Hertz fits. At
-  !> last come multiples of the deck's stiffness. of_data: the number of those before.
+  !> Works of adhesion, stiffnesses and ranges of force that the data suggest. They come from the
+  !> pull-off, below a constant and below a sloping baseline, and from JKR and DMT fits, each with
+  !> the range of the deck's force and with others. Without attraction they are stiffnesses from
+  !> Hertz fits. The last ones are multiples of the deck's stiffness. of_data: the number of those
+  !> before.
   function suggested_characters(curve, problem, of_data) result(likely)
     type(modelled_curve_t), intent(in) :: curve
     type(problem_t), intent(in) :: problem

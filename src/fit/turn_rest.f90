@@ -1,6 +1,6 @@
 !> Samples taken at the turn while the base rests: a contact that is held there relaxes, or creeps,
-!> so that the load changes by more than the travel of the base explains. They show the time and not
-!> the equilibrium, and do not count.
+!> so that the load changes by more than the travel of the base explains. They depend on time, are
+!> no equilibria, and do not count.
 module turn_rest
   use kinds, only: wp
   use noise, only: noise_t
@@ -38,9 +38,9 @@ contains
     measured%usable = measured%usable .and. .not. measured%rested
   end subroutine leave_out_rest
 
-  !> The number of the first samples that are a rest: all those within a mean step of the first
-  !> one, if the means of two parts of them differ by more than spring and noise explain; otherwise
-  !> 0. A load that relaxes fast changes in the first few samples alone.
+  !> The number of the first samples that are a rest: all those within a mean step of the first one,
+  !> if the means of two parts of them differ by more than spring and noise explain; otherwise 0. A
+  !> load that relaxes fast changes only in the first few samples.
   pure integer function resting(travel, signal, deviation, stiffness) result(n)
     real(wp), intent(in) :: travel(:), signal(:), deviation, stiffness
     real(wp) :: change, most

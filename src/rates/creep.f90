@@ -4,13 +4,14 @@
 !>     theta_0 [1 + Sum_k share_k (1 - exp(-t/time_k))] ,
 !>
 !> the compliance of springs and dashpots. The delayed deformation of the k-th spring and dashpot is
-!> theta_0 share_k W Z_k. The memory Z_k is a field in the material that follows the pressure:
+!> theta_0 share_k W Z_k. The internal variable (memory) Z_k is a field in the material that follows
+!> the pressure:
 !>
 !>     time_k dZ_k/dt = P - Z_k .
 !>
-!> Over a step in which P changes linearly, Z_k becomes exactly kept Z_k + past P + present P_new.
-!> The step is therefore an elastic problem: the present pressure acts on a softer half-space that
-!> has a deformation due to earlier pressures.
+!> If P changes linearly over a step, Z_k becomes kept Z_k + past P + present P_new. The step is
+!> therefore an elastic problem: the present pressure acts on a softer half-space that is deformed
+!> by earlier pressures.
 module creep
   use kinds, only: wp
   implicit none

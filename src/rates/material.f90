@@ -1,8 +1,7 @@
 !> A mesh fixed in the material, for the memory of the bodies. Pressures are interpolated from
 !> meshes that move with the contact, and the rise of the gap due to these pressures is computed on
-!> the fixed mesh. The panels are fine enough for the contact edge wherever the edge may pass. Away
-!> from the edge a pressure is smooth, and long panels, each in place of several fine panels,
-!> represent it.
+!> the fixed mesh. Fine panels resolve the contact edge wherever it may pass. Away from the edge a
+!> pressure is smooth, and long panels, each in place of several fine panels, represent it.
 module material
   use kinds, only: wp
   use discretisation, only: discretisation_t

@@ -1,4 +1,5 @@
-!> The motion of a drive: an approach at constant velocity, a dwell, and a retreat.
+!> The motion of a drive: an approach at constant velocity, a dwell, and a retract; these are its
+!> ways.
 module motion
   use kinds, only: wp
   implicit none
@@ -19,8 +20,8 @@ module motion
     procedure :: length_of
   end type motion_t
 
-  !> A motion (law's lengths) that is within the errors of positions: rates of gaps that are taken
-  !> over it are those of rounding. A shorter way, or a dwell of a shorter time, is none.
+  !> A motion (law's lengths) within the errors of positions: over it, rates of gaps would be
+  !> rounding. A way that is shorter, in length or time, is left out.
   real(wp), parameter :: negligible = 1.0e-9_wp
 
 contains

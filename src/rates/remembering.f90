@@ -1,11 +1,11 @@
-!> What the equations of a step in time take from earlier instants: the memory of viscoelastic
-!> bodies and the rate of the gaps, for the fluid between the bodies (`drainage`).
+!> What the equations of a step in time take from earlier instants: the internal variables (memory)
+!> of viscoelastic bodies, and the rate of the gaps for the fluid between the bodies (`drainage`).
 !>
-!> A step in time is an elastic problem (`creep`): pressures
-!> change linearly during the step, the present pressures act on half-spaces that are softer than
-!> instantaneously, and earlier pressures have left a deformation. The memory belongs to the
-!> material and is stored on a mesh fixed in space. Pressures are interpolated to this mesh; the
-!> deformation due to the memory, which is smoother, is interpolated from it.
+!> A step in time is an elastic problem (`creep`): pressures change linearly during the step, the
+!> present pressures act on half-spaces softer than the instantaneous ones, and earlier pressures
+!> have left a deformation. The memory belongs to the material and is stored on a mesh fixed in
+!> space. Pressures are interpolated to this mesh; the deformation due to the memory, which is
+!> smoother, is interpolated from it.
 module remembering
   use kinds, only: wp, pi
   use besides, only: rise_at
@@ -27,8 +27,9 @@ module remembering
     real(wp) :: instant = 0, compliance = 0
     !> The mesh fixed in space, of scale 1; it is not set for bodies without memory.
     type(material_t) :: material
-    !> Of a step: the memories without the part of the present pressure, and the rise due to each;
-    !> the coefficients of the present pressure in the memories; the rise of the gap due to `left`.
+    !> Of a step: the memories without the term of the present pressure, and the rise of the gap due
+    !> to each; the coefficients of the present pressure in the memories; the rise of the gap due to
+    !> `left`.
     real(wp), allocatable :: left(:, :), left_rise(:, :), present(:), risen(:)
     !> The instant before the present instant.
     type(instant_t) :: before
@@ -120,8 +121,8 @@ contains
     real(wp), intent(in) :: time
     real(wp) :: weights(3)
 
-    ! The rate jumps where the drive turns. The response of stiff bodies to this jump decays in a
-    ! time that may be shorter than a step: a parabola would overshoot.
+    ! The rate jumps where the drive turns. The response of stiff bodies to this jump may decay
+    ! within a step, so a parabola would overshoot.
     weights = rate_weights(time - from%time, merge(from%time - self%before%time, 0.0_wp, &
       from%since_turn >= calming))
     ! A Jacobian computed for a different length of the step is not accurate for this step.

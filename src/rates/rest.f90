@@ -1,4 +1,4 @@
-!> The initial state of a drive in time: bodies at rest after a slow approach from a large distance.
+!> The initial state of a drive in time: relaxed bodies after a slow approach from a large distance.
 module rest
   use kinds, only: wp
   use dimensionless_problem, only: calm_gap
@@ -15,8 +15,8 @@ module rest
   private
   public :: begin_at_rest, load_at_rest, longest_step
 
-  !> Step of the position on the way to the initial state, over the gap; the shortest step over the
-  !> longest; ratio of a step to the one before, with and without a solution.
+  !> Step of the approach to the initial state, over the gap; the shortest step over the longest;
+  !> ratio of a step to the one before, with and without a solution.
   real(wp), parameter :: part_of_gap = 0.1_wp, least_part = 1.0e-4_wp, longer = 1.5_wp, &
     shorter = 0.3_wp
 
@@ -74,8 +74,8 @@ contains
   end subroutine begin_at_rest
 
   !> The longest step of the position (law's lengths) over which states are similar: a part of the
-  !> gap. Without adhesion, deep contacts are similar too, and it is a part of the distance
-  !> from the position where bodies begin to deform each other.
+  !> gap. Without adhesion deep contacts are similar too, and it is a part of the distance from the
+  !> first noticeable deformation.
   pure real(wp) function longest_step(steps, at) result(longest)
     type(time_stepper_t), intent(in) :: steps
     type(instant_t), intent(in) :: at

@@ -1,7 +1,7 @@
 !> Steps in time near folds and across folds, where h0 does not determine the state. The step
 !> follows the path of the equilibria with the present memory, in the coordinate of the path, until
-!> the drive has the given position. A jump is such a step of any length. A jump ends in a stable
-!> state, where an approach of the bodies needs an approach of the drive.
+!> the drive has the given position. A jump is such a step of any length; it ends in a stable state,
+!> where h0 increases with the position of the drive.
 module time_jump
   use kinds, only: wp
   use contact_state, only: state_t
@@ -21,12 +21,12 @@ module time_jump
   real(wp), parameter :: first = 0.01_wp, longest = 0.15_wp, shortest = 1.0e-6_wp, &
     longer = 1.5_wp, shorter = 0.4_wp
   integer, parameter :: most_steps = 1000
-  !> Distance from the position of the drive (law's lengths), in addition to the largest elongation
-  !> of the spring on the way, beyond which the path is assumed to go to infinity.
+  !> Beyond this distance from the position of the drive (law's lengths), plus the largest
+  !> elongation of the spring so far, the path is assumed to go to infinity.
   real(wp), parameter :: too_far = 1.0e4_wp
-  !> Tolerated error of the position of the drive (law's lengths), if it is not below the residuals
-  !> of the states, and in addition of the load, which rounding leaves to a soft spring; largest
-  !> number of states solved in the search for this position.
+  !> Tolerated error of the position of the drive (law's lengths) if it exceeds the residuals of the
+  !> states; additional error of the load due to rounding, behind a soft spring; largest number of
+  !> states solved in the search for this position.
   real(wp), parameter :: left_over = 1.0e-9_wp, left_over_load = 1.0e-13_wp
   integer, parameter :: most_rounds = 30
 

@@ -35,8 +35,8 @@ module time_stepper
   !> Ratio of the radius to the radius of a passage below which the state returns to the mesh before
   !> the passage; longest extrapolation over the previous step.
   real(wp), parameter :: back = 0.97_wp, longest_guess = 3
-  !> Largest difference between the scale and the expected scale, over `finest`, for which the
-  !> memory, or the earlier gaps under a fluid, are linear in the scale; largest number of rounds.
+  !> If scale and expected scale differ by less than this, over `finest`, the memory, or the earlier
+  !> gaps under a fluid, are linear in the scale; largest number of rounds.
   real(wp), parameter :: far_off = 0.1_wp, far_off_fluid = 0.02_wp
   integer, parameter :: most_rounds = 3
   !> Largest relative difference of radius and gap between two meshes for one state.
@@ -119,7 +119,7 @@ contains
     integer, intent(in) :: mesh
     type(state_t), intent(in) :: state
 
-    ! With a spring, the position may change considerably while h0 is almost constant.
+    ! With a spring, the position may change considerably at an almost constant h0.
     control = h0_control(self%problem%shape, self%meshes, mesh, &
       merge(state%h0, position, self%compliance > 0))
     control%value = position

@@ -39,9 +39,9 @@ contains
   !> Writes the curve of each form that the law has, in range%count rows from the start of the range
   !> to smaller gaps, and one row for each jump, within the range or not. Along a curve the steps
   !> have equal |change of gap on the axis| + |change of displacement|. Curves of a law that
-  !> attracts end at the jump by (29) or (37), if that is before the end of the range; there is no
-  !> curve if it is before the start. `from` [m] replaces a start that the range does not have. For
-  !> rigid bodies the displacement is zero and the load exact.
+  !> attracts end at the jump by (29) or (37) if that is within the range; there is no curve if it
+  !> is before the start. `from` [m] is the start if the range has none. For rigid bodies the
+  !> displacement is zero and the load exact.
   subroutine write_approximations(problem, range, from, results)
     type(problem_t), intent(in) :: problem
     type(range_t), intent(in) :: range

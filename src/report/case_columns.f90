@@ -100,7 +100,8 @@ contains
       text_columns
   end function column_count
 
-  !> What a sweep of the scene leaves out, for a message; empty if nothing but the curves.
+  !> The tables that a sweep of the scene does not write, for a message; empty if only the curves
+  !> are missing.
   function left_out(scene) result(text)
     type(scene_t), intent(in) :: scene
     character(len=:), allocatable :: text
@@ -164,7 +165,7 @@ contains
         comes_always = any(row%key == of_problem)
     end function comes_always
 
-    !> Looks into the deck only if the row names a group, since each case calls this for all rows.
+    !> The deck is consulted only if the row names a group, since each case calls this for all rows.
     pure logical function comes_with_group(row)
       type(row_t), intent(in) :: row
 
@@ -192,8 +193,8 @@ contains
 
   end function chosen_numbers
 
-  !> Number of elements in the results of a group with a list: those of the deck's list, but one if
-  !> the sweep replaces the whole list by one value.
+  !> Number of elements in the results of a group with a list: as in the deck's list, or one if the
+  !> sweep replaces the whole list by one value.
   pure integer function elements(scene, group)
     type(scene_t), intent(in) :: scene
     character(len=*), intent(in) :: group

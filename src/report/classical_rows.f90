@@ -26,15 +26,13 @@ module classical_rows
 contains
 
   !> Writes the wanted theories at range%count values of h0 [m]: Hertz; for a law that attracts, JKR
-  !> and DMT; for a law whose tension has a largest value, Maugis-Dugdale, with this value as its
-  !> strength and with the law's surface energy, and the formulas fitted to it. In the theories the
-  !> separation of touching bodies is zero, so that the displacement is -h0. The state is the stable
-  !> one at this h0; there is no row without such a state. Carpick's formula gives no displacement:
-  !> its contact radius is that at the load of Maugis-Dugdale theory. `from` [m] replaces a start
-  !> that the range does not have. No rows for rigid bodies, which have no displacement. For other
-  !> shapes than the parabola there are Hertz and JKR for any convex body, for layered bodies Hertz
-  !> and JKR for layers. The summary has a note if there is no row, and a warning if contacts are
-  !> too wide for the theories.
+  !> and DMT; for a law with a largest tension, Maugis-Dugdale with this strength and the law's work
+  !> of adhesion, and the formulas fitted to it. In the theories the separation of touching bodies
+  !> is zero, so the displacement is -h0. Rows are states that are stable at their h0. Carpick's
+  !> formula gives no displacement: its contact radius is that at the load of Maugis-Dugdale theory.
+  !> `from` [m] is the start if the range has none. Rigid bodies have no rows. Other shapes than the
+  !> parabola have Hertz and JKR theory of convex bodies, layered bodies those of layers. The
+  !> summary has a note if there is no row, and a warning if contacts are too wide for the theories.
   subroutine write_classical(problem, range, from, results, summary)
     type(problem_t), intent(in) :: problem
     type(range_t), intent(in) :: range
@@ -147,8 +145,8 @@ contains
 
   end subroutine write_classical
 
-  !> Adds numbers of layered bodies: the pull-off of JKR, and E* of half-spaces on which Hertz's
-  !> load at the displacement of the deepest contact is that of the layers.
+  !> Adds numbers of layered bodies: the pull-off of JKR, and the E* of half-spaces with the same
+  !> Hertz load at the displacement of the deepest contact.
   subroutine summarise_layered(problem, range, summary)
     type(problem_t), intent(in) :: problem
     type(range_t), intent(in) :: range

@@ -54,8 +54,8 @@ contains
       lines = [lines, line]
     end subroutine add
 
-    !> The first value of a key with its error, if that is known. The points of a table leave an
-    !> error of their own in the tension.
+    !> The first value of a key with its error, if that is known. Points of a tabulated force add an
+    !> error to the tension.
     function of(key, unit) result(words)
       character(len=*), intent(in) :: key, unit
       character(len=:), allocatable :: words
@@ -74,8 +74,7 @@ contains
       integer :: i
 
       off = [(summary%number(trim(keys(i)))/summary%number('max_tension') - 1, i=1, size(keys))]
-      ! The theories are for bodies without memory, and without a fluid; states that are no
-      ! equilibria are near to none.
+      ! The theories are for elastic bodies without a fluid, and for equilibria.
       if (summary%has('time_steps') .or. .not. summary%is_true('converged')) return
       if (.not. any(ieee_is_nan(off))) then
         i = minloc(abs(off), 1)

@@ -11,8 +11,8 @@ module fit_words
   private
   public :: words_of_fit
 
-  !> Difference of chi squared up to which two fits are equally good; standard errors by which a
-  !> part of the baseline that the data do not show must move an unknown to be told.
+  !> Difference of chi squared up to which two fits are equally good. A part of the baseline that
+  !> the data do not show is reported if it would move an unknown by so many standard errors.
   real(wp), parameter :: as_well = 4, far = 4
   !> Largest relative difference of a fitted value and a derived number that is the same.
   real(wp), parameter :: same = 1.0e-9_wp
@@ -92,8 +92,8 @@ contains
       end do
     end function is_derived
 
-    !> Tells the part of the baseline that would move an unknown farthest if noise hid it, unless a
-    !> warning names a part that the data show.
+    !> Reports the part of the baseline, hidden in the noise, that would move an unknown farthest,
+    !> unless a warning names a part that the data show.
     subroutine tell_hidden()
       real(wp) :: moves, most
       integer :: i, k, part, unknown

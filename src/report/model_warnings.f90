@@ -1,5 +1,5 @@
-!> Warnings about the model: whether the scene is within its range, with small slopes and strains,
-!> within the points of tables and profiles, and with layers that bulk elasticity describes.
+!> Warnings about the model: small slopes and strains, states within the points of tables and
+!> profiles, and layers thick enough for bulk elasticity.
 module model_warnings
   use kinds, only: wp, pi
   use force_law, only: of_pressure, of_energy
@@ -13,12 +13,11 @@ module model_warnings
   private
   public :: judge_law, judge_model, judge_theories
 
-  !> Parts of the radius that give a note and a warning (a parabola differs from a circle by a
-  !> quarter of the square); pressure over stiffness, which is about the strain, that gives a
-  !> warning.
+  !> Lengths over the radius that give a note and a warning (a parabola differs from a circle by a
+  !> quarter of the square); pressure over stiffness, about the strain, that gives a warning.
   real(wp), parameter :: noted = 0.1_wp, warned = 1.0_wp/3, strained = 0.1_wp
-  !> Radius [m] and range of a force [m] that no measurement has together: lenses are smaller, and
-  !> who takes other lengths for a unit has longer ranges.
+  !> Radius [m] above which, and range of a force [m] below which, the deck probably has a slip of
+  !> units: lenses are smaller, and dimensionless decks have longer ranges.
   real(wp), parameter :: huge_radius = 0.1_wp, short_range = 1.0e-6_wp
 
 contains
@@ -44,9 +43,9 @@ contains
       rounded(range_of(problem)) // ' m; lengths of a deck are in m: 5 um are 5e-6')
   end subroutine judge_law
 
-  !> Sets and checks the error that the points of a table leave in the depth of the well and the
-  !> largest tension. For hard and for soft bodies the pull-off is proportional to the depth,
-  !> between them it depends on both.
+  !> Sets and checks the error of the well's depth and of the largest tension due to the points of a
+  !> table. The pull-off of hard and of soft bodies is proportional to the depth; in between it
+  !> depends on both.
   subroutine take_table_error(problem, summary)
     type(problem_t), intent(in) :: problem
     type(summary_t), intent(inout) :: summary

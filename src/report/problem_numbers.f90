@@ -58,7 +58,8 @@ contains
         call set('surface_energy', surface_energy(problem))
         call take_pull_offs()
       end if
-      ! Without a work of adhesion or an equilibrium separation, adhesion is a scale of the law.
+      ! Without a work of adhesion or an equilibrium separation, the adhesion is only a scale of the
+      ! law.
       if (.not. problem%rigid .and. (problem%law%work > 0 .or. problem%law%rest_gap > 0)) then
         call set('sigma', adhesion_strength(problem))
         if (problem%shape%exponent > 0) call set('tabor', tabor_parameter(problem))
@@ -91,8 +92,7 @@ contains
     end subroutine set
 
     !> Pull-offs of the theories. For other shapes than the parabola the pull-off of JKR theory
-    !> depends on the stiffness, and that of rigid bodies on more of the law than its surface
-    !> energy.
+    !> depends on the stiffness, and that of rigid bodies on the whole law.
     subroutine take_pull_offs()
       if (problem%shape%parabolic) call set('dmt_pull_off', &
         -dmt_pull_off(problem%radius, surface_energy(problem)))

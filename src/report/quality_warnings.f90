@@ -1,5 +1,6 @@
-!> Warnings about the numbers in a summary: whether the mesh resolves the neck, and whether the
-!> numbers have the accuracy that the deck asks for. `model_warnings` has those about the model.
+!> Warnings about the numbers in a summary: whether the mesh resolves the cohesive zone (neck), and
+!> whether the numbers have the accuracy that the deck asks for. `model_warnings` has those about
+!> the model.
 module quality_warnings
   use kinds, only: wp
   use dimensionless_problem, only: problem_t
@@ -15,13 +16,13 @@ module quality_warnings
   private
   public :: judge_run
 
-  !> Largest spacing of nodes at the contact edge, in neck widths: with a wider spacing the edge is
-  !> pinned between the nodes. On a mesh that moves with the edge it is not pinned; there two nodes
-  !> in a neck make a polynomial of it.
+  !> Largest spacing of nodes at the contact edge, in widths of the cohesive zone: with a wider
+  !> spacing the edge is pinned between the nodes. A mesh that moves with the edge needs two nodes
+  !> in the zone, for a polynomial.
   real(wp), parameter :: resolved_spacing = 0.2_wp, resolved_locked = 0.4_wp
 
-  !> Ratio of estimated error and accuracy above which there is a warning: an estimate has a margin
-  !> of a factor of two or more.
+  !> Ratio of estimated error and accuracy above which there is a warning; an estimate has a safety
+  !> factor.
   real(wp), parameter :: clearly = 3
   !> Residual below which there is no warning.
   real(wp), parameter :: usual_residual = 1.0e-8_wp
@@ -49,7 +50,7 @@ contains
 
   contains
 
-    !> States where the displacement has stopped changing are a failure if they are not solved.
+    !> Under the rule of small changes, states that do not solve the equations are a failure.
     subroutine judge_change()
       character(len=:), allocatable :: text
 
@@ -108,9 +109,8 @@ contains
       end associate
     end subroutine judge_resolution
 
-    !> Warns if the numbers do not have the accuracy that the deck asks for. Warns also of residuals
-    !> that rounding keeps above the tolerance, if they matter for displacements of the law's
-    !> length.
+    !> Warns if the numbers do not have the accuracy that the deck asks for, and of residuals that
+    !> rounding keeps above the tolerance, if they matter for displacements of the law's length.
     subroutine judge_accuracy()
       associate (tolerance => outcome%chosen%options%tolerance)
         if (summary%is_true('converged') .and. .not. outcome%chosen%options%stop_on_change .and. &

@@ -13,8 +13,9 @@ module rate_entries
   private
   public :: summarise_timed
 
-  !> The part of the memory that the mesh may fail to resolve without a warning. Its effect on the
-  !> gap is much smoother: in 100 random cycles with less no number was off by more than its error.
+  !> The part of the internal variables that the mesh may fail to resolve without a warning. Their
+  !> effect on the gap is much smoother: in 100 random cycles below this limit no number was off by
+  !> more than its error.
   real(wp), parameter :: unresolved = 0.7_wp
   !> Effect of the start on the largest tension, over its error and over the accuracy, above which
   !> there is a warning.
@@ -24,7 +25,7 @@ module rate_entries
 
 contains
 
-  !> Adds what is not read at places, and warnings of a drive.
+  !> Adds the numbers that belong to no place, and warnings of a drive.
   subroutine summarise_timed(scene, problem, outcome, summary)
     type(scene_t), intent(in) :: scene
     type(problem_t), intent(in) :: problem

@@ -35,10 +35,10 @@ module regime_rows
 
 contains
 
-  !> Adds the regime to the summary. The contact radius is that of the theories, at which tension
-  !> begins: the radius of largest tension or, where the tension is even, as under a step, that of
-  !> contact. In the theories touching bodies have no separation, here the equilibrium separation;
-  !> indentations count from there, and their errors are relative to a^2/R.
+  !> Adds the regime to the summary. The contact radius of the theories, at which tension begins, is
+  !> compared with the radius of largest tension or, under a step of the force, with that of
+  !> contact. Touching bodies have no separation in the theories, and the equilibrium separation
+  !> here; indentations count from there. Their errors are relative to a^2/R.
   subroutine summarise_regime(problem, places, summary)
     type(problem_t), intent(in) :: problem
     type(places_t), intent(in) :: places
@@ -60,7 +60,7 @@ contains
         'compared with')
       return
     end if
-    ! Deep enough for theories with a smaller load at an indentation than the path.
+    ! Deep enough also for theories whose load at an indentation is smaller than that of the path.
     layered = new_layered_contact(problem, 2*solved(indentation))
     associate (r => problem%radius, y => problem%stiffness)
       ! Tabor's parameter with E* = y/2 and the range gamma/strength.
@@ -69,7 +69,7 @@ contains
       call summary%set('regime_maugis_lambda', cohesive%lambda)
       call summary%set('regime_load_number', load/(pi*gamma*r), load_error/(pi*gamma*r))
       errors = all_errors(load, solved)
-      ! The errors of the solved numbers change the errors of the theories by so much.
+      ! The effect of errors of the solved numbers on the errors of the theories.
       spread = abs(all_errors(load + load_error, solved) - errors) + &
         abs(all_errors(load, solved + [uncertain(pull_off), 0.0_wp, 0.0_wp]) - errors) + &
         abs(all_errors(load, solved + [0.0_wp, uncertain(radius), 0.0_wp]) - errors)

@@ -47,9 +47,9 @@ module result_folder
 
 contains
 
-  !> Creates and locks the folder and opens its journal; to be called once. `owner` is the run's
-  !> identity; resume: the journal of an interrupted run, if there is one, is continued. After an
-  !> error the caller unlocks the folder.
+  !> Creates and locks the folder and opens its journal; to be called once. owner: the run's
+  !> identity. resume: continues the journal of an interrupted run, if there is one. After an error
+  !> the caller unlocks the folder.
   subroutine open_folder(self, folder, owner, resume, error)
     class(result_folder_t), intent(inout) :: self
     character(len=*), intent(in) :: folder, owner
@@ -164,9 +164,9 @@ contains
     if (.not. allocated(error)) call file%piece(text, error)
   end subroutine send
 
-  !> Puts the files of this run in place, unless there is an error already, and then removes files
-  !> of an earlier run and the journal. After an error the unfinished files and the journal stay.
-  !> The folder is unlocked.
+  !> Unless there is an error, puts the files of this run in place, then removes the journal and
+  !> files of an earlier run. After an error the unfinished files and the journal stay. The folder
+  !> is unlocked.
   subroutine close_folder(self, error)
     class(result_folder_t), intent(inout) :: self
     type(failure_t), allocatable, intent(inout) :: error

@@ -51,7 +51,8 @@ module results
 contains
 
   !> Opens the folder and begins the curve and the profiles if the scene has them, so that a folder
-  !> that cannot be written shows before anything is computed. owner, resume: see `result_folder`.
+  !> that cannot be written is reported before anything is computed. owner, resume: see
+  !> `result_folder`.
   subroutine open_results(self, folder, scene, version, problem, owner, resume, error)
     class(results_t), intent(inout) :: self
     character(len=*), intent(in) :: folder, version, owner
@@ -116,8 +117,8 @@ contains
   end subroutine take
 
   !> Adds a case of a sweep to `sweep.csv`: the values of its keys, of which one may be the text
-  !> `of_case`, its numbers, and texts, as the last of which why it failed, blank if it did not.
-  !> `columns` describes the columns.
+  !> `of_case`, its numbers, and texts. The last text is the reason of a failure, blank if there is
+  !> none. `columns` describes the columns.
   subroutine take_case(self, columns, sweep, values, of_case, numbers, texts)
     class(results_t), intent(inout) :: self
     character(len=*), intent(in) :: columns(:), of_case, texts(:)

@@ -20,8 +20,8 @@ module sensitivity_rows
   private
   public :: write_sensitivities
 
-  !> z turns where it changes along the path by less than this part of its terms, or of the law's
-  !> units: folds are found with a millionth of a unit of the coordinate.
+  !> z has a turn where its change along the path is below this part of its terms, or of the law's
+  !> units: folds are located to a millionth of a unit of the coordinate.
   real(wp), parameter :: turning = 1.0e-6_wp
 
 contains

@@ -35,8 +35,8 @@ module stability_records
     procedure :: warn
   end type stability_recorder_t
 
-  !> Largest magnitude, over the accuracy, of an eigenvalue that contradicts no count: at a fold it
-  !> is zero except for the error of the mesh, at most 7e-6 for an accuracy of 1e-4.
+  !> An eigenvalue of smaller magnitude, over the accuracy, does not contradict the count: at a fold
+  !> it is zero up to the error of the mesh, at most 7e-6 for an accuracy of 1e-4.
   real(wp), parameter :: zero = 100
   !> Eigenvalue below which a state is at a fold.
   real(wp), parameter :: least = 1.0e-12_wp
@@ -96,8 +96,8 @@ contains
   end subroutine take
 
   !> Adds the error of the criterion (28), and warnings about states with doubtful eigenvalues. An
-  !> error of h0 changes gaps in proportion to the inverse eigenvalue, but beside a fold by no more
-  !> than its root. off: the error of h0 in the law's lengths; absent for rigid bodies.
+  !> error of h0 changes gaps in proportion to the inverse eigenvalue, but near a fold at most by
+  !> its square root. off: the error of h0 in the law's lengths; absent for rigid bodies.
   subroutine warn(self, summary, off)
     class(stability_recorder_t), intent(in) :: self
     type(summary_t), intent(inout) :: summary

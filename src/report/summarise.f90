@@ -127,8 +127,8 @@ contains
       end do
     end subroutine tell_branches
 
-    !> Adds the uncertainty of a jump that does not start from a known fold: that of its h0 between
-    !> two states, and that of the grid, are the error of h0.
+    !> Adds the uncertainty of a jump that does not start from a known fold. The error of h0 has two
+    !> parts: its bracket between two states, and the error of the grid.
     subroutine tell_uncertainty(name)
       character(len=*), intent(in) :: name
       type(place_t) :: place

@@ -25,11 +25,11 @@ module summary
     real(wp), allocatable :: error(:), rate(:, :), rate_error(:, :)
   end type summary_value_t
 
-  !> A row without a value is absent from the file. If one of several values of an array does not
-  !> exist, such as the jump out of an unloading without one, it is NaN.
+  !> A row without a value is absent from the file. An element of an array that does not exist, such
+  !> as the snap-off of an unloading without one, is NaN.
   type :: summary_t
-    !> One element for each row. It is allocated, with the others, as the first value is set, since
-    !> several summaries at once would need a larger stack, which a limit of memory can forbid.
+    !> One element for each row. Allocated when the first value is set, since several summaries at
+    !> once would need a larger stack, which a limit of memory may not permit.
     type(summary_value_t), allocatable, private :: value(:)
     type(line_t), allocatable :: warnings(:), notes(:)
     !> The first reason why the run did not converge; not allocated if there is none.

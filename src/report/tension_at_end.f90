@@ -1,6 +1,6 @@
-!> Whether the largest tension is a pull-off. If it is that of the first or last row of a branch,
-!> tension may grow beyond this row, and the number depends on where the branch ends; beside states
-!> that did not converge tension may grow among them.
+!> Whether the largest tension is a pull-off. If it is in the first or last row of a branch, the
+!> tension may grow beyond this row, and the number depends on where the branch ends. Beside states
+!> that did not converge, the tension may be larger among these.
 module tension_at_end
   use kinds, only: wp, nan
   use text, only: brief, rounded
@@ -16,7 +16,7 @@ module tension_at_end
 
 contains
 
-  !> Sets what tells of the ends, and warns if the largest tension of all branches is at one.
+  !> Sets the entries about the ends, and warns if the largest tension of all branches is at one.
   subroutine judge_tension(problem, outcome, summary)
     type(problem_t), intent(in) :: problem
     type(experiment_result_t), intent(in) :: outcome
@@ -77,7 +77,7 @@ contains
       end if
     end subroutine judge_branch
 
-    !> told: another message says why the branch ends. One warning is enough.
+    !> told: another message gives the reason, and one warning is enough.
     subroutine tell(name, first, advice, told)
       character(len=*), intent(in) :: name, advice
       logical, intent(in) :: first, told
