@@ -19,8 +19,8 @@ module acceleration
     procedure :: forget
   end type history_t
 
-  !> Part of a difference that newer ones do not explain, below which it is dropped: the least
-  !> squares would amplify rounding by the inverse of this.
+  !> A difference is dropped if the part of it that is independent of newer ones is below this: the
+  !> least squares would amplify rounding by the inverse.
   real(wp), parameter :: independent = 1.0e-6_wp
 
 contains

@@ -18,7 +18,7 @@ module anderson
   private
   public :: solve_anderson
 
-  !> An iteration: the unknowns z, their residual g, minus the plain step f and the accelerated
+  !> An iteration: the unknowns z, their residual g, f (minus the plain step) and the accelerated
   !> step; the unknowns with the shortest plain step and those with the least residual; the lengths
   !> of the last and of the shortest plain step, and the least residual.
   type :: iterate_t
@@ -35,9 +35,9 @@ module anderson
   !> steps; after more, the iteration stops.
   real(wp), parameter :: too_long = 10
   integer, parameter :: most_rejections = 4
-  !> With a fluid: a plain step of the length `last_step`, over the tolerance, is the last step; so
-  !> is one of the length `few_roundings` that is hardly shorter than the one before it. The
-  !> tolerance is some roundings of a gap; with longer last steps, rates were seen to be noise.
+  !> With a fluid: a plain step shorter than `last_step` tolerances is the last one; so is a step
+  !> below `few_roundings` tolerances that is hardly shorter than the one before. The tolerance is
+  !> some roundings of a gap; with longer last steps, rates were noise.
   real(wp), parameter :: last_step = 0.1_wp, few_roundings = 10, hardly_shorter = 0.5_wp
 
 contains
@@ -130,7 +130,7 @@ contains
   !> returns to the best unknowns and renews the factorisation, up to a limited number of times.
   !>
   !> The length of the plain step measures the distance from equilibrium. The residual does not: in
-  !> a stiff contact an insignificant error of the gap still changes the pressure much.
+  !> a stiff contact a tiny error of the gap changes the pressure much.
   subroutine take_plain_step(equations, control, state, frozen, now)
     type(equations_t), intent(inout) :: equations
     type(control_t), intent(in) :: control

@@ -8,9 +8,9 @@
 !> close by a fraction of itself in one step (`largest_step`). After many rejections without
 !> progress the iteration ends.
 !>
-!> Where there is no equilibrium nearby the residual must grow first on the way to the next one.
-!> There `relax_by_mixing` moves the bodies by plain mixing, which is a relaxation, until the
-!> accelerated iteration converges to a stable state.
+!> If there is no equilibrium nearby, the residual must first grow on the path to the next one. Then
+!> `relax_by_mixing` moves the bodies by plain mixing, which is a relaxation, until the accelerated
+!> iteration converges to a stable state.
 module anderson_mixing
   use kinds, only: wp
   use acceleration, only: history_t, accelerate

@@ -1,6 +1,5 @@
-!> The rise of the gap that the present pressures do not cause: the deformation due to earlier
-!> pressures in bodies with memory. It is fixed in the bodies' material, and known on a mesh fixed
-!> in space.
+!> The rise of the gap due to earlier pressures in viscoelastic bodies. It is fixed in the bodies'
+!> material, and known on a mesh fixed in space.
 module besides
   use kinds, only: wp
   use discretisation, only: discretisation_t, axis_row, centre_row, first_node
@@ -18,8 +17,8 @@ module besides
     procedure :: at_scale
   end type besides_t
 
-  !> Relative difference of positions for the difference quotient; the relative error of the
-  !> quotient is about the same, which is enough for the small changes of the scale.
+  !> Relative difference of positions for the difference quotient, whose relative error is about the
+  !> same, enough for small changes of the scale.
   real(wp), parameter :: apart = 1.0e-6_wp
 
 contains

@@ -64,9 +64,8 @@ contains
     load_reach = state%scale*grid%end
   end function load_reach
 
-  !> The load over 2 pi to which errors of a state are relative: its own load or, if larger, the
-  !> adhesion, but at most the load of the absolute pressures. Errors below the rounding of the
-  !> adhesion are not felt.
+  !> The load over 2 pi to which errors of a state are relative: its own load or the adhesion,
+  !> whichever is larger, but at most the load of the absolute pressures.
   pure real(wp) function felt_load(problem, grid, state) result(load)
     type(problem_t), intent(in) :: problem
     type(discretisation_t), intent(in) :: grid

@@ -48,9 +48,9 @@ contains
   end subroutine forget
 
   !> Factorises the Jacobian at a state. frozen%factors%valid: the Jacobian is regular. The factors
-  !> are rough, for iterations, except in three cases: they are to be exact; the mesh is fixed in
-  !> space, where their determinants are used; there is a fluid, whose pressures change so much with
-  !> the gaps in short steps that single precision leaves too much.
+  !> are in single precision, except in three cases: they are to be exact; the mesh is fixed in
+  !> space, where their determinants are used; or there is a fluid, whose pressures depend too
+  !> strongly on the gaps in short steps of time.
   subroutine freeze(equations, control, state, frozen, exact)
     type(equations_t), intent(inout) :: equations
     type(control_t), intent(in) :: control

@@ -17,7 +17,7 @@ module local_criteria
   integer, parameter :: points = 4, most_sections = 40
   !> Number of nodes of the polynomial on meshes whose panels have fewer.
   integer, parameter :: few = 4
-  !> The relative increase that the search has to gain over a point: less is rounding.
+  !> The least relative increase in the search; less is rounding.
   real(wp), parameter :: gained = 1.0e-9_wp
   !> The relative change of the gap for a derivative.
   real(wp), parameter :: little = 1.0e-5_wp
@@ -28,8 +28,8 @@ contains
   !> criterion. The criterion is derived for surfaces that attract each other, with p < 0 and p' >
   !> 0, and only these places count: inside the contact edge p passes zero, and the ratio is
   !> unbounded. Adhesive contacts always violate the criterion just outside the edge. NaN if there
-  !> is no attraction. error: what the interpolation between nodes leaves; by_gap: the magnitude of
-  !> the derivative by the gap at this place.
+  !> is no attraction. error: due to the interpolation between nodes; by_gap: the magnitude of the
+  !> derivative by the gap at this place.
   pure subroutine local_criterion(problem, grid, state, value, error, by_gap)
     type(problem_t), intent(in) :: problem
     type(discretisation_t), intent(in) :: grid

@@ -21,8 +21,8 @@ module mixing
   !> iterations would not relax the softest mode.
   real(wp), parameter :: fall = 0.5_wp, rise = 1.05_wp, smallest_ratio = 1.0e-6_wp
   !> Growth of the change of the central displacement at which the ratio falls. Far from equilibrium
-  !> the change may grow slowly for many iterations, and for more of them with a smaller ratio. If
-  !> any growth lowered the ratio, it would end at the smallest value, far from equilibrium.
+  !> the change may grow slowly for many iterations, the more with a small ratio. If any growth
+  !> lowered the ratio, it would reach its smallest value far from equilibrium.
   real(wp), parameter :: growth = 2
 
 contains

@@ -1,6 +1,6 @@
 !> Relaxation of bodies out of equilibrium: dh/dtau = -G at fixed h0, by implicit steps that become
-!> longer as the residual decreases; the last steps are Newton steps. A jump relaxes to the state in
-!> which a quasi-static experiment would land; an unstable equilibrium is left.
+!> longer as the residual decreases; the last steps are Newton steps. After a jump the bodies relax
+!> to the state that a quasi-static experiment would reach; they leave unstable equilibria.
 module relaxation
   use kinds, only: wp
   use contact_state, only: state_t
@@ -19,9 +19,9 @@ module relaxation
   integer, parameter :: most_steps = 2000, few_factorisations = 500
   real(wp), parameter :: most_cubes = 1.0e11_wp
   !> First step of pseudo-time (the stiffest modes relax in less than one unit), its largest growth,
-  !> its shortening, and its limits. A growing residual, as while bodies part, does not shorten a
-  !> step below the usual one; an unstable mode does. Size of the nudge off an unstable equilibrium,
-  !> in the law's lengths.
+  !> its shortening, and its limits. A growing residual, for example while bodies separate, does not
+  !> shorten a step below the usual one; an unstable mode does. Size of the perturbation of an
+  !> unstable equilibrium, in the law's lengths.
   real(wp), parameter :: first_step = 1, growth = 3, shortening = 0.1_wp, usual_step = 0.3_wp, &
     shortest_step = 1.0e-3_wp, longest_step = 1.0e12_wp, nudge = 1.0e-4_wp
   !> The residual before the first step is unknown.
@@ -65,7 +65,7 @@ contains
         if (.not. factors%valid) return
         converged = determinant_sign(factors) > 0
         if (converged) return
-        ! No force drives the bodies from an unstable equilibrium: they are nudged towards each
+        ! No force drives the bodies from an unstable equilibrium: they are perturbed towards each
         ! other.
         z = z - nudge
         dtau = first_step

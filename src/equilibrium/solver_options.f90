@@ -45,8 +45,8 @@ contains
     is_plain_mixing = self%mixing .and. self%mixing_depth == 0
   end function is_plain_mixing
 
-  !> The options with a tolerance near rounding, for states whose place on the path must be exact.
-  !> If rounding is larger, its floor counts (`residual_floor`).
+  !> The options with a tolerance near rounding, for states whose place on the path must be exact;
+  !> `residual_floor` replaces it if larger.
   pure type(solver_options_t) function tightened(options) result(tight)
     type(solver_options_t), intent(in) :: options
 

@@ -18,8 +18,8 @@ module stability_by_products
   private
   public :: is_stable
 
-  !> Number of steps over the root of the spectrum's width, in units of the distance of interest
-  !> from 1: eigenvalues that exceed 1 by more than about a tenth are found.
+  !> Number of steps over the square root of the spectrum's width. Eigenvalues that exceed 1 by more
+  !> than about a tenth are found.
   real(wp), parameter :: steps_over_root = 5
   integer, parameter :: most_steps = 1000
 

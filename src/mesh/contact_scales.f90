@@ -13,8 +13,8 @@ module contact_scales
     smallest_feature, &
     lost_in_rounding, largest_floor
 
-  !> Smallest feature, over the contact radius, that a mesh resolves: smaller features due to
-  !> adhesion are hidden by rounding, and the mesh would have more nodes without benefit.
+  !> Smallest feature, over the contact radius, that a mesh resolves; smaller features due to
+  !> adhesion are hidden by rounding.
   real(wp), parameter :: finest = 1.0e-13_wp
 
   !> Range of the Lennard-Jones law (its adhesion over its largest tension) in the law's length.
@@ -29,9 +29,8 @@ module contact_scales
 contains
 
   !> Contact radius of JKR theory, (11), at H0, with a margin of a fifth; for a law without adhesion
-  !> that of Hertz theory, beginning at the law's level. For bodies that deform less under long
-  !> waves than under short ones, the radius is larger at the same depth, up to twice for a thin
-  !> incompressible film.
+  !> that of Hertz theory, beginning at the law's level. Bodies that are less compliant at long
+  !> wavelengths have a larger radius at the same depth, up to twice for a thin incompressible film.
   pure real(wp) function largest_radius(problem, h0, level) result(c)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: h0, level
@@ -92,8 +91,8 @@ contains
   end function contact_level
 
   !> Width of the zone outside the edge over which the tension decays, lateral units: `neck_width`,
-  !> for which the law's range is its length, times the square of the ratio of the range to that of
-  !> the Lennard-Jones law, if this ratio is below 1.
+  !> which assumes a range of one law's length, times the square of the ratio of the law's range to
+  !> that of the Lennard-Jones law, if this ratio is below 1.
   pure real(wp) function cohesive_width(problem) result(width)
     type(problem_t), intent(in) :: problem
     real(wp) :: tension(1)
@@ -104,10 +103,11 @@ contains
     width = width*min(1.0_wp, (problem%law%adhesion/(usual_range*tension(1)))**2)
   end function cohesive_width
 
-  !> The smallest lateral feature of the pressure up to the contact radius c: the width of the neck
-  !> or, where the neck is wide, the smaller of two lengths: the half-width of the pressure between
-  !> bodies near contact, and the boundary layer of a Hertz contact, whose gap increases as the
-  !> power 3/2 of the distance from the edge and changes the repulsion over one repulsion length.
+  !> The smallest lateral feature of the pressure up to the contact radius c: the width of the
+  !> cohesive zone (neck) or, if that is wide, the smaller of two lengths. One is the half-width of
+  !> the pressure between bodies near contact. The other is the boundary layer of a Hertz contact,
+  !> over which the gap, increasing as the power 3/2 of the distance from the edge, changes by one
+  !> repulsion length.
   pure real(wp) function smallest_feature(problem, c)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: c
@@ -115,7 +115,7 @@ contains
 
     smallest_feature = min(cohesive_width(problem), 0.5_wp)
     opening = problem%shape%opening(max(c, 1.0_wp))
-    ! On a flat face nothing opens.
+    ! On a flat face the gap does not increase.
     if (opening > 0) smallest_feature = min(smallest_feature, &
       (problem%law%repulsion_length**2/opening)**(1.0_wp/3))
     smallest_feature = max(finest*max(c, 1.0_wp), smallest_feature)

@@ -65,9 +65,9 @@ contains
 
   !> The mesh of panels from the axis outward; panel k has the nodes local(which(k)). A node at a
   !> panel's end, 1, is the next panel's node at 0. even: whether functions are even in the distance
-  !> from the axis; such a function is a polynomial of the squared distance, and through the nodes
-  !> nearest to the axis this polynomial converges faster than the panel's. digits: of the kernel;
-  !> elastic = .false.: without the kernel.
+  !> from the axis; near the axis they are then interpolated by polynomials of the squared distance,
+  !> which converge faster than the panel's. digits: of the kernel; elastic = .false.: without the
+  !> kernel.
   function mesh_of_panels(centre, panel, local, which, even, digits, elastic) result(grid)
     real(wp), intent(in) :: centre, digits
     type(panel_map_t), intent(in) :: panel(:)
@@ -105,7 +105,7 @@ contains
           if (shared > 0) grid%weight([first, last]) = grid%weight([first, last]) + &
             (panel(k)%right - panel(k)%left)**2/6*[1, -1]
         end associate
-        ! Nodes of a power panel crowd at the axis, which resolves no edge.
+        ! The dense nodes of a power panel at the axis resolve no edge.
         if (panel(k)%kind /= power_map) grid%spacing = min(grid%spacing, &
           minval(panel(k)%speed(nodes%node))/(size(nodes%node) - shared))
       end associate

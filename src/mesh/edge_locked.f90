@@ -20,9 +20,9 @@ contains
 
   !> Meshes for H0 from h0_high down to h0_low, accurate to the given number of digits
   !> (`mesh_rule`). store: earlier meshes, to which these are added. coarser: meshes of fewer digits
-  !> for the same problem and range; keep: their panels are kept where these were laid out for
-  !> computed gaps. fronts: whether meshes may be locked to the front of a step; further: whether
-  !> meshes may be inserted later; both .true. if absent.
+  !> for the same problem and range; keep: their panels are kept if they were laid out for computed
+  !> gaps. fronts: whether meshes may be locked to the front of a step (`step_front`); further:
+  !> whether meshes may be inserted later; both .true. if absent.
   function new_mesh_family(problem, h0_high, h0_low, digits, store, coarser, keep, fronts, &
     further) result(meshes)
     type(problem_t), intent(in) :: problem
@@ -88,10 +88,9 @@ contains
     end if
   end subroutine make_mesh
 
-  !> Chooses the shape of a mesh from a coarser one with more nodes on its panels: if a new layout
-  !> would have fewer nodes than this, as under laws for which numbers of nodes were tried, and so
-  !> would have the same error. Meshes for computed gaps are laid out anew, since their panels may
-  !> be the cause of an error, unless they are to be kept.
+  !> Makes the shape of a mesh from a coarser one, with more nodes on its panels, if a new layout
+  !> would have fewer nodes and so no smaller error. Meshes for computed gaps are laid out anew,
+  !> since their panels may be the cause of an error, unless they are to be kept.
   subroutine follow(meshes, coarser, mesh, problem, keep)
     type(mesh_family_t), intent(inout) :: meshes
     type(mesh_family_t), intent(in) :: coarser

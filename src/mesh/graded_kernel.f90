@@ -15,11 +15,11 @@ module graded_kernel
   public :: add_graded
 
   !> Exponent of the substitution, and number of points at which the error for v**(power - 1) ln(v)
-  !> is a few parts of one: the error decreases with twice the exponent.
+  !> is of the order of one; it decreases with the power 2*power of this number.
   integer, parameter :: power = 4
   real(wp), parameter :: least_graded = 1.75_wp
-  !> Number of points for each degree of the nodes' polynomials, graded and plain; and additional
-  !> plain points, since the last digits of the polynomials are of higher degrees.
+  !> Number of points for each degree of the nodes' polynomials, graded and plain, and of additional
+  !> plain points.
   real(wp), parameter :: graded_share = 1.4_wp, plain_share = 0.5_wp
   integer, parameter :: least_plain = 3
   !> Digits more on a linear panel, where the polynomials of the highest degrees count as well.

@@ -1,10 +1,9 @@
-!> Panels short enough for a force law with lengths of its own: barriers, oscillations and steps lie
-!> between the edge and infinity at positions that a general rule does not know.
+!> Adaptive refinement of panels for force laws with barriers, oscillations or steps, whose
+!> positions between the edge and infinity a general rule does not know.
 !>
-!> The pressure is evaluated for gaps that bodies are expected to have (`predicted_gaps`). Once
-!> there is a path, the gaps seen on it are used (`seen_gaps`). A panel in z on which the last
-!> Legendre coefficients of this pressure are not small gets more nodes or is halved, whichever
-!> takes fewer nodes (`left_out`).
+!> The pressure is evaluated for predicted gaps (`predicted_gaps`) or, once there is a path, for
+!> computed ones (`seen_gaps`). A panel in z on which the last Legendre coefficients of this
+!> pressure are not small gets more nodes or is halved, whichever takes fewer nodes (`left_out`).
 module law_panels
   use kinds, only: wp
   use dimensionless_problem, only: problem_t
@@ -28,7 +27,7 @@ module law_panels
   !> Panels shorter than twice `shortest` are not halved.
   real(wp), parameter :: shortest = 0.01_wp
   !> Factors by which the number of nodes is increased in turn. A panel that needs no more nodes
-  !> than its halves is not halved: waves need more nodes, steps need shorter panels.
+  !> than its halves is not halved: oscillations need more nodes, steps need shorter panels.
   real(wp), parameter :: times(*) = [1.0_wp, 1.3_wp, 1.7_wp, 2.2_wp, 2.8_wp, 3.6_wp]
 
 contains
@@ -128,8 +127,8 @@ contains
       nodes = 0
     end function order_of
 
-    !> Whether the nodes of a panel integrate the pressure with a small enough error of the load and
-    !> of the gap nearby. The gap that was worst before is tested first.
+    !> Whether the nodes of a panel integrate the pressure accurately enough for the load and the
+    !> gap nearby. The gap that was worst before is tested first.
     logical function is_resolved(z, z_length, nodes)
       real(wp), intent(in) :: z, z_length
       integer, intent(in) :: nodes
@@ -166,7 +165,7 @@ contains
 
     !> Whether the nodes of a panel resolve the pressure of gap number j at a radius. Under a law
     !> with a step, gaps between the first and the last one are tested only if their step is on the
-    !> panel; if it is not, their pressures are as smooth as those of the first or of the last gap.
+    !> panel; otherwise their pressures are as smooth as those of the first or the last gap.
     logical function suffices(z, z_length, local, j, radius)
       real(wp), intent(in) :: z, z_length, radius
       type(local_nodes_t), intent(in) :: local
@@ -230,10 +229,10 @@ contains
 
   end subroutine fit_panels
 
-  !> The relative error of load and gap due to the nodes of a panel. The error is proportional to
-  !> the square of the tail of the pressure, since nodes integrate polynomials of twice the degree;
-  !> more exactly, to the tail times its ratio to the pressure or, where a step is smaller than the
-  !> pressure around it, to the step: nodes that miss a step miss all of it.
+  !> The relative error of load and gap due to the nodes of a panel. Since nodes integrate
+  !> polynomials of twice the degree, the error is the tail of the pressure times the ratio of the
+  !> tail to the pressure. If a step is smaller than the pressure around it, the ratio is that to
+  !> the step, which nodes may miss completely.
   !>
   !> Pressures are weighted by their area, limited by the length of the panel and by the area of the
   !> total load, and within the panel by their effect on the gap; under oscillating laws by the area

@@ -8,7 +8,7 @@ module local_nodes
   private
   public :: local_nodes_t, gauss_nodes, given_nodes
 
-  !> Stands for a distance 0 from a node; added to another distance, it changes nothing.
+  !> Added to distances from nodes, so that none is 0; other distances are unchanged.
   real(wp), parameter :: at_node = 1.0e-100_wp
 
   !> Nodes of panels on [0, 1], weights of the integral, and barycentric weights.
@@ -80,7 +80,7 @@ contains
     value = 0
     shares = 0
     do j = 1, size(values)
-      ! At a node, its share exceeds the others by more than the digits of a number.
+      ! At a node, its term exceeds the others by more than the digits of a number.
       share = self%barycentric(j)/(s - self%node(j) + at_node)
       shares = shares + share
       value = value + share*values(j)

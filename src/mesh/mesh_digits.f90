@@ -16,10 +16,9 @@ module mesh_digits
     for_places(2) = [2.5_wp, 0.75_wp], for_many_places(2) = [-0.2_wp, 1.2_wp]
   !> Least number of digits for a path; largest number of digits that rounding allows.
   real(wp), parameter :: fewest = 4.25_wp, most_digits = 13
-  !> Least number of digits for each decade of sigma: with fewer digits, folds would be missing or
-  !> wrong, since folds are closer together for stronger adhesion. For laws with a step or a period:
-  !> the number to be added to `fewest`. The last number is enough to separate folds as long as
-  !> there is a contact.
+  !> Least number of digits for each decade of sigma: with fewer digits folds would be missing or
+  !> wrong, since they are closer together for stronger adhesion. For laws with a step or a period:
+  !> the number to be added to `fewest`. The last number always separates the folds in contact.
   real(wp), parameter :: for_folds = 1.5_wp, for_folds_of_lengths = 1, enough_for_folds = 9
   !> Digits to be added, relative to a path under the Lennard-Jones law: for bodies without jumps;
   !> for laws with a step; for oscillating laws; for profiles, which are sensitive to the
@@ -28,8 +27,8 @@ module mesh_digits
   real(wp), parameter :: without_jumps = -0.5_wp, for_steps = 0.6_wp, for_waves = 1.1_wp, &
     for_profiles = 2, for_narrow_necks = 0.3_wp, for_kinks = 1.5_wp
   !> Digits for each decade of the ratio of the contact's compliance to that on a half-space, times
-  !> the square of the decades by which the contact is wider than the layer: such a layer differs
-  !> from a half-space for waves of at most `waves_in_layer` over the radius.
+  !> the square of the decades by which the contact is wider than the layer. Such a layer differs
+  !> from a half-space for wave numbers of at most `waves_in_layer` over the radius.
   real(wp), parameter :: for_softer = 0.6_wp, waves_in_layer = 32
   !> The sigma at which jumps begin under the Lennard-Jones law (for other laws approximately);
   !> digits to be added there; the factor in sigma within which they are added; and the part of this
@@ -49,7 +48,7 @@ contains
     sigma = adhesion_strength(problem)
     decades = log10(1 + sigma)
     digits = of_load(-log10(accuracy))
-    ! Jumps are more sensitive to errors than all other results.
+    ! Jumps are more sensitive to errors than other results.
     if (sigma < onset) digits = digits + without_jumps
     lengths = 0
     if (problem%law%step_width > 0) lengths = for_steps

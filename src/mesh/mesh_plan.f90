@@ -24,8 +24,8 @@ module mesh_plan
   integer, parameter :: approach = 1, contact = 2
 
   !> Largest ratio of the contact radii of one mesh: wider bands need more nodes, narrower bands
-  !> more meshes. Under a law that oscillates or has a step, short panels cover all places that the
-  !> law's special gaps have at any radius of the band, and `next_mesh` may divide bands.
+  !> more meshes. Under a law that oscillates or has a step, short panels cover the positions of the
+  !> law's special gaps at all radii of the band, and `next_mesh` may divide bands.
   real(wp), parameter :: widest_band = 30, band_of_waves = 2, band_of_steps = 4
 
   !> The meshes are in the order of the path.
@@ -228,10 +228,10 @@ contains
   end function locked_gap
 
   !> Contact radius at which the edge becomes too sharp for the mesh of the approach: a fraction of
-  !> the neck, and of the radius over which the gap between rigid bodies increases from the gap at
-  !> rest to that of largest tension. If meshes are locked to a front, nothing inside it is sharp
-  !> before its last radius; if further meshes may be inserted, the rim of a flat face is passed
-  !> before. widest: the largest radius.
+  !> the width of the cohesive zone, and of the radius over which the gap between rigid bodies
+  !> increases from the equilibrium separation to that of largest tension. If meshes are locked to a
+  !> front, the pressure inside it is smooth up to its last radius. If further meshes may be
+  !> inserted, the rim of a flat face is passed before. widest: the largest radius.
   pure real(wp) function passage_to_contact(problem, fronts, further, widest) result(c)
     type(problem_t), intent(in) :: problem
     logical, intent(in) :: fronts, further

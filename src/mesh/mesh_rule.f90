@@ -22,18 +22,19 @@ module mesh_rule
     density_about_edge(0:2) = [0.15_wp, 0.24_wp, 0.0105_wp]
   !> Relative increase of the density for each factor of e in sigma.
   real(wp), parameter :: for_adhesion = 0.03_wp
-  !> Relative increase for each factor of e by which repulsion outweighs adhesion, inside the edge;
-  !> outside it with logarithms of the same number (`contact_shape`).
+  !> Relative increase for each factor of e of repulsion over adhesion inside the edge; outside it,
+  !> with the logarithm of this logarithm (`contact_shape`).
   real(wp), parameter :: inside_repulsion = 0.3_wp, outside_repulsion = 0.5_wp, &
     of_repulsion = 0.75_wp
-  !> The density inside the edge over that about it: under strong adhesion, the additional part
-  !> under weak adhesion, and how fast this part decreases with sigma.
+  !> The density inside the edge over that about it under strong adhesion; the additional part under
+  !> weak adhesion, and its decrease with sigma.
   real(wp), parameter :: inside_strong = 0.85_wp, inside_weak = 0.25_wp, weakening = 0.3_wp
   !> Factors of densities: without adhesion, where only the repulsion is resolved; and outside the
-  !> edge of contacts smaller than their neck, whose part decreases with the square of the radius
-  !> over the neck times `beside_neck`.
+  !> edge of contacts smaller than their cohesive zone (neck), where the excess decreases with the
+  !> square of the radius over the neck times `beside_neck`.
   real(wp), parameter :: without_adhesion = 1.5_wp, small_contact = 0.5_wp, beside_neck = 3
-  !> Digits of a kernel for a digit of the mesh, without this number, and for a decade of sigma.
+  !> Digits of a kernel for each digit of the mesh, less the second number, and for each decade of
+  !> sigma.
   real(wp), parameter :: of_kernel = 1.2_wp, fewer_of_kernel = 2, for_decade = 0.5_wp
   !> The length d over the smallest feature: errors change little between half this value and twice.
   real(wp), parameter :: finer = 0.5_wp
@@ -81,7 +82,8 @@ contains
     edges = 0
     if (present(seen)) edges = seen%edges()
     if (edges(1) > 0 .and. has_flat_face(problem%shape)) then
-      ! Nodes are equally dense over the band. Outside it `fit_panels` adds them where they lack.
+      ! Nodes are equally dense over the band. Outside it `fit_panels` adds nodes where they are
+      ! missing.
       shape%focus = 0.5_wp*sum(edges)
       shape%d = max(0.5_wp*(edges(2) - edges(1)), finer*smallest_feature(problem, edges(2)))
       density = density_for(density_about_edge, digits)
@@ -109,8 +111,8 @@ contains
 
     inner = density_for(density_about_edge, digits)
     if (problem%law%adhesion > 0) then
-      ! Under strong adhesion a small contact is drawn out into a neck. Under strong repulsion the
-      ! repulsion begins inside the edge. Both cases need more nodes, mainly inside the edge.
+      ! Strong adhesion draws a small contact out into a neck; a strong repulsion begins inside the
+      ! edge. Both cases need more nodes, mainly inside the edge.
       inner = inner*(1 + for_adhesion*log(1 + adhesion_strength(problem)/(1 + high)**2))
       repulsion = log(1 + high/(pi*adhesion_strength(problem)))
       outer = inner*(1 + outside_repulsion*log(1 + of_repulsion*repulsion))
@@ -151,9 +153,9 @@ contains
     density = terms(0) + digits*(terms(1) + terms(2)*digits)
   end function density_for
 
-  !> Adds sinh panels over z_length: one panel, which gets more nodes or is halved where the
-  !> pressure needs this, as under laws with lengths of their own. Shapes with kinks have short
-  !> panels from the beginning. about, side, low, high, seen: see `fit_panels`.
+  !> Adds sinh panels over z_length: one panel, which gets more nodes or is halved if the pressure
+  !> needs this (laws with lengths of their own). Shapes with kinks have short panels from the
+  !> beginning. about, side, low, high, seen: see `fit_panels`.
   subroutine add_panels(problem, shape, about, side, z_length, density, digits, low, high, seen)
     type(problem_t), intent(in) :: problem
     type(mapped_shape_t), intent(inout) :: shape
@@ -186,8 +188,9 @@ contains
       if (present(seen)) digits_to_fit = -log10(seen%most)
       if (about /= about_axis .and. (broken .or. problem%shape%smooth_from() > 0)) &
         digits_to_fit = min(digits_to_fit, digits_of_broken)
-      ! Inside the edge the bodies are at the gap of rest except for the repulsion, whose length is
-      ! known. In contact under a law with special gaps, meshes are laid out for seen gaps only.
+      ! Inside the edge the gap is the equilibrium separation except for the repulsion, whose length
+      ! is known. In contact under a law with special gaps, meshes are laid out for computed gaps
+      ! only.
       if (law%edge_gap > 0 .and. (present(seen) .or. about == about_axis .or. &
         .not. (side < 0 .or. is_narrow(problem)))) then
         call fit_panels(problem, about, side, shape, low, high, density, fewest, &
@@ -208,8 +211,8 @@ contains
 
   !> Gives a mesh a power panel on the axis, for shapes that are not smooth there. The pressure of a
   !> contact contains r**(n-1) near the axis, with a logarithm if n is odd, and the gap on the axis
-  !> has a part Int r**(n-1) dr; before contact the powers are higher by `beyond`, which is 2. This
-  !> part is proportional to a power of the panel's local coordinate of at least `smoothness`.
+  !> contains Int r**(n-1) dr; before contact the powers are higher by `beyond`, which is 2. As a
+  !> power of the panel's local coordinate this term has an exponent of at least `smoothness`.
   pure subroutine resolve_axis(problem, digits, beyond, shape)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: digits, beyond
@@ -228,9 +231,9 @@ contains
     end if
   end subroutine resolve_axis
 
-  !> Digits of the kernel: its errors matter less than those of the pressure's polynomials. They
-  !> matter more for more compliant bodies, and for bodies that are stiffer at this contact radius
-  !> than their half-spaces.
+  !> Digits of the kernel. Its errors matter less than those of the pressure's polynomials, but more
+  !> for more compliant bodies and for bodies that are stiffer at this contact radius than their
+  !> half-spaces.
   pure real(wp) function kernel_digits(problem, digits, radius)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: digits, radius

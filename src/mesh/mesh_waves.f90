@@ -25,10 +25,10 @@ module mesh_waves
     from_of_place = 0.25_wp
   !> Largest change of phase over one panel of wave numbers; number of nodes of a panel over which
   !> the phase does not change, and of a panel over which it changes by `swing` (`wave_rule`), as a
-  !> constant and per digit. The number is too small for a product of two waves at one position far
-  !> out, where the pressure is small. For a coat a hundred times as stiff as its base and thirty
-  !> times thinner than the contact radius, these numbers leave an error of 1e-9 of the load at
-  !> accuracy 1e-6; with three nodes fewer the error is 1e-7.
+  !> constant and per digit. (The number is too small for a product of two waves at one position far
+  !> out, but the pressure is small there.) For a coat a hundred times as stiff as its base and
+  !> thirty times thinner than the contact radius, these numbers leave an error of 1e-9 of the load
+  !> at accuracy 1e-6; with three nodes fewer the error is 1e-7.
   real(wp), parameter :: swing = 60, nodes_at_first(2) = [5.0_wp, 17.0_wp], &
     nodes_a_digit(2) = [0.8_wp, 1.5_wp]
 

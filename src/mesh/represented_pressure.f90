@@ -8,9 +8,9 @@
 !> is computed in pieces that end at the kink. The polynomial with the values p_i is then the
 !> projection of the pressure: loads and deformations are nearly as accurate as for a smooth
 !> pressure, and change smoothly as the kink moves over the nodes. On a panel whose gaps are near a
-!> kink, the projection has a share that grows to 1 as the kink comes to the panel: the projection
-!> differs from the pressures at the nodes by the error of the mesh, and no iteration would end at a
-!> jump by so much.
+!> kink, pressures are a mixture of nodal values and projection; the share of the projection grows
+!> to 1 as the kink reaches the panel. Otherwise the pressures would jump by the error of the mesh,
+!> and iterations would not converge.
 module represented_pressure
   use kinds, only: wp
   use interpolation, only: fading
@@ -236,8 +236,8 @@ contains
     weight = [(length(i)*rule%weight, i=1, size(place))]
   end subroutine split
 
-  !> The share of the projection on a panel with the gaps y at its begin, nodes and end: from 1 for
-  !> a kink between these gaps to 0 for one that is as far outside as the end is from its node.
+  !> The share of the projection on a panel with the gaps y at its begin, nodes and end: 1 for a
+  !> kink between these gaps, falling to 0 for a kink as far outside as the end is from its node.
   pure real(wp) function share_near(kink, y) result(share)
     real(wp), intent(in) :: kink, y(0:)
     real(wp) :: off, reach

@@ -36,10 +36,11 @@ module seen_gaps
     procedure :: load
   end type seen_gaps_t
 
-  !> A state, moved to other radii: its number, the radius at which it has the gap to which the new
-  !> mesh is locked or, if that is about the axis, the radius of its edge; the least and the largest
-  !> radius to which this gap is moved, and the radius of a step of the pressure in the state, or 0
-  !> (lateral units); about_axis: whether the new mesh is about the axis and the state has an edge.
+  !> A state, moved to other radii (lateral units): its number; the radius at which it has the gap
+  !> to which the new mesh is locked or, if that is about the axis, the radius of its edge; the
+  !> least and the largest radius to which this gap is moved; and the radius of a step of the
+  !> pressure in the state, or 0. about_axis: whether the new mesh is about the axis and the state
+  !> has an edge.
   type :: moved_t
     integer :: state = 0
     real(wp) :: from = 0, low = 0, high = 0, step = 0
@@ -144,10 +145,10 @@ contains
   end function radii
 
   !> The gap of the tried state number j, moved to a radius, at offsets from the centre of a mesh at
-  !> this radius (over the radius), or from the axis. Outside a contact gaps keep their distance
-  !> from the edge. Inside they keep it approximately near the edge, and the gap on the axis stays
-  !> there. On a mesh about the axis gaps stay in place at kinks of the shape and beyond them, as
-  !> seen from the edge, if the edge is not moved too near to the kink.
+  !> this radius (over the radius), or from the axis. Outside a contact gaps move with the edge.
+  !> Inside they do so approximately near the edge, while the gap on the axis stays there. On a mesh
+  !> about the axis gaps at kinks of the shape, and beyond them as seen from the edge, stay in
+  !> place, unless the edge is moved too near to the kink.
   pure function gap(self, shape, j, radius, offset)
     class(seen_gaps_t), intent(in) :: self
     class(shape_t), intent(in) :: shape
@@ -169,9 +170,8 @@ contains
     end associate
   end function gap
 
-  !> Sets the positions r of the gaps that an edge takes along to positions `at`, on each side up to
-  !> the nearest kink, if an edge moves from one radius to another less than `nearest` of the way to
-  !> this kink.
+  !> Sets the positions r whose gaps move with the edge to positions `at`, on each side up to the
+  !> nearest kink, if the edge moves by less than the part `nearest` of its distance to this kink.
   pure subroutine keep_kinks(kinks, from, radius, at, r)
     real(wp), intent(in) :: kinks(:), from, radius, at(:)
     real(wp), intent(inout) :: r(:)

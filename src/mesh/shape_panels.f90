@@ -16,22 +16,23 @@ module shape_panels
   !> Largest number of kinks of a shape at which panels end; a table has more kinks, which are
   !> everywhere.
   integer, parameter :: few = 4
-  !> Widths of the cohesive zone: the largest radius over which the edge passes on meshes about the
-  !> axis; on a wider face, the radius up to which it stays on them. The radius up to which it stays
-  !> on them after a rim within that radius, over that of the rim, but at most one unit more.
+  !> In widths of the cohesive zone: the largest radius up to which the edge may move on meshes
+  !> about the axis, and the radius up to which it stays on them on a wider face. After a rim within
+  !> that radius it stays on them up to a multiple of the rim's radius, but at most one unit beyond
+  !> it.
   real(wp), parameter :: widths_to_pass = 100, widths_before = 5, beyond_rim = 1.3_wp
   !> Width of the cohesive zone, lateral units, above which adhesion is weak.
   real(wp), parameter :: wide = 10
 
 contains
 
-  !> The radius up to which the edge of a contact on a flat face stays on meshes about the axis, on
-  !> which the rim is a panel's end, so that the pressure is smooth on all panels: up to the widest
-  !> contact, if the edge passes over few panels; otherwise up to somewhat beyond the rim or, on a
-  !> face so wide that there would be very many panels, while the rim is far outside. If adhesion is
-  !> weak, the cohesive zone is wide, and the narrower layer at the edge of a pressed contact
-  !> decides how many panels the edge passes. Inside a contact on layers, meshes about the axis lack
-  !> short waves (`mesh_waves`). 0: the shape has no flat face.
+  !> The radius up to which the edge of a contact on a flat face stays on meshes about the axis.
+  !> There the rim is a panel's end, so that the pressure is smooth on all panels. If the edge
+  !> passes over few panels, this is the radius of the widest contact; otherwise somewhat beyond the
+  !> rim; on a face that would need very many panels, well inside the rim. Under weak adhesion the
+  !> cohesive zone is wide, and the number of panels follows from the narrower layer at the edge of
+  !> a pressed contact. Inside a contact on layers, meshes about the axis lack short waves
+  !> (`mesh_waves`). 0: the shape has no flat face.
   pure real(wp) function rim_passed_at(problem, widest) result(radius)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: widest
@@ -90,10 +91,10 @@ contains
     end do
   end function panels_for
 
-  !> Lengths in z of panels between two places, at most `longest`. They are also short in comparison
-  !> with the distance from the rim of a flat face or, beside it, with the length over which the
-  !> undeformed bodies separate there: on a wide face, gaps seen before the edge comes to the rim do
-  !> not show how the pressure changes there.
+  !> Lengths in z of panels between two places, at most `longest`. They are also short compared with
+  !> the distance from the rim of a flat face or, beside it, with the length over which the
+  !> undeformed bodies separate there: gaps computed before the edge reaches the rim do not show how
+  !> the pressure changes there.
   pure function graded_panels(rims, d, from, to, longest) result(lengths)
     real(wp), intent(in) :: rims(:), d, from, to, longest
     real(wp), allocatable :: lengths(:)

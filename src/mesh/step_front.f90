@@ -12,9 +12,9 @@ module step_front
   public :: front_leads, step_height, first_front, last_front, front_width
 
   !> Distance from the middle of the step, in its widths, at which the tension inside the step is
-  !> complete; least ratio of this tension to the largest tension for which the bodies follow the
-  !> step before the attraction at smaller gaps. With less tension the front recedes while the axis
-  !> is drawn into contact.
+  !> complete. Least ratio of this tension to the largest tension at which the step, and not the
+  !> attraction at smaller gaps, pulls the bodies together. With less tension the radius of the
+  !> front decreases while the axis is drawn into contact.
   real(wp), parameter :: complete = 2, leading = 0.5_wp
 
 contains

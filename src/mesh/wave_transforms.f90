@@ -18,10 +18,9 @@ module wave_transforms
   !> Outside the mesh's centre, waves whose phase changes by more than `passing_pressure` from node
   !> to node are omitted from the transform of pressures, with a smooth transition that begins at
   !> the fraction `from_of_pressure` of this value. In the transition the product with a pressure is
-  !> multiplied by a window that moves with the wave; the window must be wide enough for the product
-  !> to contain nothing of the wave. Inside the centre, where bodies are in contact, no wave is
-  !> omitted: for thin films the second part of the operator is nearly the negative of the first
-  !> part, which has all waves.
+  !> multiplied by a window, which moves with the wave and must be wide enough to average it out.
+  !> Inside the centre, where bodies are in contact, no wave is omitted: for thin films the second
+  !> part of the operator is nearly the negative of the first part, which has all waves.
   real(wp), parameter :: passing_pressure = 20, from_of_pressure = 0.6_wp
   !> On a panel to infinity this is valid for pressures that decrease as this power of the position.
   !> Pressures that decrease more slowly are larger where waves are omitted; for these, waves are
