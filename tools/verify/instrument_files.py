@@ -179,36 +179,50 @@ HEAD = """# Records: files of instruments
 
 <!-- written by tools/verify/instrument_files.py -->
 
-All files of measured curves with which {packages} are tested, from the instrument's
-format to a fit, or the reason why there is none. The radius of the tip is assumed (5 µm but for a few), since no file has it: the stiffness in the table is
-right only for this radius, and whether the model describes the data hardly depends on it. The approach is fitted by
-bodies that only repel each other (stiffness, twice the reduced modulus). *Hertz* is independent of the program: least
-squares of Hertz' closed form behind the spring; its residuals, over the noise of second differences, say whether a curve is one of Hertz at all.
-Of more than {most} rows of a way, evenly spaced ones are fitted.
+All files of measured curves with which {packages} are tested, from the instrument's format to a fit, or
+the reason why there is none: of {count} files {fitted} are fitted, {refused} are refused, and {told} are no curves.
 
-{count} files: {told} are told in one line why they are no curves, {fitted} are fitted, {refused} are refused.
+- The approach is fitted by bodies that only repel each other. The stiffness is E' = 2 E\\*, for an assumed
+  radius of the tip (5 µm except for a few): no file has it. Residuals are over the noise.
+- *Hertz* is independent of the program: least squares of Hertz' closed form behind the spring. Residuals
+  are over the noise of second differences; large ones mean that a curve is not Hertz' at all.
+- The last column has the main warning: a number of the deck that the data contradict, or a ripple.
+- Of curves with more than {most} rows, evenly spaced ones are fitted.
 
-| file | converter | Hertz | fit |
-|---|---|---|---|
+| file | rows of approach, retract | Hertz [Pa], residuals | fit [Pa], residuals | remark |
+|---|---|---|---|---|
 """
 
 
-def brief(cell):
-    """The numbers of a verdict and the beginnings of its warnings."""
-    first, *rest = cell.split("; ")
-    return "; ".join([first, *(re.split(r"[:(]", text)[0].strip() for text in rest)])
+def brief(told, closed, verdict):
+    """The cells of a row on the page: rows, Hertz, fit, and remark."""
+    if told.startswith("told"):
+        return "", "", "", "no curve: " + told.removeprefix("told: ").split(" for '")[0]
+    counts = ", ".join(re.findall(r"(\d+)(?: rows)? of the (?:approach|retreat|retract)", told))
+    closed = closed.replace(" Pa", "").replace("nan, inf", "–")
+    first, *rest = verdict.split("; ")
+    if first.startswith("refused"):
+        reason = re.split(r"[:,] ", first.removeprefix("refused: "))[0]
+        if "where the spring permits" in first:
+            reason = "the load falls by more than the spring permits"
+        return counts, closed, "refused", reason
+    fit = first.replace(" Pa, residuals", ",").replace(" of the noise", "")
+    marks = [re.sub(r"the data ask for a (larger|smaller) (\S+) than the deck has", r"`\2` \1", text)
+             for text in rest if not text.startswith("the residual")]
+    return counts, closed, fit, "; ".join(re.split(r"[:(,]| with a period", text)[0].strip()
+                                          for text in marks[:1])
 
 
 def page_of(rows):
-    """Return the page with a row (package, file, converter, Hertz, verdicts) for each file."""
+    """Return the page with a row (package, file, converter, Hertz, verdict) for each file."""
     told = sum(row[2].startswith("told") for row in rows)
     refused = sum(any(cell.startswith("refused") for cell in row[4:]) for row in rows)
-    lines = [" | ".join(["", f"{package}: `{file}`", converter, closed, *map(brief, verdicts), ""]
-                        ).strip()
-             for package, file, converter, closed, *verdicts in rows]
+    lines = [" | ".join(["", f"{package}: `{file}`", *brief(*cells[:3]), ""]).strip()
+             for package, file, *cells in rows]
     return HEAD.format(packages=" and ".join(p.replace("==", " ") for p in PACKAGES), most=MOST_ROWS,
                        count=len(rows), told=told, refused=refused,
                        fitted=len(rows) - told - refused) + "\n".join(lines) + "\n"
+
 
 
 def main():

