@@ -11,10 +11,9 @@ module tables
   use records, only: record_t
   use result_tables, only: columns_of
   use dimensionless_problem, only: problem_t
-  use discretisation, only: discretisation_t, axis_row, first_node
-  use elastic_operator, only: elastic_operator_t
+  use discretisation, only: discretisation_t
   use contact_state, only: state_t
-  use represented_pressure, only: pressure_at_nodes
+  use state_profile, only: state_profile_t, profile_of, alike
   implicit none
   private
   public :: table_t, cells, direction_of, columns_of_curve, curve_row, columns_of_profiles, &
@@ -146,12 +145,6 @@ contains
     if (.not. alike(problem)) columns = [columns, more]
   end function columns_of_profiles
 
-  pure logical function alike(problem)
-    type(problem_t), intent(in) :: problem
-
-    alike = problem%body%is_alike() .and. .not. abs(problem%share(1) - problem%share(2)) > 0
-  end function alike
-
   !> Adds a state to a table of profiles: the axis, then the nodes. `number` is that of the row of
   !> its record in the curve.
   subroutine write_profile(table, record, number, problem, grid, state, error)
@@ -162,55 +155,21 @@ contains
     type(discretisation_t), intent(in) :: grid
     type(state_t), intent(in) :: state
     type(failure_t), allocatable, intent(inout) :: error
-    real(wp), dimension(size(state%gap) + 1) :: r, gap, deformation, pressure, energy
-    real(wp) :: each(size(state%gap) + 1, 2)
+    type(state_profile_t) :: profile
     character(len=:), allocatable :: row, which
     integer :: j
 
     if (.not. table%is_open()) return
     which = ',' // brief(number) // ',' // brief(record%stable)
-    associate (n => size(state%gap), law => problem%law)
-      r = [0.0_wp, state%scale*grid%x(:n)]
-      gap = [state%axis_gap, state%gap]
-      pressure = [law%pressure([state%axis_gap]), &
-        pressure_at_nodes(law, grid, state%gap, state%pressure)]
-      energy = law%energy(gap)
-      ! h = h0 + f - 2u.
-      deformation = -0.5_wp*(gap - state%h0 - problem%shape%height(r))
-      if (problem%rigid) deformation = 0
-    end associate
-    each(:, 1) = problem%share(1)*deformation
-    if (.not. problem%body%is_alike()) each(:, 1) = deformation_of_first(problem, grid, state)
-    each(:, 2) = 2*deformation - each(:, 1)
-    do j = 1, size(r)
-      ! A mesh may have a node on the axis.
-      if (j == 2 .and. .not. r(j) > 0) cycle
-      row = record%branch // ',' // cells([record%h0, r(j)*problem%lateral, &
-        problem%law%separation_of(gap(j)), deformation(j)*problem%length, &
-        pressure(j)*problem%pressure, energy(j)*problem%pressure*problem%length]) // which
-      if (.not. alike(problem)) row = row // ',' // cells(each(j, :)*problem%length)
+    profile = profile_of(problem, grid, state)
+    do j = 1, size(profile%r)
+      row = record%branch // ',' // cells([record%h0, profile%r(j), profile%gap(j), &
+        profile%deformation(j), profile%pressure(j), profile%energy(j)]) // which
+      if (.not. alike(problem)) row = row // ',' // cells(profile%each(j, :))
       call table%line(row, error)
       if (allocated(error)) return
     end do
     call table%flush(error)
   end subroutine write_profile
-
-  !> Outward displacement of the first body's surface, on the axis and at the nodes, for bodies that
-  !> deform differently.
-  function deformation_of_first(problem, grid, state) result(deformation)
-    type(problem_t), intent(in) :: problem
-    type(discretisation_t), intent(in) :: grid
-    type(state_t), intent(in) :: state
-    real(wp) :: deformation(size(state%gap) + 1)
-    type(problem_t) :: first
-    type(elastic_operator_t) :: operator
-    real(wp) :: rise(first_node - 1 + size(state%gap))
-
-    first = problem
-    first%coupling = problem%coupling*problem%share(1)/2
-    call problem%body%take_one(1, first%body)
-    call operator%deform(first, grid, state%scale, size(state%gap), state%pressure, rise)
-    deformation = -[rise(axis_row), rise(first_node:)]
-  end function deformation_of_first
 
 end module tables

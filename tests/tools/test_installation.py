@@ -10,7 +10,6 @@ import tempfile
 import venv
 from pathlib import Path
 
-import numpy as np
 import pytest
 import snapin
 from installed_pages import names_of
@@ -117,16 +116,38 @@ def test_a_program_of_others_solves_a_state_with_the_installed_library(snapin_pa
     flags = run("pkg-config", "--cflags", "--libs", "snapin", PKG_CONFIG_PATH=str(found.parent),
                 PKG_CONFIG_SYSROOT_DIR=str(root)).split()
     compiler = json.loads(about.read_text())["host"]["fortran"]["exelist"]
-    run(*compiler, TOP / "examples/one_state.f90", *flags, "-o", tmp_path / "one_state")
-    said = run(tmp_path / "one_state")
-    assert said.startswith("converged: T, ")
-    gap, load = (float(number) for number in re.findall(r"(-?\d\.\d+E[-+]\d+)", said))
-    law = snapin.lennard_jones(hamaker=1e-20, z0=0.5e-9)
-    path = snapin.equilibrium_path(-1e-9, radius=1.5e-2, stiffness=1e10, law=law)
-    before = slice(0, int(np.argmax(path.h0 < 2e-9)) + 1)
-    # A uniform mesh of 800 nodes, and straight lines between the rows of a path.
-    for value, rows in ((load, path.load), (gap, path.h_centre)):
-        assert value == pytest.approx(np.interp(-2e-9, -path.h0[before], rows[before]), rel=1e-2)
+    example = (TOP / "examples/one_state.f90").read_text(encoding="utf-8")
+
+    def made(change="", into=""):
+        assert change in example
+        (tmp_path / "program.f90").write_text(example.replace(change, into), encoding="utf-8")
+        run(*compiler, tmp_path / "program.f90", *flags, "-o", tmp_path / "program")
+        return tmp_path / "program"
+
+    numbers = [float(number) for number in re.findall(r"-?\d\.\d+E[-+]\d+", run(made()))]
+    deck = "".join(re.findall(r"'(&[^']*)'", example))
+    expected = snapin.run(deck)
+    rows = expected.profiles
+    row = expected.curve["h0"] == rows["h0"][0]
+    assert numbers[:3] == pytest.approx(
+        [expected.curve["load"][row][0], rows["separation"][0],
+         expected.summary["profiles_error"][0]], rel=1e-5)
+    assert len(numbers) == 3 + 2 * len(rows["r"]) > 40
+    assert numbers[3::2] == pytest.approx(rows["r"], rel=1e-5)
+    assert numbers[4::2] == pytest.approx(rows["pressure"], rel=1e-5)
+    # What it cannot hand over it refuses, and what it doubts it says.
+    for more, reason in (
+            ("/ &stability", "the results of &stability are files"),
+            ("/ &sweep key = \"force.z0\", values = 4e-10, 5e-10", "not together with &sweep"),
+            ("/ &profile h0 = 2e-9", "&profile"), (", h0_stop = 1", "h0_stop")):
+        refused = subprocess.run([made("h0_end = 0", "h0_end = 0 " + more)], capture_output=True,
+                                 text=True, check=False)
+        assert refused.returncode != 0 and reason in refused.stderr
+    refused = subprocess.run([made(" &profiles h0 = 2e-9 /", "")], capture_output=True, text=True,
+                             check=False)
+    assert refused.returncode != 0 and "&profiles is missing" in refused.stderr
+    softer = made("stiffness = 1e10", "stiffness = 1e3")
+    assert "\nbeyond the model: " in run(softer)
 
 
 @pytest.mark.long
