@@ -11,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from conftest import ROOT
 from support.interrupted import Bench, frames
 from support.processes import status_and_memory
 from support.scenes import deck, loading, runner
@@ -198,22 +199,38 @@ def test_a_case_that_fails_is_a_row_that_says_why(run):
     assert any("1 of 4 cases failed: rows of" in text for text in result.warnings)
 
 
-@pytest.mark.slow
-def test_a_terminal_shows_how_far_a_sweep_is(snapin_path, tmp_path):
-    """In half of the cases the loading would go the wrong way."""
-    sweep = {"key": ["loading.h0_start", "loading.h0_end"], "from": [2e-9, 1e-9],
-             "to": [5e-9, 4e-9], "count": [120, 120]}
-    (tmp_path / "d.nml").write_text(scene(sweep, **RIGID))
+def on_a_terminal(program, folder):
+    """The status of a run of d.nml, and the lines that a terminal shows."""
     ours, theirs = pty.openpty()
-    with subprocess.Popen([snapin_path, "d.nml"], cwd=tmp_path, stderr=theirs) as run:
+    with subprocess.Popen([program, "d.nml"], cwd=folder, stderr=theirs,
+                          env={**os.environ, "OMP_NUM_THREADS": "1"}) as run:
         os.close(theirs)
         said = b""
         with contextlib.suppress(OSError):  # the other end is closed
             while part := os.read(ours, 65536):
                 said += part
     os.close(ours)
-    assert run.returncode == 1
-    *lines, last, _ = re.split("[\r\n]+", said.decode())
+    return [run.returncode, *re.split("[\r\n]+", said.decode())]
+
+
+@pytest.mark.slow
+def test_a_terminal_shows_the_case_that_takes_long(snapin_path, tmp_path):
+    drive = (ROOT / "inputs" / "examples" / "drainage.nml").read_text()
+    (tmp_path / "d.nml").write_text(
+        drive + "\n&sweep key = 'numerics.accuracy', values = 1e-3, 1.1e-3 /\n")
+    _, *lines = on_a_terminal(snapin_path, tmp_path)
+    cases = [found[1] for line in lines if (found := re.match(r"d: case (\d+): drive, ", line))]
+    assert cases == sorted(cases) and set(cases) == {"1", "2"}
+
+
+@pytest.mark.slow
+def test_a_terminal_shows_how_far_a_sweep_is(snapin_path, tmp_path):
+    """In half of the cases the loading would go the wrong way."""
+    sweep = {"key": ["loading.h0_start", "loading.h0_end"], "from": [2e-9, 1e-9],
+             "to": [5e-9, 4e-9], "count": [120, 120]}
+    (tmp_path / "d.nml").write_text(scene(sweep, **RIGID))
+    status, *lines, last, _ = on_a_terminal(snapin_path, tmp_path)
+    assert status == 1
     line = r"d: case, \d+ %, \d+ failed, \d+ a second, \d+ (s|min) left, \d+ (s|min) so far *"
     assert any(re.fullmatch(line, text) for text in lines), lines
     command = re.fullmatch(r"results/d: 14400 cases, \d+ a second: results/d/sweep.csv; "
