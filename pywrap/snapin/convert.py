@@ -1,6 +1,6 @@
 """Force curves in files of instruments (JPK, Asylum, NT-MDT, Optics11, AFM Workshop, HDF5 and
 others) as tables for &measurement: position of the base [m], force [N], and segment (0 approach,
-1 retreat).
+1 retract).
 
     snapin-convert CURVE.jpk-force [-o DIR] [--spring-constant 0.05] [--sensitivity 5e-8]
 
@@ -33,9 +33,9 @@ _RESTING = 0.1
 # A base moves in every part of the approach; what moves in less than half of it, where the force
 # changes, is the position of the tip.
 _PARTS = 20
-# Smallest number of rows of an approach or a retreat, which is that of &measurement.
+# Smallest number of rows of an approach or a retract, which is that of &measurement.
 _FEWEST = 20
-# An approach of so many rows has ended at once: what follows is the retreat, and not the approach
+# An approach of so many rows has ended at once: what follows is the retract, and not the approach
 # after a pause.
 _AT_ONCE = 4
 _MARK = "# snapin-convert: "
@@ -56,7 +56,7 @@ def moves_throughout(height: np.ndarray) -> bool:
 
 
 def segments_of(height: ArrayLike, labels: ArrayLike) -> NDArray[np.int_]:
-    """Return for each row 0 (approach), 1 (retreat) or -1 (pause), by what the base does.
+    """Return for each row 0 (approach), 1 (retract) or -1 (pause), by what the base does.
 
     `labels` divide the rows into segments. If all are equal, the base turns where it is farthest
     from where it began. A base that moves one way only approaches, but in a segment that
@@ -86,7 +86,7 @@ def segments_of(height: ArrayLike, labels: ArrayLike) -> NDArray[np.int_]:
         raise ConvertError("the base rests in every segment")
     if found not in ([0], [0, 1]):
         raise ConvertError(f"the base goes to and fro in {len(found)} segments; a curve has one "
-                           "approach and one retreat")
+                           "approach and one retract")
     if found == [0] and 0 < np.argmax(kind == 0) <= _AT_ONCE:
         kind[kind == 0] = 1
     return kind
@@ -138,7 +138,7 @@ def table_of(columns: Mapping[str, Any], name: str = "curve",
     base, origin = base_of(rows, spring_constant)
     kind = segments_of(base, rows["segment"])
     counts = [np.count_nonzero(kind == way) for way in (0, 1, -1)]
-    told = f"{_rows(counts[0])} of the approach, {counts[1]} of the retreat; position: {origin}"
+    told = f"{_rows(counts[0])} of the approach, {counts[1]} of the retract; position: {origin}"
     if counts[2]:
         told += f"; {_rows(counts[2])} of pauses left out"
     if not whole.all():

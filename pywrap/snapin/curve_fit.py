@@ -49,10 +49,10 @@ def fit(z: ArrayLike, force: ArrayLike, *, spring_constant: float, deck: Deck,
 
     z: position of the base of the spring [m]; force: force [N], repulsion positive, or the signal
     [V] if `sensitivity` [m/V] is given; segment: 0 for each sample of the approach, 1 for the
-    retreat; without it the curve is divided where z turns. deck: the scene as a dictionary of
+    retract; without it the curve is divided where z turns. deck: the scene as a dictionary of
     groups, a text or a path, without &measurement and &fit. parameters: the unknowns, such as
     "force.surface_energy", "bodies.stiffness", "measurement.contact_point"; lower, upper, prior:
-    one number for each. branches: "both", "approach" or "retreat". noise: standard deviation of the
+    one number for each. branches: "both", "approach" or "retract". noise: standard deviation of the
     signal, if it is known.
 
     Samples without a finite z and force do not count. A wrong deck raises `DeckError`, a curve that

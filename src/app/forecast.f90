@@ -1,5 +1,5 @@
-!> What is said before a run of numerical choices that cannot do what the deck asks for, or only
-!> slowly: mixing where contacts are stiff, uniform grids whose nodes are too far apart.
+!> Warnings before a run about numerical choices that would fail or be slow: mixing in stiff
+!> contacts, uniform grids whose nodes are too far apart.
 !>
 !> Mixing multiplies an error of the eigenvalue lambda of 1 - W p' by 1 - ratio lambda. The ratio is
 !> at most about the inverse of the largest eigenvalue, so the error of the smallest one decreases

@@ -26,9 +26,9 @@ module price
 
   integer, parameter :: rows = 5
   !> The accuracies of a path or cycle. The cost of a drive in time is a power of its accuracy, and
-  !> that of a uniform grid a power of its nodes: their rows end at those of the deck, so that no
-  !> row costs more than the deck. The first row of a drive is at most so many times less accurate;
-  !> the first grid has this part of the nodes.
+  !> that of a uniform grid a power of its nodes. Their rows end at the values of the deck, so that
+  !> no row costs more. The first row of a drive is at most so many times less accurate; the first
+  !> grid has this part of the nodes.
   real(wp), parameter :: accuracies(rows) = [1e-3_wp, 1e-4_wp, 1e-6_wp, 1e-8_wp, 1e-10_wp], &
     drive_range = 100, least_accurate = 0.1_wp, grid_range = 4
 

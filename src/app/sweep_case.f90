@@ -26,8 +26,8 @@ module sweep_case
 
   !> Largest number of characters of a warning, or of the reason of a failure.
   integer, parameter :: failure_width = 400
-  !> A case whose cost is measured runs again until all its runs together take this time [s], at
-  !> most so many times; the first run of a case is slower, since its memory is new.
+  !> A case whose cost is measured is repeated until all its runs together take this time [s], at
+  !> most so many times, since the first run of a case is slower.
   real(wp), parameter :: enough_seconds = 0.1_wp
   integer, parameter :: most_runs = 7
 

@@ -118,10 +118,10 @@ contains
 
   !> Nodes in ascending order from `start` to `last`, and weights. sharpest: the largest k that
   !> matters for each x. The function is a polynomial of low degree up to `first` and between k and
-  !> 3 k. Over a panel no x turns its wave by more than `swing`. A panel has nodes(2) nodes if a
-  !> wave turns by that, nodes(1) if none turns, and a number in proportion between: a product of
-  !> two waves that both turn by 16 has an error of 1e-12 with 20 nodes, by 60 with 48; fewer nodes
-  !> do where the weight of x decreases as k grows.
+  !> 3 k. Over a panel no x turns its wave by more than `swing`. A panel has nodes(2) nodes if the
+  !> phase changes by that, nodes(1) if it does not change, and a number in proportion between. A
+  !> product of two waves whose phases change by 16 has an error of 1e-12 with 20 nodes, by 60 with
+  !> 48; fewer nodes are enough where the weight of x decreases as k grows.
   pure subroutine wave_rule(x, sharpest, swing, nodes, start, first, last, k, weight)
     real(wp), intent(in) :: x(:), sharpest(:), swing, nodes(2), start, first, last
     real(wp), allocatable, intent(out) :: k(:), weight(:)

@@ -17,7 +17,7 @@ module curve_rows
   !> Names of the quantities that are lengths.
   character(len=*), parameter :: lengths(of_position:of_radius) = [character(len=14) :: &
     'position', 'separation', '', '', 'contact radius']
-  !> Smallest number of samples of a curve, and of an approach or a retreat.
+  !> Smallest number of samples of a curve, and of an approach or a retract.
   integer, parameter :: fewest = 20
 
   !> z [m] and signal [N, or V] of the complete rows, in the order of the file, or the approach

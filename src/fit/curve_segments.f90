@@ -33,7 +33,7 @@ contains
     integer, allocatable :: of_label(:)
     logical :: chosen
 
-    ! Columns side by side are an approach and a retreat.
+    ! Columns side by side are an approach and a retract.
     if (allocated(rows%kind)) return
     chosen = allocated(measurement%approach) .or. allocated(measurement%retreat)
     allocate (of_label(0))
@@ -86,7 +86,7 @@ contains
 
   end subroutine find_segments
 
-  !> The segments by what the base does: each run of equal labels is an approach, a retreat or a
+  !> The segments by what the base does: each run of equal labels is an approach, a retract or a
   !> pause. The first run that moves is an approach.
   subroutine segments_by_travel(z, code, kind, what)
     real(wp), intent(in) :: z(:)
@@ -120,7 +120,7 @@ contains
     end do
     if (changes <= 2 .and. changes > 0) return
     what = 'the position goes back and forth in ' // counted(changes, 'segment') // ', where ' // &
-      'one approach and one retreat are expected; approach and retreat choose them by their labels'
+      'one approach and one retract are expected; approach and retract choose them by their labels'
   end subroutine segments_by_travel
 
   !> Marks the samples before the turn of z; without a turn `segment` decides.
@@ -133,7 +133,7 @@ contains
     margin = max(1, nint(end_part*size(z)))
     turn = maxloc(z, 1)
     if (min(turn, size(z) - turn) < margin) turn = minloc(z, 1)
-    if (min(turn, size(z) - turn) < margin) turn = merge(0, size(z), segment == 'retreat')
+    if (min(turn, size(z) - turn) < margin) turn = merge(0, size(z), segment == 'retract')
     inward = [(i <= turn, i=1, size(z))]
   end function before_turn
 

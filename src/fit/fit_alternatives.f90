@@ -19,7 +19,7 @@ module fit_alternatives
   private
   public :: alternative_t, find_alternative, contact_slope
 
-  !> An alternative that describes the data. name: retreat, approach, or spring_constant, whose
+  !> An alternative that describes the data. name: retract, approach, or spring_constant, whose
   !> value and error it then has [N/m].
   type :: alternative_t
     character(len=:), allocatable :: name
@@ -46,7 +46,7 @@ contains
     type(alternative_t), allocatable, intent(out) :: alternative
 
     if (spring_first) call try_spring()
-    if (.not. allocated(alternative)) call try_way(.false., 'retreat')
+    if (.not. allocated(alternative)) call try_way(.false., 'retract')
     if (.not. allocated(alternative)) call try_way(.true., 'approach')
     if (.not. (allocated(alternative) .or. spring_first)) call try_spring()
 

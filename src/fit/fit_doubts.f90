@@ -111,7 +111,7 @@ contains
             ' N per metre of the travel, where spring_constant is ' // &
             rounded(outcome%curve%spring) // ' N/m; check it')
         else
-          call add('approach and retreat disagree, and the model describes the ' // other%name // &
+          call add('approach and retract disagree, and the model describes the ' // other%name // &
             ' alone' // words // ': fit segment = ''' // other%name // '''')
         end if
       end associate
@@ -143,7 +143,7 @@ contains
         case ('ripple = .true.')
           words = 'the baseline has a ripple with a period of ' // rounded(lacking%period) // ' m'
         case default
-          words = 'the slope of the approach differs from that of the retreat on the baseline'
+          words = 'the slope of the approach differs from that of the retract on the baseline'
         end select
         if (.not. rarely(lacking%chance)) words = words // ', though this may be chance'
         call add(words // ': ' // lacking%name // ' would lower chi squared by ' // &
@@ -216,7 +216,7 @@ contains
       associate (data => outcome%curve%data)
         if (.not. (any(data%way == 1) .and. any(data%way == 2))) return
         below = open_end(data%measured%of_signal(), data%noise)
-        if (below > 0) call add('the retreat ends below the approach by ' // &
+        if (below > 0) call add('the retract ends below the approach by ' // &
           rounded(below/data%noise%deviation) // ' times the noise: if the bodies have not ' // &
           'parted there, measure farther, or fit segment = ''approach''; if the baseline ' // &
           'drifts, correct it')
@@ -245,7 +245,7 @@ contains
 
     !> Doubts about jumps of the data that the model does not have there.
     subroutine doubt_jumps()
-      character(len=8), parameter :: ways(2) = ['approach', 'retreat ']
+      character(len=8), parameter :: ways(2) = ['approach', 'retract ']
       real(wp) :: off
       integer :: i
 

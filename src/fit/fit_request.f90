@@ -23,7 +23,7 @@ module fit_request
   type :: measurement_t
     character(len=:), allocatable :: file, segment
     character(len=64), allocatable :: columns(:)
-    !> What each column is. Two loads: of approach and retreat, side by side.
+    !> What each column is. Two loads: of approach and retract, side by side.
     integer, allocatable :: quantity(:)
     !> The column that numbers the curves of a file with several, and the number of the curve.
     character(len=:), allocatable :: curves

@@ -47,7 +47,7 @@ contains
       back = jumps_in(-left)
       if (.not. maxval(abs(back%change)) > maxval(abs(jump%change))) return
       i = maxloc(abs(back%change), 1)
-      trouble = 'the force jumps ' // trim(merge('up on the approach ', 'down on the retreat', &
+      trouble = 'the force jumps ' // trim(merge('up on the approach ', 'down on the retract', &
         i == 1)) // ' at z = ' // rounded(back(i)%z) // ' m, by ' // &
         rounded(abs(back(i)%change)) // ' over ' // rounded(abs(measured%z(back(i)%after) - &
         measured%z(back(i)%before))) // ' m: the rows of the file are in reverse order, ' // &
@@ -80,7 +80,7 @@ contains
       end do
     end function jumps_in
 
-    !> Sets `trouble` if approach and retreat are exchanged. A cycle dissipates energy: between its
+    !> Sets `trouble` if approach and retract are exchanged. A cycle dissipates energy: between its
     !> ends, where both segments meet, the approach lies above the retract, for any baseline. If the
     !> difference is within the noise, a contact at the far end decides.
     subroutine check_ways()
@@ -103,12 +103,12 @@ contains
         trouble = 'a cycle would gain energy, as the adhesion is stronger on the way in than ' // &
           'on the way out (by ' // rounded(-sum(between)/size(between)) // ' on average, of a ' // &
           'signal with errors of ' // rounded(sure/surely) // '): the rows of the file are in ' // &
-          'reverse order, or approach and retreat are exchanged in the third column'
+          'reverse order, or approach and retract are exchanged in the third column'
       else if (sum(taken) < 0.2_wp*sure .and. slope(2) > steep*stiffness + surely*slope_error(2) &
         .and. abs(slope(1)) + surely*slope_error(1) < slope(2)/4) then
         trouble = 'the bodies press on each other at the largest distance of the base, where the ' &
           // 'signal has a slope of ' // rounded(slope(2)/stiffness) // ' of that of the spring: ' &
-          // 'approach and retreat are exchanged in the third column, or its rows are in reverse ' &
+          // 'approach and retract are exchanged in the third column, or its rows are in reverse ' &
           // 'order'
       end if
     end subroutine check_ways
@@ -179,7 +179,7 @@ contains
     end associate
   end function no_jump
 
-  !> Height of the approach above the retreat, without their common slope, and its error, in each
+  !> Height of the approach above the retract, without their common slope, and its error, in each
   !> part of the travel in which both have samples, nearest first.
   pure subroutine compare_ways(measured, noise, above, error)
     type(measured_curve_t), intent(in) :: measured

@@ -188,7 +188,7 @@ contains
         0 .or. kind(i) /= kind(i - 1)), i=2, size(z))]
       wanted = .not. repeated .and. kind /= of_pause
       if (measured%segment == 'approach') wanted = wanted .and. kind == of_approach
-      if (measured%segment == 'retreat') wanted = wanted .and. kind == of_retreat
+      if (measured%segment == 'retract') wanted = wanted .and. kind == of_retreat
       measured%z = [pack(z, wanted .and. kind == of_approach), pack(z, wanted .and. kind == &
         of_retreat)]
       measured%signal = [pack(signal, wanted .and. kind == of_approach), pack(signal, wanted .and. &
@@ -224,7 +224,7 @@ contains
       else
         measured%understood = measured%understood // &
           counted(count(measured%inward), 'sample') // ' of the approach, ' // &
-          counted(count(.not. measured%inward), 'sample') // ' of the retreat'
+          counted(count(.not. measured%inward), 'sample') // ' of the retract'
       end if
       if (allocated(measured%contact_radius)) measured%understood = measured%understood // ', ' // &
         counted(count(measured%contact_radius > 0), 'row') // ' with a contact radius'
@@ -293,8 +293,8 @@ contains
     n = [count(measured%inward), count(.not. measured%inward)]
     if (any(n < fewest .and. n > 0) .or. sum(n) == 0) then
       call fail(error, bad_input, file // ': fewer than ' // counted(fewest, 'sample') // &
-        ' of the approach or the retreat (' // counted(n(1), 'sample') // ' of the approach, ' // &
-        counted(n(2), 'sample') // ' of the retreat); segment chooses the branches to fit, ' // &
+        ' of the approach or the retract (' // counted(n(1), 'sample') // ' of the approach, ' // &
+        counted(n(2), 'sample') // ' of the retract); segment chooses the branches to fit, ' // &
         'and the third entry of columns is the column of the segments')
       return
     end if
@@ -302,11 +302,11 @@ contains
     if (n(1) > 0) travel(1) = travel_of(measured%z(:n(1)))
     if (n(2) > 0) travel(2) = -travel_of(measured%z(n(1) + 1:))
     if (travel(1)*travel(2) < 0) call fail(error, bad_input, file // ': z goes the same way ' // &
-      'in approach and retreat; is the third column 0 for approach and 1 for retreat?')
+      'in approach and retract; is the third column 0 for approach and 1 for retract?')
     if (goes_back(pack(measured%z, measured%inward)) .or. &
       goes_back(pack(measured%z, .not. measured%inward))) call fail(error, bad_input, file // &
-      ': z goes back and forth within the approach or the retreat; a file has the rows of one ' // &
-      'approach and one retreat, in the order of time')
+      ': z goes back and forth within the approach or the retract; a file has the rows of one ' // &
+      'approach and one retract, in the order of time')
     measured%facing = merge(1.0_wp, -1.0_wp, sum(travel) < 0)
   end subroutine find_facing
 

@@ -67,7 +67,7 @@ contains
   end function largest_tension_of
 
   !> Says that the tension of the data is of another order than that of the model with the deck's
-  !> values; otherwise ''. The bodies part under the largest tension on the retreat: an approach
+  !> values; otherwise ''. The bodies part under the largest tension on the retract: an approach
   !> alone does not show it, and noise hides a small one.
   function other_order(curve, model) result(words)
     type(modelled_curve_t), intent(in) :: curve

@@ -39,14 +39,14 @@ module dimensionless_problem
   !> Bodies are in contact, as in the paper's Fig. 6, at gaps below this multiple of the gap at
   !> rest.
   real(wp), parameter :: contact_gap = 1.1_wp
-  !> Distance from the equilibrium separation to that of largest tension, over the range (depth of
-  !> the well over largest tension), above which the tension is as large from contact to there: 0.2
-  !> for the Lennard-Jones law, 0.35 for Morse's, 0.9 and more for a step.
+  !> The tension counts as uniform from contact to its largest value if their distance, over the
+  !> range (depth of the well over largest tension), exceeds this: it is 0.2 for the Lennard-Jones
+  !> law, 0.35 for Morse's, 0.9 and more for a step.
   real(wp), parameter :: even = 0.5_wp
   !> Width of the neck times sigma, lateral units.
   real(wp), parameter :: neck = 0.375_wp
 
-  !> Stiffness of the repulsion, relative to that of the bodies, at which its kinks are not felt.
+  !> Stiffness of the repulsion, relative to that of the bodies, at which its kinks have no effect.
   real(wp), parameter :: stiff = 30
 
 contains
@@ -91,9 +91,9 @@ contains
     adhesion_strength = problem%coupling*problem%law%adhesion
   end function adhesion_strength
 
-  !> The coupling of half-spaces that yield as much to a flat punch of this radius (lateral units),
-  !> approximately. A punch makes waves of weight (sin(k radius)/(k radius))^2; these are replaced
-  !> by equal weights up to a k that keeps their sum.
+  !> The coupling of half-spaces with the same compliance under a flat punch of this radius (lateral
+  !> units), approximately. A punch makes waves of weight (sin(k radius)/(k radius))^2; these are
+  !> replaced by equal weights up to a k that keeps their sum.
   elemental real(wp) function coupling_over(problem, radius) result(coupling)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: radius

@@ -71,8 +71,8 @@ contains
     mean_beside = 0
   end function mean_beside
 
-  !> Two wave numbers: up to the first L is a polynomial of low degree, as it is between k and 3 k
-  !> from there on; beyond the second L - 1 is negligible for loads of some number of digits.
+  !> Two wave numbers. Up to the first, and beyond it between any k and 3 k, L is a polynomial of
+  !> low degree. Beyond the second, L - 1 is negligible for loads of the given number of digits.
   pure function wave_range(self, digits) result(k)
     class(elastic_body_t), intent(in) :: self
     real(wp), intent(in) :: digits

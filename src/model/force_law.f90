@@ -192,8 +192,9 @@ contains
     separation = self%origin + gap*self%length
   end function separation_of
 
-  !> The gap below which bodies have fallen onto each other from a gap: they touch or, under a
-  !> singular attraction, which has then grown by more than an order, no deformation balances it.
+  !> The gap below which bodies have fallen onto each other from a gap. They touch or, under a
+  !> singular attraction, no deformation balances the pressure, which has grown by more than an
+  !> order.
   elemental real(wp) function fallen_below(self, apart) result(gap)
     class(force_law_t), intent(in) :: self
     real(wp), intent(in) :: apart

@@ -19,9 +19,8 @@ module law_scan
   !> the smallest gap of a singular law; for other laws also evenly spaced below.
   real(wp), parameter :: nearest = 1.0e-2_wp, farthest = 1.0e5_wp, lowest = -60
   integer, parameter :: geometric = 3000, even = 3000
-  !> Pressure below which a law has ended, relative to the largest tension or the unit; and the
-  !> number of lengths beyond the equilibrium separation after which a tail does not matter, where a
-  !> repulsion of the ninth power has ended.
+  !> A law has ended where its pressure is below this part of the largest tension or the unit, or so
+  !> many lengths beyond the equilibrium separation.
   real(wp), parameter :: ended = 1.0e-16_wp, longest = 59
   !> Pressures below this count as zero.
   real(wp), parameter :: vanished = 1.0e-100_wp

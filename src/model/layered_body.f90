@@ -1,6 +1,6 @@
-!> Bodies of bonded layers. To a wave k their surfaces yield L(k) times as much as half-spaces of
-!> the top layers (`layered_surface`). L - 1 falls as exp(-2 k thickness) with the thickness of the
-!> top layer. It is tabulated as series of powers on panels of k.
+!> Bodies of bonded layers. Under a wave k the compliance of their surfaces is L(k) times that of
+!> half-spaces of the top layers (`layered_surface`). L - 1 falls as exp(-2 k thickness) with the
+!> thickness of the top layer. It is tabulated as series of powers on panels of k.
 module layered_body
   use kinds, only: wp, nan
   use matrix_products, only: multiply_transposed

@@ -1,7 +1,7 @@
-!> Problems that differ in the values of parameters, for fits; and a problem with one parameter
-!> varied, with the rule for derivatives from values at the varied problems: differences, so that
-!> laws, shapes and bodies need no derivatives by parameters. Reported derivatives are of sixth
-!> order; second order suffices for a search.
+!> Problems that differ in the values of parameters, for fits, and problems with one parameter
+!> varied, with a rule for derivatives by differences. So laws, shapes and bodies need no
+!> derivatives by parameters. Reported derivatives are of sixth order; second order suffices for a
+!> search.
 module variation
   use kinds, only: wp
   use failure, only: failure_t

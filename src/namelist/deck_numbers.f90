@@ -19,9 +19,9 @@ module deck_numbers
 contains
 
   !> Row of the key `path` ("force.hamaker"), and the number of the list element that it names
-  !> ("hydration.pressure(2)"); 0: none. Fails if the table has no such key, if the key does not
-  !> hold numbers or not as many, or if the deck lacks its group. `error` then has no position in
-  !> the file; the caller adds it. words: whether the key may also hold words, or a text.
+  !> ("hydration.pressure(2)"); 0: none. Fails if the table has no such key, if the key holds no
+  !> numbers or too few, or if the deck lacks its group. `error` then has no position in the file;
+  !> the caller adds it. words: whether the key may also hold words, or a text.
   subroutine find_number(deck, path, row, term, error, words)
     type(deck_t), intent(in) :: deck
     character(len=*), intent(in) :: path

@@ -240,7 +240,7 @@ contains
     is_header = numbers == 0
   end function is_header
 
-  !> Finds the next line with cells at or after the position `next`, and moves `next` behind it. at:
+  !> Finds the next line with cells at or after the position `next`, which is moved behind it. at:
   !> the position of the line; 0 if there is none. comment: the position of the last comment before
   !> the line, unchanged if there is none.
   subroutine next_line(source, next, at, comment)

@@ -120,7 +120,7 @@ contains
       end do
     end subroutine write_fixed_loads
 
-    !> The table of stable states of approach and retreat at prescribed h0, as discrete-element and
+    !> The table of stable states of approach and retract at prescribed h0, as discrete-element and
     !> finite-element programs need them.
     subroutine write_contact_table()
       type(path_state_t), allocatable :: states(:)

@@ -99,7 +99,7 @@ contains
                         'range of ' // brief(range) // ' m; allowed: at most 10 million')
   end subroutine check_steps
 
-  !> Reads &unloading; turning points must be inside the range of &loading, and each retreat must
+  !> Reads &unloading; turning points must be inside the range of &loading, and each retract must
   !> run upwards.
   subroutine take_unloading(scene)
     type(scene_t), intent(inout) :: scene

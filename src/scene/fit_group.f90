@@ -94,9 +94,9 @@ contains
     end associate
   end subroutine load_curve
 
-  !> ', such as ...' with a stiffness above which it does not matter for rigid bodies: the strength
-  !> of adhesion or, without attraction, the deformation under the law's own pressure is so small
-  !> that loads differ by less than a hundredth.
+  !> ', such as ...' with a stiffness above which it does not matter for rigid bodies: then the
+  !> strength of adhesion or, without attraction, the deformation under the law's own pressure
+  !> changes loads by less than a hundredth.
   function stiff_enough(scene) result(words)
     type(scene_t), intent(in) :: scene
     character(len=:), allocatable :: words

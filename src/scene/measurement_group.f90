@@ -40,7 +40,7 @@ module measurement_group
       otherwise='none'), &
     key_spec('measurement', 'columns', names_value, 'Name or number of the columns of the ' // &
       'base''s position, the signal (force, positive: repulsion, or deflection) and, if there ' // &
-      'is one, the segment; or position and signal of approach and of retreat. A minus ' // &
+      'is one, the segment; or position and signal of approach and of retract. A minus ' // &
       'changes the sign.', most=4, otherwise='the first two', spaced=.true.), &
     key_spec('measurement', 'quantity', names_value, 'What the first column is, or all, in ' // &
       'their order: position (of the base of the spring), separation (of the bodies), load ' // &
@@ -49,9 +49,10 @@ module measurement_group
     key_spec('measurement', 'approach', names_value, 'Numbers or words that the approach has ' // &
       'in the column of segments.', most=most_labels, spaced=.true., &
       otherwise='0, a word for it, or by the position'), &
-    key_spec('measurement', 'retreat', names_value, 'Numbers or words that the retreat has in ' // &
+    key_spec('measurement', 'retract', names_value, 'Numbers or words that the retract has in ' // &
       'the column of segments; rows with other numbers or words are left out.', &
-      most=most_labels, spaced=.true., otherwise='1, a word for it, or by the position'), &
+      most=most_labels, spaced=.true., otherwise='1, a word for it, or by the position', &
+      former='retreat'), &
     key_spec('measurement', 'skip_lines', integer_value, 'Number of lines at the begin of the ' // &
       'file that are left out.', default='0', low=0.0_wp, high=1.0e5_wp), &
     key_spec('measurement', 'spring_constant', real_value, 'Stiffness of the spring.', 'N/m', &
@@ -66,8 +67,8 @@ module measurement_group
       'of position) in the file.', most=2, otherwise='those in the names, or m and N or V'), &
     key_spec('measurement', 'skip', real_list, 'Pairs of positions of the base, SI; samples ' // &
       'between the two of a pair are left out.', 'm', most=most_skipped, otherwise='none'), &
-    key_spec('measurement', 'segment', word_value, 'The branches to fit.', &
-      choices='both approach retreat', default='both'), &
+    key_spec('measurement', 'segment', word_value, 'The branches to fit; ' // &
+      'retreat is retract.', choices='both approach retract retreat', default='both'), &
     key_spec('measurement', 'baseline', word_value, 'The signal without force: a constant on ' // &
       'each way, and for linear a slope, for quadratic also a bow, common to both.', &
       choices='constant linear quadratic', default='linear'), &
@@ -108,17 +109,18 @@ contains
       if (allocated(deck%error)) return
       call deck%get('measurement', 'skip_lines', measurement%skip_lines)
       call take_labels(deck, 'approach', measurement%approach)
-      call take_labels(deck, 'retreat', measurement%retreat)
+      call take_labels(deck, 'retract', measurement%retreat)
       if (.not. measurement%has(of_segment)) then
         if (deck%is_set('measurement', 'approach')) call deck%mistake('measurement', 'approach', &
           'needs a column of segments, the third of columns')
-        if (deck%is_set('measurement', 'retreat')) call deck%mistake('measurement', 'retreat', &
+        if (deck%is_set('measurement', 'retract')) call deck%mistake('measurement', 'retract', &
           'needs a column of segments, the third of columns')
       end if
       call take_spring(scene)
       call deck%get_optional('measurement', 'sensitivity', measurement%sensitivity)
       call deck%get_optional('measurement', 'contact_point', measurement%contact_point)
       call deck%get('measurement', 'segment', measurement%segment)
+      if (measurement%segment == 'retreat') measurement%segment = 'retract'
       call deck%get('measurement', 'skip', measurement%skip)
       if (mod(size(measurement%skip), 2) == 1) then
         call deck%mistake('measurement', 'skip', 'positions come in pairs: from and to')

@@ -7,9 +7,8 @@ module numerics_group
   private
   public :: numerics_keys, take_numerics, coarsest
 
-  !> Accuracy above which a path or a cycle costs no less: half the nodes would save a sixth of the
-  !> calculation, where folds are not lost and the path is not traced again. A drive in time has
-  !> longer steps.
+  !> A coarser accuracy makes a path or a cycle no cheaper: half the nodes would save a sixth of the
+  !> calculation at best, and folds might be lost. A drive in time has longer steps.
   real(wp), parameter :: coarsest = 1e-3_wp
 
   !> The rows of &numerics.

@@ -148,9 +148,9 @@ contains
     call move_alloc(variant%deck%error, error)
   end subroutine swept_scene
 
-  !> Tries the sweep, so that a mistake shows before hours of work: every value against the bounds
-  !> of its key, and the whole scene with the smallest and with the largest values of all keys, or
-  !> with the first and the last case of a file.
+  !> Checks the sweep, so that a mistake is reported before hours of work. Every value is compared
+  !> with the bounds of its key; the whole scene is made with the smallest and with the largest
+  !> values of all keys, or with the first and the last case of a file.
   subroutine check_sweep(scene)
     type(scene_t), intent(inout) :: scene
     type(failure_t), allocatable :: trouble

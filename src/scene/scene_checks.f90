@@ -1,6 +1,6 @@
-!> Checks of a scene as a whole: that its numbers, and the units that follow from them, stay within
-!> the range of numbers, that a body is large enough, and that its load is finite. The calculation
-!> is dimensionless, but the units are products of powers of the numbers in the deck.
+!> Checks of a scene as a whole: its numbers, and the units that follow from them, are within range;
+!> a body is large enough; its load is finite. The calculation is dimensionless, but the units are
+!> products of powers of the numbers in the deck.
 module scene_checks
   use kinds, only: wp, pi
   use text, only: brief

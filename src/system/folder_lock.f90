@@ -36,8 +36,8 @@ module folder_lock
 contains
 
   !> Locks the folder `path`. Fails if another run has locked it, or if the folder cannot be opened.
-  !> On a network file system without locks the folder is opened without a lock, and no error is
-  !> returned, since otherwise no run could work there.
+  !> A network file system without locks gives no lock and no error, since otherwise no run could
+  !> work there.
   subroutine take(self, path, error)
     class(folder_lock_t), intent(inout) :: self
     character(len=*), intent(in) :: path

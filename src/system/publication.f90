@@ -1,5 +1,5 @@
-!> The files of a folder of results: their names, how a file that a run has written is known, and
-!> the step in which the files of a run take the place of older ones.
+!> The files of a folder of results: their names, how to recognise a file that a run has written,
+!> and how the files of a run replace older ones.
 !>
 !> A run writes into the folder `unfinished` within the folder of results; an interrupted run leaves
 !> its rows and its journal there. When all files are complete and on the disk, the old summary is

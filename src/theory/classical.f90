@@ -4,10 +4,9 @@
 !> SI units and the paper's conventions: `radius` is R of h0(r) = h0 + r^2/(2R), `y` the stiffness
 !> E/(1-nu^2) of two identical bodies (twice the composite modulus E*), `gamma` the surface energy,
 !> the work of separating unit area, and `a` the contact radius. Loads are positive in compression;
-!> `displacement` is delta = h(0) - h0. Each theory has one state for each contact radius, so that
-!> curves are best drawn with the contact radius as parameter; a load or displacement may have no
-!> state or two. Arguments must be positive and finite. Where no equilibrium exists the result is
-!> NaN.
+!> `displacement` is delta = h(0) - h0. Each theory has one state for each contact radius, the best
+!> parameter of its curves; a load or displacement may have no state or two. Arguments must be
+!> positive and finite. Where no equilibrium exists the result is NaN.
 module classical
   use kinds, only: wp, pi, nan
   implicit none

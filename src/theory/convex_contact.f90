@@ -18,8 +18,8 @@ module convex_contact
   public :: jkr_like_pull_off, jkr_like_detachment, detachment_radius
 
   !> Ratio of two contact radii: that at which adhesion balances the repulsion, and the smallest
-  !> that may be an extremum. Number of golden sections that give the radius of the extremum to half
-  !> of its digits, which give all digits of the value.
+  !> that may be an extremum. Number of golden sections that give half of the digits of the radius,
+  !> and so all digits of the extremum.
   real(wp), parameter :: widest_range = 1.0e4_wp
   integer, parameter :: sections = 45
 

@@ -1,4 +1,4 @@
-"""The converter of instruments' files: which rows are the approach and the retreat, which column is
+"""The converter of instruments' files: which rows are the approach and the retract, which column is
 the position of the base, and what is said where something is missing."""
 
 import re
@@ -36,7 +36,7 @@ def test_a_table_has_the_rows_of_the_curve():
     np.testing.assert_allclose(z, BASE, rtol=1e-9, atol=1e-18)
     np.testing.assert_allclose(force, FORCE, rtol=1e-9)
     assert (segment == WAYS).all()
-    assert told == "31 rows of the approach, 31 of the retreat; position: height (measured)"
+    assert told == "31 rows of the approach, 31 of the retract; position: height (measured)"
 
 
 def with_pauses(x, at_rest):
@@ -71,7 +71,7 @@ def test_an_approach_alone_is_an_approach():
     assert (segments_of(IN[::-1], np.ones(31)) == 0).all()
 
 
-def test_a_retreat_after_an_approach_that_ended_at_once_is_a_retreat():
+def test_a_retract_after_an_approach_that_ended_at_once_is_a_retract():
     """It was called an approach."""
     labels = np.r_[0, np.ones(31)]
     kind = segments_of(np.r_[IN[-1], IN[::-1]], labels)

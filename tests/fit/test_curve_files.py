@@ -39,7 +39,7 @@ def side_by_side(curve, turned=False, short=0):
 
 PLAIN = "{:.16e},{:.16e},{}"
 NAMED = ["z", "force", "segment"]
-WAYS = "40 samples of the approach, 40 samples of the retreat"
+WAYS = "40 samples of the approach, 40 samples of the retract"
 # The file's text, the columns and other keys of &measurement, and what is told.
 SPELLINGS = {
     "plain": (lambda c: lines(c, PLAIN, "z,force,segment"), NAMED, {}, "position 'z' in m"),
@@ -109,7 +109,7 @@ SPELLINGS = {
         {"approach": "7", "retreat": ["8"]}, WAYS),
     "one segment": (
         lambda c: lines((c[0], c[1], 0 * c[2]), PLAIN, "z,force,segment"), NAMED, {},
-        "41 samples of the approach, 39 samples of the retreat"),
+        "41 samples of the approach, 39 samples of the retract"),
     "decimal commas between blanks": (
         lambda c: lines(c, "{:.16e} {:.16e} {}", "z force segment").replace(".", ","), NAMED, {},
         WAYS),
@@ -207,7 +207,7 @@ REFUSED = {
     "several curves": (
         lambda c: lines([np.tile(x, 2) for x in c[:2]] + [np.repeat([0, 1, 2, 3], ROWS)], PLAIN,
                         "z,force,segment"), NAMED, {},
-        "goes back and forth in 4 segments, where one approach and one retreat"),
+        "goes back and forth in 4 segments, where one approach and one retract"),
     "labels without a column": (
         lambda c: lines(c, PLAIN, "z,force,segment"), NAMED[:2], {"approach": "0"},
         '"approach": needs a column of segments'),

@@ -177,8 +177,8 @@ def test_samples_in_hard_contact_alone_are_no_absence_of_contact(branches, tmp_p
 
 
 @pytest.mark.slow
-def test_an_approach_alone_is_not_refused_for_a_tension_of_the_retreat(tmp_path):
-    """The largest tension of the model, that of the retreat, was compared with an approach."""
+def test_an_approach_alone_is_not_refused_for_a_tension_of_the_retract(tmp_path):
+    """The largest tension of the model, that of the retract, was compared with an approach."""
     z, force, segment = hertz_curve(60)
     kept = segment == 0
     groups = {"bodies": {"radius": RADIUS, "stiffness": 4e3},
@@ -292,12 +292,12 @@ def test_a_wrong_spring_constant_is_named(branches, tmp_path, factor):
 
 
 @pytest.mark.slow
-def test_the_retreat_is_proposed_where_it_alone_is_described(branches, tmp_path):
+def test_the_retract_is_proposed_where_it_alone_is_described(branches, tmp_path):
     """Hysteresis of a sample: the approach needs a larger force at the same depth."""
     z, force, segment = branches.measure(400, 2e-11, seed=1)
     softer = np.where((segment == 0) & (force > 0), 0.8 * force, force)
     result = fitted(tmp_path, (z, softer, segment), LENNARD_JONES, [STRENGTH, STIFFNESS, POINT])
-    assert any("fit segment = 'retreat'" in text for text in told(result)), told(result)
+    assert any("fit segment = 'retract'" in text for text in told(result)), told(result)
     assert not any("larger measurement" in text for text in told(result))
 
 

@@ -148,7 +148,7 @@ def test_a_baseline_as_steep_as_the_contact_is_no_exchange(branches, tmp_path):
     assert np.polyfit(z[near], tilted[near], 1)[0] == pytest.approx(0, abs=1e-3)
     result = fitted(tmp_path, (z, tilted, segment), started(), TRUTH)
     assert np.abs(errors_off(result)).max() < 4
-    with pytest.raises(snapin.SnapinError, match="approach and retreat are exchanged"):
+    with pytest.raises(snapin.SnapinError, match="approach and retract are exchanged"):
         fitted(tmp_path, (z, tilted, 1 - segment), started(), TRUTH)
 
 
@@ -169,14 +169,14 @@ def test_a_steep_baseline_does_not_hide_the_pull_off(branches, tmp_path, rise):
 
 
 @pytest.mark.slow
-def test_a_retreat_that_ends_before_the_bodies_part_is_named(branches, tmp_path):
-    """The end of the retreat counts as baseline, and the answer is wrong."""
+def test_a_retract_that_ends_before_the_bodies_part_is_named(branches, tmp_path):
+    """The end of the retract counts as baseline, and the answer is wrong."""
     z, force, segment = branches.measure(300, NOISE, seed=7)
     jump_in, jump_out = branches.outer[0][0], branches.inner[0][-1]
     near = z < jump_out - 0.2 * (jump_out - jump_in)
     for kept, named in ((near, True), (z < z.max(), False)):
         result = fitted(tmp_path, (z[kept], force[kept], segment[kept]), started(), TRUTH)
-        told = [text for text in result.summary.get("warnings", []) if "retreat ends below" in text]
+        told = [text for text in result.summary.get("warnings", []) if "retract ends below" in text]
         assert bool(told) == named, result.summary.get("warnings")
         if not named:
             assert np.abs(errors_off(result)).max() < 4

@@ -11,7 +11,7 @@ TRUTH = {STRENGTH: 1e-19, STIFFNESS: 2e9}
 SCENE = changed(LENNARD_JONES, TRUTH)
 LOADS = {"columns": ["F", "a"], "quantity": ["load", "contact_radius"]}
 ALL = {"columns": ["D", "F", "a"], "quantity": ["separation", "load", "contact_radius"],
-       "segment": "retreat"}
+       "segment": "retract"}
 
 
 def written(folder, names, *columns):
@@ -28,7 +28,7 @@ def deck_of(groups, file, parameters, measurement, **fit):
 
 @pytest.fixture(scope="module")
 def contact():
-    """The states of a retreat, stable at prescribed h0."""
+    """The states of a retract, stable at prescribed h0."""
     steps = {"h0_start": 40e-9, "h0_end": -8e-9, "h0_step": 1e-10}
     curve = snapin.run({**SCENE, "loading": steps, "unloading": {
         "from": -8e-9, "h0_end": 40e-9, "h0_step": 5e-11}, "numerics": {"accuracy": 1e-8}}).curve

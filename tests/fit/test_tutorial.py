@@ -66,7 +66,7 @@ def test_a_spoilt_curve_has_the_message_of_the_page(fit, name):
 
 @pytest.mark.parametrize(("name", "keys", "columns"), [
     ("probe_sign", "", "'Z', '-Force', 'Segment'"),
-    ("probe_exchanged", "approach = 'Retract', retreat = 'Extend',", "'Z', 'Force', 'Segment'"),
+    ("probe_exchanged", "approach = 'Retract', retract = 'Extend',", "'Z', 'Force', 'Segment'"),
     ("probe_ripple", "ripple = .true.,", "'Z', 'Force', 'Segment'"),
     ("probe_bow", "baseline = 'quadratic',", "'Z', 'Force', 'Segment'")])
 def test_the_remedy_of_the_page_gives_the_truth(fit, name, keys, columns):

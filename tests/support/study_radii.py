@@ -69,7 +69,7 @@ def deck_of(kind, true, file, start):
     columns, keys = ["F (N)", "a (m)"], {"quantity": ["load", "contact_radius"]}
     if kind != "loads":
         columns = ["D (m)", *columns]
-        keys = {"quantity": ["separation", "load", "contact_radius"], "segment": "retreat",
+        keys = {"quantity": ["separation", "load", "contact_radius"], "segment": "retract",
                 "baseline": "constant"}
     return {
         "bodies": {"radius": RADIUS, "stiffness": true[1] * start[1]},

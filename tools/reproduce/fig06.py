@@ -110,7 +110,7 @@ def _inset(inset, runs):
              for run in rule]
     looks.append((results, {"color": style.VERMILION, "markersize": 4, "markeredgewidth": 0.8,
                             "markevery": 0.07}, style.VERMILION))
-    for branch, name in (("loading", "approach"), ("unloading_1", "retreat")):
+    for branch, name in (("loading", "approach"), ("unloading_1", "retract")):
         for source, look, color in looks:
             curve = source.branch(branch)
             curve = curve[curve["contact_radius"] > 0]

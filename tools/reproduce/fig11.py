@@ -106,7 +106,7 @@ def _draw_spring(panel):
     for jump, color, name, words in (
             (inward, style.BLUE, "approach",
              (("starts", (8, 8), "left"), ("ends", (4, -18), "left"))),
-            (outward, style.VERMILION, "retreat",
+            (outward, style.VERMILION, "retract",
              (("starts", (-9, 4), "right"), ("ends", (8, 7), "left")))):
         def pull(gap, rest=jump.rest):
             return _SHOWN * largest * (rest - gap) / unit

@@ -158,8 +158,8 @@ def examine(path, folder, both=False):
         return f"told: {problem}".replace(f"{folder}/", ""), "", ""
     z, force, segment = thinned(tables[0])
     radius = next((size for key, size in RADIUS.items() if key in path.name), ANY_RADIUS)
-    way = "approach" if (segment == 0).any() else "retreat"
-    inward = segment == (way == "retreat")
+    way = "approach" if (segment == 0).any() else "retract"
+    inward = segment == (way == "retract")
     stiffness, left = hertz(z[inward], force[inward], spring, radius, way)
     closed = f"{stiffness:.3g} Pa, {left:.3g}"
     start = float(f"{min(max(stiffness, 1), 1e11):.2g}") if np.isfinite(stiffness) else 1e4
