@@ -4,9 +4,8 @@
 module device
   use kinds, only: wp, nan
   use solver, only: solver_t
-  use path_tangent, only: of_h0
+  use path_point, only: path_point_t, of_h0
   use traced_path, only: traced_path_t
-  use path_state, only: path_state_t
   use drives, only: drive_t
   use driven_pieces, only: driven_pieces_t, jump_t, leg_t, walk_t, way_along
   use piece_search, only: find_pieces, find_jumps, state_driven
@@ -16,7 +15,7 @@ module device
 
   !> The motion along one stable piece, and the states at its ends.
   type, extends(leg_t) :: driven_leg_t
-    type(path_state_t) :: from, to
+    type(path_point_t) :: from, to
   end type driven_leg_t
 
   !> The motion of bodies under a drive, and the stable pieces. energy_lost: dissipated in all
@@ -48,7 +47,7 @@ contains
     real(wp), allocatable, intent(in) :: start, finish
     type(driven_t), intent(out) :: driven
     integer :: outermost, here
-    type(path_state_t) :: state
+    type(path_point_t) :: state
     real(wp) :: last
 
     allocate (driven%leg(0), driven%jumped(0))
@@ -126,12 +125,12 @@ contains
     !> known path, whichever is farther out; -huge if the drive turns before.
     subroutine find_innermost(at)
       real(wp), intent(out) :: at
-      type(path_state_t) :: there
+      type(path_point_t) :: there
 
       associate (piece => driven%piece(size(driven%piece)))
         at = -huge(at)
         if (.not. piece%last_turns) at = drive%position(piece%last)
-        if (.not. (h0_end <= piece%first%h0 .and. h0_end >= piece%last%h0)) return
+        if (.not. (h0_end <= piece%first%state%h0 .and. h0_end >= piece%last%state%h0)) return
         call state_driven(solver, path, drive_t(of_h0), piece, h0_end, there)
         if (there%converged) at = max(drive%position(piece%last), drive%position(there))
       end associate
@@ -141,13 +140,14 @@ contains
 
   !> The states of a leg in order: its ends, and the points of the path between them.
   pure function states_on(all_nodes, leg) result(states)
-    type(path_state_t), intent(in) :: all_nodes(:)
+    type(path_point_t), intent(in) :: all_nodes(:)
     type(driven_leg_t), intent(in) :: leg
-    type(path_state_t), allocatable :: nodes(:), states(:)
+    type(path_point_t), allocatable :: nodes(:), states(:)
 
     associate (first => min(leg%from%interval, leg%to%interval) + 1, &
       last => max(leg%from%interval, leg%to%interval))
-      nodes = pack(all_nodes(first:last), .not. all_nodes(first:last)%again)
+      ! A point without a next one is also on the next mesh.
+      nodes = pack(all_nodes(first:last), all_nodes(first:last)%leads_on)
     end associate
     if (.not. leg%inward) nodes = nodes(size(nodes):1:-1)
     states = [leg%from, nodes, leg%to]

@@ -12,8 +12,7 @@ module experiment_result
   use reported_numbers, only: of_table
   use path_readings, only: path_readings_t
   use timed_record, only: timed_result_t
-  use path_tangent, only: h0_alone => of_h0, load_alone => of_load
-  use path_state, only: path_state_t
+  use path_point, only: path_point_t, h0_alone => of_h0, load_alone => of_load
   use driven_pieces, only: jump_t, leg_t, walk_t, way_along
   use piece_search, only: state_driven
   use device, only: driven_t, driven_leg_t, states_on
@@ -98,8 +97,8 @@ contains
       associate (jump => driven%jumped(k), drive => driven%drive%weights)
         before = place_on_curve(jump%before, drive)
         ! The turn of the drive, or the fold of h0 before it.
-        before%turn_of = merge(drive, h0_alone, abs(dot_product(drive, jump%before%slopes)) <= &
-          abs(dot_product(h0_alone, jump%before%slopes)))
+        before%turn_of = merge(drive, h0_alone, abs(jump%before%tangent%of(drive)) <= &
+          abs(jump%before%tangent%of(h0_alone)))
         if (allocated(after)) deallocate (after)
         if (jump%landed) then
           after = place_on_curve(jump%after, drive)
@@ -157,7 +156,7 @@ contains
     do i = 1, size(leg)
       if (.not. leg(i)%jumps) cycle
       jump = known%stable%jump_from(leg(i)%piece, leg(i)%inward)
-      if (.not. jump%landed .or. jump%before%h0 < lowest) return
+      if (.not. jump%landed .or. jump%before%state%h0 < lowest) return
       fold = [fold, jump%fold()]
     end do
     do i = 1, size(fold)
@@ -186,8 +185,8 @@ contains
     type(path_readings_t), intent(inout) :: readings
     type(places_t), intent(inout) :: places
     type(places_t), intent(in), optional :: like
-    type(path_state_t), allocatable :: nodes(:)
-    type(path_state_t) :: state
+    type(path_point_t), allocatable :: nodes(:)
+    type(path_point_t) :: state
     real(wp), allocatable :: suspect(:)
     integer :: i, k, row, last
 
@@ -231,16 +230,17 @@ contains
     !> Compares the interpolation with the state in the middle between a row and the next.
     subroutine hold(leg, row, next)
       type(driven_leg_t), intent(in) :: leg
-      type(path_state_t), intent(in) :: row, next
-      type(path_state_t) :: state
+      type(path_point_t), intent(in) :: row, next
+      type(path_point_t) :: middle
 
-      associate (driven => readings%prescribed, width => next%h0 - row%h0)
+      associate (driven => readings%prescribed, width => next%state%h0 - row%state%h0)
         if (.not. abs(width) > 0) return
         call state_driven(steps%solver_t, steps%known%path, driven%drive, &
-          driven%piece(leg%piece), 0.5_wp*(row%h0 + next%h0), state)
-        if (state%converged) readings%table_interpolation_error = &
-          max(readings%table_interpolation_error, abs(state%load - 0.5_wp*(row%load + next%load) - &
-          width/8*(row%slopes(2)/row%slopes(1) - next%slopes(2)/next%slopes(1))))
+          driven%piece(leg%piece), 0.5_wp*(row%state%h0 + next%state%h0), middle)
+        if (middle%converged) readings%table_interpolation_error = &
+          max(readings%table_interpolation_error, abs(middle%state%load - &
+          0.5_wp*(row%state%load + next%state%load) - width/8*(row%tangent%load/row%tangent%h0 - &
+          next%tangent%load/next%tangent%h0)))
       end associate
     end subroutine hold
 
@@ -250,20 +250,20 @@ contains
   !> fourth power, times the larger change of the third derivative to a neighbour over their
   !> distance.
   pure function bends(rows) result(bend)
-    type(path_state_t), intent(in) :: rows(:)
+    type(path_point_t), intent(in) :: rows(:)
     real(wp), dimension(size(rows) - 1) :: bend, width, third
     real(wp), dimension(size(rows)) :: slope, change
     integer :: n
 
     n = size(rows)
-    width = rows(2:)%h0 - rows(:n - 1)%h0
-    slope = rows%slopes(2)/rows%slopes(1)
+    width = rows(2:)%state%h0 - rows(:n - 1)%state%h0
+    slope = rows%tangent%load/rows%tangent%h0
     third = 0
     where (abs(width) > 0) third = (slope(:n - 1) + slope(2:) - &
-      2*(rows(2:)%load - rows(:n - 1)%load)/width)/width**2
+      2*(rows(2:)%state%load - rows(:n - 1)%state%load)/width)/width**2
     change = 0
     change(2:n - 1) = abs(third(2:) - third(:n - 2))/ &
-      max(abs(rows(3:)%h0 - rows(:n - 2)%h0), tiny(1.0_wp))
+      max(abs(rows(3:)%state%h0 - rows(:n - 2)%state%h0), tiny(1.0_wp))
     bend = width**4*max(change(:n - 1), change(2:))
   end function bends
 

@@ -7,10 +7,9 @@ module located_places
   use contact_state, only: gap_at, contact_radius_of, far_gap
   use equilibrium, only: residual_floor
   use solver, only: solver_t
-  use path_tangent, only: h0_alone => of_h0, load_alone => of_load
   use potential_energy, only: energy_of
-  use path_state, only: path_state_t, path_place_t, no_mesh
-  use curve_states, only: state_of
+  use path_point, only: path_point_t, no_mesh, h0_alone => of_h0, load_alone => of_load
+  use curve_states, only: solve_at
   use driven_pieces, only: jump_t
   use path_stepper, only: path_stepper_t
   use reported_place, only: place_t, of_h0, of_load, of_displacement, of_energy, of_radius, &
@@ -89,7 +88,7 @@ contains
     class(path_stepper_t), intent(inout) :: steps
     type(place_t), intent(inout) :: place
     type(jump_t) :: jump
-    type(path_state_t) :: state
+    type(path_point_t) :: found
 
     associate (known => steps%known)
       if (place%landing) then
@@ -101,9 +100,8 @@ contains
         end if
       else if (place%point > 0) then
         associate (point => known%path%point(place%point))
-          call state_of(steps%solver_t, known%path, path_place_t(place%point, &
-            point%coordinate), state)
-          call place%take(state)
+          call solve_at(steps%solver_t, known%path, place%point, point%coordinate, found)
+          call place%take(found)
           place%drive = merge(h0_alone, load_alone, point%fold)
           place%turn_of = place%drive
         end associate

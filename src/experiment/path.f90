@@ -10,7 +10,8 @@ module path
   use path_end, only: outer_end
   use largest_tension, only: lower, lower_along
   use path_stepper, only: path_stepper_t, known_path_t
-  use path_rows, only: path_row_t, row_of_point, row_at_h0, rows_between
+  use path_point, only: path_point_t
+  use path_rows, only: row_at_h0, rows_between
   use reported_place, only: place_t, place_of_state
   use places, only: places_t
   use records, only: observer_t, record_t, quality_t, record_of, stable_yes, stable_no
@@ -52,8 +53,9 @@ contains
     type(path_t), intent(out) :: path
     type(places_t), intent(inout) :: places
     real(wp), intent(in), optional :: h0_start
-    type(path_row_t) :: row
-    type(path_row_t), allocatable :: between(:)
+    type(path_point_t) :: row
+    type(path_point_t), allocatable :: between(:)
+    logical, allocatable :: profile(:)
     type(place_t) :: reported
     real(wp) :: until, widest
     integer :: i, k, first, last
@@ -69,31 +71,32 @@ contains
     if (last < first) return
     widest = steps%known%path%point(last)%state%scale
     do i = first, last
-      row = row_of_point(steps%known%path, i)
+      row = steps%known%path%point(i)
+      row%interval = i
+      row%modes = steps%known%path%modes_at(i)
       if (i == first .and. present(h0_start)) &
         row = row_at_h0(steps%solver_t, steps%known%path, i, h0_start)
       if (i == first) path%first_piece = piece_of(steps%known, i)
-      row%profile = any(abs(profiles - row%state%h0) <= 0)
       ! Where the path passes to another mesh, two points exist on both.
-      if (i == first .or. steps%known%path%comes_from_before(i)) call take(row)
+      if (i == first .or. steps%known%path%comes_from_before(i)) &
+        call take(row, profile=any(abs(profiles - row%state%h0) <= 0))
       if (i == last .and. .not. ends_between) exit
       if (.not. steps%known%path%point(i)%leads_on) cycle
       until = h0_end
       if (i < last) until = steps%known%path%point(i + 1)%state%h0
       call rows_between(steps%solver_t, steps%known%path, i, row%state%h0, until, &
-        merge(widest, 0.0_wp, curve), profiles, between)
+        merge(widest, 0.0_wp, curve), profiles, between, profile)
       do k = 1, size(between)
-        call take(between(k))
+        call take(between(k), profile(k), for_curve=.not. profile(k))
       end do
       if (i < last) cycle
       row = row_at_h0(steps%solver_t, steps%known%path, i, h0_end)
-      row%profile = any(abs(profiles - h0_end) <= 0)
-      call take(row)
+      call take(row, profile=any(abs(profiles - h0_end) <= 0))
     end do
     ! The tension is largest at an extremum or an end. States with which the path passes to another
     ! mesh do not count: their errors would decide.
     if (row%converged) then
-      reported = place_of_row(steps, row)
+      reported = place_of_row(row)
       call lower_along(steps%known%path, first, last, path%lowest)
       call lower(path%lowest, reported)
       if (row%modes == 0) path%finish = reported
@@ -148,9 +151,12 @@ contains
       end do
     end function piece_of
 
-    !> Gives a row to the observer and stores its reported places. Folds are exact.
-    subroutine take(row)
-      type(path_row_t), intent(in) :: row
+    !> Gives a row to the observer and stores its reported places. Folds are exact. profile: its
+    !> profile is requested; for_curve: the row serves only for the curve.
+    subroutine take(row, profile, for_curve)
+      type(path_point_t), intent(in) :: row
+      logical, intent(in) :: profile
+      logical, intent(in), optional :: for_curve
       type(place_t) :: reported
       type(record_t) :: record
 
@@ -159,7 +165,7 @@ contains
           merge(stable_yes, stable_no, row%modes == 0), row%converged)
         call path%quality%cover(record, steps%problem, grid, state, &
           steps%meshes%in_contact(row%mesh))
-        call observer%take(record, steps%problem, grid, state, row%profile)
+        call observer%take(record, steps%problem, grid, state, profile)
         path%states = path%states + 1
       end associate
       if (.not. row%converged) then
@@ -167,24 +173,25 @@ contains
         return
       end if
       if (row%modes == 0) call look_outside(row%state)
-      if (row%for_curve) return
-      reported = place_of_row(steps, row)
-      if (row%profile) call places%add('profiles', reported)
+      if (present(for_curve)) then
+        if (for_curve) return
+      end if
+      reported = place_of_row(row)
+      if (profile) call places%add('profiles', reported)
       if (path%states == 1) then
         path%lowest = reported
         path%start = reported
       end if
-      if (row%point == 0) return
-      associate (point => steps%known%path%point(row%point))
-        if (point%load_extremum) call places%add('load_folds', reported)
-        if (.not. point%fold) return
-        ! A part of the path may begin with another fold.
-        if (path%first_piece == 1 .and. .not. places%has('folds')) &
-          call places%enter('jump_in', 1, reported)
-        call places%add('folds', reported)
-        call places%forget('jump_out')
-        if (point%modes == 0) call places%enter('jump_out', 1, reported)
-        path%unstable_after = [path%unstable_after, point%modes]
+      if (row%load_extremum) call places%add('load_folds', reported)
+      if (.not. row%fold) return
+      ! A part of the path may begin with another fold.
+      if (path%first_piece == 1 .and. .not. places%has('folds')) &
+        call places%enter('jump_in', 1, reported)
+      call places%add('folds', reported)
+      call places%forget('jump_out')
+      associate (after => steps%known%path%point(row%interval)%modes)
+        if (after == 0) call places%enter('jump_out', 1, reported)
+        path%unstable_after = [path%unstable_after, after]
       end associate
     end subroutine take
 
@@ -222,15 +229,12 @@ contains
     end associate
   end subroutine find_end
 
-  type(place_t) function place_of_row(steps, row) result(reported)
-    type(path_stepper_t), intent(in) :: steps
-    type(path_row_t), intent(in) :: row
+  !> The place of a row; that of a point of the path, if something turns there.
+  pure type(place_t) function place_of_row(row) result(reported)
+    type(path_point_t), intent(in) :: row
 
     reported = place_of_state(row%mesh, row%state)
-    if (row%point == 0) return
-    associate (point => steps%known%path%point(row%point))
-      if (point%fold .or. point%load_extremum) reported%point = row%point
-    end associate
+    if (row%fold .or. row%load_extremum) reported%point = row%interval
   end function place_of_row
 
 end module path

@@ -7,9 +7,8 @@ module path_readings
   use experiment_request, only: request_t
   use path_sensitivity, only: rate_t
   use drives, only: drive_t, through_spring
-  use path_tangent, only: of_load
-  use path_state, only: path_state_t
-  use curve_states, only: states_of_points, states_where
+  use path_point, only: path_point_t, of_load
+  use curve_states, only: read_points, states_where
   use dimensionless_problem, only: problem_t
   use records, only: quality_t
   use device, only: driven_t, states_on, drive_bodies
@@ -24,14 +23,14 @@ module path_readings
   type :: loaded_state_t
     integer :: number = 0
     real(wp) :: wanted = 0
-    type(path_state_t) :: state
+    type(path_point_t) :: state
     logical :: stable = .false.
   end type loaded_state_t
 
   !> The readings in the units of `dimensionless_problem`.
   type :: path_readings_t
     !> The points of the path.
-    type(path_state_t), allocatable :: node(:)
+    type(path_point_t), allocatable :: node(:)
     !> A drive for each stiffness; and one at prescribed h0, for the table.
     type(driven_t), allocatable :: device(:), prescribed
     type(loaded_state_t), allocatable :: loaded(:)
@@ -63,7 +62,7 @@ contains
       readings%solved = path%held > 1
       allocate (readings%node(0))
       if (.not. readings%solved) return
-      readings%node = states_of_points(steps%solver_t, path)
+      readings%node = read_points(steps%solver_t, path)
       readings%traced_from = path%point(path%undeformed + 1)%state%h0
       readings%undeformed_from = path%point(1)%state%h0
       if (allocated(request%device)) call run_device()
@@ -93,7 +92,7 @@ contains
     !> &fixed_load: finds all equilibria under each load.
     subroutine find_loaded(load)
       real(wp), intent(in) :: load(:)
-      type(path_state_t), allocatable :: states(:)
+      type(path_point_t), allocatable :: states(:)
       type(loaded_state_t) :: one
       integer :: i, k
       logical :: solved
@@ -106,21 +105,23 @@ contains
         do k = 1, size(states)
           ! On the path followed inward, h0 decreases where states are stable at fixed h0.
           one = loaded_state_t(i, load(i), states(k), &
-            states(k)%modes == 0 .and. states(k)%slopes(2) > 0)
+            states(k)%modes == 0 .and. states(k)%tangent%load > 0)
           readings%loaded = [readings%loaded, one]
         end do
       end do
     end subroutine find_loaded
 
     pure subroutine cover(states, problem, quality)
-      type(path_state_t), intent(in) :: states(:)
+      type(path_point_t), intent(in) :: states(:)
       type(problem_t), intent(in) :: problem
       type(quality_t), intent(inout) :: quality
       integer :: i
 
       do i = 1, size(states)
-        call quality%cover_extent(states(i)%radius*problem%lateral, &
-          problem%law%separation_of(states(i)%h0), states(i)%load*problem%load, states(i)%state)
+        associate (state => states(i)%state)
+          call quality%cover_extent(states(i)%radius*problem%lateral, &
+            problem%law%separation_of(state%h0), state%load*problem%load, state)
+        end associate
       end do
     end subroutine cover
 

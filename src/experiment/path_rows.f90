@@ -8,20 +8,12 @@ module path_rows
   use controls, only: control_t, at_axis_gap
   use solver, only: solver_t
   use path_coordinate, only: path_control
+  use path_point, only: path_point_t
   use path_span, only: path_span_t, new_path_span
   use traced_path, only: traced_path_t
   implicit none
   private
-  public :: path_row_t, row_of_point, row_at_h0, rows_between
-
-  !> One row: its state and mesh, the point of the path (0: it is none), its unstable modes, and
-  !> whether it is solved. profile: its profile is requested; for_curve: the row serves only for the
-  !> curve.
-  type :: path_row_t
-    type(state_t) :: state
-    integer :: mesh = 1, point = 0, modes = 0
-    logical :: converged = .true., profile = .false., for_curve = .false.
-  end type path_row_t
+  public :: row_at_h0, rows_between
 
   !> Largest distance of the curve from a line, in fractions of h0 and load at the ends of the span
   !> (which are small at large separations) and of the widest contact.
@@ -32,19 +24,8 @@ module path_rows
 
 contains
 
-  !> The row of point i.
-  type(path_row_t) function row_of_point(path, i) result(row)
-    type(traced_path_t), intent(in) :: path
-    integer, intent(in) :: i
-
-    row%point = i
-    row%modes = path%modes_at(i)
-    row%mesh = path%point(i)%mesh
-    row%state = path%point(i)%state
-  end function row_of_point
-
   !> The row at h0 between point i and the next.
-  type(path_row_t) function row_at_h0(solver, path, i, h0) result(row)
+  type(path_point_t) function row_at_h0(solver, path, i, h0) result(row)
     class(solver_t), intent(inout) :: solver
     type(traced_path_t), intent(in) :: path
     integer, intent(in) :: i
@@ -52,29 +33,29 @@ contains
     type(path_span_t) :: span
 
     span = new_path_span(path, i)
-    row%mesh = span%mesh
+    call span%solve_at_h0(solver, h0, row)
     row%modes = path%point(i)%modes
-    call span%solve_at_h0(solver, h0, row%state, row%converged)
   end function row_at_h0
 
-  !> The rows between point i and the next, within a range of h0, in order: requested profiles, and
-  !> rows for the curve. Rows for the curve that do not converge are omitted. widest: contact
-  !> radius, lateral units; 0: there are no rows for the curve.
-  subroutine rows_between(solver, path, i, from, until, widest, profiles, rows)
+  !> The rows between point i and the next, within a range of h0, in order: requested profiles
+  !> (profile = .true.), and rows for the curve. Rows for the curve that do not converge are
+  !> omitted. widest: contact radius, lateral units; 0: there are no rows for the curve.
+  subroutine rows_between(solver, path, i, from, until, widest, profiles, rows, profile)
     class(solver_t), intent(inout) :: solver
     type(traced_path_t), intent(in) :: path
     integer, intent(in) :: i
     real(wp), intent(in) :: from, until, widest, profiles(:)
-    type(path_row_t), allocatable, intent(out) :: rows(:)
+    type(path_point_t), allocatable, intent(out) :: rows(:)
+    logical, allocatable, intent(out) :: profile(:)
     type(path_span_t) :: span
     real(wp), allocatable :: stops(:), stop_at(:), places(:)
     real(wp) :: begin, end
     integer :: k, stop
 
     stops = pack(profiles, (profiles - from)*(profiles - until) < 0)
-    allocate (rows(0))
+    allocate (rows(0), profile(0))
     if (size(stops) == 0 .and. .not. widest > 0) return
-    deallocate (rows)
+    deallocate (rows, profile)
     span = new_path_span(path, i)
     stop_at = [(span%at_h0(stops(k)), k=1, size(stops))]
     begin = span%at_h0(from)
@@ -85,30 +66,32 @@ contains
       stop = count((places - stop_at(k))*(end - begin) < 0)
       places = [places(:stop), stop_at(k), places(stop + 1:)]
     end do
-    allocate (rows(size(places)))
+    allocate (rows(size(places)), profile(size(places)))
     do k = 1, size(places)
       stop = findloc(stop_at, places(k), 1)
-      if (stop > 0) then
+      profile(k) = stop > 0
+      if (profile(k)) then
         rows(k) = row_at_h0(solver, path, i, stops(stop))
-        rows(k)%profile = .true.
       else
         rows(k) = row_for_curve(solver, path, i, span, places(k))
       end if
     end do
-    if (.not. all(rows%converged .or. rows%profile)) &
-      rows = pack(rows, rows%converged .or. rows%profile)
+    associate (shown => rows%converged .or. profile)
+      if (all(shown)) return
+      rows = pack(rows, shown)
+      profile = pack(profile, shown)
+    end associate
   end subroutine rows_between
 
   !> The row at the coordinate s of the span after point i: the predicted state, corrected if it is
   !> not an equilibrium to the tolerance.
-  type(path_row_t) function row_for_curve(solver, path, i, span, s) result(row)
+  type(path_point_t) function row_for_curve(solver, path, i, span, s) result(row)
     class(solver_t), intent(inout) :: solver
     type(traced_path_t), intent(in) :: path
     integer, intent(in) :: i
     type(path_span_t), intent(in) :: span
     real(wp), intent(in) :: s
 
-    row%for_curve = .true.
     row%modes = path%point(i)%modes
     row%mesh = span%mesh
     call span%expected(solver, s, row%state)

@@ -15,7 +15,7 @@ module path_stepper
   use path_span, only: path_span_t, new_path_span
   use prediction, only: missed_t, expect
   use path_end, only: demand_t
-  use path_tangent, only: of_h0
+  use path_point, only: path_point_t, of_h0
   use tracing, only: tracing_t, trace
   use drives, only: drive_t
   use driven_pieces, only: driven_pieces_t, jump_t, walk_t, way_along
@@ -92,7 +92,7 @@ contains
       allocate (self%known%stable%piece(0), self%known%stable%jump(0, 2))
     end if
     call self%frozen%forget()
-    self%span%point = 0
+    self%span%interval = 0
   end subroutine know_path
 
   subroutine approach_to(self, h0, position, event)
@@ -157,7 +157,7 @@ contains
     integer, intent(in) :: piece
     real(wp), intent(in) :: h0
 
-    way = way_along(self%stable, piece, h0 < self%stable%piece(piece)%last%h0, h0)
+    way = way_along(self%stable, piece, h0 < self%stable%piece(piece)%last%state%h0, h0)
   end function way_to
 
   !> The interval on a mesh in which a stable piece reaches h0.
@@ -194,7 +194,7 @@ contains
           [begins, ends])
         if (.not. leg%jumps) return
         landing = point_of_path(jump%fold(), landing=.true.)
-        landing%at(of_load) = jump%after%load
+        landing%at(of_load) = jump%after%state%load
         if (jump%landed) call lower(lowest, landing)
         begins = ends
       end associate
@@ -209,13 +209,14 @@ contains
     type(branch_point_t), intent(inout) :: position
     type(step_result_t), intent(inout) :: event
     type(state_t) :: state
+    type(path_point_t) :: found
     real(wp) :: s
     integer :: i, mesh
     logical :: jumped, beside(2)
 
     jumped = event%jumped
     i = self%known%interval_at(position%piece, h0)
-    if (self%span%point /= i) then
+    if (self%span%interval /= i) then
       self%span = new_path_span(self%known%path, i)
       call self%missed%clear()
     end if
@@ -233,7 +234,11 @@ contains
         end if
       end if
     end associate
-    if (.not. event%converged) call self%span%solve_at_h0(self%solver_t, h0, state, event%converged)
+    if (.not. event%converged) then
+      call self%span%solve_at_h0(self%solver_t, h0, found)
+      state = found%state
+      event%converged = found%converged
+    end if
     call remember(position, state, mesh, jumped, predicted=state%iterations == 1)
   end subroutine solve_on_piece
 

@@ -10,7 +10,7 @@ module path_model
   use variation, only: problem_family_t, variation_t, vary, to_search
   use edge_locked, only: new_mesh_family
   use mesh_store, only: mesh_store_t
-  use path_state, only: no_mesh
+  use path_point, only: no_mesh
   use traced_path, only: traced_path_t
   use path_sensitivity, only: rate_t, rates_along
   use drives, only: through_spring
@@ -247,8 +247,8 @@ contains
         near = path%fitted_between(i)
         panel%x = path%point(near)%coordinate
         panel%ends = path%point(i:i + 1)%coordinate
-        if (i == piece%first%interval) panel%ends(1) = piece%first%x
-        if (i == piece%last%interval) panel%ends(2) = piece%last%x
+        if (i == piece%first%interval) panel%ends(1) = piece%first%coordinate
+        if (i == piece%last%interval) panel%ends(2) = piece%last%coordinate
         if (.not. panel%ends(2) > panel%ends(1)) cycle
         panel%h0 = reshape([problem%law%separation_of(point(near)%state%h0), &
           problem%length*point(near)%tangent%h0], [2, size(near)], order=[2, 1])
@@ -277,7 +277,7 @@ contains
     type(problem_t), intent(in) :: problem
     type(driven_t), intent(in) :: driven
     type(response_t), intent(inout) :: response
-    real(wp) :: largest(2)
+    real(wp) :: largest(2), change_of_load
     integer :: i, k
 
     do k = inward, outward
@@ -295,10 +295,11 @@ contains
     largest = 0
     do i = 1, size(driven%jumped)
       k = merge(inward, outward, driven%jumped(i)%inward)
-      associate (change => abs(driven%jumped(i)%after%load - driven%jumped(i)%before%load))
-        if (.not. change > largest(k)) cycle
-        largest(k) = change
-        response%way(k)%main = count(driven%jumped(:i)%inward .eqv. driven%jumped(i)%inward)
+      associate (jump => driven%jumped(i))
+        change_of_load = abs(jump%after%state%load - jump%before%state%load)
+        if (.not. change_of_load > largest(k)) cycle
+        largest(k) = change_of_load
+        response%way(k)%main = count(driven%jumped(:i)%inward .eqv. jump%inward)
       end associate
     end do
   end subroutine find_ways

@@ -1,5 +1,5 @@
-!> Neighbouring states of the equilibrium path and their tangents. Between and beyond them the gap
-!> at each node is a Hermite polynomial of the path's coordinate.
+!> Neighbouring points of the equilibrium path on one mesh. Between and beyond them the gap at each
+!> node is a Hermite polynomial of the path's coordinate.
 module arc
   use kinds, only: wp, pi
   use interpolation, only: polynomial_weights, hermite_weights, hermite_t, hermite_through, &
@@ -11,27 +11,25 @@ module arc
   use solver_options, only: tightened
   use mesh_plan, only: approach
   use path_coordinate, only: path_control
-  use path_tangent, only: tangent_t, tangent_along
+  use path_point, only: path_point_t
+  use path_tangent, only: tangent_along
   use moved_gaps, only: moved_outside, move_with_edge
   implicit none
   private
-  public :: arc_t, between, most_states
+  public :: arc_t, between, most_points
 
-  integer, parameter :: most_states = 8
+  integer, parameter :: most_points = 8
 
-  !> Some states of the path on one mesh with their coordinates s and their tangents (derivatives by
-  !> s), in the order of s.
+  !> Some points of the path on one mesh, in the order of the coordinate s.
   type :: arc_t
     integer :: mesh = approach, held = 0
     !> Whether guesses are made at constant distance from the contact edge. On a mesh locked to the
     !> edge this concerns the gaps outside it, on a mesh about the axis the gaps on both sides.
     logical :: moved = .false.
-    !> Number of states from which a state beyond an end is extrapolated.
+    !> Number of points from which a state beyond an end is extrapolated.
     integer :: extrapolated_from = 3
-    real(wp) :: coordinate(most_states) = 0
-    !> Allocated with most_states elements: compiler note 11.
-    type(state_t), allocatable :: state(:)
-    type(tangent_t), allocatable :: tangent(:)
+    !> Allocated with most_points elements: compiler note 11.
+    type(path_point_t), allocatable :: point(:)
   contains
     procedure :: add
     procedure :: drop_first
@@ -41,7 +39,7 @@ module arc
     procedure :: curve
     procedure :: slope
     procedure :: curvature
-    procedure :: state_at
+    procedure :: solve_at
     procedure :: support
   end type arc_t
 
@@ -50,18 +48,16 @@ module arc
 
 contains
 
-  !> The state at the coordinate s, with its tangent. The guess from the arc is corrected to
-  !> rounding or, if rounding is not reached, to the tolerance of the options. If that fails, the
+  !> The equilibrium at the coordinate s. The guess from the arc is corrected to rounding or, if rounding is not reached, to the tolerance of the options. If that fails, the
   !> other kind of guess is tried (see `moved`). slope_error: if present, the options' tolerance is
   !> enough, and the tangent may have this relative error. miss: the largest change of a gap from
   !> the guess; from the other kind of guess (huge if there is none); and of h0 and load. Changes
   !> are relative or in the law's lengths.
-  subroutine state_at(self, solver, s, state, tangent, converged, slope_error, miss)
+  subroutine solve_at(self, solver, s, point, converged, slope_error, miss)
     class(arc_t), intent(in) :: self
     class(solver_t), intent(inout) :: solver
     real(wp), intent(in) :: s
-    type(state_t), intent(out) :: state
-    type(tangent_t), intent(out) :: tangent
+    type(path_point_t), intent(out) :: point
     logical, intent(out) :: converged
     real(wp), intent(in), optional :: slope_error
     real(wp), intent(out), optional :: miss(3)
@@ -71,9 +67,11 @@ contains
 
     guesses = 1
     if (self%has_moving_parts(solver)) guesses = 2
+    point%mesh = self%mesh
+    point%coordinate = s
     converged = .false.
     associate (problem => solver%problem, grid => solver%meshes%grid(self%mesh), &
-      control => path_control(solver%problem, solver%meshes, self%mesh, s))
+      state => point%state, control => path_control(solver%problem, solver%meshes, self%mesh, s))
       do k = 1, guesses
         if (converged .and. .not. present(miss)) exit
         tried(k) = self%guess(problem, grid, s, self%moved .neqv. k == 2)
@@ -94,8 +92,8 @@ contains
           abs(state%load - load%value(s))/(abs(state%load) + pi*problem%law%adhesion))
       end if
     end associate
-    if (converged) call tangent_along(solver, self%mesh, s, state, tangent, converged, slope_error)
-  end subroutine state_at
+    if (converged) call tangent_along(solver, point, converged, slope_error)
+  end subroutine solve_at
 
   !> Whether the gaps change mainly because the edge moves. On meshes about the axis this is so if
   !> there is a contact. On meshes locked to the edge, the rings of an oscillating pressure and the
@@ -108,7 +106,7 @@ contains
       if (solver%meshes%is_about_axis(self%mesh)) then
         has_moving_parts = law%edge_gap > 0
         if (has_moving_parts) has_moving_parts = &
-          maxval(self%state(:self%held)%axis_gap) < law%edge_gap
+          maxval(self%point(:self%held)%state%axis_gap) < law%edge_gap
       else
         has_moving_parts = max(law%period, law%step_width) > 0
       end if
@@ -123,52 +121,45 @@ contains
     distance = maxval(abs(state%gap - guess%gap)/(1 + abs(guess%gap)))
   end function distance
 
-  !> Inserts a state in the order of s. The arc stays as it is if it is full or has a state at s.
-  pure subroutine add(self, s, state, tangent)
+  !> Inserts a point in the order of s. The arc stays as it is if it is full or has a point at s.
+  pure subroutine add(self, point)
     class(arc_t), intent(inout) :: self
-    real(wp), intent(in) :: s
-    type(state_t), intent(in) :: state
-    type(tangent_t), intent(in) :: tangent
+    type(path_point_t), intent(in) :: point
     integer :: j, place
 
-    if (self%held == most_states .or. any(abs(self%coordinate(:self%held) - s) <= 0)) return
-    if (.not. allocated(self%state)) &
-      allocate (self%state(most_states), self%tangent(most_states))
-    place = count(self%coordinate(:self%held) < s) + 1
+    if (.not. allocated(self%point)) allocate (self%point(most_points))
+    associate (x => self%point(:self%held)%coordinate)
+      if (self%held == most_points .or. any(abs(x - point%coordinate) <= 0)) return
+      place = count(x < point%coordinate) + 1
+    end associate
     do j = self%held, place, -1
-      self%coordinate(j + 1) = self%coordinate(j)
-      call self%state(j + 1)%become(self%state(j))
-      call self%tangent(j + 1)%become(self%tangent(j))
+      call self%point(j + 1)%become(self%point(j))
     end do
     self%held = self%held + 1
-    self%coordinate(place) = s
-    call self%state(place)%become(state)
-    call self%tangent(place)%become(tangent)
+    call self%point(place)%become(point)
   end subroutine add
 
-  !> Removes the first state.
+  !> Removes the first point.
   pure subroutine drop_first(self)
     class(arc_t), intent(inout) :: self
     integer :: j
 
     self%held = self%held - 1
     do j = 1, self%held
-      self%coordinate(j) = self%coordinate(j + 1)
-      call self%state(j)%become(self%state(j + 1))
-      call self%tangent(j)%become(self%tangent(j + 1))
+      call self%point(j)%become(self%point(j + 1))
     end do
   end subroutine drop_first
 
-  !> The states of the polynomial about s: the ends of the interval that contains s, and on either
-  !> side the nearest state that is far enough away. Beyond an end of the arc: the nearest few
-  !> states.
+  !> The points of the polynomial about s: the ends of the interval that contains s, and on either
+  !> side the nearest point that is far enough away. Beyond an end of the arc: the nearest few
+  !> points.
   pure subroutine support(self, s, nodes, n)
     class(arc_t), intent(in) :: self
     real(wp), intent(in) :: s
     integer, intent(out) :: nodes(most_hermite_nodes), n
     integer :: i, j
 
-    associate (x => self%coordinate, last => self%held)
+    associate (x => self%point(:self%held)%coordinate, last => self%held)
       do i = 1, last - 1
         if ((x(i) - s)*(x(i + 1) - s) <= 0) exit
       end do
@@ -179,7 +170,7 @@ contains
         nodes(:n) = [(j, j=i, i - 1 + n)]
         return
       end if
-      call find_nodes_about(x(:last), i, nodes, n)
+      call find_nodes_about(x, i, nodes, n)
     end associate
   end subroutine support
 
@@ -196,7 +187,7 @@ contains
     call self%guess_from(problem, grid, nodes(:n), s, expected, moved)
   end function guess
 
-  !> The state at s by the polynomial through the states `nodes` of the arc, in the arrays that
+  !> The state at s by the polynomial through the points `nodes` of the arc, in the arrays that
   !> `expected` has. The gaps are interpolated. Outside the edge the heights of the shape at the
   !> nodes are interpolated too: their exact values are known, and the error of the interpolated
   !> heights is subtracted from the guess. It is most of the error of the guess near an end of the
@@ -218,15 +209,15 @@ contains
 
     from = count(grid%x <= grid%centre) + 1
     n = size(nodes)
-    at(:n) = self%coordinate(nodes)
+    at(:n) = self%point(nodes)%coordinate
     call hermite_weights(at(:n), s, of_value(:n), of_slope(:n))
-    call expected%become(self%state(nodes(minloc(abs(at(:n) - s), 1))))
+    call expected%become(self%point(nodes(minloc(abs(at(:n) - s), 1)))%state)
     expected%pressure = 0
     h0 = 0
     scale = 0
     associate (shape => problem%shape)
       do j = 1, n
-        associate (state => self%state(nodes(j)), tangent => self%tangent(nodes(j)))
+        associate (state => self%point(nodes(j))%state, tangent => self%point(nodes(j))%tangent)
           expected%pressure = expected%pressure + of_value(j)*state%gap + of_slope(j)*tangent%gap
           h0 = h0 + of_value(j)*state%h0 + of_slope(j)*tangent%h0
           scale = scale + of_value(j)*state%scale + of_slope(j)*tangent%scale
@@ -242,11 +233,10 @@ contains
     if (present(moved)) then
       associate (gap => expected%pressure)
         if (moved .and. grid%centre > 0) then
-          gap(from:) = moved_outside(problem%shape, grid, self%state, self%tangent, nodes, &
-            of_value(:n), of_slope(:n), scale)
+          gap(from:) = moved_outside(problem%shape, grid, self%point, nodes, of_value(:n), &
+            of_slope(:n), scale)
         else if (moved) then
-          call move_with_edge(problem, grid, self%state, self%tangent, nodes, of_value(:n), &
-            of_slope(:n), gap)
+          call move_with_edge(problem, grid, self%point, nodes, of_value(:n), of_slope(:n), gap)
         end if
       end associate
     end if
@@ -299,10 +289,10 @@ contains
 
     call self%support(s, nodes, n)
     do j = 1, n
-      associate (state => self%state(nodes(j)), tangent => self%tangent(nodes(j)))
-        at(j) = self%coordinate(nodes(j))
-        value(j) = dot_product(weights, [state%h0, state%load])
-        slope(j) = tangent%of(weights)
+      associate (point => self%point(nodes(j)))
+        at(j) = point%coordinate
+        value(j) = dot_product(weights, [point%state%h0, point%state%load])
+        slope(j) = point%tangent%of(weights)
       end associate
     end do
     curve = hermite_through(at(:n), value(:n), slope(:n))
@@ -319,7 +309,7 @@ contains
   end function slope
 
   !> The second derivative of weights(1) h0 + weights(2) load by s, from slopes on either side of s;
-  !> at a state, where the polynomial changes, this is the mean of both sides.
+  !> at a point, where the polynomial changes, this is the mean of both sides.
   pure real(wp) function curvature(self, weights, s)
     class(arc_t), intent(in) :: self
     real(wp), intent(in) :: weights(2), s

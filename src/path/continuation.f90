@@ -10,7 +10,8 @@ module continuation
   use solver, only: solver_t
   use next_mesh, only: radius_for, locked_alike, beyond_passage
   use path_coordinate, only: coordinate_of, axis_gap_rate
-  use path_tangent, only: tangent_t, tangent_along
+  use path_point, only: path_point_t
+  use path_tangent, only: tangent_along
   use arc, only: arc_t
   implicit none
   private
@@ -105,14 +106,15 @@ contains
     type(state_t), intent(in) :: state
     type(arc_t), intent(inout) :: arc
     logical, intent(out) :: lost
-    type(tangent_t) :: tangent
-    real(wp) :: s
+    type(path_point_t) :: point
     logical :: found
 
-    s = coordinate_of(solver%problem, solver%meshes, arc%mesh, state)
-    call tangent_along(solver, arc%mesh, s, state, tangent, found, slope_error)
+    point%state = state
+    point%mesh = arc%mesh
+    point%coordinate = coordinate_of(solver%problem, solver%meshes, arc%mesh, state)
+    call tangent_along(solver, point, found, slope_error)
     lost = .not. found
-    if (found) call arc%add(s, state, tangent)
+    if (found) call arc%add(point)
   end subroutine add_with_tangent
 
   !> Computes the next state of the path on the same mesh. lost: no step, however small, converged.
@@ -120,8 +122,7 @@ contains
     class(continuation_t), intent(inout) :: self
     class(solver_t), intent(inout) :: solver
     logical, intent(out) :: lost
-    type(state_t) :: state
-    type(tangent_t) :: tangent
+    type(path_point_t) :: next
     real(wp) :: step, s, miss(3), off(2)
     logical :: converged
 
@@ -129,10 +130,10 @@ contains
     self%stuck = .false.
     do
       step = self%next_step(solver%equations_t)
-      s = self%coordinate(self%held) + step
+      s = self%point(self%held)%coordinate + step
       ! After a step of this length the earlier factors are no longer a good approximation.
       call solver%frozen%forget()
-      call self%state_at(solver, s, state, tangent, converged, self%slope_error, miss)
+      call self%solve_at(solver, s, next, converged, self%slope_error, miss)
       if (converged) then
         ! The better kind of guess for this state is used for the next one.
         self%moved = self%moved .neqv. miss(2) < miss(1)
@@ -150,7 +151,7 @@ contains
       if (lost) return
     end do
     if (self%is_full()) call self%drop_first()
-    call self%add(s, state, tangent)
+    call self%add(next)
   end subroutine advance
 
   !> The ratio of the next step to this one. ratio: the allowed miss over the miss of this step;
@@ -174,7 +175,7 @@ contains
     associate (meshes => equations%meshes, mesh => self%mesh)
       step = min(self%step, self%step_past_step(equations%problem, meshes%is_about_axis(mesh)))
       if (.not. equations%problem%law%edge_gap > 0) return
-      s = self%coordinate(self%held)
+      s = self%point(self%held)%coordinate
       ! No other mesh follows the last mesh if that is about the axis.
       if (mesh == size(meshes%grid) .and. meshes%is_about_axis(mesh)) return
       ! Does the coordinate end where the mesh does?
@@ -204,10 +205,10 @@ contains
 
     longest = huge(longest)
     if (.not. (about_axis .and. problem%law%step_width > 0)) return
-    associate (law => problem%law, gap => self%state(self%held)%axis_gap)
+    associate (law => problem%law, gap => self%point(self%held)%state%axis_gap)
       longest = max(at_once*law%step_width, &
         0.5_wp*(abs(gap - law%step_at) - reach*law%step_width))/ &
-        abs(axis_gap_rate(law, self%coordinate(self%held)))
+        abs(axis_gap_rate(law, self%point(self%held)%coordinate))
     end associate
   end function step_past_step
 

@@ -1,138 +1,125 @@
 !> Single equilibria of the path: at a place, or where Q = weights(1) h0 + weights(2) load has a
 !> given value or an extremum. They are on the path's meshes or, farther out, those of undeformed
-!> bodies.
+!> bodies. Their contact radii and energies are read.
 module curve_states
   use kinds, only: wp
   use dimensionless_problem, only: problem_t
   use interpolation, only: hermite_t
   use root_finding, only: root_search_t, new_root_search
-  use contact_state, only: state_t, contact_radius_of
+  use contact_state, only: contact_radius_of
   use solver, only: solver_t
-  use path_tangent, only: tangent_t
   use path_extrema, only: find_extrema, may_turn
-  use path_search, only: found_t, find_place
+  use path_search, only: find_place
+  use path_point, only: path_point_t, no_mesh
   use traced_path, only: traced_path_t
-  use path_state, only: path_state_t, path_place_t, no_mesh
   use path_span, only: path_span_t, new_path_span
   use potential_energy, only: energy_of
   use undeformed, only: load_undeformed, load_slope_undeformed, energy_undeformed
   implicit none
   private
-  public :: states_of_points, state_of, state_where, states_where, find_turns
+  public :: read_points, solve_at, state_where, states_where, find_turns
 
   !> Parts of an interval of undeformed bodies at whose ends the slope is evaluated.
   integer, parameter :: looks = 8
 
 contains
 
-  !> The reported values at the points of a path, up to the end of its last stable piece. At a fold
+  !> The points of a path, up to the end of its last stable piece, with their readings. At a fold
   !> the number of modes is that of the more unstable side.
-  function states_of_points(solver, path) result(states)
-    class(solver_t), intent(inout) :: solver
-    type(traced_path_t), intent(in) :: path
-    type(path_state_t), allocatable :: states(:)
-    integer :: i
-
-    allocate (states(path%last))
-    do i = 1, path%last
-      call state_of(solver, path, path_place_t(i, path%point(i)%coordinate), states(i))
-      states(i)%modes = path%modes_at(i)
-      states(i)%again = .not. (path%point(i)%leads_on .or. i == path%last)
-    end do
-  end function states_of_points
-
-  !> The equilibrium at a place on a mesh, with its tangent by the path's coordinate.
-  subroutine equilibrium_at(solver, path, place, state, tangent, converged)
-    class(solver_t), intent(inout) :: solver
-    type(traced_path_t), intent(in) :: path
-    class(path_place_t), intent(in) :: place
-    type(state_t), intent(out) :: state
-    type(tangent_t), intent(out) :: tangent
-    logical, intent(out) :: converged
-    type(path_span_t) :: span
-    integer :: i
-
-    do i = place%interval, min(place%interval + 1, path%held)
-      associate (point => path%point(i))
-        converged = abs(point%coordinate - place%x) <= 0
-        if (.not. converged) cycle
-        state = point%state
-        tangent = point%tangent
-        return
-      end associate
-    end do
-    span = new_path_span(path, place%interval)
-    call span%state_at(solver, place%x, state, tangent, converged)
-  end subroutine equilibrium_at
-
-  !> The reported values of the equilibrium at a place.
-  subroutine state_of(solver, path, place, found)
-    class(solver_t), intent(inout) :: solver
-    type(traced_path_t), intent(in) :: path
-    type(path_place_t), intent(in) :: place
-    type(path_state_t), intent(out) :: found
-    type(state_t) :: state
-    type(tangent_t) :: tangent
-    logical :: converged
-
-    if (path%point(place%interval)%mesh == no_mesh) then
-      found = undeformed_at(solver%problem, place)
-    else
-      call equilibrium_at(solver, path, place, state, tangent, converged)
-      found = told(solver, path, place, state, tangent, converged)
-    end if
-  end subroutine state_of
-
-  !> The reported values of undeformed bodies at a place.
-  pure type(path_state_t) function undeformed_at(problem, place) result(state)
-    type(problem_t), intent(in) :: problem
-    type(path_place_t), intent(in) :: place
-
-    state%interval = place%interval
-    state%x = place%x
-    state%h0 = exp(-place%x)
-    state%load = load_undeformed(problem, state%h0)
-    state%axis_gap = state%h0
-    state%energy = energy_undeformed(problem, state%h0)
-    state%slopes = -state%h0*[1.0_wp, load_slope_undeformed(problem, state%h0)]
-    state%converged = .true.
-  end function undeformed_at
-
-  !> The reported values of a state on a mesh.
-  type(path_state_t) function told(solver, path, place, state, tangent, converged) result(found)
+  function read_points(solver, path) result(points)
     class(solver_t), intent(in) :: solver
     type(traced_path_t), intent(in) :: path
-    type(path_place_t), intent(in) :: place
-    type(state_t), intent(in) :: state
-    type(tangent_t), intent(in) :: tangent
-    logical, intent(in) :: converged
+    type(path_point_t), allocatable :: points(:)
+    integer :: i
 
-    found%interval = place%interval
-    found%x = place%x
-    found%modes = path%point(place%interval)%modes
-    found%mesh = path%point(place%interval)%mesh
-    found%converged = converged
-    if (.not. converged) return
-    found%state = state
-    found%h0 = state%h0
-    found%load = state%load
-    found%axis_gap = state%axis_gap
-    found%residual = state%residual
-    found%slopes = [tangent%h0, tangent%load]
-    found%radius = contact_radius_of(solver%problem, solver%meshes%grid(found%mesh), state)
-    call energy_of(solver%equations_t, found%mesh, state, found%energy, found%uncertainty)
-  end function told
+    points = path%point(:path%last)
+    do i = 1, path%last
+      if (points(i)%mesh == no_mesh) then
+        points(i)%energy = energy_undeformed(solver%problem, points(i)%state%h0)
+      else
+        call read_state(solver, points(i))
+      end if
+      points(i)%interval = i
+      points(i)%modes = path%modes_at(i)
+    end do
+  end function read_points
+
+  !> The equilibrium at the coordinate x after point i, with its readings.
+  subroutine solve_at(solver, path, i, x, found)
+    class(solver_t), intent(inout) :: solver
+    type(traced_path_t), intent(in) :: path
+    integer, intent(in) :: i
+    real(wp), intent(in) :: x
+    type(path_point_t), intent(out) :: found
+    type(path_span_t) :: span
+    logical :: converged
+    integer :: k
+
+    if (path%point(i)%mesh == no_mesh) then
+      found = undeformed_at(solver%problem, i, x)
+      return
+    end if
+    do k = i, min(i + 1, path%held)
+      if (abs(path%point(k)%coordinate - x) > 0) cycle
+      found = path%point(k)
+      call finish(solver, path, i, .true., found)
+      return
+    end do
+    span = new_path_span(path, i)
+    call span%solve_at(solver, x, found, converged)
+    call finish(solver, path, i, converged, found)
+  end subroutine solve_at
+
+  !> Undeformed bodies at the coordinate x after point i, with their readings.
+  pure type(path_point_t) function undeformed_at(problem, i, x) result(point)
+    type(problem_t), intent(in) :: problem
+    integer, intent(in) :: i
+    real(wp), intent(in) :: x
+
+    point%interval = i
+    point%coordinate = x
+    associate (h0 => exp(-x))
+      point%state%h0 = h0
+      point%state%axis_gap = h0
+      point%state%load = load_undeformed(problem, h0)
+      point%tangent%h0 = -h0
+      point%tangent%load = -h0*load_slope_undeformed(problem, h0)
+      point%energy = energy_undeformed(problem, h0)
+    end associate
+  end function undeformed_at
+
+  !> Completes an equilibrium after point i that was solved on a mesh.
+  subroutine finish(solver, path, i, converged, point)
+    class(solver_t), intent(in) :: solver
+    type(traced_path_t), intent(in) :: path
+    integer, intent(in) :: i
+    logical, intent(in) :: converged
+    type(path_point_t), intent(inout) :: point
+
+    point%interval = i
+    point%modes = path%point(i)%modes
+    point%converged = converged
+    if (converged) call read_state(solver, point)
+  end subroutine finish
+
+  !> Reads the contact radius and the energy of a point on a mesh.
+  subroutine read_state(solver, point)
+    class(solver_t), intent(in) :: solver
+    type(path_point_t), intent(inout) :: point
+
+    point%radius = contact_radius_of(solver%problem, solver%meshes%grid(point%mesh), point%state)
+    call energy_of(solver%equations_t, point%mesh, point%state, point%energy, point%uncertainty)
+  end subroutine read_state
 
   !> The equilibrium with Q = `wanted` in interval i between x = from and x = to, where Q is
   !> monotonic.
-  subroutine state_where(solver, path, i, weights, wanted, from, to, state)
+  subroutine state_where(solver, path, i, weights, wanted, from, to, found)
     class(solver_t), intent(inout) :: solver
     type(traced_path_t), intent(in) :: path
     integer, intent(in) :: i
     real(wp), intent(in) :: weights(2), wanted, from, to
-    type(path_state_t), intent(out) :: state
+    type(path_point_t), intent(out) :: found
     type(path_span_t) :: span
-    type(found_t) :: found
     type(root_search_t) :: search
     real(wp) :: x
     logical :: done
@@ -143,12 +130,12 @@ contains
         x = search%place()
         call search%note(x, beyond(x))
       end do
-      state = undeformed_at(solver%problem, path_place_t(i, search%root))
+      found = undeformed_at(solver%problem, i, search%root)
       return
     end if
     span = new_path_span(path, i)
     call find_place(solver, span%arc_t, [from, to], weights, found, done, wanted)
-    state = told(solver, path, path_place_t(i, found%coordinate), found%state, found%tangent, done)
+    call finish(solver, path, i, done, found)
 
   contains
 
@@ -167,10 +154,10 @@ contains
     class(solver_t), intent(inout) :: solver
     type(traced_path_t), intent(in) :: path
     real(wp), intent(in) :: weights(2), wanted
-    type(path_state_t), allocatable, intent(out) :: states(:)
+    type(path_point_t), allocatable, intent(out) :: states(:)
     logical, intent(out) :: solved
-    type(path_state_t) :: found
-    type(path_state_t), allocatable :: turns(:)
+    type(path_point_t) :: found
+    type(path_point_t), allocatable :: turns(:)
     real(wp), allocatable :: x(:), beyond(:)
     integer :: i, k
     logical :: all_turns
@@ -182,9 +169,9 @@ contains
       call find_turns(solver, path, i, weights, turns, all_turns)
       solved = solved .and. all_turns
       associate (ends => path%point(i:i + 1))
-        x = [ends(1)%coordinate, turns%x, ends(2)%coordinate]
-        beyond = weights(1)*[ends(1)%state%h0, turns%h0, ends(2)%state%h0] + &
-          weights(2)*[ends(1)%state%load, turns%load, ends(2)%state%load] - wanted
+        x = [ends(1)%coordinate, turns%coordinate, ends(2)%coordinate]
+        beyond = weights(1)*[ends(1)%state%h0, turns%state%h0, ends(2)%state%h0] + &
+          weights(2)*[ends(1)%state%load, turns%state%load, ends(2)%state%load] - wanted
       end associate
       do k = 1, size(x) - 1
         if ((beyond(k) < 0) .eqv. (beyond(k + 1) < 0)) cycle
@@ -203,10 +190,9 @@ contains
     type(traced_path_t), intent(in) :: path
     integer, intent(in) :: i
     real(wp), intent(in) :: weights(2)
-    type(path_state_t), allocatable, intent(out) :: turns(:)
+    type(path_point_t), allocatable, intent(out) :: turns(:)
     logical, intent(out) :: solved
     type(path_span_t) :: span
-    type(found_t), allocatable :: extrema(:)
     type(hermite_t) :: curve
     real(wp) :: ends(2)
     integer :: k
@@ -221,13 +207,10 @@ contains
     allocate (turns(0))
     if (.not. may_turn(curve, ends)) return
     span = new_path_span(path, i)
-    call find_extrema(solver, span%arc_t, span%ends, weights, extrema, lost)
+    call find_extrema(solver, span%arc_t, span%ends, weights, turns, lost)
     solved = .not. lost
-    deallocate (turns)
-    allocate (turns(size(extrema)))
-    do k = 1, size(extrema)
-      turns(k) = told(solver, path, path_place_t(i, extrema(k)%coordinate), extrema(k)%state, &
-        extrema(k)%tangent, .true.)
+    do k = 1, size(turns)
+      call finish(solver, path, i, .true., turns(k))
     end do
   end subroutine find_turns
 
@@ -236,8 +219,8 @@ contains
     type(problem_t), intent(in) :: problem
     integer, intent(in) :: i
     real(wp), intent(in) :: ends(2), weights(2)
-    type(path_state_t), allocatable :: turns(:)
-    type(path_state_t) :: turn
+    type(path_point_t), allocatable :: turns(:)
+    type(path_point_t) :: turn
     type(root_search_t) :: search
     real(wp) :: x(0:looks), at
     integer :: k
@@ -251,7 +234,7 @@ contains
         at = search%place()
         call search%note(at, slope(at))
       end do
-      turn = undeformed_at(problem, path_place_t(i, search%root))
+      turn = undeformed_at(problem, i, search%root)
       turns = [turns, turn]
     end do
 

@@ -8,7 +8,7 @@
 module driven_pieces
   use kinds, only: wp
   use drives, only: drive_t
-  use path_state, only: path_state_t
+  use path_point, only: path_point_t
   implicit none
   private
   public :: driven_pieces_t, driven_piece_t, jump_t, leg_t, walk_t, way_along
@@ -16,7 +16,7 @@ module driven_pieces
   !> A stable piece, from large separations inward; its ends are turning points of Q, or the ends of
   !> the known path.
   type :: driven_piece_t
-    type(path_state_t) :: first, last
+    type(path_point_t) :: first, last
     logical :: first_turns = .false., last_turns = .false.
   contains
     procedure :: end_of
@@ -28,7 +28,7 @@ module driven_pieces
   !> state there was not solved.
   type :: jump_t
     logical :: inward = .true., landed = .false.
-    type(path_state_t) :: before, after
+    type(path_point_t) :: before, after
     !> The piece in which the jump ends; 0: there is none.
     integer :: piece = 0
     real(wp) :: energy = 0, uncertainty = 0
@@ -68,7 +68,7 @@ module driven_pieces
 contains
 
   !> The inner or the outer end of a piece.
-  pure type(path_state_t) function end_of(self, inward)
+  pure type(path_point_t) function end_of(self, inward)
     class(driven_piece_t), intent(in) :: self
     logical, intent(in) :: inward
 

@@ -6,12 +6,12 @@ module drives
   use quadrature, only: gauss_legendre
   use interpolation, only: hermite_t
   use traced_path, only: traced_path_t
-  use path_state, only: path_state_t, path_place_t, part_of
+  use path_point, only: path_point_t, part_of
   implicit none
   private
   public :: drive_t, through_spring
 
-  !> Weights of h0 and load in Q (`path_tangent`).
+  !> Weights of h0 and load in Q (`path_point`).
   type :: drive_t
     real(wp) :: weights(2) = [1.0_wp, 0.0_wp]
   contains
@@ -38,24 +38,24 @@ contains
   end function through_spring
 
   !> Q at a state.
-  elemental real(wp) function position(self, state)
+  elemental real(wp) function position(self, point)
     class(drive_t), intent(in) :: self
-    class(path_state_t), intent(in) :: state
+    type(path_point_t), intent(in) :: point
 
-    position = self%weights(1)*state%h0 + self%weights(2)*state%load
+    position = self%weights(1)*point%state%h0 + self%weights(2)*point%state%load
   end function position
 
   !> Energy of bodies and spring, or of bodies and dead load. At fixed Q equilibria are stationary
   !> points of this energy; a jump dissipates the difference. The derivative by Q is minus the
   !> conjugate of Q.
-  elemental real(wp) function energy(self, state)
+  elemental real(wp) function energy(self, point)
     class(drive_t), intent(in) :: self
-    class(path_state_t), intent(in) :: state
+    type(path_point_t), intent(in) :: point
 
     if (self%weights(1) > 0) then
-      energy = state%energy - 0.5_wp*self%weights(2)*state%load**2
+      energy = point%energy - 0.5_wp*self%weights(2)*point%state%load**2
     else
-      energy = state%energy + state%load*state%h0
+      energy = point%energy + point%state%load*point%state%h0
     end if
   end function energy
 
@@ -64,7 +64,7 @@ contains
   pure real(wp) function work_between(self, path, from, to) result(work)
     class(drive_t), intent(in) :: self
     type(traced_path_t), intent(in) :: path
-    class(path_place_t), intent(in) :: from, to
+    type(path_point_t), intent(in) :: from, to
     type(hermite_t) :: force, driven
     real(wp) :: node(rule), weight(rule), ends(2), x
     integer :: i, k

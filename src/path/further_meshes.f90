@@ -47,9 +47,9 @@ contains
     associate (meshes => equations%meshes, law => equations%problem%law, mesh => arc%mesh)
       if (.not. meshes%grows .or. meshes%fronts .or. .not. law%edge_gap > 0) return
       if (meshes%in_contact(mesh) .or. arc%held < enough) return
-      if (arc%coordinate(arc%held) - arc%coordinate(1) < least_progress) return
+      if (arc%point(arc%held)%coordinate - arc%point(1)%coordinate < least_progress) return
       if (meshes%passage(mesh) <= 0) return
-      associate (before => arc%state(arc%held - 1), now => arc%state(arc%held))
+      associate (before => arc%point(arc%held - 1)%state, now => arc%point(arc%held)%state)
         level = meshes%locked_gap(mesh)
         if (.not. level > 0) level = edge_beyond(law, now%axis_gap)
         radius = [radius_of_gap(equations%problem%shape, level, meshes%grid(mesh), before), &
@@ -74,7 +74,7 @@ contains
         further%reach = [radius(1), band_of_waves*radius(2)]
       else
         ! The poles of the pressure have the same distance from the axis at h0 and at -h0.
-        further%reach = [max(meshes%reach(1, 1), deeper*abs(arc%state(arc%held)%h0)), 0.0_wp]
+        further%reach = [max(meshes%reach(1, 1), deeper*abs(arc%point(arc%held)%state%h0)), 0.0_wp]
       end if
     end associate
   end function further_mesh

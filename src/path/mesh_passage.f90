@@ -32,8 +32,8 @@ contains
     associate (meshes => equations%meshes, mesh => walker%mesh, held => walker%held)
       come = held > 2 .and. equations%problem%law%edge_gap > 0 .and. mesh < size(meshes%grid)
       if (.not. come) return
-      before = radius_for(equations, mesh, mesh + 1, walker%state(held - 1))
-      now = radius_for(equations, mesh, mesh + 1, walker%state(held))
+      before = radius_for(equations, mesh, mesh + 1, walker%point(held - 1)%state)
+      now = radius_for(equations, mesh, mesh + 1, walker%point(held)%state)
       if (walker%stuck) then
         come = meshes%is_about_axis(mesh) .and. .not. meshes%is_about_axis(mesh + 1) .and. &
           before > 0 .and. now > before
@@ -62,7 +62,7 @@ contains
       call transfer(walker, solver, next, lost)
       suffices = .not. lost
       if (suffices) suffices = &
-        left_in_state(solver%equations_t, next%mesh, next%state(1)) <= walker%most
+        left_in_state(solver%equations_t, next%mesh, next%point(1)%state) <= walker%most
     end if
     if (.not. suffices) then
       call lay_out_next(solver%equations_t, walker%arc_t)
@@ -70,18 +70,18 @@ contains
       call transfer(walker, solver, next, lost)
     end if
     if (lost .or. next%held < 2) return
-    associate (old => walker%tangent(walker%held - 1), new => next%tangent(1))
+    associate (old => walker%point(walker%held - 1)%tangent, new => next%point(1)%tangent)
       if (.not. old%goes_with(new)) return
       ! The gap may not reach the step of a law where the path enters the next mesh.
       if (solver%problem%law%step_width > 0 .and. .not. old%is_alike(new) .and. &
-        left_in_state(solver%equations_t, walker%mesh, walker%state(walker%held - 1)) <= &
+        left_in_state(solver%equations_t, walker%mesh, walker%point(walker%held - 1)%state) <= &
         walker%most) return
     end associate
     ! Steps in time use radii alone.
-    if (walker%stuck) solver%meshes%passage(walker%mesh) = next%state(1)%scale
+    if (walker%stuck) solver%meshes%passage(walker%mesh) = next%point(1)%state%scale
     walker%arc_t = next
     walker%step = 0.5_wp*walker%step
-    if (walker%stuck) walker%step = next%coordinate(2) - next%coordinate(1)
+    if (walker%stuck) walker%step = next%point(2)%coordinate - next%point(1)%coordinate
     walker%stuck = .false.
   end subroutine pass_to_next
 
@@ -99,7 +99,7 @@ contains
     next%moved = arc%moved
     next%extrapolated_from = arc%extrapolated_from
     do j = arc%held - 1, arc%held
-      state = arc%state(j)
+      state = arc%point(j)%state
       ! The two states are a step of the path apart.
       call solver%frozen%forget()
       call move_to_mesh(solver, arc%mesh, next%mesh, state, done)

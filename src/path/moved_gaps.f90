@@ -6,8 +6,8 @@ module moved_gaps
   use dimensionless_problem, only: problem_t
   use discretisation, only: discretisation_t
   use contact_scales, only: cohesive_width
-  use contact_state, only: state_t, radius_of_gap
-  use path_tangent, only: tangent_t
+  use contact_state, only: radius_of_gap
+  use path_point, only: path_point_t
   implicit none
   private
   public :: moved_outside, move_with_edge
@@ -19,14 +19,12 @@ contains
 
   !> The gaps outside the edge to which a mesh is locked, at a given scale, by polynomials of the
   !> coordinate at constant distance from the edge, with the weights of values and slopes of the
-  !> states `nodes`. Rings of an oscillating pressure, and the step of a pressure, keep their
+  !> points `nodes`. Rings of an oscillating pressure, and the step of a pressure, keep their
   !> distance from the edge approximately, while they pass many nodes.
-  pure function moved_outside(shape, grid, states, tangents, nodes, of_value, of_slope, scale) &
-    result(gap)
+  pure function moved_outside(shape, grid, points, nodes, of_value, of_slope, scale) result(gap)
     class(shape_t), intent(in) :: shape
     type(discretisation_t), intent(in) :: grid
-    type(state_t), intent(in) :: states(:)
-    type(tangent_t), intent(in) :: tangents(:)
+    type(path_point_t), intent(in) :: points(:)
     integer, intent(in) :: nodes(:)
     real(wp), intent(in) :: of_value(:), of_slope(:), scale
     integer :: j, from
@@ -35,7 +33,7 @@ contains
     from = count(grid%x <= grid%centre) + 1
     gap = shape%height(scale*grid%x(from:))
     do j = 1, size(nodes)
-      associate (state => states(nodes(j)), tangent => tangents(nodes(j)))
+      associate (state => points(nodes(j))%state, tangent => points(nodes(j))%tangent)
         raised = state%gap - shape%height(state%scale*grid%x)
         value = of_value(j)*raised + of_slope(j)*(tangent%gap - &
           tangent%scale*grid%x*shape%slope(state%scale*grid%x))
@@ -49,14 +47,13 @@ contains
   end function moved_outside
 
   !> Replaces gaps near the edge, on a mesh about the axis, by polynomials of the coordinate at
-  !> constant distance from the edge, with the weights of values and slopes of the states `nodes`.
+  !> constant distance from the edge, with the weights of values and slopes of the points `nodes`.
   !> Inside the edge the gaps move with it; outside, the gaps less the heights of the shape do. Far
   !> from the edge gaps change at a fixed radius.
-  pure subroutine move_with_edge(problem, grid, states, tangents, nodes, of_value, of_slope, gap)
+  pure subroutine move_with_edge(problem, grid, points, nodes, of_value, of_slope, gap)
     type(problem_t), intent(in) :: problem
     type(discretisation_t), intent(in) :: grid
-    type(state_t), intent(in) :: states(:)
-    type(tangent_t), intent(in) :: tangents(:)
+    type(path_point_t), intent(in) :: points(:)
     integer, intent(in) :: nodes(:)
     real(wp), intent(in) :: of_value(:), of_slope(:)
     real(wp), intent(inout) :: gap(:)
@@ -68,7 +65,7 @@ contains
 
     c = 0
     do j = 1, size(nodes)
-      associate (state => states(nodes(j)), tangent => tangents(nodes(j)))
+      associate (state => points(nodes(j))%state, tangent => points(nodes(j))%tangent)
         radius(j) = radius_of_gap(problem%shape, problem%law%edge_gap, grid, state)
         if (.not. radius(j) > 0) return
         rate(j) = -tangent_at_edge(grid, state%gap, tangent%gap, radius(j))
@@ -83,7 +80,7 @@ contains
     gap(first:edge) = 0
     gap(edge + 1:last) = height(edge + 1:last)
     do j = 1, size(nodes)
-      associate (state => states(nodes(j)), tangent => tangents(nodes(j)))
+      associate (state => points(nodes(j))%state, tangent => points(nodes(j))%tangent)
         call move(state%gap, tangent%gap, gap(first:edge), grid%x(first:edge))
         call move(state%gap - height, tangent%gap, gap(edge + 1:last), grid%x(edge + 1:last))
       end associate

@@ -51,14 +51,14 @@ contains
     associate (meshes => equations%meshes)
       ! The last two states of the arc pass to the mesh; they may lie beyond its band.
       if (.not. meshes%is_about_axis(to)) then
-        low = radius_for(equations, arc%mesh, to, arc%state(arc%held - 1))
-        high = radius_for(equations, arc%mesh, to, arc%state(arc%held))
+        low = radius_for(equations, arc%mesh, to, arc%point(arc%held - 1)%state)
+        high = radius_for(equations, arc%mesh, to, arc%point(arc%held)%state)
         if (low > 0) meshes%reach(1, to) = min(meshes%reach(1, to), low)
         meshes%reach(2, to) = max(meshes%reach(2, to), high)
       end if
       shape = shape_for_next(equations, arc, i)
       do while (meshes%grows .and. .not. meshes%is_about_axis(to))
-        low = max(meshes%reach(1, to), radius_for(equations, arc%mesh, to, arc%state(i)))
+        low = max(meshes%reach(1, to), radius_for(equations, arc%mesh, to, arc%point(i)%state))
         high = meshes%reach(2, to)
         if (high < narrowest**2*low) exit
         crowded = shape%node_count() > many_more*meshes%grid(arc%mesh)%nodes
@@ -89,7 +89,8 @@ contains
 
     to = arc%mesh + 1
     associate (problem => equations%problem, meshes => equations%meshes, &
-      grid => equations%meshes%grid(arc%mesh), state => arc%state(i), before => arc%state(i - 1))
+      grid => equations%meshes%grid(arc%mesh), state => arc%point(i)%state, &
+      before => arc%point(i - 1)%state)
       call seen%begin_on(grid, size(ahead), 10.0_wp**(-min(meshes%digits, most_digits_seen)))
       load = felt_load(problem, grid, state)
       radius = radius_of_gap(problem%shape, problem%law%edge_gap, grid, state)

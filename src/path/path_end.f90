@@ -10,13 +10,12 @@ module path_end
   use interpolation, only: hermite_t
   use dimensionless_problem, only: problem_t
   use force_law, only: force_law_t, of_slope
-  use contact_state, only: state_t
   use equilibrium, only: equations_t
   use solver, only: solver_t
   use path_coordinate, only: coordinate_of
   use path_span, only: path_span_t, new_path_span
-  use path_tangent, only: tangent_t
-  use traced_path, only: traced_path_t, path_point_t
+  use path_point, only: path_point_t
+  use traced_path, only: traced_path_t
   implicit none
   private
   public :: demand_t, touches, outer_end, astray, collapsed
@@ -91,8 +90,7 @@ contains
     type(traced_path_t), intent(in) :: path
     real(wp), intent(in) :: h0_end
     type(path_span_t) :: span
-    type(state_t) :: state
-    type(tangent_t) :: tangent
+    type(path_point_t) :: at_end, point
     logical :: done
 
     if (.not. (solver%problem%law%edge_gap > 0 .and. path%held > 1)) then
@@ -107,25 +105,25 @@ contains
         if (.not. any(solver%problem%law%slope([from%state%axis_gap, to%state%axis_gap]) < 0)) &
           cycle
         span = new_path_span(path, i)
-        call span%solve_at_h0(solver, h0_end, state, done)
-        if (done) call span%state_at(solver, coordinate_of(solver%problem, solver%meshes, &
-          span%mesh, state), state, tangent, done)
+        call span%solve_at_h0(solver, h0_end, at_end)
+        if (.not. at_end%converged) cycle
+        call span%solve_at(solver, coordinate_of(solver%problem, solver%meshes, span%mesh, &
+          at_end%state), point, done)
         if (.not. done) cycle
-        if (rests_outside(solver%problem%law, state%axis_gap, tangent)) return
+        if (rests_outside(solver%problem%law, point)) return
       end associate
     end do
     i = 0
   end function outer_end
 
-  !> Whether a state with this gap on the axis and this tangent of the path is an outer contact.
-  pure logical function rests_outside(law, axis_gap, tangent)
+  !> Whether a point of the path is an outer contact.
+  pure logical function rests_outside(law, point)
     class(force_law_t), intent(in) :: law
-    real(wp), intent(in) :: axis_gap
-    type(tangent_t), intent(in) :: tangent
+    type(path_point_t), intent(in) :: point
 
-    rests_outside = axis_gap > law%edge_gap .and. &
-      abs(tangent%axis_gap) < resting*abs(tangent%h0)
-    if (rests_outside) rests_outside = law%at(of_slope, axis_gap) < 0
+    rests_outside = point%state%axis_gap > law%edge_gap .and. &
+      abs(point%tangent%axis_gap) < resting*abs(point%tangent%h0)
+    if (rests_outside) rests_outside = law%at(of_slope, point%state%axis_gap) < 0
   end function rests_outside
 
   !> Whether the bodies are in contact, within all barriers, at a point of the path. Under a law

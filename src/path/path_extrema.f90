@@ -8,8 +8,9 @@ module path_extrema
   use solver, only: solver_t
   use interpolation, only: hermite_t, hermite_through
   use root_finding, only: bracket_t
-  use arc, only: arc_t, most_states
-  use path_search, only: found_t, find_place
+  use path_point, only: path_point_t
+  use arc, only: arc_t, most_points
+  use path_search, only: find_place
   implicit none
   private
   public :: find_extrema, may_turn
@@ -25,15 +26,15 @@ module path_extrema
 contains
 
   !> The extrema of Q between two neighbouring states of an arc, those at the coordinates `ends`, in
-  !> order. lost: a solve failed.
+  !> order: maxima and minima alternate. lost: a solve failed.
   subroutine find_extrema(solver, arc, ends, weights, extrema, lost)
     class(solver_t), intent(inout) :: solver
     type(arc_t), intent(in) :: arc
     real(wp), intent(in) :: ends(2), weights(2)
-    type(found_t), allocatable, intent(out) :: extrema(:)
+    type(path_point_t), allocatable, intent(out) :: extrema(:)
     logical, intent(out) :: lost
     type(arc_t) :: near
-    type(found_t) :: found
+    type(path_point_t) :: found
     real(wp) :: s, expected, error
     integer :: i
     logical :: turns, doubt, done
@@ -41,25 +42,25 @@ contains
     allocate (extrema(0))
     lost = .false.
     error = huge(1.0_wp)
-    i = findloc(arc%coordinate(:arc%held), ends(1), 1)
+    i = findloc(arc%point(:arc%held)%coordinate, ends(1), 1)
     ! Most intervals have no extremum; the arc is copied only for the others.
     call look_at(arc)
     if (.not. (turns .or. doubt)) return
     near = arc
     call solver%frozen%forget()
-    do while (near%coordinate(i) < ends(2))
+    do while (near%point(i)%coordinate < ends(2))
       call look_at(near)
-      if (doubt .and. near%held < most_states) then
+      if (doubt .and. near%held < most_points) then
         expected = near%slope(weights, s)
-        call near%state_at(solver, s, found%state, found%tangent, done)
+        call near%solve_at(solver, s, found, done)
         lost = .not. done
         if (lost) return
         error = abs(found%tangent%of(weights) - expected)
-        call near%add(s, found%state, found%tangent)
+        call near%add(found)
         cycle
       end if
       if (turns) then
-        call find_place(solver, near, near%coordinate(i:i + 1), weights, found, done)
+        call find_place(solver, near, near%point(i:i + 1)%coordinate, weights, found, done)
         lost = .not. done
         if (lost) return
         extrema = [extrema, found]
@@ -76,9 +77,9 @@ contains
       real(wp) :: value(2), slope(2)
       integer :: j
 
-      associate (x => near%coordinate(i:i + 1), states => near%state(i:i + 1))
+      associate (x => near%point(i:i + 1)%coordinate, states => near%point(i:i + 1)%state)
         value = [(dot_product(weights, [states(j)%h0, states(j)%load]), j=1, 2)]
-        slope = [(near%tangent(j)%of(weights), j=i, i + 1)]
+        slope = [(near%point(j)%tangent%of(weights), j=i, i + 1)]
         call look(near%curve(weights, x(1) + 0.5_wp*(x(2) - x(1))), x, slope, error, &
           turns, doubt, s)
         if (turns .or. doubt) return

@@ -10,10 +10,9 @@ module path_growth
   use kinds, only: wp
   use solver, only: solver_t
   use arc, only: arc_t
-  use path_tangent, only: of_h0, of_load
+  use path_point, only: path_point_t, of_h0, of_load
   use path_extrema, only: find_extrema
-  use path_search, only: found_t
-  use traced_path, only: traced_path_t, path_point_t
+  use traced_path, only: traced_path_t
   implicit none
   private
   public :: append, add_extrema
@@ -23,7 +22,7 @@ module path_growth
 
 contains
 
-  !> Appends a state of an arc, the newest or the one `before` states earlier, as the last point.
+  !> Appends a point of an arc, the newest or the one `before` states earlier, as the last point.
   subroutine append(path, arc, before)
     type(traced_path_t), intent(inout) :: path
     type(arc_t), intent(in) :: arc
@@ -33,16 +32,13 @@ contains
 
     k = arc%held
     if (present(before)) k = k - before
+    point = arc%point(k)
     if (path%held > 0) then
       associate (last => path%point(path%held))
         last%leads_on = last%mesh == arc%mesh
         point%modes = last%modes
       end associate
     end if
-    point%state = arc%state(k)
-    point%tangent = arc%tangent(k)
-    point%mesh = arc%mesh
-    point%coordinate = arc%coordinate(k)
     call path%insert(path%held + 1, point)
   end subroutine append
 
@@ -53,8 +49,8 @@ contains
     type(arc_t), intent(in) :: arc
     class(solver_t), intent(inout) :: solver
     logical, intent(out) :: lost
-    type(found_t), allocatable :: extrema(:)
-    logical :: folds
+    type(path_point_t), allocatable :: extrema(:)
+    logical :: folds, maximum
     integer :: pass, n, k
 
     lost = .false.
@@ -62,48 +58,46 @@ contains
       folds = pass == 1
       if (lost) return
       n = arc%held
-      if (.not. folds .and. .not. any(abs(arc%state(max(1, n - 1):n)%load) > &
+      if (.not. folds .and. .not. any(abs(arc%point(max(1, n - 1):n)%state%load) > &
         no_load*solver%problem%law%adhesion)) cycle
       if (n < 2) return
-      call find_extrema(solver, arc, arc%coordinate(n - 1:n), &
+      call find_extrema(solver, arc, arc%point(n - 1:n)%coordinate, &
         merge(of_h0, of_load, folds), extrema, lost)
+      maximum = .not. arc%point(n - 1)%tangent%of(merge(of_h0, of_load, folds)) < 0
       do k = 1, size(extrema)
-        call put(path, arc, folds, extrema(k))
+        call put(path, extrema(k), folds, maximum)
+        maximum = .not. maximum
       end do
     end do
   end subroutine add_extrema
 
-  !> Inserts an extremum of h0 (a fold) or of the load among the last points, by its coordinate on
-  !> the arc's mesh.
-  subroutine put(path, arc, fold, found)
+  !> Inserts an extremum of h0 (a fold) or of the load among the last points, by its coordinate.
+  !> maximum: of h0 or load along the path inward.
+  subroutine put(path, extremum, fold, maximum)
     type(traced_path_t), intent(inout) :: path
-    type(arc_t), intent(in) :: arc
-    logical, intent(in) :: fold
-    type(found_t), intent(in) :: found
-    type(path_point_t) :: point
+    type(path_point_t), intent(in) :: extremum
+    logical, intent(in) :: fold, maximum
     integer :: place, change
 
     place = path%held
     do while (place > 1)
       associate (before => path%point(place - 1))
-        if (before%mesh /= arc%mesh .or. .not. before%coordinate > found%coordinate) exit
+        if (before%mesh /= extremum%mesh .or. .not. before%coordinate > extremum%coordinate) exit
       end associate
       place = place - 1
     end do
     ! The path before its first point is not known.
     if (place < 2) return
-    point%state = found%state
-    point%tangent = found%tangent
-    point%mesh = arc%mesh
-    point%coordinate = found%coordinate
-    point%leads_on = .true.
-    point%fold = fold
-    point%load_extremum = .not. fold
-    point%modes = path%point(place - 1)%modes
-    call path%insert(place, point)
+    call path%insert(place, extremum)
+    associate (point => path%point(place))
+      point%leads_on = .true.
+      point%fold = fold
+      point%load_extremum = .not. fold
+      point%modes = path%point(place - 1)%modes
+    end associate
     if (.not. fold) return
     ! At a maximum of h0 its second derivative is negative.
-    change = merge(-1, 1, -found%sense*found%tangent%load > 0)
+    change = merge(-1, 1, maximum .eqv. extremum%tangent%load < 0)
     path%point(place:path%held)%modes = path%point(place:path%held)%modes + change
   end subroutine put
 

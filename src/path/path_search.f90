@@ -6,15 +6,14 @@
 module path_search
   use kinds, only: wp
   use represented_pressure, only: pressure_slope_t, slope_on
-  use contact_state, only: state_t
   use solver, only: solver_t
   use interpolation, only: hermite_t
   use root_finding, only: bracket_t, root_search_t, new_root_search, resolution
-  use path_tangent, only: tangent_t
-  use arc, only: arc_t, most_states
+  use path_point, only: path_point_t
+  use arc, only: arc_t, most_points
   implicit none
   private
-  public :: found_t, find_place, place_on
+  public :: find_place, place_on
 
   !> Largest number of states solved in one search. A change of place below which rounding may keep
   !> the residual from falling. The largest change of place, over the interval, for which a state is
@@ -26,20 +25,9 @@ module path_search
   !> remain at the end.
   real(wp), parameter :: near_enough = 2.0e-13_wp, found_at = 1.0e-12_wp, left_over = 1.0e-5_wp
 
-  !> A solution on one of the meshes: its coordinate, state and tangent; miss: Q minus the wanted
-  !> value, or the slope of Q at an extremum; sense: 1 for a maximum along the path inward, -1 for a
-  !> minimum.
-  type :: found_t
-    real(wp) :: coordinate = 0
-    type(state_t) :: state
-    type(tangent_t) :: tangent
-    real(wp) :: miss = huge(1.0_wp)
-    integer :: sense = 1
-  end type found_t
-
 contains
 
-  !> The state between two places at which Q, monotonic there, has the value `wanted` or, if
+  !> The equilibrium between two places at which Q, monotonic there, has the value `wanted` or, if
   !> `wanted` is absent, the one extremum of Q there. For a value the iteration is Newton's, since
   !> the slope of Q is exact at a state. For an extremum each state joins the arc, whose polynomial
   !> gives the next place. A small last step is along the tangent, without another solve. If steps
@@ -50,33 +38,35 @@ contains
     class(solver_t), intent(inout) :: solver
     type(arc_t), intent(in) :: arc
     real(wp), intent(in) :: ends(2), weights(2)
-    type(found_t), intent(out) :: found
+    type(path_point_t), intent(out) :: found
     logical, intent(out) :: done
     real(wp), intent(in), optional :: wanted
     type(arc_t) :: near
     type(bracket_t) :: bracket
     type(hermite_t) :: curve
-    type(found_t) :: tried
-    real(wp) :: s, rate, least_change, change, before
+    type(path_point_t) :: tried
+    real(wp) :: s, rate, least_change, change, before, miss, missed
     integer :: round, k, j
     logical :: rising, solved
 
     near = arc
+    miss = huge(miss)
     curve = near%curve(weights, 0.5_wp*sum(ends))
     bracket = bracket_t(ends(1), ends(2))
     if (present(wanted)) then
       rising = curve%value(ends(1)) < wanted
       least_change = 4*resolution(maxval(abs(ends)))
       do k = 1, 2
-        j = findloc(near%coordinate(:near%held), ends(k), 1)
+        j = findloc(near%point(:near%held)%coordinate, ends(k), 1)
         if (j == 0) cycle
-        tried = found_t(ends(k), near%state(j), near%tangent(j))
-        tried%miss = miss_of(tried)
-        if (abs(tried%miss) < abs(found%miss)) found = tried
+        missed = miss_of(near%point(j))
+        if (.not. abs(missed) < abs(miss)) cycle
+        miss = missed
+        found = near%point(j)
       end do
     else
-      j = findloc(near%coordinate(:near%held), ends(1), 1)
-      rising = near%tangent(j)%of(weights) < 0
+      j = findloc(near%point(:near%held)%coordinate, ends(1), 1)
+      rising = near%point(j)%tangent%of(weights) < 0
       least_change = solver%options%place_error
     end if
     s = place_on(curve, ends, wanted)
@@ -86,22 +76,22 @@ contains
     call solver%frozen%forget()
     do round = 1, most_rounds
       if (is_there(found)) exit
-      call near%state_at(solver, s, tried%state, tried%tangent, solved)
+      call near%solve_at(solver, s, tried, solved)
       if (.not. solved) exit
-      tried%coordinate = s
-      tried%miss = miss_of(tried)
-      call bracket%narrow((tried%miss < 0) .eqv. rising, s)
-      call join(near, s, tried%state, tried%tangent)
-      if (.not. abs(tried%miss) < abs(found%miss)) then
+      missed = miss_of(tried)
+      call bracket%narrow((missed < 0) .eqv. rising, s)
+      call join(near, tried)
+      if (.not. abs(missed) < abs(miss)) then
         if (abs(s - found%coordinate) < rounding_rules) exit
         s = bracket%middle()
         cycle
       end if
       found = tried
+      miss = missed
       if (present(wanted)) then
         rate = found%tangent%of(weights)
         if (.not. abs(rate) > tiny(rate)) exit
-        s = bracket%within(s - found%miss/rate)
+        s = bracket%within(s - miss/rate)
       else
         s = place_on(near%curve(weights, bracket%middle()), [bracket%low, bracket%high])
       end if
@@ -111,49 +101,49 @@ contains
         (present(wanted) .or. change**2 < least_change*before)) then
         call move(found, change, slope_on(solver%problem%law, solver%meshes%grid(near%mesh), &
           found%state%gap))
-        if (present(wanted)) found%miss = miss_of(found)
+        if (present(wanted)) miss = miss_of(found)
         exit
       end if
       before = abs(change)
     end do
-    found%sense = merge(-1, 1, rising)
     done = solved
     if (present(wanted)) done = is_there(found, left_over)
 
   contains
 
-    pure real(wp) function miss_of(tried) result(miss)
-      type(found_t), intent(in) :: tried
+    !> Q minus the wanted value or, at an extremum, the slope of Q.
+    pure real(wp) function miss_of(tried) result(off)
+      type(path_point_t), intent(in) :: tried
 
       if (present(wanted)) then
-        miss = dot_product(weights, [tried%state%h0, tried%state%load]) - wanted
+        off = dot_product(weights, [tried%state%h0, tried%state%load]) - wanted
       else
-        miss = tried%tangent%of(weights)
+        off = tried%tangent%of(weights)
       end if
     end function miss_of
 
     !> Whether Q of a state has the wanted value, within rounding or, if given, within a change of
     !> the coordinate.
     pure logical function is_there(near, change) result(there)
-      type(found_t), intent(in) :: near
+      type(path_point_t), intent(in) :: near
       real(wp), intent(in), optional :: change
       real(wp) :: least
 
-      there = present(wanted) .and. abs(near%miss) < huge(1.0_wp)
+      there = present(wanted) .and. abs(miss) < huge(1.0_wp)
       if (.not. there) return
       associate (w => abs(weights), slope => abs(near%tangent%of(weights)))
         least = near_enough*(w(1)*max(1.0_wp, abs(near%state%h0)) + w(2)*abs(near%state%load))
         if (w(2) > 0) least = max(least, found_at*slope)
         if (present(change)) least = max(least, change*slope)
       end associate
-      there = abs(near%miss) <= least
+      there = abs(miss) <= least
     end function is_there
 
   end subroutine find_place
 
-  !> Moves a state by a small change of its coordinate. slope: that of the law at its gaps.
+  !> Moves an equilibrium by a small change of its coordinate. slope: that of the law at its gaps.
   subroutine move(found, change, slope)
-    type(found_t), intent(inout) :: found
+    type(path_point_t), intent(inout) :: found
     real(wp), intent(in) :: change
     type(pressure_slope_t), intent(in) :: slope
 
@@ -197,21 +187,20 @@ contains
 
   end function place_on
 
-  !> Adds a state to an arc; a full arc loses the state farthest from s.
-  subroutine join(near, s, state, tangent)
+  !> Adds a point to an arc; a full arc loses the point farthest from it.
+  subroutine join(near, point)
     type(arc_t), intent(inout) :: near
-    real(wp), intent(in) :: s
-    type(state_t), intent(in) :: state
-    type(tangent_t), intent(in) :: tangent
+    type(path_point_t), intent(in) :: point
 
-    if (near%held == most_states) then
-      if (s - near%coordinate(1) > near%coordinate(near%held) - s) then
+    if (near%held == most_points) then
+      if (point%coordinate - near%point(1)%coordinate > &
+        near%point(near%held)%coordinate - point%coordinate) then
         call near%drop_first()
       else
         near%held = near%held - 1
       end if
     end if
-    call near%add(s, state, tangent)
+    call near%add(point)
   end subroutine join
 
 end module path_search

@@ -7,10 +7,10 @@ module path_sensitivity
   use equilibrium, only: equations_t
   use frozen_jacobian, only: frozen_jacobian_t
   use traced_path, only: traced_path_t
-  use path_state, only: path_state_t, no_mesh
+  use path_point, only: path_point_t, no_mesh
   use undeformed, only: load_undeformed
   use variation, only: variation_t
-  use state_sensitivity, only: change_t, place_on_path_t, differentiate
+  use state_sensitivity, only: change_t, differentiate
   implicit none
   private
   public :: rate_t, rates_along, held
@@ -36,7 +36,6 @@ contains
     real(wp), intent(in), optional :: radius(:)
     type(frozen_jacobian_t) :: frozen
     type(change_t) :: change(size(varied))
-    type(place_on_path_t) :: place
     integer :: i, j, n
 
     allocate (rate(size(varied), path%last))
@@ -49,8 +48,7 @@ contains
           end do
           cycle
         end if
-        place = place_on_path_t(point%mesh, point%coordinate, point%state)
-        call differentiate(equations, place, frozen, varied, change, found)
+        call differentiate(equations, point, frozen, varied, change, found)
         if (.not. found) return
         do i = 1, size(varied)
           n = size(change(i)%separation) - 1
@@ -87,12 +85,12 @@ contains
   !> -1/k; under a fixed load with 0, 1. They are infinite where this value turns along the path.
   pure type(rate_t) function held(problem, node, rate, weights)
     type(problem_t), intent(in) :: problem
-    type(path_state_t), intent(in) :: node
+    type(path_point_t), intent(in) :: node
     type(rate_t), intent(in) :: rate
     real(wp), intent(in) :: weights(2)
     real(wp) :: slope(2), shift
 
-    slope = node%slopes*[problem%length, problem%load]
+    slope = [node%tangent%h0*problem%length, node%tangent%load*problem%load]
     shift = -dot_product(weights, [rate%h0, rate%load])/dot_product(weights, slope)
     held = rate
     held%h0 = rate%h0 + shift*slope(1)

@@ -9,18 +9,18 @@ module path_span
   use solver, only: solver_t
   use locked_meshes, only: h0_control
   use path_coordinate, only: coordinate_of
-  use path_tangent, only: of_h0, of_load
+  use path_point, only: path_point_t, of_h0, of_load
   use arc, only: arc_t
-  use path_search, only: found_t, find_place, place_on
+  use path_search, only: find_place, place_on
   use traced_path, only: traced_path_t
   implicit none
   private
   public :: path_span_t, new_path_span
 
-  !> The arc of the points about the span. The span lies between the point `point` and the next one,
-  !> at the coordinates `ends`; point = 0: there is no span yet.
+  !> The arc of the points about the span. The span lies between the path's point number `interval`
+  !> and the next one, at the coordinates `ends`; interval = 0: there is no span yet.
   type, extends(arc_t) :: path_span_t
-    integer :: point = 0
+    integer :: interval = 0
     real(wp) :: ends(2) = 0
     type(hermite_t), private :: h0_curve, load_curve
     !> The states of the arc through which the polynomial passes.
@@ -43,7 +43,7 @@ contains
     integer, intent(in) :: i
     real(wp) :: middle
 
-    span%point = i
+    span%interval = i
     span%ends = path%point(i:i + 1)%coordinate
     call path%add_to(i, span)
     middle = 0.5_wp*sum(span%ends)
@@ -80,23 +80,25 @@ contains
     values = [self%h0_curve%value(s), self%load_curve%value(s)]
   end function h0_and_load
 
-  !> The state at h0, even near a fold.
-  subroutine solve_at_h0(self, solver, h0, state, converged)
+  !> The equilibrium at h0, even near a fold; point%converged: whether it was found.
+  subroutine solve_at_h0(self, solver, h0, point)
     class(path_span_t), intent(in) :: self
     class(solver_t), intent(inout) :: solver
     real(wp), intent(in) :: h0
-    type(state_t), intent(out) :: state
-    logical, intent(out) :: converged
-    type(found_t) :: found
+    type(path_point_t), intent(out) :: point
+    logical :: found
 
-    call find_place(solver, self%arc_t, self%ends, of_h0, found, converged, h0)
-    state = found%state
-    if (abs(state%h0 - h0) > max(solver%options%tolerance, residual_floor(solver%problem, state))) &
-      call finish_at_h0(solver, self%mesh, h0, found%coordinate, state)
-    ! The remaining difference of h0 is rounding; it is also the residual of the equations at h0.
-    state%residual = max(state%residual, abs(state%h0 - h0))
-    converged = holds(solver%problem, solver%options%tolerance, state)
-    state%h0 = h0
+    call find_place(solver, self%arc_t, self%ends, of_h0, point, found, h0)
+    point%interval = self%interval
+    associate (state => point%state)
+      if (abs(state%h0 - h0) > max(solver%options%tolerance, &
+        residual_floor(solver%problem, state))) &
+        call finish_at_h0(solver, self%mesh, h0, point%coordinate, state)
+      ! The remaining difference of h0 is rounding; it is also the residual of the equations at h0.
+      state%residual = max(state%residual, abs(state%h0 - h0))
+      point%converged = holds(solver%problem, solver%options%tolerance, state)
+      state%h0 = h0
+    end associate
   end subroutine solve_at_h0
 
   !> Solves at prescribed h0 if the contact is wide and far from a fold, where the last digit of the

@@ -6,6 +6,7 @@ module path_tangent
   use beyond_mesh, only: load_slope_beyond
   use represented_pressure, only: pressure_slope_t, slope_on
   use contact_state, only: state_t, load_reach, gap_at_end
+  use path_point, only: path_point_t, tangent_t
   use controls, only: control_t, at_axis_gap, at_edge_radius
   use equilibrium, only: equations_t
   use solver, only: solver_t
@@ -15,22 +16,7 @@ module path_tangent
   use frozen_jacobian, only: frozen_jacobian_t, freeze
   implicit none
   private
-  public :: tangent_t, tangent_along, of_h0, of_load
-
-  !> Weights of h0 and load in a combination Q = weights(1) h0 + weights(2) load: h0 itself, the
-  !> load, or the position of a spring's base (`driven_pieces`).
-  real(wp), parameter :: of_h0(2) = [1, 0], of_load(2) = [0, 1]
-
-  !> Derivatives of a state: of its gaps (at the nodes), H0, scale, gap on the axis, and load.
-  type :: tangent_t
-    real(wp), allocatable :: gap(:)
-    real(wp) :: h0 = 0, scale = 0, axis_gap = 0, load = 0
-  contains
-    procedure :: of
-    procedure :: goes_with
-    procedure :: is_alike
-    procedure :: become
-  end type tangent_t
+  public :: tangent_along
 
   !> The last correction of a tangent over the permitted error: the next one would be smaller by a
   !> larger factor. Largest ratio of successive corrections, and largest number of corrections, for
@@ -40,68 +26,24 @@ module path_tangent
 
 contains
 
-  !> Copies another tangent into the allocated array, without a new allocation.
-  pure subroutine become(self, other)
-    class(tangent_t), intent(inout) :: self
-    type(tangent_t), intent(in) :: other
-
-    self%gap = other%gap
-    self%h0 = other%h0
-    self%scale = other%scale
-    self%axis_gap = other%axis_gap
-    self%load = other%load
-  end subroutine become
-
-  !> The derivative of weights(1) h0 + weights(2) load.
-  pure real(wp) function of(self, weights)
-    class(tangent_t), intent(in) :: self
-    real(wp), intent(in) :: weights(2)
-
-    of = dot_product(weights, [self%h0, self%load])
-  end function of
-
-  !> Whether h0 and load change in the same sense along two tangents. Otherwise an extremum would be
-  !> found twice or not at all where the path passes to another mesh.
-  pure logical function goes_with(self, other)
-    class(tangent_t), intent(in) :: self
-    type(tangent_t), intent(in) :: other
-
-    goes_with = self%h0*other%h0 > 0 .and. self%load*other%load > 0
-  end function goes_with
-
-  !> Whether the derivative of the load by h0 is nearly the same along two tangents, which may be by
-  !> different coordinates.
-  pure logical function is_alike(self, other)
-    class(tangent_t), intent(in) :: self
-    type(tangent_t), intent(in) :: other
-    real(wp), parameter :: nearly = 1.5_wp
-
-    associate (one => self%load*other%h0, another => other%load*self%h0)
-      is_alike = max(abs(one), abs(another)) <= nearly*min(abs(one), abs(another))
-    end associate
-  end function is_alike
-
-  !> The derivatives by the coordinate s at an equilibrium. error: permitted relative error, if
-  !> larger than that of the options. found = .false.: the Jacobian is singular.
-  subroutine tangent_along(solver, mesh, s, state, tangent, found, error)
+  !> Sets the derivatives of an equilibrium by the path's coordinate. error: permitted relative
+  !> error, if larger than that of the options. found = .false.: the Jacobian is singular.
+  subroutine tangent_along(solver, point, found, error)
     class(solver_t), intent(inout) :: solver
-    integer, intent(in) :: mesh
-    real(wp), intent(in) :: s
-    type(state_t), intent(in) :: state
-    type(tangent_t), intent(out) :: tangent
+    type(path_point_t), intent(inout) :: point
     logical, intent(out) :: found
     real(wp), intent(in), optional :: error
     real(wp) :: allowed
 
     allowed = solver%options%slope_error
     if (present(error)) allowed = max(allowed, error)
-    call tangent_at(solver%equations_t, path_control(solver%problem, solver%meshes, &
-      mesh, s), state, allowed, solver%frozen, tangent, found)
+    call tangent_at(solver%equations_t, path_control(solver%problem, solver%meshes, point%mesh, &
+      point%coordinate), point%state, allowed, solver%frozen, point%tangent, found)
     if (.not. found) return
-    if (solver%meshes%is_about_axis(mesh)) then
-      call scale(tangent, axis_gap_rate(solver%problem%law, s))
+    if (solver%meshes%is_about_axis(point%mesh)) then
+      call scale(point%tangent, axis_gap_rate(solver%problem%law, point%coordinate))
     else
-      call scale(tangent, exp(s))
+      call scale(point%tangent, exp(point%coordinate))
     end if
   end subroutine tangent_along
 

@@ -7,8 +7,8 @@ module piece_search
   use traced_path, only: traced_path_t
   use drives, only: drive_t
   use driven_pieces, only: driven_pieces_t, driven_piece_t, jump_t
-  use path_state, only: path_state_t, path_place_t, part_of
-  use curve_states, only: state_of, state_where, find_turns
+  use path_point, only: path_point_t, part_of
+  use curve_states, only: solve_at, state_where, find_turns
   implicit none
   private
   public :: find_pieces, find_jumps, interval_with, state_driven
@@ -27,13 +27,12 @@ contains
     type(drive_t), intent(in) :: drive
     class(driven_pieces_t), intent(inout) :: pieces
     type(driven_piece_t) :: piece
-    type(path_state_t) :: state
-    type(path_state_t), allocatable :: turns(:)
+    type(path_point_t) :: state
+    type(path_point_t), allocatable :: turns(:)
     type(hermite_t) :: curve
-    type(path_place_t) :: before
     real(wp), allocatable :: x(:)
-    real(wp) :: ends(2)
-    integer :: i, k
+    real(wp) :: ends(2), last_end
+    integer :: i, k, before
     logical :: open, stable, solved
 
     pieces%drive = drive
@@ -55,15 +54,16 @@ contains
         call find_turns(solver, path, i, drive%weights, turns, solved)
         pieces%whole = pieces%whole .and. solved
       end if
-      x = [ends(1), turns%x, ends(2)]
+      x = [ends(1), turns%coordinate, ends(2)]
       do k = 1, size(x) - 1
         stable = path%point(i)%modes == 0 .and. curve%value(x(k + 1)) < curve%value(x(k))
         if (stable .eqv. open) cycle
         if (k > 1) then
           state = turns(k - 1)
         else
-          if (stable) before = path_place_t(i, ends(1))
-          call state_of(solver, path, before, state)
+          if (stable) before = i
+          if (stable) last_end = ends(1)
+          call solve_at(solver, path, before, last_end, state)
         end if
         if (stable) then
           piece%first = state
@@ -73,10 +73,11 @@ contains
         end if
         open = stable
       end do
-      before = path_place_t(i, ends(2))
+      before = i
+      last_end = ends(2)
     end do
     if (.not. open) return
-    call state_of(solver, path, before, state)
+    call solve_at(solver, path, before, last_end, state)
     call close_piece(.false.)
 
   contains
@@ -90,7 +91,7 @@ contains
       if (.not. (piece%first%converged .and. piece%last%converged)) then
         pieces%whole = .false.
       else if (drive%position(piece%first) - drive%position(piece%last) > least_fall* &
-        dot_product(abs(drive%weights), abs([state%h0, state%load]))) then
+        dot_product(abs(drive%weights), abs([state%state%h0, state%state%load]))) then
         pieces%piece = [pieces%piece, piece]
       end if
     end subroutine close_piece
@@ -120,7 +121,7 @@ contains
     type(drive_t), intent(in) :: drive
     type(driven_piece_t), intent(in) :: piece
     real(wp), intent(in) :: wanted
-    type(path_state_t), intent(out) :: state
+    type(path_point_t), intent(out) :: state
     real(wp) :: ends(2)
     integer :: i
 

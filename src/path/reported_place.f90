@@ -6,7 +6,7 @@ module reported_place
   use kinds, only: wp, pi, nan
   use dimensionless_problem, only: problem_t
   use contact_state, only: state_t
-  use path_state, only: path_state_t
+  use path_point, only: path_point_t
   implicit none
   private
   public :: place_t, place_of_state, place_without_state, point_of_path, place_on_curve
@@ -101,24 +101,26 @@ contains
   end function point_of_path
 
   !> A state of the path as a place whose Q has the given weights.
-  pure type(place_t) function place_on_curve(state, weights) result(place)
-    type(path_state_t), intent(in) :: state
+  pure type(place_t) function place_on_curve(point, weights) result(place)
+    type(path_point_t), intent(in) :: point
     real(wp), intent(in) :: weights(2)
 
-    call place%take(state)
+    call place%take(point)
     place%drive = weights
   end function place_on_curve
 
   !> Makes a state of the path the equilibrium of the place.
-  pure subroutine take(self, state)
+  pure subroutine take(self, point)
     class(place_t), intent(inout) :: self
-    type(path_state_t), intent(in) :: state
+    type(path_point_t), intent(in) :: point
 
-    self%mesh = state%mesh
-    self%state = state%state
-    self%at = [state%h0, state%load, state%axis_gap - state%h0, state%energy, state%radius, &
-      state%state%scale, 0.0_wp]
-    self%left(of_energy) = state%uncertainty
+    self%mesh = point%mesh
+    self%state = point%state
+    associate (state => point%state)
+      self%at = [state%h0, state%load, state%axis_gap - state%h0, point%energy, point%radius, &
+        state%scale, 0.0_wp]
+    end associate
+    self%left(of_energy) = point%uncertainty
   end subroutine take
 
   !> Whether the place has an equilibrium on a mesh.

@@ -15,18 +15,12 @@ module state_sensitivity
   use equilibrium, only: equations_t, residual
   use frozen_jacobian, only: frozen_jacobian_t, freeze
   use linear_algebra, only: solve
+  use path_point, only: path_point_t
   use path_coordinate, only: path_control
   use variation, only: variation_t
   implicit none
   private
-  public :: change_t, place_on_path_t, differentiate
-
-  !> An equilibrium of the path, its mesh and its coordinate on this mesh (`continuation`).
-  type :: place_on_path_t
-    integer :: mesh = 1
-    real(wp) :: s = 0
-    type(state_t) :: state
-  end type place_on_path_t
+  public :: change_t, differentiate
 
   !> Derivatives by a parameter in SI units: of the separations at the mesh's nodes, followed by h0,
   !> and of the load.
@@ -47,30 +41,30 @@ module state_sensitivity
 
 contains
 
-  !> The derivatives of the equilibrium at a place by each varied parameter. found = .false.: the
+  !> The derivatives of an equilibrium of the path by each varied parameter. found = .false.: the
   !> Jacobian is singular, or a varied problem is not defined at the state. The factors are renewed.
-  subroutine differentiate(equations, place, frozen, varied, change, found)
+  subroutine differentiate(equations, point, frozen, varied, change, found)
     type(equations_t), intent(inout) :: equations
-    type(place_on_path_t), intent(in) :: place
+    type(path_point_t), intent(in) :: point
     type(frozen_jacobian_t), intent(inout) :: frozen
     type(variation_t), intent(in) :: varied(:)
     type(change_t), intent(out) :: change(:)
     logical, intent(out) :: found
     integer :: i
 
-    call freeze(equations, path_control(equations%problem, equations%meshes, place%mesh, &
-      place%s), place%state, frozen, exact=.true.)
+    call freeze(equations, path_control(equations%problem, equations%meshes, point%mesh, &
+      point%coordinate), point%state, frozen, exact=.true.)
     found = frozen%factors%valid
     do i = 1, size(varied)
       if (.not. found) return
-      call find_line(equations, place, frozen, varied(i), change(i), found)
+      call find_line(equations, point, frozen, varied(i), change(i), found)
     end do
   end subroutine differentiate
 
   !> The line of states along which the equations remain satisfied.
-  subroutine find_line(equations, place, frozen, varied, change, found)
+  subroutine find_line(equations, point, frozen, varied, change, found)
     type(equations_t), intent(inout) :: equations
-    type(place_on_path_t), intent(in) :: place
+    type(path_point_t), intent(in) :: point
     type(frozen_jacobian_t), intent(in) :: frozen
     type(variation_t), intent(in) :: varied
     type(change_t), intent(out) :: change
@@ -80,12 +74,12 @@ contains
     integer :: round
     logical :: finished
 
-    allocate (defect(size(place%state%gap) + 1))
+    allocate (defect(size(point%state%gap) + 1))
     allocate (trial%separation(size(defect)), source=0.0_wp)
     do round = 0, most_corrections
-      call follow_line(equations, place, varied, trial, defect, found)
+      call follow_line(equations, point, varied, trial, defect, found)
       if (.not. found) return
-      trial%left = largest(defect, place%state)*varied%parameter%scale/equations%problem%length
+      trial%left = largest(defect, point%state)*varied%parameter%scale/equations%problem%length
       if (round > 0 .and. .not. trial%left < change%left) exit
       finished = round > 0 .and. .not. trial%left < gain*change%left
       change = trial
@@ -105,9 +99,9 @@ contains
   end function largest
 
   !> Derivatives of the equations (lengths) and of the load along a line of states.
-  subroutine follow_line(equations, place, varied, line, defect, found)
+  subroutine follow_line(equations, point, varied, line, defect, found)
     type(equations_t), intent(inout) :: equations
-    type(place_on_path_t), intent(in) :: place
+    type(path_point_t), intent(in) :: point
     type(variation_t), intent(in) :: varied
     type(change_t), intent(inout) :: line
     real(wp), intent(out) :: defect(:)
@@ -125,7 +119,7 @@ contains
     found = .true.
     do k = 1, size(varied%offset)
       if (.not. abs(varied%weight(k)) > 0) cycle
-      call move(equations, own, place, varied, k, line, moved, left)
+      call move(equations, own, point, varied, k, line, moved, left)
       found = found .and. moved%residual < huge(1.0_wp)
       defect = defect + varied%weight(k)*left
       associate (load => moved%load*varied%problem(k)%load)
@@ -138,11 +132,11 @@ contains
   end subroutine follow_line
 
   !> The state on a line for the k-th varied problem, and the residuals of its equations [m]. The
-  !> equations take over the varied problem. own: the problem of the place.
-  subroutine move(equations, own, place, varied, k, line, moved, left)
+  !> equations take over the varied problem. own: the problem of the point.
+  subroutine move(equations, own, point, varied, k, line, moved, left)
     type(equations_t), intent(inout) :: equations
     type(problem_t), intent(in) :: own
-    type(place_on_path_t), intent(in) :: place
+    type(path_point_t), intent(in) :: point
     type(variation_t), intent(in) :: varied
     integer, intent(in) :: k
     type(change_t), intent(in) :: line
@@ -151,15 +145,15 @@ contains
     type(control_t) :: control
     integer :: n
 
-    n = size(place%state%gap)
+    n = size(point%state%gap)
     call equations%become_those_of(varied%problem(k))
     associate (problem => varied%problem(k), law => varied%problem(k)%law)
-      control = control_of(own, problem, equations%meshes, place%mesh, place%s)
-      call residual(equations, control, law%gap_of(own%law%separation_of([place%state%gap, &
-        place%state%h0]) + varied%offset(k)*line%separation), left, moved)
+      control = control_of(own, problem, equations%meshes, point%mesh, point%coordinate)
+      call residual(equations, control, law%gap_of(own%law%separation_of([point%state%gap, &
+        point%state%h0]) + varied%offset(k)*line%separation), left, moved)
       if (control%kind == at_edge_radius) then
         ! The equation of the edge keeps the separation, not the gap in the law's lengths.
-        associate (gap => equations%meshes%locked_gap(place%mesh))
+        associate (gap => equations%meshes%locked_gap(point%mesh))
           left(n + 1) = left(n + 1) + gap - law%gap_of(own%law%separation_of(gap))
         end associate
       end if

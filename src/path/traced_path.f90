@@ -6,31 +6,12 @@ module traced_path
   use kinds, only: wp
   use dimensionless_problem, only: problem_t
   use interpolation, only: hermite_t, hermite_through, most_hermite_nodes, find_nodes_about
-  use contact_state, only: state_t
   use undeformed, only: load_undeformed, load_slope_undeformed
-  use mesh_plan, only: approach
-  use path_tangent, only: tangent_t
-  use path_state, only: no_mesh
+  use path_point, only: path_point_t, no_mesh
   use arc, only: arc_t
   implicit none
   private
-  public :: traced_path_t, path_point_t
-
-  !> One equilibrium of the path.
-  type :: path_point_t
-    type(state_t) :: state
-    !> Derivatives of the state by the path's coordinate.
-    type(tangent_t) :: tangent
-    !> The mesh of the state, and the coordinate on this mesh (`path_coordinate`).
-    integer :: mesh = approach
-    real(wp) :: coordinate = 0
-    !> Whether the path continues from this point to the next one, and the number of unstable modes
-    !> between them.
-    logical :: leads_on = .false.
-    integer :: modes = 0
-    !> Whether the point is an extremum of h0, and whether one of the load.
-    logical :: fold = .false., load_extremum = .false.
-  end type path_point_t
+  public :: traced_path_t
 
   type :: traced_path_t
     integer :: held = 0
@@ -154,7 +135,7 @@ contains
     arc%mesh = self%point(i)%mesh
     call self%find_nearby(i, from, to)
     do j = from, to
-      call arc%add(self%point(j)%coordinate, self%point(j)%state, self%point(j)%tangent)
+      call arc%add(self%point(j))
     end do
   end subroutine add_to
 

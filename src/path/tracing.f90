@@ -100,7 +100,7 @@ contains
           further = further_mesh(solver%equations_t, walker%arc_t, accuracy)
         adrift = mod(steps, steps_a_check) == 0
         if (adrift) adrift = left_in_state(solver%equations_t, walker%mesh, &
-          walker%state(walker%held)) > most_adrift
+          walker%point(walker%held)%state) > most_adrift
         leaving = has_come_to_next(walker, solver%equations_t)
         ! This mesh was examined when the next one was inserted. The path may stay on it for some
         ! steps; if it were refined again, the path would reach the inserted one earlier each time.
@@ -187,11 +187,11 @@ contains
       associate (point => path%point(i))
         if (point%mesh /= walker%mesh .or. walker%is_full()) exit
         if (point%fold .or. point%load_extremum) cycle
-        call walker%add(point%coordinate, point%state, point%tangent)
+        call walker%add(point)
       end associate
     end do
     if (walker%held > 1) &
-      walker%step = walker%coordinate(walker%held) - walker%coordinate(walker%held - 1)
+      walker%step = walker%point(walker%held)%coordinate - walker%point(walker%held - 1)%coordinate
   end subroutine stand_at_end
 
   !> Advances the continuation by a step and appends the new point. A new path begins with the

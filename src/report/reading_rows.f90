@@ -5,7 +5,7 @@ module reading_rows
   use kinds, only: wp, nan
   use dimensionless_problem, only: problem_t, surface_energy
   use maugis, only: maugis_units_t, maugis_units
-  use path_state, only: path_state_t
+  use path_point, only: path_point_t
   use device, only: driven_t, states_on
   use reported_place, only: of_h0, of_load, of_energy, of_radius, of_position, of_displacement
   use places, only: places_t
@@ -41,7 +41,7 @@ contains
 
     !> For each drive the whole path, then its legs; the state in which a jump starts is not stable.
     subroutine write_device()
-      type(path_state_t), allocatable :: states(:)
+      type(path_point_t), allocatable :: states(:)
       integer :: i, j, k
 
       call results%begin_table('device.csv')
@@ -49,8 +49,9 @@ contains
         associate (driven => readings%device(i))
           do j = 1, size(readings%node)
             associate (node => readings%node(j))
-              if (.not. node%again) call add_driven(driven, 'path', node, node%modes == 0 .and. &
-                dot_product(driven%drive%weights, node%slopes) < 0)
+              ! A point without a next one is also on the next mesh, except the last.
+              if (node%leads_on .or. j == size(readings%node)) call add_driven(driven, 'path', &
+                node, node%modes == 0 .and. node%tangent%of(driven%drive%weights) < 0)
             end associate
           end do
           do k = 1, size(driven%leg)
@@ -64,18 +65,18 @@ contains
       end do
     end subroutine write_device
 
-    subroutine add_driven(driven, direction, state, stable)
+    subroutine add_driven(driven, direction, point, stable)
       type(driven_t), intent(in) :: driven
       character(len=*), intent(in) :: direction
-      type(path_state_t), intent(in) :: state
+      type(path_point_t), intent(in) :: point
       logical, intent(in) :: stable
       real(wp) :: z
 
       z = nan
-      if (driven%drive%weights(1) > 0) z = problem%law%separation_of(driven%drive%position(state))
+      if (driven%drive%weights(1) > 0) z = problem%law%separation_of(driven%drive%position(point))
       call results%row(cells([driven%stiffness]) // ',' // direction, [z, &
-        problem%law%separation_of(state%h0), state%load*problem%load, &
-        state%radius*problem%lateral], [stable])
+        problem%law%separation_of(point%state%h0), point%state%load*problem%load, &
+        point%radius*problem%lateral], [stable])
     end subroutine add_driven
 
     subroutine write_jumps()
@@ -123,7 +124,7 @@ contains
     !> The table of stable states of approach and retract at prescribed h0, as discrete-element and
     !> finite-element programs need them.
     subroutine write_contact_table()
-      type(path_state_t), allocatable :: states(:)
+      type(path_point_t), allocatable :: states(:)
       type(maugis_units_t) :: unit
       real(wp) :: si(4)
       integer :: i, j
@@ -137,10 +138,12 @@ contains
         associate (leg => readings%prescribed%leg(i))
           states = states_on(readings%node, leg)
           do j = 1, size(states)
-            si = [-problem%law%separation_of(states(j)%h0), states(j)%load*problem%load, &
-              states(j)%radius*problem%lateral, nan]
-            if (.not. (leg%jumps .and. j == size(states))) &
-              si(4) = -states(j)%slopes(2)/states(j)%slopes(1)*problem%load/problem%length
+            associate (state => states(j)%state, tangent => states(j)%tangent)
+              si = [-problem%law%separation_of(state%h0), state%load*problem%load, &
+                states(j)%radius*problem%lateral, nan]
+              if (.not. (leg%jumps .and. j == size(states))) &
+                si(4) = -tangent%load/tangent%h0*problem%load/problem%length
+            end associate
             call results%row(direction_of(leg%inward), [si, si(1)/unit%displacement, &
               si(2)/unit%load, si(3)/unit%radius, si(4)*unit%displacement/unit%load])
           end do

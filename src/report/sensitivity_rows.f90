@@ -7,7 +7,7 @@ module sensitivity_rows
   use dimensionless_problem, only: problem_t
   use variation, only: variation_t
   use reported_place, only: of_h0, of_displacement, of_radius
-  use path_state, only: path_state_t
+  use path_point, only: path_point_t
   use experiment_result, only: experiment_result_t
   use reported_values, only: readings_t, read_numbers
   use path_sensitivity, only: rate_t, held
@@ -110,7 +110,7 @@ contains
     subroutine add(parameter, stiffness, node, by)
       character(len=*), intent(in) :: parameter
       real(wp), intent(in) :: stiffness
-      type(path_state_t), intent(in) :: node
+      type(path_point_t), intent(in) :: node
       type(rate_t), intent(in) :: by
       type(rate_t) :: rate
       real(wp) :: weights(2), terms(2), z
@@ -118,7 +118,7 @@ contains
       associate (drive => through_spring(stiffness))
         weights = drive%weights
       end associate
-      terms = weights*node%slopes*[problem%length, problem%load]
+      terms = weights*[node%tangent%h0*problem%length, node%tangent%load*problem%load]
       rate = held(problem, node, by, weights)
       if (.not. abs(sum(terms)) > turning*sum(abs(terms) + &
         abs(weights)*[problem%length, problem%load])) then
@@ -126,10 +126,10 @@ contains
         rate%load = rate%h0
       end if
       z = nan
-      if (weights(1) > 0) z = problem%law%separation_of(node%h0) + weights(2)*node%load* &
-        problem%load
-      call results%row(parameter, [stiffness, z, problem%law%separation_of(node%h0), &
-        node%load*problem%load, rate%h0, rate%load])
+      if (weights(1) > 0) z = problem%law%separation_of(node%state%h0) + &
+        weights(2)*node%state%load*problem%load
+      call results%row(parameter, [stiffness, z, problem%law%separation_of(node%state%h0), &
+        node%state%load*problem%load, rate%h0, rate%load])
     end subroutine add
 
   end subroutine write_sensitivities
