@@ -1,5 +1,5 @@
-!> A dimensionless state of the two bodies at the nodes of a mesh, and the search for the radius of
-!> a given gap.
+!> A dimensionless state of the two bodies at the nodes of a mesh, its transfer to another mesh, and
+!> the search for the radius of a given gap.
 module contact_state
   use kinds, only: wp, pi
   use shape, only: shape_t
@@ -8,8 +8,8 @@ module contact_state
   use root_finding, only: root_search_t, new_root_search
   implicit none
   private
-  public :: state_t, undeformed_state, load_reach, gap_at_end, gap_at, gaps_at, radius_of_gap, &
-    radius_of_step, contact_radius_of, felt_load, far_gap
+  public :: state_t, undeformed_state, regrid, load_reach, gap_at_end, gap_at, gaps_at, &
+    radius_of_gap, radius_of_step, contact_radius_of, felt_load, far_gap
 
   !> At gaps above this value, in the law's lengths, forces do not depend on the last digits.
   real(wp), parameter :: far_gap = 1000
@@ -179,5 +179,31 @@ contains
 
     radius = radius_of_gap(problem%shape, contact_level_of(problem), grid, state)
   end function contact_radius_of
+
+  !> The state on another mesh at a given scale. Gaps are interpolated; beyond the old mesh the
+  !> deformation decays as 1/r.
+  pure type(state_t) function regrid(shape, state, from, to, scale) result(new)
+    class(shape_t), intent(in) :: shape
+    type(state_t), intent(in) :: state
+    type(discretisation_t), intent(in) :: from, to
+    real(wp), intent(in) :: scale
+    real(wp) :: raised
+    integer :: within
+
+    new = state
+    deallocate (new%gap, new%pressure)
+    allocate (new%gap(to%nodes), new%pressure(to%nodes))
+    new%pressure = 0
+    new%scale = scale
+    associate (x => to%x*(scale/state%scale), gap => new%gap)
+      within = count(x <= from%end)
+      gap(:within) = gaps_at(shape, from, state, x(:within))
+      if (within == to%nodes) return
+      raised = gap_at(shape, from, state, from%end) - state%h0 - &
+        shape%height(state%scale*from%end)
+      gap(within + 1:) = state%h0 + raised*from%end/x(within + 1:) + &
+        shape%height(state%scale*x(within + 1:))
+    end associate
+  end function regrid
 
 end module contact_state

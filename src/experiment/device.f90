@@ -6,8 +6,7 @@ module device
   use solver, only: solver_t
   use path_point, only: path_point_t, of_h0
   use traced_path, only: traced_path_t
-  use drives, only: drive_t
-  use driven_pieces, only: driven_pieces_t, jump_t, leg_t, walk_t, way_along
+  use driven_pieces, only: drive_t, driven_pieces_t, jump_t, leg_t, walk_t, way_along
   use piece_search, only: find_pieces, find_jumps, state_driven
   implicit none
   private

@@ -10,13 +10,12 @@ module experiment
   use equilibrium, only: cost_t
   use mesh_digits, only: most_digits
   use mesh_store, only: mesh_store_t
-  use stepper, only: stepper_t
   use locked_stepper, only: locked_stepper_t, unique_stepper_t
   use path_stepper, only: path_stepper_t
   use fixed_stepper, only: fixed_stepper_t
   use rigid_bodies, only: run_rigid
   use experiment_result, only: experiment_result_t
-  use one_run, only: begin_run, run_once
+  use one_run, only: begin_locked, begin_fixed, run_once
   use reported_numbers, only: run_numbers_t, largest_error, chance, chance_on_grids
   use path_sensitivity, only: rates_along
   use timed_run, only: run_timed
@@ -113,21 +112,18 @@ contains
     call agree(one, other, request, problem, observer, outcome, ahead, steps, store)
     began = seconds()
     outcome%places = nothing%places
-    call run_once(steps, request, .not. outcome%chosen%is_fixed(), .true., observer, outcome, &
-      ahead%places)
+    call run_once(steps, request, .true., .not. outcome%chosen%is_fixed(), .true., observer, &
+      outcome, ahead%places)
     others(1)%number = ahead%places%numbers()
     call outcome%places%judge_by(others, chance)
     outcome%error_estimate = largest_error(outcome%places%number)
     steps%cost%solve_seconds = steps%cost%solve_seconds + seconds() - began
     outcome%nodes = outcome%nodes + sum(steps%meshes%grid%nodes)
-    select type (steps)
-    class is (path_stepper_t)
-      if (allocated(request%varied) .and. allocated(outcome%readings)) then
-        call observer%hear('differentiating')
-        if (outcome%readings%solved) call rates_along(steps%equations_t, steps%known%path, &
-          request%varied, outcome%readings%rate, outcome%differentiated)
-      end if
-    end select
+    if (allocated(request%varied) .and. allocated(outcome%readings)) then
+      call observer%hear('differentiating')
+      if (outcome%readings%solved) call rates_along(steps%equations_t, steps%known%path, &
+        request%varied, outcome%readings%rate, outcome%differentiated)
+    end if
     outcome%cost = steps%cost
   end subroutine run_locked
 
@@ -159,24 +155,28 @@ contains
       outcome%chosen%accuracy = like%chosen%accuracy
       outcome%chosen%options = like%chosen%options
       fixed = outcome%chosen%is_fixed()
-      if (problem%law%adhesion > 0) call run_with(along_path, .not. fixed, rows=.false.)
-      if (.not. problem%law%adhesion > 0) call run_with(one_by_one, .not. fixed, rows=.false.)
-      if (allocated(request%loading) .and. fixed) call run_with(at_nodes, .true., rows=.true.)
+      if (problem%law%adhesion > 0) call run_on_locked(along_path)
+      if (.not. problem%law%adhesion > 0) call run_on_locked(one_by_one)
+      if (allocated(request%loading) .and. fixed) then
+        at_nodes%cost = outcome%cost
+        call begin_fixed(at_nodes, problem, outcome%chosen)
+        call run_once(at_nodes, request, .false., .true., .true., silent, outcome)
+        outcome%cost = at_nodes%cost
+      end if
     end if
     cost = outcome%cost
     cost%states = states
 
   contains
 
-    subroutine run_with(steps, with_cycle, rows)
-      class(stepper_t), intent(inout) :: steps
-      logical, intent(in) :: with_cycle, rows
+    subroutine run_on_locked(steps)
+      class(locked_stepper_t), intent(inout) :: steps
 
       steps%cost = outcome%cost
-      call begin_run(steps, request, problem, outcome%chosen, silent)
-      call run_once(steps, request, with_cycle, rows, silent, outcome)
+      call begin_locked(steps, request, problem, outcome%chosen, silent)
+      call run_once(steps, request, .true., .not. fixed, .false., silent, outcome)
       outcome%cost = steps%cost
-    end subroutine run_with
+    end subroutine run_on_locked
 
   end subroutine run_again
 
@@ -207,8 +207,8 @@ contains
     more = 0
     first = outcome%chosen%digits
     began = seconds()
-    call begin_run(steps, request, problem, outcome%chosen, observer, store)
-    call run_once(steps, request, with_cycle, .false., silent, outcome)
+    call begin_locked(steps, request, problem, outcome%chosen, observer, store)
+    call run_once(steps, request, .true., with_cycle, .false., silent, outcome)
     steps%cost%solve_seconds = seconds() - began
     do round = 1, most_rounds
       began = seconds()
@@ -219,9 +219,9 @@ contains
       ahead = nothing
       ahead%chosen = choose(request, problem, more)
       ! Panels that proved good enough are kept, so that errors decrease with the number of nodes.
-      call begin_run(finer, request, problem, ahead%chosen, observer, store, steps%meshes, &
+      call begin_locked(finer, request, problem, ahead%chosen, observer, store, steps%meshes, &
         keep=before < 1)
-      call run_once(finer, request, with_cycle, .false., silent, ahead, like=outcome%places)
+      call run_once(finer, request, .true., with_cycle, .false., silent, ahead, outcome%places)
       others(1)%number = ahead%places%numbers()
       call outcome%places%judge_by(others, chance)
       error = largest_error(outcome%places%number)
@@ -256,8 +256,8 @@ contains
     of_path%places = outcome%places
     began = seconds()
     steps%cost = outcome%cost
-    call begin_run(steps, request, problem, outcome%chosen, observer)
-    call run_once(steps, request, .true., .true., observer, outcome)
+    call begin_fixed(steps, problem, outcome%chosen)
+    call run_once(steps, request, .false., .true., .true., observer, outcome)
     steps%cost%solve_seconds = steps%cost%solve_seconds + seconds() - began
     outcome%nodes = outcome%nodes + sum(steps%meshes%grid%nodes)
     began = seconds()
@@ -269,8 +269,8 @@ contains
       ahead%chosen = with_fewer_nodes(outcome%chosen)
       if (k == 2) ahead%chosen = with_less_extent(outcome%chosen)
       coarse%cost = steps%cost
-      call begin_run(coarse, request, problem, ahead%chosen, observer)
-      call run_once(coarse, request, .true., .true., silent, ahead, like=outcome%places)
+      call begin_fixed(coarse, problem, ahead%chosen)
+      call run_once(coarse, request, .false., .true., .true., silent, ahead, outcome%places)
       others(k)%number = ahead%places%numbers()
       coarse%cost%states = steps%cost%states
       steps%cost = coarse%cost

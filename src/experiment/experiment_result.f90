@@ -16,7 +16,7 @@ module experiment_result
   use driven_pieces, only: jump_t, leg_t, walk_t, way_along
   use piece_search, only: state_driven
   use device, only: driven_t, driven_leg_t, states_on
-  use path_stepper, only: path_stepper_t, known_path_t
+  use stepper, only: stepper_t, known_path_t
   use reported_place, only: place_t, point_of_path, place_on_curve, of_h0
   implicit none
   private
@@ -181,7 +181,7 @@ contains
   !> Enters some rows of each leg of the table as places; if `like` is present, at the h0 of the
   !> rows that it has.
   subroutine enter_table(steps, readings, places, like)
-    class(path_stepper_t), intent(inout) :: steps
+    class(stepper_t), intent(inout) :: steps
     type(path_readings_t), intent(inout) :: readings
     type(places_t), intent(inout) :: places
     type(places_t), intent(in), optional :: like

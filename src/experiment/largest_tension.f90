@@ -3,10 +3,11 @@
 module largest_tension
   use kinds, only: wp
   use traced_path, only: traced_path_t
+  use driven_pieces, only: driven_pieces_t, jump_t, walk_t, way_along
   use reported_place, only: place_t, point_of_path, of_load
   implicit none
   private
-  public :: lower, lower_along
+  public :: lower, lower_along, lower_on_way
 
 contains
 
@@ -48,5 +49,40 @@ contains
       end associate
     end do
   end subroutine lower_along
+
+  !> The same for the way at prescribed h0 from h0 = from, on a stable piece of the path, to another
+  !> h0: the load is lowest at an extremum, at a fold or after a jump. The states at both ends are
+  !> not considered.
+  subroutine lower_on_way(path, pieces, piece, from, to, lowest)
+    type(traced_path_t), intent(in) :: path
+    type(driven_pieces_t), intent(in) :: pieces
+    integer, intent(in) :: piece
+    real(wp), intent(in) :: from, to
+    type(place_t), allocatable, intent(inout) :: lowest
+    type(walk_t) :: way
+    type(jump_t) :: jump
+    type(place_t) :: landing
+    real(wp) :: begins, ends
+    integer :: i
+
+    way = way_along(pieces, piece, to < pieces%piece(piece)%last%state%h0, to)
+    begins = from
+    do i = 1, size(way%leg)
+      associate (leg => way%leg(i), stable => pieces%piece(way%leg(i)%piece))
+        ends = to
+        if (leg%jumps) then
+          jump = pieces%jump_from(leg%piece, leg%inward)
+          ends = path%point(jump%fold())%state%h0
+        end if
+        call lower_along(path, stable%first%interval, stable%last%interval + 1, lowest, &
+          [begins, ends])
+        if (.not. leg%jumps) return
+        landing = point_of_path(jump%fold(), landing=.true.)
+        landing%at(of_load) = jump%after%state%load
+        if (jump%landed) call lower(lowest, landing)
+        begins = ends
+      end associate
+    end do
+  end subroutine lower_on_way
 
 end module largest_tension

@@ -11,7 +11,7 @@ module located_places
   use path_point, only: path_point_t, no_mesh, h0_alone => of_h0, load_alone => of_load
   use curve_states, only: solve_at
   use driven_pieces, only: jump_t
-  use path_stepper, only: path_stepper_t
+  use stepper, only: stepper_t
   use reported_place, only: place_t, of_h0, of_load, of_displacement, of_energy, of_radius, &
     of_edge, nowhere, rounding
   use places, only: places_t
@@ -32,18 +32,16 @@ contains
   !> like: the table of another run of the same scene, whose profiles have the radii at which gaps
   !> are wanted; without it, these are the nodes.
   subroutine locate_places(steps, places, like)
-    class(solver_t), intent(inout) :: steps
+    class(stepper_t), intent(inout) :: steps
     type(places_t), intent(inout) :: places
     type(places_t), intent(in), optional :: like
     integer :: i, k
 
     if (.not. allocated(places%place)) return
-    select type (steps)
-    class is (path_stepper_t)
-      do i = 1, size(places%place)
-        if (.not. places%place(i)%located) call find_on_path(steps, places%place(i))
-      end do
-    end select
+    do i = 1, size(places%place)
+      if (allocated(steps%known) .and. .not. places%place(i)%located) &
+        call find_on_path(steps, places%place(i))
+    end do
     do i = 1, size(places%place)
       associate (place => places%place(i))
         if (place%located) cycle
@@ -85,7 +83,7 @@ contains
 
   !> Finds the equilibrium of a place on the path.
   subroutine find_on_path(steps, place)
-    class(path_stepper_t), intent(inout) :: steps
+    class(stepper_t), intent(inout) :: steps
     type(place_t), intent(inout) :: place
     type(jump_t) :: jump
     type(path_point_t) :: found

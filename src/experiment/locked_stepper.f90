@@ -4,30 +4,49 @@
 !> is one state for every h0.
 module locked_stepper
   use kinds, only: wp
+  use listener, only: listener_t
   use dimensionless_problem, only: calm_gap
   use contact_state, only: state_t, undeformed_state
   use arc, only: between
   use mesh_plan, only: approach, contact
-  use locked_meshes, only: h0_control, scale_at
+  use path_coordinate, only: h0_control, scale_at
   use ending, only: ending_t, nothing_afar, steps_lost
+  use path_end, only: demand_t
   use stepper, only: stepper_t, branch_point_t, step_result_t, remember, move_to
   implicit none
   private
-  public :: locked_stepper_t, unique_stepper_t
+  public :: locked_stepper_t, unique_stepper_t, far_away
 
   type, abstract, extends(stepper_t) :: locked_stepper_t
   contains
+    procedure(find_the_path), deferred :: find_path
     procedure :: begin_afar
-    procedure :: far_away
     procedure :: attempt
   end type locked_stepper_t
 
   type, extends(locked_stepper_t) :: unique_stepper_t
   contains
+    procedure :: find_path
     procedure :: approach_to
     procedure :: step_to
     procedure, private :: step_in_pieces
   end type unique_stepper_t
+
+  abstract interface
+    !> Traces the path from h0_high, or from where the bodies hardly deform, until it is stable at
+    !> h0_low; into_contact: until the bodies are also in contact, at ends_at; accuracy, demand: see
+    !> `trace`; with `demand` the points define a smooth curve. To be called before the first step.
+    !> The listener receives messages about the progress.
+    subroutine find_the_path(self, h0_high, h0_low, ends_at, into_contact, accuracy, listener, &
+      demand)
+      import :: locked_stepper_t, listener_t, demand_t, wp
+      class(locked_stepper_t), intent(inout) :: self
+      real(wp), intent(in) :: h0_high, h0_low, ends_at, accuracy
+      logical, intent(in) :: into_contact
+      class(listener_t), intent(inout) :: listener
+      type(demand_t), intent(in), optional :: demand
+    end subroutine find_the_path
+  end interface
 
   !> Smallest step in h0, in the law's lengths and relative to h0: deep in contact the state is
   !> nearly constant over smaller steps, and rounding makes some of them fail.
@@ -49,7 +68,7 @@ contains
     integer :: mesh
 
     mesh = merge(approach, contact, self%meshes%traceable)
-    far = max(h0, self%far_away())
+    far = max(h0, far_away(self))
     state = undeformed_state(self%problem%shape, self%meshes%grid(mesh), far, &
       scale_at(self%problem%shape, self%meshes, far))
     call self%attempt(far, state, mesh, event)
@@ -59,10 +78,10 @@ contains
   end subroutine begin_afar
 
   !> An H0 at which the bodies hardly deform, or at which the repulsion is negligible.
-  pure real(wp) function far_away(self)
-    class(locked_stepper_t), intent(in) :: self
+  pure real(wp) function far_away(steps)
+    class(stepper_t), intent(in) :: steps
 
-    far_away = max(calm_gap(self%problem), self%meshes%level + 3)
+    far_away = max(calm_gap(steps%problem), steps%meshes%level + 3)
   end function far_away
 
   !> Solves at h0 from the guess `state`.
@@ -75,6 +94,15 @@ contains
 
     call self%solve(h0_control(self%problem%shape, self%meshes, mesh, h0), state, event%converged)
   end subroutine attempt
+
+  !> There is no path with unstable states, and h0 determines each state.
+  subroutine find_path(self, h0_high, h0_low, ends_at, into_contact, accuracy, listener, demand)
+    class(unique_stepper_t), intent(inout) :: self
+    real(wp), intent(in) :: h0_high, h0_low, ends_at, accuracy
+    logical, intent(in) :: into_contact
+    class(listener_t), intent(inout) :: listener
+    type(demand_t), intent(in), optional :: demand
+  end subroutine find_path
 
   subroutine approach_to(self, h0, position, event)
     class(unique_stepper_t), intent(inout) :: self

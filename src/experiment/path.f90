@@ -9,7 +9,7 @@ module path
   use ending, only: ending_t, state_lost
   use path_end, only: outer_end
   use largest_tension, only: lower, lower_along
-  use path_stepper, only: path_stepper_t, known_path_t
+  use stepper, only: stepper_t, known_path_t
   use path_point, only: path_point_t
   use path_rows, only: row_at_h0, rows_between
   use reported_place, only: place_t, place_of_state
@@ -46,7 +46,7 @@ contains
   !> table, in the order of the path. curve: whether there are rows between the points for a smooth
   !> curve.
   subroutine follow_path(steps, h0_end, profiles, curve, observer, path, places, h0_start)
-    class(path_stepper_t), intent(inout) :: steps
+    class(stepper_t), intent(inout) :: steps
     real(wp), intent(in) :: h0_end, profiles(:)
     logical, intent(in) :: curve
     class(observer_t), intent(inout) :: observer
@@ -212,7 +212,7 @@ contains
   !> The last point before the stable contact at h0_end (`path_end`); ends_between: the end is
   !> between this point and the next one.
   subroutine find_end(steps, h0_end, last, ends_between)
-    class(path_stepper_t), intent(inout) :: steps
+    class(stepper_t), intent(inout) :: steps
     real(wp), intent(in) :: h0_end
     integer, intent(out) :: last
     logical, intent(out) :: ends_between

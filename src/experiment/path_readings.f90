@@ -6,13 +6,13 @@ module path_readings
   use listener, only: listener_t
   use experiment_request, only: request_t
   use path_sensitivity, only: rate_t
-  use drives, only: drive_t, through_spring
+  use driven_pieces, only: drive_t, through_spring
   use path_point, only: path_point_t, of_load
   use curve_states, only: read_points, states_where
   use dimensionless_problem, only: problem_t
   use records, only: quality_t
   use device, only: driven_t, states_on, drive_bodies
-  use path_stepper, only: path_stepper_t
+  use stepper, only: stepper_t
   use path_end, only: outer_end
   implicit none
   private
@@ -52,7 +52,7 @@ contains
   !> Evaluates the requested experiments on the path of `steps`.
   subroutine read_path(request, steps, listener, readings)
     class(request_t), intent(in) :: request
-    class(path_stepper_t), intent(inout) :: steps
+    class(stepper_t), intent(inout) :: steps
     class(listener_t), intent(inout) :: listener
     type(path_readings_t), allocatable, intent(out) :: readings
 

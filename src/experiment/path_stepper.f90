@@ -16,36 +16,22 @@ module path_stepper
   use prediction, only: missed_t, expect
   use path_end, only: demand_t
   use path_point, only: path_point_t, of_h0
-  use tracing, only: tracing_t, trace
-  use drives, only: drive_t
-  use driven_pieces, only: driven_pieces_t, jump_t, walk_t, way_along
-  use piece_search, only: find_pieces, find_jumps, interval_with
-  use reported_place, only: place_t, point_of_path, of_load
-  use largest_tension, only: lower, lower_along
-  use stepper, only: branch_point_t, step_result_t, remember
+  use tracing, only: trace
+  use driven_pieces, only: drive_t, jump_t, walk_t
+  use piece_search, only: find_pieces, find_jumps
+  use stepper, only: known_path_t, branch_point_t, step_result_t, remember
   implicit none
   private
-  public :: path_stepper_t, known_path_t
-
-  !> The traced path, and its pieces that are stable at prescribed h0.
-  type, extends(tracing_t) :: known_path_t
-    type(driven_pieces_t) :: stable
-  contains
-    procedure :: way_to
-    procedure :: interval_at
-  end type known_path_t
+  public :: path_stepper_t
 
   type, extends(locked_stepper_t) :: path_stepper_t
-    !> The path, after `know_path` has traced it.
-    type(known_path_t) :: known
     !> The span of the path at the last step, and its errors at previous states.
     type(path_span_t), private :: span
     type(missed_t), private :: missed
   contains
+    procedure :: find_path
     procedure :: approach_to
     procedure :: step_to
-    procedure :: know_path
-    procedure :: find_lowest
     procedure, private :: jump_with
     procedure, private :: solve_on_piece
   end type path_stepper_t
@@ -60,12 +46,7 @@ module path_stepper
 
 contains
 
-  !> Traces the path from h0_high, or from where the bodies hardly deform, until it is stable at
-  !> h0_low; into_contact: until the bodies are also in contact, at ends_at; accuracy, demand: see
-  !> `trace`; with `demand` the points define a smooth curve. To be called before the first step.
-  !> The listener receives messages about the progress.
-  subroutine know_path(self, h0_high, h0_low, ends_at, into_contact, accuracy, listener, &
-    demand)
+  subroutine find_path(self, h0_high, h0_low, ends_at, into_contact, accuracy, listener, demand)
     class(path_stepper_t), intent(inout) :: self
     real(wp), intent(in) :: h0_high, h0_low, ends_at, accuracy
     logical, intent(in) :: into_contact
@@ -93,7 +74,7 @@ contains
     end if
     call self%frozen%forget()
     self%span%interval = 0
-  end subroutine know_path
+  end subroutine find_path
 
   subroutine approach_to(self, h0, position, event)
     class(path_stepper_t), intent(inout) :: self
@@ -150,56 +131,6 @@ contains
     position%piece = jump%piece
     position%held = 0
   end subroutine jump_with
-
-  !> The legs at prescribed h0 from a stable piece to an h0.
-  pure type(walk_t) function way_to(self, piece, h0) result(way)
-    class(known_path_t), intent(in) :: self
-    integer, intent(in) :: piece
-    real(wp), intent(in) :: h0
-
-    way = way_along(self%stable, piece, h0 < self%stable%piece(piece)%last%state%h0, h0)
-  end function way_to
-
-  !> The interval on a mesh in which a stable piece reaches h0.
-  pure integer function interval_at(self, piece, h0) result(i)
-    class(known_path_t), intent(in) :: self
-    integer, intent(in) :: piece
-    real(wp), intent(in) :: h0
-
-    i = max(interval_with(self%path, self%stable%piece(piece), of_h0, h0), self%path%undeformed + 1)
-  end function interval_at
-
-  !> See `stepper`: the load is lowest at an extremum, at a fold or after a jump.
-  subroutine find_lowest(self, piece, from, to, lowest)
-    class(path_stepper_t), intent(in) :: self
-    integer, intent(in) :: piece
-    real(wp), intent(in) :: from, to
-    type(place_t), allocatable, intent(inout) :: lowest
-    type(walk_t) :: way
-    type(jump_t) :: jump
-    type(place_t) :: landing
-    real(wp) :: begins, ends
-    integer :: i
-
-    way = self%known%way_to(piece, to)
-    begins = from
-    do i = 1, size(way%leg)
-      associate (leg => way%leg(i), stable => self%known%stable%piece(way%leg(i)%piece))
-        ends = to
-        if (leg%jumps) then
-          jump = self%known%stable%jump_from(leg%piece, leg%inward)
-          ends = self%known%path%point(jump%fold())%state%h0
-        end if
-        call lower_along(self%known%path, stable%first%interval, stable%last%interval + 1, lowest, &
-          [begins, ends])
-        if (.not. leg%jumps) return
-        landing = point_of_path(jump%fold(), landing=.true.)
-        landing%at(of_load) = jump%after%state%load
-        if (jump%landed) call lower(lowest, landing)
-        begins = ends
-      end associate
-    end do
-  end subroutine find_lowest
 
   !> Solves the state at h0 on the position's piece: by iteration at fixed h0 or, if this does not
   !> converge to the state on the path, or near a fold, by a search along the path.

@@ -1,6 +1,5 @@
 !> Experiments with rigid bodies: at every h0 there is one state, with the gap of the shape and a
-!> load that is an integral over the gap (`undeformed`). No equations are solved, and there are no
-!> meshes.
+!> load that is an integral over the gap (`undeformed`). There are no equations and no meshes.
 module rigid_bodies
   use kinds, only: wp, long
   use root_finding, only: root_search_t, new_root_search
@@ -10,7 +9,7 @@ module rigid_bodies
     load_slope_undeformed
   use discretisation, only: discretisation_t
   use contact_state, only: state_t, undeformed_state
-  use ending, only: touching, turn_not_reached
+  use ending, only: touching
   use reported_place, only: place_t, of_h0, of_load, of_radius, rounding
   use places, only: places_t
   use reported_numbers, only: run_numbers_t, largest_error, chance
@@ -18,11 +17,21 @@ module rigid_bodies
   use experiment_request, only: request_t
   use experiment_result, only: experiment_result_t
   use stepped_branch, only: branch_t, compare_ends, enter_ends
-  use h0_schedule, only: h0_schedule_t, path_plan, loading_plan, unloading_plan
+  use h0_schedule, only: h0_schedule_t, path_plan
+  use loading_cycle, only: branches_t, run_cycle
   use clock, only: seconds
   implicit none
   private
   public :: run_rigid
+
+  !> The branches of rigid bodies, and the number of their states.
+  type, extends(branches_t) :: rigid_branches_t
+    type(problem_t), pointer :: problem => null()
+    class(observer_t), pointer :: observer => null()
+    integer(long) :: states = 0
+  contains
+    procedure :: run_branch
+  end type rigid_branches_t
 
   !> Distance of successive sampled gaps, as a fraction of the distance from the law's pole or of
   !> `least`, whichever is larger. Without a pole (smallest gap below `no_pole`) it is a fraction of
@@ -38,77 +47,69 @@ contains
   !> Runs the path and the cycle of a scene.
   subroutine run_rigid(request, problem, observer, outcome)
     class(request_t), intent(in) :: request
-    type(problem_t), intent(in) :: problem
-    class(observer_t), intent(inout) :: observer
+    type(problem_t), intent(in), target :: problem
+    class(observer_t), intent(inout), target :: observer
     type(experiment_result_t), intent(inout) :: outcome
-    type(run_numbers_t) :: others(0)
+    type(rigid_branches_t) :: branches
+    type(run_numbers_t) :: none(0)
     real(wp) :: began
-    integer :: k
+    logical :: reached
 
     began = seconds()
+    branches%problem => problem
+    branches%observer => observer
     if (allocated(request%path)) then
       allocate (outcome%stepped_path)
-      call run_branch(path_plan(request, problem%law, calm_gap(problem)), .true., outcome%places, &
-        outcome%cost%states, outcome%stepped_path)
+      call branches%run_branch(path_plan(request, problem%law, calm_gap(problem)), 0, &
+        outcome%stepped_path, outcome%places, reached)
     end if
-    if (allocated(request%loading)) then
-      allocate (outcome%loading)
-      call run_branch(loading_plan(request, problem%law), .true., outcome%places, &
-        outcome%cost%states, outcome%loading)
-    end if
-    if (allocated(request%unloading)) then
-      allocate (outcome%unloading(size(request%unloading%from)))
-      do k = 1, size(outcome%unloading)
-        associate (branch => outcome%unloading(k))
-          if (problem%law%gap_of(request%unloading%from(k)) < problem%law%smallest_gap) then
-            branch%ending%cause = turn_not_reached
-          else
-            call run_branch(unloading_plan(request, problem%law, k), .false., outcome%places, &
-              outcome%cost%states, branch)
-          end if
-          call outcome%places%enter('unload_max_tension', k, branch%lowest)
-          call outcome%places%enter('unload_jump_out', k)
-        end associate
-      end do
-    end if
+    if (allocated(request%loading)) call run_cycle(branches, request, problem%law, .true., &
+      outcome%loading, outcome%unloading, outcome%places)
     ! The load is an integral with a known error.
-    call outcome%places%judge_by(others, chance)
+    call outcome%places%judge_by(none, chance)
     outcome%error_estimate = largest_error(outcome%places%number)
+    outcome%cost%states = outcome%cost%states + branches%states
     outcome%cost%solve_seconds = seconds() - began
+  end subroutine run_rigid
+
+  !> Runs a branch, as far as the law has a pressure: see `loading_cycle`.
+  subroutine run_branch(self, plan, k, branch, places, reached)
+    class(rigid_branches_t), intent(inout) :: self
+    type(h0_schedule_t), intent(in) :: plan
+    integer, intent(in) :: k
+    type(branch_t), intent(out) :: branch
+    type(places_t), intent(inout) :: places
+    logical, intent(out) :: reached
+    type(problem_t), pointer :: problem
+    real(wp), allocatable :: load(:)
+    integer :: i
+
+    problem => self%problem
+    reached = k == 0
+    if (k > 0) reached = self%from(k) >= problem%law%smallest_gap
+    if (.not. reached) return
+    allocate (load(size(plan%h0)))
+    do i = 1, size(plan%h0)
+      if (plan%h0(i) < problem%law%smallest_gap) then
+        branch%ending%cause = touching
+        exit
+      end if
+      load(i) = load_undeformed(problem, plan%h0(i))
+      call show(plan, i, load(i))
+      if (plan%profile(i)) call places%add('profiles', place_at(plan%h0(i)))
+      branch%states = i
+    end do
+    self%states = self%states + branch%states
+    if (branch%states == 0) return
+    branch%finish = place_at(plan%h0(branch%states))
+    call find_largest_tension(plan%h0(:branch%states), load(:branch%states), branch)
+    call judge_ends(plan%h0(1), plan%h0(branch%states), branch)
+    call enter_ends(branch, k == 0, places)
 
   contains
 
-    !> Runs one branch through plan%h0, as far as the law has a pressure.
-    subroutine run_branch(plan, fresh, places, states, branch)
-      type(h0_schedule_t), intent(in) :: plan
-      logical, intent(in) :: fresh
-      type(places_t), intent(inout) :: places
-      integer(long), intent(inout) :: states
-      type(branch_t), intent(out) :: branch
-      real(wp), allocatable :: load(:)
-      integer :: i
-
-      allocate (load(size(plan%h0)))
-      do i = 1, size(plan%h0)
-        if (plan%h0(i) < problem%law%smallest_gap) then
-          branch%ending%cause = touching
-          exit
-        end if
-        load(i) = load_undeformed(problem, plan%h0(i))
-        call show(plan, i, load(i))
-        if (plan%profile(i)) call places%add('profiles', place_at(plan%h0(i)))
-        branch%states = i
-      end do
-      states = states + branch%states
-      if (branch%states == 0) return
-      branch%finish = place_at(plan%h0(branch%states))
-      call find_largest_tension(plan%h0(:branch%states), load(:branch%states), branch)
-      call judge_ends(plan%h0(1), plan%h0(branch%states), branch)
-      call enter_ends(branch, fresh, places)
-    end subroutine run_branch
-
-    !> Records whether the tension is largest in the first or in the last row. It does not grow
-    !> beyond if its slope is zero there, or where bodies touch under a law without repulsion.
+    !> Notes whether the tension is largest in the first or the last row. It cannot grow beyond if
+    !> it is level there, or where bodies touch that a repulsion does not keep apart.
     pure subroutine judge_ends(first, last, branch)
       real(wp), intent(in) :: first, last
       type(branch_t), intent(inout) :: branch
@@ -145,7 +146,7 @@ contains
       record%stable = merge(stable_yes, stable_unasked, plan%unique)
       state%load = load
       state%residual = 0
-      call observer%take(record, problem, grid, state, plan%profile(i))
+      call self%observer%take(record, problem, grid, state, plan%profile(i))
     end subroutine show
 
     !> Positions of a profile, lateral units: those of the sampled gaps, up to the end of the body.
@@ -217,8 +218,7 @@ contains
       found%left(of_radius) = radius_error(search%root, found%left(of_h0))
     end function lowest_about
 
-    !> The place of a state, with its error: that of the integral and that due to the rounding of
-    !> h0.
+    !> The place of a state, with its error: of the integral, and by the rounding of h0.
     pure type(place_t) function place_at(h0) result(reported)
       real(wp), intent(in) :: h0
       type(measured_t) :: load
@@ -257,7 +257,7 @@ contains
       given_error = rounding*max(1.0_wp, abs(h0), abs(problem%law%origin/problem%length))
     end function given_error
 
-  end subroutine run_rigid
+  end subroutine run_branch
 
   !> Gaps between two gaps, with both ends, so close that a law is unlikely to have two extrema
   !> between neighbours.

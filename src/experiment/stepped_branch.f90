@@ -6,7 +6,7 @@ module stepped_branch
   use h0_schedule, only: h0_schedule_t
   use stepper, only: stepper_t, branch_point_t, step_result_t
   use ending, only: ending_t
-  use largest_tension, only: lower
+  use largest_tension, only: lower, lower_on_way
   use tension_search, only: tension_search_t
   use reported_place, only: place_t, place_of_state, place_without_state, of_h0
   use places, only: places_t
@@ -123,7 +123,8 @@ contains
     if (allocated(last%state%gap)) branch%finish = place_of_state(last%mesh, last%state)
     if (branch%states > 0 .and. .not. event%converged) call doubt(farthest_known(), last_h0)
     if (branch%first_piece > 0) then
-      call steps%find_lowest(branch%first_piece, began, reached, branch%lowest)
+      call lower_on_way(steps%known%path, steps%known%stable, branch%first_piece, began, reached, &
+        branch%lowest)
       if (allocated(branch%finish)) call lower(branch%lowest, branch%finish)
     else
       call search%finish(steps, last_h0)

@@ -1,15 +1,18 @@
 !> The interface between a quasi-static experiment at controlled h0 and its solver: an approach from
-!> large separation to the start, steps from one h0 to the next, and the jumps in a step.
+!> large separation to the start, steps from one h0 to the next, and the jumps in a step; and the
+!> path that is known under a law that attracts.
 module stepper
   use kinds, only: wp
   use discretisation, only: discretisation_t
   use contact_state, only: state_t
   use solver, only: solver_t
   use ending, only: ending_t
-  use reported_place, only: place_t
+  use path_point, only: of_h0
+  use traced_path, only: tracing_t
+  use driven_pieces, only: driven_pieces_t, walk_t, way_along, interval_with
   implicit none
   private
-  public :: stepper_t, branch_point_t, step_result_t, extreme_t, memory, &
+  public :: stepper_t, known_path_t, branch_point_t, step_result_t, extreme_t, memory, &
     remember, move_to
 
   !> Number of states for the extrapolation in h0.
@@ -56,11 +59,20 @@ module stepper
     type(ending_t) :: ending
   end type step_result_t
 
+  !> The traced path, and its pieces that are stable at prescribed h0.
+  type, extends(tracing_t) :: known_path_t
+    type(driven_pieces_t) :: stable
+  contains
+    procedure :: way_to
+    procedure :: interval_at
+  end type known_path_t
+
   type, abstract, extends(solver_t) :: stepper_t
+    !> The path; not allocated if it was not traced (`path_stepper`).
+    type(known_path_t), allocatable :: known
   contains
     procedure(begin_at), deferred :: approach_to
     procedure(go_to), deferred :: step_to
-    procedure :: find_lowest
     procedure :: grid
   end type stepper_t
 
@@ -87,15 +99,23 @@ module stepper
 
 contains
 
-  !> Makes `lowest` the place of the lowest load between h0 = from, on a stable piece of the path,
-  !> and another h0, if that load is lower. Does nothing if the path is not known. The states at
-  !> both ends are not considered.
-  subroutine find_lowest(self, piece, from, to, lowest)
-    class(stepper_t), intent(in) :: self
+  !> The legs at prescribed h0 from a stable piece to an h0.
+  pure type(walk_t) function way_to(self, piece, h0) result(way)
+    class(known_path_t), intent(in) :: self
     integer, intent(in) :: piece
-    real(wp), intent(in) :: from, to
-    type(place_t), allocatable, intent(inout) :: lowest
-  end subroutine find_lowest
+    real(wp), intent(in) :: h0
+
+    way = way_along(self%stable, piece, h0 < self%stable%piece(piece)%last%state%h0, h0)
+  end function way_to
+
+  !> The interval on a mesh in which a stable piece reaches h0.
+  pure integer function interval_at(self, piece, h0) result(i)
+    class(known_path_t), intent(in) :: self
+    integer, intent(in) :: piece
+    real(wp), intent(in) :: h0
+
+    i = max(interval_with(self%path, self%stable%piece(piece), of_h0, h0), self%path%undeformed + 1)
+  end function interval_at
 
   !> The mesh of a position's state.
   function grid(self, position)

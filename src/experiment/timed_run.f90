@@ -12,7 +12,8 @@ module timed_run
   use records, only: observer_t
   use path_stepper, only: path_stepper_t
   use stepper, only: branch_point_t, step_result_t
-  use tracing, only: trace, tracing_t
+  use traced_path, only: tracing_t
+  use tracing, only: trace
   use numerics_choice, only: choice_t, size_grid, fixed_mesh, panels
   use experiment_request, only: request_t, numerics_t
   use path_demand, only: h0_in_contact

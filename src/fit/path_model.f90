@@ -13,8 +13,7 @@ module path_model
   use path_point, only: no_mesh
   use traced_path, only: traced_path_t
   use path_sensitivity, only: rate_t, rates_along
-  use drives, only: through_spring
-  use driven_pieces, only: driven_piece_t
+  use driven_pieces, only: driven_piece_t, through_spring
   use piece_search, only: find_pieces
   use device, only: driven_t, drive_bodies
   use experiment_request, only: request_t, numerics_t
@@ -134,7 +133,7 @@ contains
     self%steps%options%mixing = .false.
     self%steps%meshes = new_mesh_family(problem, chosen%high, chosen%low, chosen%digits, &
       store=self%store)
-    call self%steps%know_path(chosen%high, chosen%low, chosen%ends_at, .true., &
+    call self%steps%find_path(chosen%high, chosen%low, chosen%ends_at, .true., &
       self%numerics%accuracy, silent, demand_of(request, problem))
     self%left_out = self%steps%known%left_out
     if (.not. self%steps%known%path%held > 1) return

@@ -1,10 +1,9 @@
 !> How the continuation of the path passes from one mesh to the next.
 module mesh_passage
   use kinds, only: wp
-  use contact_state, only: state_t
+  use contact_state, only: state_t, regrid
   use equilibrium, only: equations_t
   use solver, only: solver_t
-  use regridding, only: regrid
   use next_mesh, only: radius_for, lay_out_next
   use path_coordinate, only: path_control, coordinate_of
   use mending, only: left_in_state

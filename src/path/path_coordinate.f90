@@ -2,17 +2,20 @@
 !> inward. On meshes about the axis s is minus the logarithm of the gap on the axis less nine tenths
 !> of the equilibrium separation. At smaller gaps, to which flat faces may be pressed, it continues
 !> with the same slope and curvature, and finally linearly in the gap. On other meshes it is the
-!> logarithm of the radius to which they are locked (`mesh_plan`).
+!> logarithm of the radius to which they are locked (`mesh_plan`). And the controls that
+!> prescribe s or h0 on a mesh.
 module path_coordinate
   use kinds, only: wp
   use force_law, only: force_law_t
   use dimensionless_problem, only: problem_t
   use contact_state, only: state_t
-  use controls, only: control_t, at_axis_gap, at_edge_radius
+  use shape, only: shape_t
+  use controls, only: control_t, at_axis_gap, at_edge_radius, at_h0_with_edge
+  use contact_scales, only: hertz_scale
   use mesh_family, only: mesh_family_t
   implicit none
   private
-  public :: path_control, coordinate_of, axis_coordinate, axis_gap_rate
+  public :: path_control, h0_control, scale_at, coordinate_of, axis_coordinate, axis_gap_rate
 
   !> The singular gap of the logarithm, over the equilibrium separation.
   real(wp), parameter :: singular = 0.9_wp
@@ -35,6 +38,29 @@ contains
       control%value = exp(s)
     end if
   end function path_control
+
+  !> The control that prescribes h0 on a mesh.
+  pure type(control_t) function h0_control(shape, meshes, mesh, h0) result(control)
+    class(shape_t), intent(in) :: shape
+    type(mesh_family_t), intent(in) :: meshes
+    integer, intent(in) :: mesh
+    real(wp), intent(in) :: h0
+
+    control%value = h0
+    control%mesh = mesh
+    control%scale = scale_at(shape, meshes, h0)
+    if (meshes%traceable .and. .not. meshes%is_about_axis(mesh)) control%kind = at_h0_with_edge
+  end function h0_control
+
+  !> The scale of the mesh at h0, for meshes whose scale is not an unknown.
+  pure real(wp) function scale_at(shape, meshes, h0)
+    class(shape_t), intent(in) :: shape
+    type(mesh_family_t), intent(in) :: meshes
+    real(wp), intent(in) :: h0
+
+    scale_at = 1
+    if (.not. meshes%traceable) scale_at = hertz_scale(shape, meshes%level, h0)
+  end function scale_at
 
   !> The coordinate of a state; the inverse of `path_control`.
   pure real(wp) function coordinate_of(problem, meshes, mesh, state) result(s)

@@ -7,8 +7,7 @@ module path_span
   use contact_state, only: state_t
   use equilibrium, only: holds, residual_floor
   use solver, only: solver_t
-  use locked_meshes, only: h0_control
-  use path_coordinate, only: coordinate_of
+  use path_coordinate, only: coordinate_of, h0_control
   use path_point, only: path_point_t, of_h0, of_load
   use arc, only: arc_t
   use path_search, only: find_place, place_on

@@ -5,13 +5,12 @@ module piece_search
   use interpolation, only: hermite_t
   use solver, only: solver_t
   use traced_path, only: traced_path_t
-  use drives, only: drive_t
-  use driven_pieces, only: driven_pieces_t, driven_piece_t, jump_t
+  use driven_pieces, only: drive_t, driven_pieces_t, driven_piece_t, jump_t, interval_with
   use path_point, only: path_point_t, part_of
   use curve_states, only: solve_at, state_where, find_turns
   implicit none
   private
-  public :: find_pieces, find_jumps, interval_with, state_driven
+  public :: find_pieces, find_jumps, state_driven
 
   !> Least relative decrease of Q over a piece. If a turn is a state of the path on two meshes,
   !> rounding makes spurious pieces over which Q hardly decreases.
@@ -97,22 +96,6 @@ contains
     end subroutine close_piece
 
   end subroutine find_pieces
-
-  !> The interval of a piece in which weights(1) h0 + weights(2) load reaches a value. (Where the
-  !> path changes its mesh this combination has a small jump, due to the errors of the meshes, and
-  !> the value may be inside it.)
-  pure integer function interval_with(path, piece, weights, wanted) result(i)
-    type(traced_path_t), intent(in) :: path
-    type(driven_piece_t), intent(in) :: piece
-    real(wp), intent(in) :: weights(2), wanted
-
-    do i = piece%first%interval, piece%last%interval - 1
-      if (.not. path%point(i)%leads_on) cycle
-      associate (end => path%point(i + 1)%state)
-        if (dot_product(weights, [end%h0, end%load]) <= wanted) return
-      end associate
-    end do
-  end function interval_with
 
   !> The state of a piece at a value of Q between those at the ends of the piece.
   subroutine state_driven(solver, path, drive, piece, wanted, state)

@@ -9,9 +9,10 @@ module traced_path
   use undeformed, only: load_undeformed, load_slope_undeformed
   use path_point, only: path_point_t, no_mesh
   use arc, only: arc_t
+  use ending, only: ending_t
   implicit none
   private
-  public :: traced_path_t
+  public :: traced_path_t, tracing_t
 
   type :: traced_path_t
     integer :: held = 0
@@ -30,6 +31,15 @@ module traced_path
     procedure :: fitted_between
     procedure, private :: find_nearby
   end type traced_path_t
+
+  !> A traced path, its ending, and whether it ends in a collapse of the bodies; left_out: the
+  !> largest part of the load that the nodes miss, except in a collapse.
+  type :: tracing_t
+    type(traced_path_t) :: path
+    type(ending_t) :: ending
+    logical :: fallen = .false.
+    real(wp) :: left_out = 0
+  end type tracing_t
 
   !> Ratio of h0 between points of undeformed bodies.
   real(wp), parameter :: outer_ratio = 1.12_wp

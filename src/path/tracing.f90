@@ -8,27 +8,18 @@ module tracing
   use solver, only: solver_t
   use mesh_plan, only: approach
   use contact_scales, only: largest_radius, lost_in_rounding
-  use locked_meshes, only: h0_control
+  use path_coordinate, only: h0_control
   use continuation, only: continuation_t
   use mesh_passage, only: has_come_to_next, pass_to_next
   use ending, only: ending_t, beyond_rounding, no_equilibrium, path_lost
-  use traced_path, only: traced_path_t
+  use traced_path, only: traced_path_t, tracing_t
   use path_end, only: demand_t, touches, outer_end, astray, collapsed
   use path_growth, only: append, add_extrema
   use further_meshes, only: further_mesh_t, further_mesh
   use mending, only: mender_t, new_mender, left_on_path, left_in_state
   implicit none
   private
-  public :: tracing_t, trace
-
-  !> A traced path, its ending, and whether it ends in a collapse of the bodies; left_out: the
-  !> largest part of the load that the nodes miss, except in a collapse.
-  type :: tracing_t
-    type(traced_path_t) :: path
-    type(ending_t) :: ending
-    logical :: fallen = .false.
-    real(wp) :: left_out = 0
-  end type tracing_t
+  public :: trace
 
   !> Number of points beyond which a path is given up.
   integer, parameter :: longest = 3000

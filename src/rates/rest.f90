@@ -2,12 +2,10 @@
 module rest
   use kinds, only: wp
   use dimensionless_problem, only: calm_gap
-  use contact_state, only: state_t, undeformed_state
+  use contact_state, only: state_t, undeformed_state, regrid
   use controls, only: control_t
   use mesh_plan, only: approach, contact
-  use locked_meshes, only: scale_at
-  use path_coordinate, only: coordinate_of
-  use regridding, only: regrid
+  use path_coordinate, only: coordinate_of, scale_at
   use drainage, only: drainage_t
   use time_instant, only: instant_t
   use time_stepper, only: time_stepper_t

@@ -4,10 +4,9 @@
 !> where h0 increases with the position of the drive.
 module time_jump
   use kinds, only: wp
-  use contact_state, only: state_t
+  use contact_state, only: state_t, regrid
   use controls, only: control_t
   use path_coordinate, only: path_control, coordinate_of
-  use regridding, only: regrid
   use root_finding, only: root_search_t, new_root_search
   use next_mesh, only: radius_for
   use time_instant, only: instant_t, extrapolate

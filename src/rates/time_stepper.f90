@@ -2,14 +2,12 @@
 !> on meshes that follow the contact edge.
 module time_stepper
   use kinds, only: wp
-  use contact_state, only: state_t
+  use contact_state, only: state_t, regrid
   use controls, only: control_t, at_h0_with_edge, at_edge_radius
   use mesh_plan, only: approach
   use contact_scales, only: cohesive_width
-  use locked_meshes, only: h0_control
-  use path_coordinate, only: coordinate_of
+  use path_coordinate, only: coordinate_of, h0_control
   use next_mesh, only: radius_for
-  use regridding, only: regrid
   use anderson, only: solve_anderson
   use solver_options, only: rescue_of
   use time_instant, only: instant_t, extrapolate

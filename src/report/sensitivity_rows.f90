@@ -11,7 +11,7 @@ module sensitivity_rows
   use experiment_result, only: experiment_result_t
   use reported_values, only: readings_t, read_numbers
   use path_sensitivity, only: rate_t, held
-  use drives, only: through_spring
+  use driven_pieces, only: through_spring
   use path_readings, only: path_readings_t
   use results, only: results_t
   use result_rows, only: rows
