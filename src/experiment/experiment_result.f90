@@ -79,7 +79,7 @@ contains
     end if
     if (.not. allocated(readings%loaded)) return
     do i = 1, size(readings%loaded)
-      call places%enter('fixed_load', i, place_on_curve(readings%loaded(i)%state, load_alone))
+      call places%enter('fixed_load', i, place_on_curve(readings%loaded(i), load_alone))
     end do
   end subroutine enter_readings
 

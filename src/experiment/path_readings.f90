@@ -16,16 +16,7 @@ module path_readings
   use path_end, only: outer_end
   implicit none
   private
-  public :: path_readings_t, loaded_state_t, read_path
-
-  !> An equilibrium under a load (units of `dimensionless_problem`), and the load's place in its
-  !> list. It is stable at fixed load if no mode is unstable at fixed h0 and dF/dh0 < 0.
-  type :: loaded_state_t
-    integer :: number = 0
-    real(wp) :: wanted = 0
-    type(path_point_t) :: state
-    logical :: stable = .false.
-  end type loaded_state_t
+  public :: path_readings_t, read_path, is_stable_under_load
 
   !> The readings in the units of `dimensionless_problem`.
   type :: path_readings_t
@@ -33,7 +24,10 @@ module path_readings
     type(path_point_t), allocatable :: node(:)
     !> A drive for each stiffness; and one at prescribed h0, for the table.
     type(driven_t), allocatable :: device(:), prescribed
-    type(loaded_state_t), allocatable :: loaded(:)
+    !> The equilibria under given loads, for each its number in the list of loads, and this list.
+    type(path_point_t), allocatable :: loaded(:)
+    integer, allocatable :: load_of(:)
+    real(wp), allocatable :: load(:)
     !> Derivatives at the nodes by each parameter of &sensitivity, (parameters, nodes).
     type(rate_t), allocatable :: rate(:, :)
     !> The h0 from which the path was traced, and the larger h0 from which the bodies are undeformed
@@ -93,21 +87,17 @@ contains
     subroutine find_loaded(load)
       real(wp), intent(in) :: load(:)
       type(path_point_t), allocatable :: states(:)
-      type(loaded_state_t) :: one
-      integer :: i, k
+      integer :: i
       logical :: solved
 
-      allocate (readings%loaded(0))
+      allocate (readings%loaded(0), readings%load_of(0))
+      readings%load = load
       do i = 1, size(load)
         call states_where(steps%solver_t, steps%known%path, of_load, load(i), states, solved)
         call cover(states, steps%problem, readings%quality)
         readings%solved = readings%solved .and. solved
-        do k = 1, size(states)
-          ! On the path followed inward, h0 decreases where states are stable at fixed h0.
-          one = loaded_state_t(i, load(i), states(k), &
-            states(k)%modes == 0 .and. states(k)%tangent%load > 0)
-          readings%loaded = [readings%loaded, one]
-        end do
+        readings%loaded = [readings%loaded, states]
+        readings%load_of = [readings%load_of, spread(i, 1, size(states))]
       end do
     end subroutine find_loaded
 
@@ -169,5 +159,13 @@ contains
     end subroutine drive_between
 
   end subroutine read_path
+
+  !> Whether an equilibrium is stable at fixed load: no mode is unstable at fixed h0, and dF/dh0 < 0.
+  !> On the path followed inward, h0 decreases where states are stable at fixed h0.
+  elemental logical function is_stable_under_load(point)
+    type(path_point_t), intent(in) :: point
+
+    is_stable_under_load = point%modes == 0 .and. point%tangent%load > 0
+  end function is_stable_under_load
 
 end module path_readings

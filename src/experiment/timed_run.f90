@@ -270,7 +270,7 @@ contains
       at_rest%cost = steps%cost
       at_rest%meshes = steps%meshes
       at_rest%meshes%grows = .false.
-      ! The pieces of the path and the jumps between them, which `know_path` solves too, are not
+      ! The pieces of the path and the jumps between them, which `find_path` solves too, are not
       ! needed.
       call at_rest%begin_afar(high, afar, event)
       if (.not. event%ending%early()) call trace(at_rest%solver_t, afar%state, low, .true., &

@@ -49,11 +49,11 @@ module arc
 contains
 
   !> The equilibrium at the coordinate s. The guess from the arc is corrected to rounding or, if
-  !> rounding is not reached, to the tolerance of the options. If that fails, the other kind of guess
-  !> is tried (see `moved`). slope_error: if present, the options' tolerance is enough, and the
-  !> tangent may have this relative error. miss: the largest change of a gap from the guess; from the
-  !> other kind of guess (huge if there is none); and of h0 and load. Changes are relative or in the
-  !> law's lengths.
+  !> rounding is not reached, to the tolerance of the options. If that fails, the other kind of
+  !> guess is tried (see `moved`). slope_error: if present, the options' tolerance is enough, and
+  !> the tangent may have this relative error. miss: the largest change of a gap from the guess;
+  !> from the other kind of guess (huge if there is none); and of h0 and load. Changes are relative
+  !> or in the law's lengths.
   subroutine solve_at(self, solver, s, point, converged, slope_error, miss)
     class(arc_t), intent(in) :: self
     class(solver_t), intent(inout) :: solver

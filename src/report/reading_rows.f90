@@ -10,7 +10,7 @@ module reading_rows
   use reported_place, only: of_h0, of_load, of_energy, of_radius, of_position, of_displacement
   use places, only: places_t
   use reported_values, only: readings_t, read_numbers
-  use path_readings, only: path_readings_t
+  use path_readings, only: path_readings_t, is_stable_under_load
   use results, only: results_t
   use tables, only: cells, direction_of
   use summary, only: summary_t
@@ -113,11 +113,10 @@ contains
       displacement = read_numbers(places, problem, 'fixed_load', of_displacement)
       radius = read_numbers(places, problem, 'fixed_load', of_radius)
       do i = 1, size(readings%loaded)
-        associate (loaded => readings%loaded(i))
-          call results%row(cells([loaded%wanted*problem%load, h0%value(i), &
-            displacement%value(i), radius%value(i)]) // merge(',1', ',0', loaded%stable), &
-            [h0%error(i), displacement%error(i), radius%error(i)])
-        end associate
+        call results%row(cells([readings%load(readings%load_of(i))*problem%load, h0%value(i), &
+          displacement%value(i), radius%value(i)]) // &
+          merge(',1', ',0', is_stable_under_load(readings%loaded(i))), &
+          [h0%error(i), displacement%error(i), radius%error(i)])
       end do
     end subroutine write_fixed_loads
 
@@ -212,13 +211,13 @@ contains
     type(summary_t), intent(inout) :: summary
     integer :: held(size(loads)), stable(size(loads)), nearest(size(loads)), i
 
-    associate (loaded => readings%loaded)
+    associate (is_stable => is_stable_under_load(readings%loaded))
       do i = 1, size(loads)
-        associate (same => loaded%number == i)
+        associate (same => readings%load_of == i)
           held(i) = count(same)
-          stable(i) = count(same .and. loaded%stable)
+          stable(i) = count(same .and. is_stable)
           ! On the path the stable one with the smallest h0 is the last.
-          nearest(i) = findloc(same .and. loaded%stable, .true., 1, back=.true.)
+          nearest(i) = findloc(same .and. is_stable, .true., 1, back=.true.)
         end associate
       end do
     end associate
