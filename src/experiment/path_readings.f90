@@ -160,8 +160,8 @@ contains
 
   end subroutine read_path
 
-  !> Whether an equilibrium is stable at fixed load: no mode is unstable at fixed h0, and dF/dh0 < 0.
-  !> On the path followed inward, h0 decreases where states are stable at fixed h0.
+  !> Whether an equilibrium is stable at fixed load: no mode is unstable at fixed h0, and dF/dh0 is
+  !> negative. On the path followed inward, h0 decreases where states are stable at fixed h0.
   elemental logical function is_stable_under_load(point)
     type(path_point_t), intent(in) :: point
 

@@ -3,6 +3,8 @@ path, stepping, decks and results are read and built without bodies in time, lay
 theories of others, resumed sweeps and processes. Those join at the places listed here and nowhere
 else."""
 
+import re
+
 import house
 
 # What is beyond the paper: whole rooms, and modules of other rooms.
@@ -54,7 +56,13 @@ SEAMS = {
 }
 
 # The longest chain of `use`, in modules: what a reader must know who begins at its end.
-LONGEST_CHAIN = 31
+LONGEST_CHAIN = 30
+
+# Types with a state of the bodies: a point of the path, a reported place, the position of a stepped
+# experiment, the bodies at a time; and, where branches on fixed meshes end, points of a curve and
+# what its search finds. A Jacobian has the state at which it was made.
+EQUILIBRIA = {"path_point_t", "place_t", "branch_point_t", "instant_t", "point_t", "branch_end_t",
+              "frozen_jacobian_t"}
 
 
 def is_beyond(name):
@@ -75,6 +83,20 @@ def test_no_seam_is_listed_that_is_none():
     idle = {(name, other) for name, others in SEAMS.items() for other in others
             if other not in house.uses()[name]}
     assert not idle
+
+
+def test_no_other_type_holds_an_equilibrium():
+    found = set()
+    for path in house.sources().values():
+        inside = None
+        for _, _, text in house.statements(path):
+            if match := re.match(r"type(?:,[^:]*)?(?:\s*::)?\s+(\w+)$", text):
+                inside = match[1]
+            elif re.match(r"(end type|contains)\b", text):
+                inside = None
+            elif inside and text.startswith("type(state_t)"):
+                found.add(inside)
+    assert found == EQUILIBRIA
 
 
 def test_the_longest_chain_of_uses_does_not_grow():
