@@ -2,7 +2,7 @@
 # tools/wheels.sh [PYTHON ...]: a wheel of the package for each of these interpreters, by default for
 # each of Python 3.9 to 3.14 that this machine has, into dist/, and a run of each. The wheels need
 # no compiler and no library but the C library: OpenBLAS, LAPACK and gfortran's libraries are
-# inside. They run on any x86-64 processor. Their tags say how old a C library they accept, which is
+# inside, with their licences (wheel_licences.py). They run on any x86-64 processor. Their tags say how old a C library they accept, which is
 # as old as that of this machine and its libraries allow: build them on the oldest system that they
 # shall run on.
 #
@@ -60,6 +60,8 @@ for python in "$@"; do
   logged "Python $version: putting the libraries inside" env PATH="$work/tools/bin:$PATH" \
     "$work/tools/bin/auditwheel" repair --wheel-dir "$out" "$raw"/snapin-*.whl
   tag=cp$(echo "$version" | tr -d .)
+  logged "Python $version: adding the libraries' licences" \
+    python3 "$top/tools/wheel_licences.py" "$out"/snapin-*-"$tag-$tag"-*.whl
   logged "Python $version: installing the wheel" "$work/venv-$version/bin/python" -m pip install \
     --disable-pip-version-check --force-reinstall "$out"/snapin-*-"$tag-$tag"-*.whl
   logged "Python $version: trying it" "$work/venv-$version/bin/python" -c "import snapin

@@ -21,7 +21,8 @@ DECK = """&bodies radius = 1e-6, stiffness = 1e10 /
 &equilibrium_path h0_end = -1e-9 /
 """
 PAGES = ("share/man/man1/snapin.1", "share/zsh/site-functions/_snapin",
-         "share/bash-completion/completions/snapin.bash", "share/licenses/snapin/LICENSE")
+         "share/bash-completion/completions/snapin.bash", "share/licenses/snapin/LICENSE",
+         "share/licenses/snapin/LICENSE.minpack")
 SWEEP = "&sweep key = 'force.hamaker', values = 1e-20, 1e-19 /\n"
 
 

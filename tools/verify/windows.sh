@@ -23,8 +23,9 @@ provides gfortran-mingw-w64-x86-64 gcc-mingw-w64-x86-64 wine64 || give_up "$reas
 lapack_source() {
   [ -d "$libraries/source" ] && return
   mkdir -p "$libraries/lists" "$libraries/parts" &&
-    sed 's/^Types: deb$/Types: deb-src/' /etc/apt/sources.list.d/debian.sources \
-      > "$libraries/parts/source.sources" && cd "$libraries" || return
+    find /etc/apt/sources.list.d '(' -name debian.sources -o -name ubuntu.sources ')' \
+      -exec sed 's/^Types: deb$/Types: deb-src/' {} + > "$libraries/parts/source.sources" &&
+    cd "$libraries" || return
   for step in update 'source --download-only lapack'; do
     # shellcheck disable=SC2086 # words are meant
     apt-get -q -o Dir::Etc::sourcelist=/dev/null -o Dir::Etc::sourceparts="$libraries/parts" \
