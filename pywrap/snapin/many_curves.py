@@ -5,13 +5,13 @@ import os
 import tempfile
 import warnings
 from collections.abc import Iterable, Mapping, Sequence
-from typing import Any, Optional, Union
+from typing import Any, NamedTuple, Optional, Union
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .arguments import Path, SnapinError, SnapinWarning, folder_path
-from .curve_fit import columns_of, fit_groups, with_groups
+from .arguments import Array, Path, SnapinError, SnapinWarning, folder_path
+from .curve_fit import columns_of, fit_groups, header_of, names_in, values_of, with_groups
 from .deck import Deck
 from .experiment import run
 
@@ -21,13 +21,36 @@ _PLACES = ("measurement.x", "measurement.y")
 _TOLD = ("verdict", "warning", "failure")
 
 
+class Shared(NamedTuple):
+    """The parameters with one value for all curves, SI. Dictionaries have their names as keys."""
+
+    estimate: dict[str, float]
+    standard_error: dict[str, float]
+    #: The ends of the 95 % interval of each parameter.
+    interval_95: dict[str, tuple[float, float]]
+    correlation: Array
+    #: Of all curves together, with all unknowns.
+    chi_squared: float
+    degrees_of_freedom: float
+    #: Number of the curves that were fitted together: those that the model describes alone.
+    curves: int
+    #: What is said of the fit of all; that of a curve is in its record.
+    warnings: list[str]
+
+
 class Fits:
     """The fits of many curves, SI. `table` has a row for each curve, in their order: the columns of
-    sweep.csv. `parameters`: the names of the unknowns; `units`: of the columns."""
+    sweep.csv. `parameters`: the names of the unknowns; `units`: of the columns. `shared`: if some
+    of them have one value for all curves, the fit of these; None without them."""
 
     def __init__(self, result, parameters, broken):
         self.result, self.parameters = result, parameters
         self.table, self.units = result.sweep, result.units["sweep"]
+        self.shared = None
+        if "fit" in result.fitted:
+            found = result.fitted["fit"]
+            self.shared = Shared(
+                *values_of(found), int(found["curves"][0]), names_in(found.get("warnings")))
         for i, why in broken.items():
             self.table["failure"][i] = why[:self.table["failure"].dtype.itemsize // 4]
 
@@ -123,14 +146,19 @@ def grid_of(places):
     return shape, np.lexsort((x, y))
 
 
-def fit_many(curves: Iterable[Sequence[ArrayLike]], *, spring_constant: ArrayLike, deck: Deck,
-             parameters: Union[str, Sequence[str]], places: Optional[ArrayLike] = None,
-             each: Optional[Mapping[str, Any]] = None, out: Optional[Path] = None,
+def fit_many(curves: Iterable[Sequence[ArrayLike]], *, deck: Deck,
+             parameters: Union[str, Sequence[str], None] = None,
+             shared: Union[str, Sequence[str], None] = None,
+             own: Union[str, Sequence[str], None] = None,
+             spring_constant: Optional[ArrayLike] = None, places: Optional[ArrayLike] = None,
+             over_radius: bool = False, each: Optional[Mapping[str, Any]] = None, out: Optional[Path] = None,
              resume: bool = False, quiet: bool = True, **further: Any) -> Fits:
     """Fit numbers of a deck to each of many measured curves and return the `Fits`.
 
-    curves: an iterable of (z, force) or (z, force, segment), as of `fit`; a curve that is none is a
-    record with the reason. places: x and y of each curve [m]. each: values of further keys of the
+    curves: an iterable of (z, force), (z, force, segment) or (z, force, segment, contact_radius),
+    as of `fit`; a curve that is none is a record with the reason. parameters: the unknowns of each
+    curve, which is fitted alone. shared, own: instead, the unknowns with one value for all curves
+    and those with a value for each; all curves are fitted together. places: x and y of each curve [m]. each: values of further keys of the
     deck, one for each curve, such as {"bodies.radius": [...]}. spring_constant: one number, or one
     for each curve. further: other arguments of `fit`.
 
@@ -147,46 +175,47 @@ def fit_many(curves: Iterable[Sequence[ArrayLike]], *, spring_constant: ArrayLik
         folder = folder_path(
             "out", stack.enter_context(tempfile.TemporaryDirectory()) if out is None else out)
         folder.mkdir(parents=True, exist_ok=True)
-        count, segments, broken = _write_curves(folder / _CURVES, curves)
+        count, columns, broken = _write_curves(folder / _CURVES, curves, over_radius)
         _write_cases(folder / _CASES, count, each)
         groups = fit_groups(
-            folder / _CURVES, segments, spring_constant=spring_constant, parameters=parameters,
-            **further)
+            folder / _CURVES, columns, spring_constant=spring_constant, parameters=parameters,
+            shared=shared, own=own, **further)
         groups["measurement"].update(curves=_NUMBER, curve=0)
         groups["sweep"] = {"file": os.fspath((folder / _CASES).absolute())}
         with warnings.catch_warnings():
             # What is said of a curve is in its record.
             warnings.simplefilter("ignore", SnapinWarning)
             result = run(with_groups(deck, groups, "fit_many"), out, resume=resume, quiet=quiet)
-    return Fits(result, tuple(groups["fit"]["parameters"]), broken)
+    names = [groups["fit"][key] for key in ("parameters", "shared", "own")]
+    return Fits(result, tuple(name for of_key in names for name in of_key or ()), broken)
 
 
-def _write_curves(path, curves):
-    """Write all curves into one file; return their number, whether they have segments, and why some
+def _write_curves(path, curves, over_radius):
+    """Write all curves into one file; return their number, the names of their columns, and why some
     are no curves."""
-    broken, segments, count = {}, None, 0
+    broken, names, count = {}, None, 0
     with path.open("w", encoding="utf-8") as file:
         for count, curve in enumerate(curves, 1):
             try:
                 columns = columns_of(*curve)
-                if segments is None:
-                    segments = len(columns) == 3
-                    names = [_NUMBER, "z", "force", *["segment"] * segments]
-                    file.write(",".join(names) + "\n")
-                if (len(columns) == 3) != segments:
-                    raise ValueError("some curves have segments, this one is not like the first")
-                if not len(columns[0]):
+                if names is None:
+                    names = [*columns]
+                    file.write(f"{_NUMBER},{header_of(columns, over_radius)}\n")
+                if [*columns] != names:
+                    raise ValueError(f"this curve has {', '.join(columns)}, and is not like the "
+                                     f"first, with {', '.join(names)}")
+                if not len(columns["force"]):
                     raise ValueError("a curve without samples")
             except (TypeError, ValueError) as problem:
                 broken[count - 1] = str(problem).replace(",", ";").replace("\n", " ")
                 continue
-            number = np.full(len(columns[0]), count - 1)
-            np.savetxt(file, np.column_stack([number, *columns]),
+            number = np.full(len(columns["force"]), count - 1)
+            np.savetxt(file, np.column_stack([number, *columns.values()]),
                        ["%d"] + ["%.17g"] * len(columns), ",")
-    if segments is None:
+    if names is None:
         raise SnapinError("curves: there is no curve" + "".join(
             f"; the first: {why}" for why in list(broken.values())[:1]))
-    return count, segments, broken
+    return count, names, broken
 
 
 def _write_cases(path, count, each):

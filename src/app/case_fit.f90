@@ -26,7 +26,17 @@ module case_fit
   use sweep_case, only: case_t, case_observer_t
   implicit none
   private
-  public :: run_fit_case
+  public :: fitted_case_t, run_fit_case, fit_case, finish_case
+
+  !> The fit of a case, whose scene is that of the sweep with the values of the case. readable:
+  !> whether the curve could be read.
+  type :: fitted_case_t
+    type(scene_t) :: scene
+    type(problem_t) :: problem
+    type(summary_t) :: summary
+    type(fit_outcome_t) :: outcome
+    logical :: readable = .false.
+  end type fitted_case_t
 
 contains
 
@@ -39,51 +49,70 @@ contains
     type(progress_t), intent(in), target :: progress
     type(curve_index_t), intent(inout) :: index
     type(case_t), intent(inout) :: case
+    type(fitted_case_t) :: fitted
+
+    call fit_case(scene, progress, index, case, fitted)
+    call finish_case(scene, fitted, case)
+  end subroutine run_fit_case
+
+  !> Reads and fits the curve of a case.
+  subroutine fit_case(scene, progress, index, case, fitted)
+    type(scene_t), intent(in) :: scene
+    type(progress_t), intent(in), target :: progress
+    type(curve_index_t), intent(inout) :: index
+    type(case_t), intent(inout) :: case
+    type(fitted_case_t), intent(out) :: fitted
     type(case_observer_t) :: observer
-    type(scene_t) :: variant
-    type(problem_t) :: problem
     type(experiment_result_t) :: result
-    type(fit_outcome_t) :: outcome
-    type(summary_t) :: summary
-    type(line_t), allocatable :: doubts(:)
     type(failure_t), allocatable :: error
 
     observer%case = case%number
     observer%progress => progress
+    call fitted%summary%set('converged', .false.)
+    call swept_scene(scene, scene%sweep%names, case%values, fitted%scene, error, case%text)
+    if (.not. allocated(error)) call load_curve(fitted%scene, error, index)
+    fitted%readable = .not. allocated(error)
+    if (.not. fitted%readable) then
+      fitted%outcome%trouble = first_line(error%message)
+      return
+    end if
+    fitted%problem = problem_of(fitted%scene)
+    call run_experiment(fitted%scene, fitted%problem, observer, result)
+    fitted%summary = summary_of(fitted%scene, fitted%problem, result)
+    case%cost = result%cost
+    if (size(case%like) > 0) then
+      call fit_measured(fitted%scene, fitted%problem, .false., observer, fitted%outcome, case%like)
+    else
+      call fit_measured(fitted%scene, fitted%problem, .false., observer, fitted%outcome)
+    end if
+  end subroutine fit_case
+
+  !> Makes the row of a case from its fit.
+  subroutine finish_case(scene, fitted, case)
+    type(scene_t), intent(in) :: scene
+    type(fitted_case_t), intent(inout) :: fitted
+    type(case_t), intent(inout) :: case
+    type(line_t), allocatable :: doubts(:)
+
+    allocate (doubts(0))
     case%failure = ''
     case%warning = ''
-    case%verdict = unreadable
-    allocate (doubts(0))
-    call summary%set('converged', .false.)
-    call swept_scene(scene, scene%sweep%names, case%values, variant, error, case%text)
-    if (.not. allocated(error)) call load_curve(variant, error, index)
-    if (.not. allocated(error)) then
-      problem = problem_of(variant)
-      call run_experiment(variant, problem, observer, result)
-      summary = summary_of(variant, problem, result)
-      if (size(case%like) > 0) then
-        call fit_measured(variant, problem, .false., observer, outcome, case%like)
-      else
-        call fit_measured(variant, problem, .false., observer, outcome)
-      end if
+    associate (outcome => fitted%outcome, summary => fitted%summary)
       if (.not. allocated(outcome%trouble)) then
         doubts = doubts_of(outcome)
         if (allocated(outcome%problem)) call describe_problem(outcome%problem, summary)
       end if
-      case%verdict = verdict_of(outcome, doubts)
+      case%verdict = unreadable
+      if (fitted%readable) case%verdict = verdict_of(outcome, doubts)
       if (size(doubts) > 0) case%warning = doubts(1)%text
       if (allocated(summary%failure)) case%failure = summary%failure
       if (allocated(outcome%trouble)) case%failure = outcome%trouble
       if (case%failure /= '' .or. .not. outcome%fitted%found) call summary%set('converged', .false.)
-    else
-      case%failure = first_line(error%message)
-      outcome%trouble = ''
-    end if
-    case%converged = summary%is_true('converged')
-    case%numbers = [numbers_of(summary, scene), numbers_of_fit(scene, outcome, doubts)]
+      case%converged = summary%is_true('converged')
+      case%numbers = [numbers_of(summary, scene), numbers_of_fit(scene, outcome, doubts)]
+    end associate
     case%costs = [real(wp) ::]
-    case%cost = result%cost
-  end subroutine run_fit_case
+  end subroutine finish_case
 
   !> The numbers of the columns; NaN without a fit.
   function numbers_of_fit(scene, outcome, doubts) result(numbers)

@@ -85,12 +85,14 @@ contains
   end subroutine next
 
   !> Whether the next case has to wait: the first fits are made one by one until the model describes
-  !> a curve. Then no result depends on how many are made at once.
+  !> a curve. Then no result depends on how many are made at once. Fits that are made together are
+  !> made one by one anyway.
   pure logical function waits(self)
     class(case_queue_t), intent(in) :: self
 
     waits = allocated(self%scene%fit) .and. .not. allocated(self%like) .and. &
       self%handed_out <= most_first .and. self%written < self%handed_out
+    if (waits) waits = .not. self%scene%fit%is_joint()
   end function waits
 
   !> Reads the row of the next case from the file, or, if all are `given`, what is after the last.

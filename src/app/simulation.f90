@@ -44,6 +44,8 @@ module simulation
   use fit_doubts, only: doubts_of
   use fit_rows, only: write_fit_rows, fit_text
   use fit_words, only: words_of_fit
+  use joint_fit, only: joint_fit_t
+  use joint_rows, only: report_joint
   implicit none
   private
   public :: run_scene
@@ -153,7 +155,8 @@ contains
 
       left_over = file_exists(journal_of(out_dir))
       call results%open(out_dir, scene, version, problem, &
-        identity_of(scene%deck%resolved()), resume .and. allocated(scene%sweep), error)
+        identity_of(scene%deck%resolved()), resume .and. allocated(scene%sweep) .and. &
+        .not. is_joint(), error)
       if (allocated(error)) return
       if (destination%to_stream) return
       if (.not. results%folder%lock%is_held()) call destination%say('warning: folders cannot ' // &
@@ -177,6 +180,7 @@ contains
       type(experiment_result_t) :: outcome
       character(len=:), allocatable :: name
       type(sweep_tally_t) :: tally
+      type(joint_fit_t) :: joint
 
       name = destination%folder(index(destination%folder, '/', .true.) + 1:)
       if (.not. problem%rigid) call claim_buffers()
@@ -184,7 +188,7 @@ contains
       if (allocated(scene%sweep)) then
         call results%progress%start(scene%sweep%cases(), name, destination%quiet)
         if (crew%workers > 0) call destination%say('processes that compute: '//brief(crew%workers))
-        call run_sweep(scene, crew, job, results, tally)
+        call run_sweep(scene, crew, job, results, tally, joint)
         cost = tally%cost
         summary = summary_of(scene, problem, outcome)
         if (tally%failed > 0) call summary%fail_with(brief(tally%failed)//' of '// &
@@ -194,12 +198,19 @@ contains
           counted(scene%sweep%cases(), 'case')//' gave a warning; the first, case '// &
           brief(tally%first_warned)//': '//trim(tally%warning))
         if (allocated(scene%fit)) call summary%note(told_of(tally))
+        if (is_joint()) call report_joint(joint, summary)
         if (left_out(scene) /= '') call summary%note('sweep: '//left_out(scene))
       else
         call results%progress%start(states_planned(scene), name, destination%quiet)
         call run_observed()
       end if
     end subroutine compute
+
+    !> Whether curves are fitted together: then no row is of use without all others.
+    pure logical function is_joint()
+      is_joint = allocated(scene%fit)
+      if (is_joint) is_joint = scene%fit%is_joint()
+    end function is_joint
 
     !> How many fits of a sweep have each verdict.
     function told_of(tally) result(text)

@@ -7,6 +7,8 @@ module sweeps
   use scene_groups, only: scene_t
   use sweep_case, only: case_t, sweep_tally_t, pass_case, pass_task, run_case
   use case_fit, only: run_fit_case
+  use joint_fit, only: joint_fit_t
+  use joint_sweep, only: fit_together
   use case_queue, only: case_queue_t
   use progress, only: progress_t
   use case_columns, only: columns_of
@@ -40,17 +42,21 @@ contains
   !> The workers of the crew compute them if there are any; `job` is the number of the scene for
   !> them. Cases in the journal of the results are complete, in any order; further cases are
   !> appended when they end. The row of a failed case says why it failed. After an error of writing
-  !> no case begins.
-  subroutine run_sweep(scene, crew, job, results, tally)
+  !> no case begins. joint: the fit of curves that are fitted together.
+  subroutine run_sweep(scene, crew, job, results, tally, joint)
     type(scene_t), intent(in), target :: scene
     type(crew_t), intent(inout) :: crew
     integer, intent(in) :: job
     type(results_t), intent(inout), target :: results
     type(sweep_tally_t), intent(out) :: tally
+    type(joint_fit_t), intent(out) :: joint
     type(case_queue_t) :: queue
     type(mesh_store_t) :: store
     type(failure_t), allocatable :: error
+    logical :: is_joint
 
+    is_joint = .false.
+    if (allocated(scene%fit)) is_joint = scene%fit%is_joint()
     queue%scene => scene
     queue%results => results
     queue%columns = columns_of(scene)
@@ -59,6 +65,8 @@ contains
     if (allocated(scene%sweep%file)) call queue%rows%open(scene%sweep%file%path, scene%deck, error)
     if (allocated(error)) then
       call move_alloc(error, results%trouble)
+    else if (is_joint) then
+      call fit_together(scene, queue, joint)
     else if (crew%workers > 0) then
       ! A process fits one curve at a time.
       call hand_out(crew, job, queue, merge(1, thread_count(), allocated(scene%fit)))

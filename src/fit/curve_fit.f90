@@ -2,8 +2,7 @@
 !> of them are correlated.
 module curve_fit
   use kinds, only: wp
-  use fit_request, only: of_contact_point, free_of
-  use least_squares, only: minimise
+  use fit_request, only: of_contact_point
   use force_model, only: force_model_t
   use modelled_curve, only: modelled_curve_t
   use curve_residuals, only: curve_residuals_t
@@ -11,7 +10,8 @@ module curve_fit
   use noise, only: white_noise
   use second_look, only: look_again
   use baseline_test, only: settle_ripple
-  use fit_errors, only: fitted_t, judge, widen
+  use fit_errors, only: fitted_t, judge
+  use wider_errors, only: widen
   implicit none
   private
   public :: fit_curve
@@ -247,13 +247,9 @@ contains
     real(wp), intent(inout) :: value(:)
     real(wp), intent(out) :: left
     logical, intent(out) :: found
-    real(wp) :: x(size(value)), residual(residuals%rows())
 
     where (residuals%curve%unknown%role == of_contact_point) residuals%curve%unknown%origin = value
-    x = free_of(residuals%curve%unknown, value)
-    call minimise(residuals, x, residual, found)
-    left = sum(residual**2)
-    value = residuals%values(x)
+    call residuals%descend(value, left, found)
   end subroutine search
 
 end module curve_fit

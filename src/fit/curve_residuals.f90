@@ -4,9 +4,8 @@
 !> datum, and so is a prior of an unknown. Samples within a jump do not count.
 module curve_residuals
   use kinds, only: wp
-  use fit_request, only: unknown_t, value_of, value_by_free, value_by_fitted, fitted_of, &
-    is_beyond
-  use least_squares, only: residuals_t
+  use fit_request, only: unknown_t, value_by_fitted, fitted_of, is_beyond
+  use fit_residuals, only: fit_residuals_t
   use modelled_curve, only: modelled_curve_t
   implicit none
   private
@@ -15,19 +14,25 @@ module curve_residuals
   !> Residual of a jump that the model does not have, in standard deviations.
   real(wp), parameter :: missed = 10
 
-  type, extends(residuals_t) :: curve_residuals_t
+  type, extends(fit_residuals_t) :: curve_residuals_t
     type(modelled_curve_t) :: curve
   contains
+    procedure :: unknowns
     procedure :: rows
-    procedure :: values
+    procedure :: removed
     procedure :: residuals_of
-    procedure :: evaluate
-    procedure :: differentiate
     procedure :: jacobian_of
     procedure, private :: jump_residual
   end type curve_residuals_t
 
 contains
+
+  pure function unknowns(self) result(unknown)
+    class(curve_residuals_t), intent(in) :: self
+    type(unknown_t), allocatable :: unknown(:)
+
+    unknown = self%curve%unknown
+  end function unknowns
 
   !> Number of residuals: samples, measured jumps, unknowns with a prior.
   pure integer function rows(self)
@@ -38,24 +43,12 @@ contains
     end associate
   end function rows
 
-  !> The values of the unknowns.
-  pure function values(self, x) result(value)
+  !> Number of amplitudes of the baseline.
+  pure integer function removed(self)
     class(curve_residuals_t), intent(in) :: self
-    real(wp), intent(in) :: x(:)
-    real(wp) :: value(size(x))
-    integer :: i
 
-    value = [(value_of(self%curve%unknown(i), x(i)), i=1, size(x))]
-  end function values
-
-  subroutine evaluate(self, x, residual, found)
-    class(curve_residuals_t), intent(inout) :: self
-    real(wp), intent(in) :: x(:)
-    real(wp), intent(out) :: residual(:)
-    logical, intent(out) :: found
-
-    call self%residuals_of(self%values(x), residual, found)
-  end subroutine evaluate
+    removed = self%curve%data%baseline_numbers()
+  end function removed
 
   !> The residuals at these values of the unknowns.
   subroutine residuals_of(self, value, residual, found)
@@ -89,20 +82,6 @@ contains
       end associate
     end do
   end subroutine residuals_of
-
-  subroutine differentiate(self, x, jacobian, found)
-    class(curve_residuals_t), intent(inout) :: self
-    real(wp), intent(in) :: x(:)
-    real(wp), intent(out) :: jacobian(:, :)
-    logical, intent(out) :: found
-    integer :: i
-
-    call self%jacobian_of(self%values(x), jacobian, found)
-    if (.not. found) return
-    do i = 1, size(x)
-      jacobian(:, i) = jacobian(:, i)*value_by_free(self%curve%unknown(i), x(i))
-    end do
-  end subroutine differentiate
 
   !> Derivatives of the residuals by the values of the unknowns.
   subroutine jacobian_of(self, value, jacobian, found)

@@ -51,6 +51,7 @@ contains
       end do
       ! Then the model may describe the data with other values.
       stopped = size(lines) > 0
+      if (allocated(outcome%of_all)) call add(outcome%of_all)
       explained = .false.
       if (.not. fitted%found) call add('the search ended before it found the best values')
       if (.not. outcome%resolved) call add('the meshes do not resolve the force law, ' // &

@@ -1,14 +1,15 @@
-!> The result of a fit, and the errors of its values: from the derivatives of the residuals, or from
-!> the profile likelihood if the residuals are nonlinear over a few standard errors.
+!> The result of a fit, and the errors of its values by the derivatives of the residuals.
 module fit_errors
   use kinds, only: wp
   use linear_algebra, only: singular_values
-  use fit_request, only: unknown_t, fitted_of, value_by_fitted
+  use fit_request, only: unknown_t, value_by_fitted
+  use fit_residuals, only: fit_residuals_t
   use curve_residuals, only: curve_residuals_t
   use second_look, only: lack_t, lack_in
   implicit none
   private
-  public :: fitted_t, judge, widen, least_effect, within_95
+  public :: fitted_t, judge, find_errors, examine_curve, set_deviations, bounded, least_effect, &
+    within_95
 
   !> Half-width of a 95 % interval in standard deviations.
   real(wp), parameter :: within_95 = 1.959964_wp
@@ -16,11 +17,6 @@ module fit_errors
   !> An unknown has no effect if a change of its fitted number (`fit_request`) by 1 changes the data
   !> by less than this, in standard deviations.
   real(wp), parameter :: least_effect = 0.1_wp
-  !> Number of standard errors to which the residuals are examined; the part of its expected rise
-  !> that the sum of squares may lack; number of steps of one examination, and of corrections of the
-  !> other unknowns in a step.
-  real(wp), parameter :: out_to = 3, lacking = 0.2_wp
-  integer, parameter :: most_steps = 6, corrections = 3
 
   !> The result of a fit. value, deviation: each unknown and its standard deviation, in the unit of
   !> its key. fitted_deviation, correlation: the same for the fitted numbers (`fit_request`), whose
@@ -46,10 +42,11 @@ module fit_errors
     !> Position of the base at which the model jumps in and out; NaN without a jump.
     real(wp) :: jump_z(2) = 0
     !> Derivatives of the residuals by the fitted numbers, and the covariance of these.
-    real(wp), allocatable, private :: by_fitted(:, :), covariance(:, :)
+    real(wp), allocatable :: by_fitted(:, :), covariance(:, :)
   contains
     procedure :: end_of
     procedure :: is_better_than
+    procedure :: part_of
   end type fitted_t
 
 contains
@@ -76,30 +73,39 @@ contains
 
   end function is_better_than
 
-  !> Finds errors and correlations of the values, and the residuals of the curve.
+  !> Finds errors and correlations of the values, and what is left of the curve.
   subroutine judge(residuals, fitted)
     type(curve_residuals_t), intent(inout) :: residuals
     type(fitted_t), intent(inout) :: fitted
-    real(wp) :: jacobian(residuals%rows(), size(fitted%value)), residual(residuals%rows())
+    real(wp) :: residual(residuals%rows())
+    logical :: found
+
+    call find_errors(residuals, fitted, residual, found)
+    if (found) call examine_curve(residuals, residual, fitted)
+  end subroutine judge
+
+  !> Finds errors and correlations of the values, and the residuals.
+  subroutine find_errors(residuals, fitted, residual, found)
+    class(fit_residuals_t), intent(inout) :: residuals
+    type(fitted_t), intent(inout) :: fitted
+    real(wp), intent(out) :: residual(:)
+    logical, intent(out) :: found
+    real(wp) :: jacobian(size(residual), size(fitted%value))
     real(wp), dimension(size(fitted%value), size(fitted%value)) :: right, covariance
     real(wp), dimension(size(fitted%value)) :: length, singular
-    logical :: found
+    type(unknown_t), allocatable :: unknown(:)
     integer :: i, j, n
 
     n = size(fitted%value)
+    unknown = residuals%unknowns()
     call residuals%residuals_of(fitted%value, residual, found)
     if (found) call residuals%jacobian_of(fitted%value, jacobian, found)
     fitted%found = fitted%found .and. found
     if (.not. found) return
     fitted%chi_squared = sum(residual**2)
-    fitted%freedom = size(residual) - n - residuals%curve%data%baseline_numbers()
-    associate (data => residuals%curve%data)
-      fitted%scale = data%noise%left(data%noise%order)
-      fitted%lack = lack_in(residual(:size(data%sample)), 3*data%way(data%sample) + &
-        data%side(data%sample), size(data%sample) - n - data%baseline_numbers(), data%noise)
-    end associate
+    fitted%freedom = size(residual) - n - residuals%removed()
     do j = 1, n
-      jacobian(:, j) = jacobian(:, j)*value_by_fitted(residuals%curve%unknown(j), fitted%value(j))
+      jacobian(:, j) = jacobian(:, j)*value_by_fitted(unknown(j), fitted%value(j))
     end do
     length = norm2(jacobian, 1)
     fitted%effect = length
@@ -116,19 +122,60 @@ contains
     end do
     length = max(length, tiny(1.0_wp)**0.25_wp)
     fitted%side = spread([(sqrt(covariance(j, j))/length(j), j=1, n)], 1, 2)
-    call set_deviations(fitted, residuals%curve%unknown)
-    allocate (fitted%correlation(n, n))
+    call set_deviations(fitted, unknown)
+    fitted%correlation = covariance
     do j = 1, n
       fitted%correlation(:, j) = &
         [(covariance(i, j)/sqrt(covariance(i, i)*covariance(j, j)), i=1, n)]
     end do
     fitted%covariance = covariance/spread(length, 1, n)/spread(length, 2, n)
+  end subroutine find_errors
+
+  !> Finds what a fit leaves of its curve, from the residuals at its values.
+  subroutine examine_curve(residuals, residual, fitted)
+    type(curve_residuals_t), intent(in) :: residuals
+    real(wp), intent(in) :: residual(:)
+    type(fitted_t), intent(inout) :: fitted
+    integer :: i
+
+    associate (data => residuals%curve%data)
+      fitted%scale = data%noise%left(data%noise%order)
+      fitted%lack = lack_in(residual(:size(data%sample)), 3*data%way(data%sample) + &
+        data%side(data%sample), size(data%sample) + fitted%freedom - size(residual), data%noise)
+    end associate
     call residuals%curve%split(fitted%value, fitted%model, fitted%baseline)
     fitted%residual = residuals%curve%data%measured%signal - fitted%model
     fitted%jump_z = [(residuals%curve%jump_of(fitted%value, i), i=1, 2)]
-  end subroutine judge
+  end subroutine examine_curve
 
-  subroutine set_deviations(fitted, unknown)
+  !> The part of a fit of several curves that belongs to one: its unknowns at `place`. residual: its
+  !> residuals, which begin after `before` others, with `removed` numbers of its baseline. The
+  !> degrees of freedom are the expected sum of its squared residuals, so that those of all curves
+  !> add up to those of the fit but for rounding.
+  pure type(fitted_t) function part_of(self, place, residual, before, removed) result(part)
+    class(fitted_t), intent(in) :: self
+    integer, intent(in) :: place(:), before, removed
+    real(wp), intent(in) :: residual(:)
+
+    part%found = self%found
+    part%has_path = .true.
+    part%has_curve = .true.
+    part%value = self%value(place)
+    part%deviation = self%deviation(place)
+    part%fitted_deviation = self%fitted_deviation(place)
+    part%correlation = self%correlation(place, place)
+    part%covariance = self%covariance(place, place)
+    part%effect = self%effect(place)
+    part%side = self%side(:, place)
+    part%identifiable = self%identifiable
+    part%by_fitted = self%by_fitted(before + 1:before + size(residual), place)
+    part%chi_squared = sum(residual**2)
+    part%freedom = size(residual) - removed - &
+      nint(sum(part%by_fitted*matmul(part%by_fitted, part%covariance)))
+  end function part_of
+
+  !> Sets the standard errors from those of each side.
+  pure subroutine set_deviations(fitted, unknown)
     type(fitted_t), intent(inout) :: fitted
     type(unknown_t), intent(in) :: unknown(:)
     integer :: j
@@ -138,132 +185,7 @@ contains
       abs([(value_by_fitted(unknown(j), fitted%value(j)), j=1, size(unknown))])
   end subroutine set_deviations
 
-  !> Increases errors if the sum of squares rises less than its derivatives predict (profile
-  !> likelihood): a modulus to which a curve is hardly sensitive has no upper limit. The deviation
-  !> of a side is a third of the distance at which the sum rises by nine; if bounds, or values
-  !> without a model, are nearer, it follows from the rise at the farthest values. better: allocated
-  !> if a smaller sum of squares was found, with its values; if the argument is absent, such a sum
-  !> counts as no rise.
-  subroutine widen(residuals, fitted, better)
-    type(curve_residuals_t), intent(inout) :: residuals
-    type(fitted_t), intent(inout) :: fitted
-    real(wp), allocatable, intent(out), optional :: better(:)
-    real(wp) :: value(size(fitted%value)), far, rise, room
-    logical :: found
-    integer :: j, way, step
-
-    do j = 1, size(value)
-      do way = 1, 2
-        value = fitted%value
-        room = room_for(residuals%curve%unknown(j), fitted%value(j), way == 2)
-        do step = 1, most_steps
-          far = min(out_to*fitted%side(way, j), room)
-          ! The bound decides, and not the data.
-          if (far < fitted%side(way, j)) exit
-          call go_to(j, merge(far, -far, way == 2))
-          if (.not. found) then
-            value = fitted%value
-            room = 0.5_wp*far
-            cycle
-          end if
-          if (rise < -1 .and. present(better)) then
-            better = value
-            return
-          end if
-          call widen_others(residuals%curve%unknown, j)
-          if (rise > (1 - lacking)*(far/fitted%side(way, j))**2) exit
-          ! Without a rise this step would be infinite.
-          fitted%side(way, j) = min(2*fitted%side(way, j), far/sqrt(max(rise, tiny(rise))))
-        end do
-      end do
-    end do
-    call set_deviations(fitted, residuals%curve%unknown)
-
-  contains
-
-    !> Increases the errors of numbers other than j at values with a known rise. Along a curved
-    !> valley a number may move far together with number j, which its own derivatives do not show.
-    subroutine widen_others(unknown, j)
-      type(unknown_t), intent(in) :: unknown(:)
-      integer, intent(in) :: j
-      real(wp) :: moved
-      integer :: k, way
-
-      if (rise > out_to**2) return
-      do k = 1, size(value)
-        if (k == j) cycle
-        moved = fitted_of(unknown(k), value(k)) - fitted_of(unknown(k), fitted%value(k))
-        way = merge(2, 1, moved > 0)
-        if (rise < (1 - lacking)*(moved/fitted%side(way, k))**2) fitted%side(way, k) = &
-          max(fitted%side(way, k), abs(moved)/sqrt(max(rise, 1.0_wp)))
-      end do
-    end subroutine widen_others
-
-    !> Moves fitted number j by `far` from its best value, and the others to the smallest sum of
-    !> squares there, which is `rise` above the best. value: on entry where the last step ended.
-    subroutine go_to(j, far)
-      integer, intent(in) :: j
-      real(wp), intent(in) :: far
-      real(wp) :: residual(size(fitted%by_fitted, 1)), trial(size(value)), next
-      real(wp), dimension(size(value)) :: now, best, move, gradient
-      integer :: k
-
-      associate (unknown => residuals%curve%unknown, c => fitted%covariance)
-        best = fitted_of(unknown, fitted%value)
-        now = fitted_of(unknown, value)
-        now = now + c(:, j)/c(j, j)*(best(j) + far - now(j))
-        rise = huge(rise)
-        do k = 0, corrections
-          trial = within_bounds(unknown, now)
-          found = abs(fitted_of(unknown(j), trial(j)) - now(j)) <= 1.0e-9_wp*abs(far)
-          if (found) call residuals%residuals_of(trial, residual, found)
-          if (.not. found) exit
-          next = sum(residual**2) - fitted%chi_squared
-          if (.not. next < rise) exit
-          rise = next
-          value = trial
-          ! The step of Gauss and Newton with number j fixed, by the derivatives at the best values.
-          gradient = matmul(residual, fitted%by_fitted)
-          move = matmul(c, gradient)
-          move = move - c(:, j)*move(j)/c(j, j)
-          if (dot_product(move, gradient) < lacking) exit
-          now = fitted_of(unknown, trial) - move
-        end do
-        found = rise < huge(rise)
-      end associate
-    end subroutine go_to
-
-    !> How far a fitted number may move upward or downward from its best value.
-    pure real(wp) function room_for(unknown, value, upward) result(room)
-      type(unknown_t), intent(in) :: unknown
-      real(wp), intent(in) :: value
-      logical, intent(in) :: upward
-      real(wp), parameter :: within = 1 - 1.0e-6_wp
-      real(wp) :: sign, u
-
-      sign = merge(1, -1, upward)
-      u = fitted_of(unknown, value)
-      room = huge(room)
-      if (unknown%in_log) room = unknown%farthest(merge(2, 1, upward)) - sign*u
-      if (upward .and. allocated(unknown%upper)) &
-        room = min(room, fitted_of(unknown, unknown%upper) - u)
-      if (.not. upward .and. allocated(unknown%lower)) &
-        room = min(room, u - fitted_of(unknown, unknown%lower))
-      room = within*room
-    end function room_for
-
-    !> The values of fitted numbers, moved to the nearest bound if they are beyond it.
-    elemental real(wp) function within_bounds(unknown, u) result(value)
-      type(unknown_t), intent(in) :: unknown
-      real(wp), intent(in) :: u
-
-      value = unknown%origin + unknown%scale*u
-      if (unknown%in_log) value = unknown%scale*exp(u)
-      value = bounded(unknown, value)
-    end function within_bounds
-
-  end subroutine widen
-
+  !> A value within the bounds of its unknown.
   elemental real(wp) function bounded(unknown, value)
     type(unknown_t), intent(in) :: unknown
     real(wp), intent(in) :: value

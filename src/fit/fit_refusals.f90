@@ -53,7 +53,8 @@ contains
       deallocate (trouble)
     end if
     do i = 1, size(fitted%effect)
-      if (fitted%effect(i) > least_effect) cycle
+      ! Another curve may show a shared unknown.
+      if (fitted%effect(i) > least_effect .or. curve%unknown(i)%shared) cycle
       trouble = curve%unknown(i)%name // &
         ' has no effect on this curve near the best value found, ' // &
         rounded(fitted%value(i)) // '; remove it from parameters, or give a prior' // suggestion

@@ -60,13 +60,13 @@ module fit_request
   real(wp), parameter :: farthest_off = 5
 
   !> An unknown, in the unit of its key. in_log: it is positive and its logarithm is fitted;
-  !> otherwise the fitted number is its difference from `origin`, over `scale`. prior: prior
-  !> standard deviation about the deck's value; 0: none. farthest: the largest logarithms of a trial
-  !> below and above the deck's value.
+  !> otherwise the fitted number is its difference from `origin`, over `scale`. prior: prior standard deviation about the
+  !> deck's value; 0: none. farthest: the largest logarithms of a trial below and above the deck's
+  !> value. shared: it has one value for several curves that are fitted together.
   type :: unknown_t
     character(len=:), allocatable :: name, unit
     integer :: role = of_model
-    logical :: in_log = .false.
+    logical :: in_log = .false., shared = .false.
     real(wp) :: value = 0, origin = 0, scale = 1, prior = 0
     real(wp) :: farthest(2) = farthest_off
     real(wp), allocatable :: lower, upper
@@ -78,9 +78,18 @@ module fit_request
   type :: fit_t
     type(unknown_t), allocatable :: unknown(:)
     real(wp), allocatable :: noise, noise_radius, poisson(:)
+  contains
+    procedure :: is_joint
   end type fit_t
 
 contains
+
+  !> Whether several curves are fitted together.
+  pure logical function is_joint(self)
+    class(fit_t), intent(in) :: self
+
+    is_joint = any(self%unknown%shared)
+  end function is_joint
 
   !> Whether a column is of this quantity.
   pure logical function has(self, quantity)

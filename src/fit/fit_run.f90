@@ -33,7 +33,7 @@ module fit_run
   use theory_fits, only: theory_fit_t, fit_theories, suggested_characters
   implicit none
   private
-  public :: fit_outcome_t, run_fit
+  public :: fit_outcome_t, run_fit, examine_fit
 
   !> The result. trouble: the reason why there is no fit, with advice.
   type :: fit_outcome_t
@@ -52,6 +52,8 @@ module fit_run
     type(derived_t), allocatable :: derived(:)
     !> The problem with the fitted values, if it could be posed.
     type(problem_t), allocatable :: problem
+    !> Of a curve that is fitted together with others: what is said of them all.
+    character(len=:), allocatable :: of_all
   end type fit_outcome_t
 
   !> Smallest noise over the largest signal, for computed signals.
@@ -82,7 +84,6 @@ contains
     class(force_model_t), pointer :: model
     type(modelled_curve_t) :: curve
     type(curve_residuals_t) :: residuals
-    type(failure_t), allocatable :: error
     character(len=:), allocatable :: suggestion
     real(wp), allocatable :: start(:, :)
 
@@ -99,28 +100,17 @@ contains
     outcome%curve = curve
     call check_fit(curve, model, outcome%fitted, suggestion, outcome%trouble)
     if (allocated(outcome%trouble)) return
-    call test_held(curve, outcome%fitted%value, numerics, wider, problem%law%adhesion > 0, &
-      outcome%held)
     residuals%curve = curve
     call residuals%curve%use_model(model)
-    call test_baseline(residuals, outcome%fitted%value, outcome%lacking)
+    call examine_fit(residuals, fit, numerics, family, wider, problem%law%adhesion > 0, outcome)
     if (.not. outcome%fitted%lack%is_noise()) then
       call listener%hear('looking for what is wrong')
       call find_alternative(family, problem, curve, model, asked_most(outcome%held) == &
         'measurement.spring_constant', outcome%fitted, outcome%alternative)
     end if
-    if (theories) call listener%hear('fitting classical theories')
-    allocate (outcome%theory(0), outcome%derived(0), outcome%problem)
-    call family%pose(pack(outcome%fitted%value, curve%unknown%role == of_model), outcome%problem, &
-      error)
-    if (allocated(error)) then
-      deallocate (outcome%problem)
-      return
-    end if
-    call derive_numbers(family, fit, curve%unknown, outcome%fitted, outcome%problem, &
-      outcome%derived)
-    if (theories) &
-      call fit_theories(curve, outcome%fitted, family, outcome%problem, outcome%theory)
+    if (.not. (theories .and. allocated(outcome%problem))) return
+    call listener%hear('fitting classical theories')
+    call fit_theories(curve, outcome%fitted, family, outcome%problem, outcome%theory)
 
   contains
 
@@ -299,5 +289,30 @@ contains
     end function asked_most
 
   end subroutine run_fit
+
+  !> Tests a fit, outcome%fitted, and finds the numbers that follow from it. residuals: of its
+  !> curve, with a model. Others: as of `run_fit`; attracts: whether the bodies do.
+  subroutine examine_fit(residuals, fit, numerics, family, wider, attracts, outcome)
+    type(curve_residuals_t), intent(inout) :: residuals
+    type(fit_t), intent(in) :: fit
+    type(numerics_t), intent(in) :: numerics
+    class(problem_family_t), intent(in) :: family, wider
+    logical, intent(in) :: attracts
+    type(fit_outcome_t), intent(inout) :: outcome
+    type(problem_t) :: problem
+    type(failure_t), allocatable :: error
+
+    outcome%curve = residuals%curve
+    associate (value => outcome%fitted%value, unknown => outcome%curve%unknown)
+      call test_held(outcome%curve, value, numerics, wider, attracts, outcome%held)
+      call test_baseline(residuals, value, outcome%lacking)
+      outcome%theory = [theory_fit_t ::]
+      outcome%derived = [derived_t ::]
+      call family%pose(pack(value, unknown%role == of_model), problem, error)
+      if (allocated(error)) return
+      call derive_numbers(family, fit, unknown, outcome%fitted, problem, outcome%derived)
+      outcome%problem = problem
+    end associate
+  end subroutine examine_fit
 
 end module fit_run

@@ -15,7 +15,7 @@ module fit_rows
   use fit_doubts, only: doubts_of
   implicit none
   private
-  public :: write_fit_rows, fit_text
+  public :: write_fit_rows, fit_text, of_fitted, numbers
 
   character(len=1), parameter :: nl = new_line('a')
 

@@ -3,10 +3,10 @@ module fit_group
   use kinds, only: wp, long
   use checksums, only: checksum
   use failure, only: failure_t
-  use text, only: lower, quoted, rounded, word_count, word_of
+  use text, only: brief, lower, quoted, rounded, word_count, word_of
   use deck, only: deck_t
   use deck_numbers, only: find_number, present_name
-  use deck_keys, only: key_spec, real_value, real_list, names_value
+  use deck_keys, only: key_spec, real_list, names_value
   use fit_request, only: unknown_t, of_contact_point, of_sensitivity, of_spring, of_separation
   use deck_source, only: source_t, load_source
   use data_table, only: largest_table
@@ -14,12 +14,14 @@ module fit_group
   use measured_curve, only: read_measured
   use measurement_group, only: take_measurement
   use scene_groups, only: scene_t
+  use unknown_bounds, only: take_range, take_bounds
   use deck_family, only: deck_family_t, new_deck_family
   implicit none
   private
-  public :: fit_keys, take_fit, load_curve, family_of_fit
+  public :: fit_keys, take_fit, check_sharing, load_curve, family_of_fit
 
-  integer, parameter :: most_unknowns = 20
+  !> Largest number of unknowns of a curve, and of curves that are fitted together.
+  integer, parameter :: most_unknowns = 20, most_joint = 100
 
   !> The rows of &fit.
   type(key_spec), parameter :: fit_keys(*) = [ &
@@ -27,9 +29,14 @@ module fit_group
       choices='&fit parameters = ''force.work_of_adhesion'', ''measurement.contact_point'' /'), &
     key_spec('fit', 'parameters', names_value, 'The unknowns, as ''group.key'': numbers of ' // &
       'bodies, shape and forces, and measurement.contact_point, sensitivity or spring_constant.', &
-      most=most_unknowns, required=.true.), &
-    key_spec('fit', 'lower', real_list, 'Smallest value of each, in the unit of the key.', &
+      most=most_unknowns, otherwise='required, unless shared is given'), &
+    key_spec('fit', 'shared', names_value, 'Instead of parameters, in a sweep over curves: ' // &
+      'unknowns with one value for all of its curves, which are fitted together.', &
+      most=most_unknowns, otherwise='each curve is fitted alone'), &
+    key_spec('fit', 'own', names_value, 'With shared: unknowns with a value for each curve.', &
       most=most_unknowns, otherwise='none'), &
+    key_spec('fit', 'lower', real_list, 'Smallest value of each (of shared, then of own), in ' // &
+      'the unit of the key.', most=most_unknowns, otherwise='none'), &
     key_spec('fit', 'upper', real_list, 'Largest value of each.', most=most_unknowns, &
       otherwise='none'), &
     key_spec('fit', 'prior', real_list, 'Standard deviation of each before the measurement, ' // &
@@ -119,13 +126,27 @@ contains
     character(len=:), allocatable :: names, own
     integer :: i
 
-    call deck%get('fit', 'parameters', names)
+    names = names_of(deck)
     own = ''
     do i = 1, word_count(names)
       if (.not. is_measured(word_of(names, i))) own = own // ' ' // word_of(names, i)
     end do
     call new_deck_family(deck, own, family, error)
   end subroutine family_of_fit
+
+  !> The names of all unknowns, the shared ones first.
+  function names_of(deck) result(names)
+    type(deck_t), intent(in) :: deck
+    character(len=:), allocatable :: names, own
+
+    if (deck%is_set('fit', 'shared')) then
+      call deck%get('fit', 'shared', names)
+      call deck%get('fit', 'own', own)
+      names = names // ' ' // own
+    else
+      call deck%get('fit', 'parameters', names)
+    end if
+  end function names_of
 
   pure logical function is_measured(name)
     character(len=*), intent(in) :: name
@@ -138,13 +159,16 @@ contains
     type(scene_t), intent(inout) :: scene
     type(deck_family_t) :: family
     type(failure_t), allocatable :: trouble
-    character(len=:), allocatable :: names
-    integer :: i, k, own, row, term
+    character(len=:), allocatable :: names, key
+    integer :: i, k, own, row, term, shared
 
-    call scene%deck%get('fit', 'parameters', names)
+    call take_sharing(scene%deck, shared)
+    if (allocated(scene%deck%error)) return
+    names = names_of(scene%deck)
+    key = trim(merge('shared    ', 'parameters', shared > 0))
     call family_of_fit(scene%deck, family, trouble)
     if (allocated(trouble)) then
-      call scene%deck%mistake('fit', 'parameters', trouble%message // &
+      call scene%deck%mistake('fit', key, trouble%message // &
         ', measurement.contact_point, measurement.sensitivity, measurement.spring_constant')
       return
     end if
@@ -153,6 +177,8 @@ contains
     do i = 1, size(scene%fit%unknown)
       associate (unknown => scene%fit%unknown(i))
         unknown%name = lower(word_of(names, i))
+        unknown%shared = i <= shared
+        if (shared > 0) key = trim(merge('shared', 'own   ', unknown%shared))
         if (is_measured(unknown%name)) then
           call take_measured(scene, unknown)
         else
@@ -170,34 +196,62 @@ contains
       do k = 1, i - 1
         if (present_name(scene%deck, scene%fit%unknown(k)%name) == &
           present_name(scene%deck, scene%fit%unknown(i)%name)) call scene%deck%mistake('fit', &
-          'parameters', quoted(scene%fit%unknown(i)%name) // ' is there twice')
+          key, quoted(scene%fit%unknown(i)%name) // trim(merge(' is in shared too', &
+          ' is there twice  ', k <= shared .and. i > shared)))
       end do
       if (allocated(scene%deck%error)) return
     end do
     if (.not. any(scene%fit%unknown%role == of_contact_point) .and. &
       .not. (allocated(scene%measured%contact_point) .or. scene%measured%under_loads())) &
-      call scene%deck%mistake('fit', 'parameters', 'the contact point is unknown: add ' // &
+      call scene%deck%mistake('fit', key, 'the contact point is unknown: add ' // &
       'measurement.contact_point here, or give contact_point in &measurement')
     call take_bounds(scene%deck, scene%fit%unknown)
   end subroutine take_unknowns
 
-  !> Makes the ends of a key's range bounds of the unknown: a search that may not go beyond them
-  !> otherwise ends there before the others are found.
-  pure subroutine take_range(spec, unknown)
-    type(key_spec), intent(in) :: spec
-    type(unknown_t), intent(inout) :: unknown
-    !> Part of the value by which the search stays inside an end that is excluded.
-    real(wp), parameter :: inside = 1.0e-6_wp
+  !> Reads how many unknowns are shared.
+  subroutine take_sharing(deck, shared)
+    type(deck_t), intent(inout) :: deck
+    integer, intent(out) :: shared
+    character(len=:), allocatable :: names
 
-    associate (value => unknown%value)
-      if (.not. unknown%in_log) then
-        if (spec%low > -huge(1.0_wp)) unknown%lower = spec%low
-        if (spec%above > -huge(1.0_wp)) unknown%lower = spec%above + inside*abs(value - spec%above)
+    call deck%get('fit', 'shared', names)
+    shared = word_count(names)
+    if (shared == 0 .and. deck%is_set('fit', 'own')) then
+      call deck%mistake('fit', 'own', 'needs shared; to fit each curve alone, give parameters')
+    else if (shared == 0 .and. .not. deck%is_set('fit', 'parameters')) then
+      call deck%mistake('fit', 'parameters', 'missing; or shared and own, to fit several ' // &
+        'curves together')
+    else if (shared > 0 .and. deck%is_set('fit', 'parameters')) then
+      call deck%mistake('fit', 'parameters', 'not together with shared, which with own has ' // &
+        'all unknowns')
+    end if
+  end subroutine take_sharing
+
+  !> Checks that there are several curves if they are to be fitted together, and one value of each
+  !> shared unknown.
+  subroutine check_sharing(scene)
+    type(scene_t), intent(inout) :: scene
+    integer :: i, k
+
+    if (.not. scene%fit%is_joint()) return
+    associate (deck => scene%deck, unknown => scene%fit%unknown)
+      if (.not. (scene%sweeps('measurement.file') .or. scene%sweeps('measurement.curve'))) then
+        call deck%mistake('fit', 'shared', 'needs several curves: a &sweep with ' // &
+          'measurement.file or measurement.curve')
+        return
       end if
-      if (spec%high < huge(1.0_wp)) unknown%upper = spec%high
-      if (spec%below < huge(1.0_wp)) unknown%upper = spec%below - inside*abs(spec%below - value)
+      if (scene%sweep%cases() > most_joint) call deck%mistake('fit', 'shared', 'there are ' // &
+        brief(scene%sweep%cases()) // ' curves, and at most ' // brief(most_joint) // &
+        ' are fitted together')
+      do i = 1, count(unknown%shared)
+        do k = 1, word_count(scene%sweep%names)
+          if (present_name(deck, lower(word_of(scene%sweep%names, k))) == &
+            present_name(deck, unknown(i)%name)) call deck%mistake('fit', 'shared', &
+            quoted(unknown(i)%name) // ' is swept too, and would have a value for each curve')
+        end do
+      end do
     end associate
-  end subroutine take_range
+  end subroutine check_sharing
 
   !> Sets role, value and scale of an unknown in &measurement.
   subroutine take_measured(scene, unknown)
@@ -237,52 +291,5 @@ contains
     unknown%in_log = unknown%role /= of_contact_point
     if (unknown%in_log .and. unknown%value > 0) unknown%scale = unknown%value
   end subroutine take_measured
-
-  !> Reads bounds and prior standard deviations, one for each unknown.
-  subroutine take_bounds(deck, unknown)
-    type(deck_t), intent(inout) :: deck
-    type(unknown_t), intent(inout) :: unknown(:)
-    character(len=*), parameter :: keys(*) = [character(len=5) :: 'lower', 'upper', 'prior']
-    real(wp), allocatable :: value(:)
-    integer :: i, k
-
-    do k = 1, size(keys)
-      call deck%get('fit', trim(keys(k)), value)
-      if (size(value) == 0) cycle
-      if (size(value) /= size(unknown)) then
-        call deck%mistake('fit', trim(keys(k)), 'give one value for each of parameters')
-        return
-      end if
-      do i = 1, size(unknown)
-        select case (keys(k))
-        case ('lower')
-          if (unknown(i)%in_log .and. value(i) <= 0) cycle
-          if (allocated(unknown(i)%lower)) value(i) = max(value(i), unknown(i)%lower)
-          unknown(i)%lower = value(i)
-        case ('upper')
-          if (allocated(unknown(i)%upper)) value(i) = min(value(i), unknown(i)%upper)
-          unknown(i)%upper = value(i)
-        case default
-          unknown(i)%prior = value(i)
-        end select
-      end do
-    end do
-    do i = 1, size(unknown)
-      if (unknown(i)%role == of_contact_point .and. .not. deck%is_set('measurement', &
-        'contact_point')) then
-        if (unknown(i)%prior > 0) call deck%mistake('fit', 'prior', &
-          'measurement.contact_point is not given, so that it has no prior')
-        cycle
-      end if
-      if (allocated(unknown(i)%lower)) then
-        if (unknown(i)%value < unknown(i)%lower) call deck%mistake('fit', 'lower', &
-          unknown(i)%name // ' is below this bound in the deck')
-      end if
-      if (allocated(unknown(i)%upper)) then
-        if (unknown(i)%value > unknown(i)%upper) call deck%mistake('fit', 'upper', &
-          unknown(i)%name // ' is above this bound in the deck')
-      end if
-    end do
-  end subroutine take_bounds
 
 end module fit_group

@@ -16,7 +16,7 @@ module scene
   use rate_groups, only: rate_keys, take_rates
   use theory_groups, only: theory_keys, take_approximations, take_classical
   use sweep_group, only: sweep_keys, take_sweep
-  use fit_group, only: fit_keys, take_fit, load_curve
+  use fit_group, only: fit_keys, take_fit, check_sharing, load_curve
   use measurement_group, only: measurement_keys
   use numerics_group, only: numerics_keys, take_numerics
   use scene_checks, only: check_derived, check_shape
@@ -73,6 +73,7 @@ contains
 
     call read_deck(file, keys_of_scene(), deck, text)
     call make_scene(deck, scene)
+    if (allocated(scene%fit) .and. .not. allocated(scene%deck%error)) call check_sharing(scene)
     if (allocated(scene%sweep)) then
       if (.not. allocated(scene%deck%error)) call check_sweep(scene)
     else if (allocated(scene%fit) .and. .not. allocated(scene%deck%error)) then
