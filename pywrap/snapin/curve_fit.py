@@ -80,6 +80,9 @@ def fit(z: Optional[ArrayLike], force: ArrayLike, *, deck: Deck,
 
 def columns_of(z, force, segment=None, contact_radius=None):
     """Return the columns of a curve by their names."""
+    if force is None:
+        raise TypeError("force: a curve needs a load; separations and radii stay as they are if "
+                        "all forces and moduli change by the same factor")
     columns = {name: np.asarray(column, float) for name, column in (
         ("z", z), ("force", force), ("contact_radius", contact_radius)) if column is not None}
     for name, column in columns.items():

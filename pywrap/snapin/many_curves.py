@@ -151,16 +151,18 @@ def fit_many(curves: Iterable[Sequence[ArrayLike]], *, deck: Deck,
              shared: Union[str, Sequence[str], None] = None,
              own: Union[str, Sequence[str], None] = None,
              spring_constant: Optional[ArrayLike] = None, places: Optional[ArrayLike] = None,
-             over_radius: bool = False, each: Optional[Mapping[str, Any]] = None, out: Optional[Path] = None,
+             over_radius: bool = False, each: Optional[Mapping[str, Any]] = None,
+             out: Optional[Path] = None,
              resume: bool = False, quiet: bool = True, **further: Any) -> Fits:
     """Fit numbers of a deck to each of many measured curves and return the `Fits`.
 
     curves: an iterable of (z, force), (z, force, segment) or (z, force, segment, contact_radius),
     as of `fit`; a curve that is none is a record with the reason. parameters: the unknowns of each
     curve, which is fitted alone. shared, own: instead, the unknowns with one value for all curves
-    and those with a value for each; all curves are fitted together. places: x and y of each curve [m]. each: values of further keys of the
-    deck, one for each curve, such as {"bodies.radius": [...]}. spring_constant: one number, or one
-    for each curve. further: other arguments of `fit`.
+    and those with a value for each; all curves are fitted together. places: x and y of each
+    curve [m]. each: values of further keys of the deck, one for each curve, such as
+    {"bodies.radius": [...]}. spring_constant: one number, or one for each curve. further: other
+    arguments of `fit`.
 
     Curves are fitted at once by as many processes as OMP_NUM_THREADS says. out: the folder for
     curves and results, in which `resume` goes on with the curves that are left.

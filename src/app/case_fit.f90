@@ -1,4 +1,4 @@
-!> One case of a sweep that fits measured curves.
+!> The cases of a sweep that fits measured curves: one, or all that are fitted together.
 module case_fit
   use kinds, only: wp, nan
   use text, only: first_line
@@ -9,7 +9,8 @@ module case_fit
   use scene, only: swept_scene
   use scene_problem, only: problem_of
   use curve_index, only: curve_index_t
-  use fit_group, only: load_curve
+  use deck_family, only: deck_family_t, widened
+  use fit_group, only: load_curve, family_of_fit
   use experiment_result, only: experiment_result_t
   use experiment, only: run_experiment
   use progress, only: progress_t
@@ -19,6 +20,7 @@ module case_fit
   use fit_errors, only: within_95
   use fit_run, only: fit_outcome_t
   use fit_doubts, only: doubts_of
+  use joint_fit, only: joint_curve_t, joint_fit_t, fit_jointly
   use fit_columns, only: count_of_fit, endings, derived, described, warned, not_described, &
     refused, unreadable
   use measured_fit, only: fit_measured
@@ -26,7 +28,7 @@ module case_fit
   use sweep_case, only: case_t, case_observer_t
   implicit none
   private
-  public :: fitted_case_t, run_fit_case, fit_case, finish_case
+  public :: run_fit_case, fit_together
 
   !> The fit of a case, whose scene is that of the sweep with the values of the case. readable:
   !> whether the curve could be read.
@@ -160,5 +162,76 @@ contains
       verdict = warned
     end if
   end function verdict_of
+
+  !> Fits the curves of all cases together: each alone first, then all that the model describes. A
+  !> curve that takes no part has the row of its fit alone.
+  subroutine fit_together(scene, progress, case, joint)
+    type(scene_t), intent(in) :: scene
+    type(progress_t), intent(in), target :: progress
+    type(case_t), intent(inout) :: case(:)
+    type(joint_fit_t), intent(out) :: joint
+    type(fitted_case_t), allocatable :: fitted(:)
+    type(joint_curve_t), allocatable :: curve(:)
+    type(case_observer_t) :: observer
+    type(curve_index_t) :: index
+    integer :: i, first
+
+    allocate (fitted(size(case)), curve(size(case)))
+    index = scene%sweep%index
+    first = 0
+    do i = 1, size(case)
+      ! All others start from the first that is described.
+      if (first > 0) case(i)%like = fitted(first)%outcome%fitted%value
+      call fit_case(scene, progress, index, case(i), fitted(i))
+      call take_curve(fitted(i), curve(i))
+      call finish_case(scene, fitted(i), case(i))
+      if (first == 0 .and. case(i)%verdict == described) first = i
+    end do
+    observer%progress => progress
+    call fit_jointly(curve, observer, joint)
+    do i = 1, size(case)
+      call take_row(curve(i), fitted(i), case(i))
+    end do
+
+  contains
+
+    !> Makes the row of a curve.
+    subroutine take_row(curve, fitted, case)
+      type(joint_curve_t), intent(inout) :: curve
+      type(fitted_case_t), intent(inout) :: fitted
+      type(case_t), intent(inout) :: case
+      character(len=:), allocatable :: text
+
+      if (.not. curve%takes_part) then
+        text = 'not fitted together with the others: ' // trim(case%warning)
+        if (case%verdict == not_described) case%warning = text
+      else if (allocated(joint%trouble)) then
+        case%converged = .false.
+        case%failure = 'no fit of all curves: ' // joint%trouble
+      else
+        fitted%outcome = curve%outcome
+        call finish_case(scene, fitted, case)
+      end if
+    end subroutine take_row
+
+  end subroutine fit_together
+
+  !> Makes a curve of the joint fit from its fit alone.
+  subroutine take_curve(fitted, curve)
+    type(fitted_case_t), intent(in) :: fitted
+    type(joint_curve_t), intent(out) :: curve
+    type(deck_family_t) :: family
+    type(failure_t), allocatable :: error
+
+    curve%outcome = fitted%outcome
+    if (.not. fitted%readable) return
+    ! The deck was read, so that the family has no mistake.
+    call family_of_fit(fitted%scene%deck, family, error)
+    allocate (curve%family, source=family)
+    allocate (curve%wider, source=widened(family))
+    curve%fit = fitted%scene%fit
+    curve%numerics = fitted%scene%numerics
+    curve%attracts = fitted%problem%law%adhesion > 0
+  end subroutine take_curve
 
 end module case_fit

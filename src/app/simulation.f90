@@ -198,7 +198,7 @@ contains
           counted(scene%sweep%cases(), 'case')//' gave a warning; the first, case '// &
           brief(tally%first_warned)//': '//trim(tally%warning))
         if (allocated(scene%fit)) call summary%note(told_of(tally))
-        if (is_joint()) call report_joint(joint, summary)
+        if (is_joint()) call report_joint(joint, scene%title, results, summary)
         if (left_out(scene) /= '') call summary%note('sweep: '//left_out(scene))
       else
         call results%progress%start(states_planned(scene), name, destination%quiet)

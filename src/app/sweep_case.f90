@@ -52,7 +52,7 @@ module sweep_case
     type(cost_t) :: cost
   end type case_t
 
-  !> Shows the present activity of a case; ignores records.
+  !> Shows the present activity of a case, or of all (case 0); ignores records.
   type, extends(observer_t) :: case_observer_t
     integer :: case = 0
     type(progress_t), pointer :: progress => null()
@@ -173,7 +173,8 @@ contains
     character(len=*), intent(in) :: what
     character(len=80) :: label
 
-    write (label, '(a, i0, 2a)') 'case ', self%case, ': ', what
+    label = what
+    if (self%case > 0) write (label, '(a, i0, 2a)') 'case ', self%case, ': ', what
     call self%progress%detail(label)
   end subroutine hear
 

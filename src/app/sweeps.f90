@@ -6,9 +6,8 @@ module sweeps
   use linear_algebra, only: claim_buffers
   use scene_groups, only: scene_t
   use sweep_case, only: case_t, sweep_tally_t, pass_case, pass_task, run_case
-  use case_fit, only: run_fit_case
+  use case_fit, only: run_fit_case, fit_together
   use joint_fit, only: joint_fit_t
-  use joint_sweep, only: fit_together
   use case_queue, only: case_queue_t
   use progress, only: progress_t
   use case_columns, only: columns_of
@@ -66,7 +65,7 @@ contains
     if (allocated(error)) then
       call move_alloc(error, results%trouble)
     else if (is_joint) then
-      call fit_together(scene, queue, joint)
+      call complete_together(queue, joint)
     else if (crew%workers > 0) then
       ! A process fits one curve at a time.
       call hand_out(crew, job, queue, merge(1, thread_count(), allocated(scene%fit)))
@@ -110,6 +109,29 @@ contains
     if (lost) call fail(error, file_trouble, 'a process that fitted curves has been ended')
     if (allocated(error) .and. .not. allocated(trouble)) call move_alloc(error, trouble)
   end subroutine fit_in_processes
+
+  !> Fits the curves of all cases together, in this process.
+  subroutine complete_together(queue, joint)
+    type(case_queue_t), intent(inout) :: queue
+    type(joint_fit_t), intent(out) :: joint
+    type(case_t), allocatable :: case(:)
+    type(case_t) :: further
+    logical :: found
+    integer :: i
+
+    allocate (case(queue%scene%sweep%cases()))
+    do i = 1, size(case)
+      call queue%next(case(i), found)
+      if (.not. found) return
+    end do
+    ! A file with further rows has changed.
+    call queue%next(further, found)
+    if (allocated(queue%results%trouble)) return
+    call fit_together(queue%scene, queue%results%progress, case, joint)
+    do i = 1, size(case)
+      call queue%enter(case(i))
+    end do
+  end subroutine complete_together
 
   !> Computes cases until there are no more; several threads do this at once.
   subroutine complete_cases(queue, store)

@@ -60,9 +60,9 @@ module fit_request
   real(wp), parameter :: farthest_off = 5
 
   !> An unknown, in the unit of its key. in_log: it is positive and its logarithm is fitted;
-  !> otherwise the fitted number is its difference from `origin`, over `scale`. prior: prior standard deviation about the
-  !> deck's value; 0: none. farthest: the largest logarithms of a trial below and above the deck's
-  !> value. shared: it has one value for several curves that are fitted together.
+  !> otherwise the fitted number is its difference from `origin`, over `scale`. prior: prior
+  !> standard deviation about the deck's value; 0: none. farthest: the largest logarithms of a trial
+  !> below and above the deck's value. shared: it has one value for curves that are fitted together.
   type :: unknown_t
     character(len=:), allocatable :: name, unit
     integer :: role = of_model

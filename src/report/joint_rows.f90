@@ -1,4 +1,4 @@
-!> The results of a fit of several curves together: fit.nml, and lines for the terminal.
+!> The results of a fit of several curves together: fit.nml, and lines of the summary.
 module joint_rows
   use kinds, only: wp
   use units, only: with_unit
@@ -6,10 +6,11 @@ module joint_rows
   use namelist_writer, only: line_t, assignment_of
   use joint_fit, only: joint_fit_t
   use summary, only: summary_t
+  use results, only: results_t
   use fit_rows, only: of_fitted, numbers
   implicit none
   private
-  public :: joint_text, report_joint
+  public :: report_joint
 
   character(len=1), parameter :: nl = new_line('a')
 
@@ -33,9 +34,12 @@ contains
       assignment_of('warnings', doubts) // '/' // nl
   end function joint_text
 
-  !> Tells in the summary how well the fit describes the curves, and the shared parameters.
-  subroutine report_joint(joint, summary)
+  !> Writes fit.nml, and tells in the summary how well the fit describes the curves, and the shared
+  !> parameters.
+  subroutine report_joint(joint, title, results, summary)
     type(joint_fit_t), intent(in) :: joint
+    character(len=:), allocatable, intent(in) :: title
+    type(results_t), intent(inout) :: results
     type(summary_t), intent(inout) :: summary
     integer :: i
 
@@ -45,6 +49,7 @@ contains
     end if
     ! Results that could not be written ended the fits.
     if (.not. allocated(joint%unknown)) return
+    call results%write_text('fit.nml', joint_text(joint, title))
     if (allocated(joint%doubt)) call summary%warn('fit: ' // joint%doubt)
     call summary%note(counted(joint%curves, 'curve') // ' fitted together: chi squared ' // &
       rounded(joint%fitted%chi_squared) // ' with ' // &

@@ -170,7 +170,9 @@ contains
       call deck%mistake('measurement', 'quantity', 'a curve has each quantity once, and a ' // &
         'position or a separation')
     else if (.not. any(quantity == of_load)) then
-      call deck%mistake('measurement', 'quantity', 'a curve needs a load')
+      call deck%mistake('measurement', 'quantity', 'a curve needs a load: separations and ' // &
+        'contact radii stay as they are if all forces and moduli change by the same factor, ' // &
+        'so that alone they show only the work of adhesion over the modulus')
     else if (all(quantity == of_load .or. quantity == of_segment)) then
       call deck%mistake('measurement', 'quantity', 'a load needs a position, a separation or a ' &
         // 'contact_radius')

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 import snapin
+from support import study_radii
 from support.measured import (  # noqa: F401 (`branches` is a fixture)
     LENNARD_JONES, POINT, SPRING, STIFFNESS, STRENGTH, branches, fitted)
 
@@ -74,3 +75,55 @@ def test_what_limits_a_fit_is_in_its_warnings(curve):
     found = fit((z, force * (1 + 0.2 * np.sin(z / 3e-9)), segment), parameters=[
         STRENGTH, STIFFNESS, POINT])
     assert any("does not describe" in text for text in found.warnings)
+
+
+def test_separations_and_forces_over_the_radius_are_those_of_their_positions(curve):
+    """A spring whose deflection was subtracted, and the force over the radius of the deck."""
+    z, force, segment = curve
+    found = fit(curve)
+    over = fit((z + force / SPRING, force / LENNARD_JONES["bodies"]["radius"], segment),
+               quantity="separation", over_radius=True)
+    for name in PARAMETERS:
+        error = found.standard_error[name]
+        assert over.estimate[name] == pytest.approx(found.estimate[name], abs=1e-3 * error)
+        assert over.standard_error[name] == pytest.approx(error, rel=1e-3)
+
+
+def test_positions_need_a_spring(curve):
+    with pytest.raises(snapin.DeckError, match="the position of the base of a spring needs it"):
+        fit(curve, spring_constant=None)
+
+
+RUBBER = {"bodies": {"radius": study_radii.RADIUS, "stiffness": 2e8},
+          "force": {"law": "lennard_jones", "z0": study_radii.Z0, "work_of_adhesion": 0.04}}
+
+
+@pytest.fixture(scope="module")
+def tests_of_jkr():
+    """Loads and radii of JKR theory, with noise of the radius."""
+    unit = (study_radii.RADIUS**2 * 0.04 / 1e8) ** (1 / 3)
+    a = unit * np.linspace(1.6, 3.2, 60)
+    rng = np.random.default_rng(2)
+    return [(study_radii.load_of(a, 0.04, 1e8), a + 0.01 * unit * rng.standard_normal(60))
+            for _ in range(2)]
+
+
+def test_radii_under_loads_have_no_position(tests_of_jkr):
+    first, seen = tests_of_jkr[0]
+    names = [study_radii.ENERGY, study_radii.STIFFNESS]
+    one = snapin.fit(None, first, contact_radius=seen, deck=RUBBER, parameters=names)
+    many = snapin.fit_many([(None, load, None, radius) for load, radius in tests_of_jkr],
+                           deck=RUBBER, parameters=names)
+    both = snapin.fit_many([(None, load, None, radius) for load, radius in tests_of_jkr],
+                           deck=RUBBER, shared=names)
+    for name, true in zip(names, (0.04, 2e8)):
+        error = one.standard_error[name]
+        assert abs(one.estimate[name] - true) < 4 * error
+        assert many.estimate[name][0] == pytest.approx(one.estimate[name], abs=0.02 * error)
+        assert both.shared.standard_error[name] == pytest.approx(error / 2**0.5, rel=0.3)
+
+
+def test_radii_without_loads_are_refused_with_the_reason(tests_of_jkr):
+    with pytest.raises(TypeError, match="force"):
+        snapin.fit(None, None, contact_radius=tests_of_jkr[0][1], deck=RUBBER,
+                   parameters=study_radii.ENERGY)

@@ -103,7 +103,7 @@ def test_a_sweep_over_tests_has_no_contact_point(contact, tmp_path):
 
 REFUSED = {
     "no load": ({"columns": ["F", "a"], "quantity": ["separation", "contact_radius"]}, {},
-                "needs a load"),
+                "needs a load: .*only the work of adhesion over the modulus"),
     "a load alone": ({"columns": ["F", "a"], "quantity": ["load", "segment"]}, {},
                      "a load needs a position"),
     "two radii": ({"columns": ["F", "a"], "quantity": ["contact_radius", "contact_radius"]}, {},

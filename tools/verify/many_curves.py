@@ -1,18 +1,20 @@
 #!/usr/bin/env python3
 """Fits thousands of curves of the independent model in one sweep, and compares them with the truth.
 
-    .venv/bin/python tools/verify/many_curves.py [--curves 2000] [--seed 0] [--out FOLDER]
+    .venv/bin/python tools/verify/many_curves.py [--curves 2000] [--seed 0] [--rows FILE]
     .venv/bin/python tools/verify/many_curves.py --map 20 --picture docs/curves.png
 
 Every group of curves has one instrument (sigma, spring, z0) and is one sweep, as a map is: the work
 of adhesion and the modulus of its curves vary by some per cent from place to place, the noise, the
 number of samples, outliers and drift from curve to curve. The starting values are wrong by factors
 up to three. It prints the bias, how often 95 % intervals hold the truth, the verdicts, fits that
-are wrong without a warning, and the price. Threads: OMP_NUM_THREADS. `--map` draws a map of a stiff
+are wrong without a warning, and the price. Threads: OMP_NUM_THREADS. With `--rows` the rows of each
+sweep are added to a file, and a run with the same arguments goes on after those that it has. `--map` draws a map of a stiff
 and sticky hill instead, some of whose curves are spoilt.
 """
 
 import argparse
+import json
 import math
 import pathlib
 import sys
@@ -79,9 +81,10 @@ def group(number, seed, size, folder):
             far = np.where(truths == 0, estimate, np.log(estimate / truths) * estimate) / error
             # Of works of adhesion and moduli the errors over the truth.
             part = np.append(estimate[:2] / truths[:2] - 1, np.nan)
-        rows.append({"sigma": sigma, "noise": noise, "samples": samples, "inside": inside,
-                     "far": far, "part": part, "verdict": record["verdict"], "error":
-                     error / np.append(estimate[:2], np.nan),
+        rows.append({"sigma": sigma, "noise": noise, "samples": samples,
+                     "inside": [bool(held) for held in inside],
+                     "far": far.tolist(), "part": part.tolist(), "verdict": record["verdict"],
+                     "error": (error / np.append(estimate[:2], np.nan)).tolist(),
                      "told": record["failure"] or record["warning"], "seconds": took[1] / size})
     return rows, took
 
@@ -154,18 +157,27 @@ def main():
     parser.add_argument("--size", type=int, default=GROUP, help="curves of a sweep")
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--out", help="folder that keeps curves and results")
+    parser.add_argument("--rows", help="file that keeps the rows, from which a run goes on")
     parser.add_argument("--map", type=int, help="number of curves in a row of a map to draw")
     parser.add_argument("--picture", default="curve_map.png", help="of the map")
     options = parser.parse_args()
     if options.map:
         draw_map(options.map, options.picture, options.out, np.random.default_rng(options.seed))
         return
-    rows, took = [], []
+    rows, took, kept = [], [], []
+    if options.rows and pathlib.Path(options.rows).is_file():
+        kept = [json.loads(text) for text in open(options.rows, encoding="utf-8")]
     with tempfile.TemporaryDirectory() as folder:
         for number in range(-(-options.curves // options.size)):
             place = pathlib.Path(options.out or folder, f"{number:03d}")
             size = min(options.size, options.curves - len(rows))
-            new, seconds = group(number, options.seed, size, place)
+            if number < len(kept):
+                new, seconds = kept[number]
+            else:
+                new, seconds = group(number, options.seed, size, place)
+                if options.rows:
+                    with open(options.rows, "a", encoding="utf-8") as file:
+                        file.write(json.dumps([new, seconds]) + "\n")
             rows += new
             took.append(seconds)
             for row in new:
