@@ -85,7 +85,7 @@ def curve(axes, result):
     x = z + force*1e3/SPRING
     axes.plot([z, x], [0, force], color="black", lw=1)
     axes.plot(z, 0, "s", color="black", ms=5)
-    axes.annotate("base of the spring, $z = h_0 - F/k$;\nhere it lets go", (z, 0), (6.6, -0.215),
+    axes.annotate("base of the spring, $z = h_0 - F/k$;\nhere the bodies snap off", (z, 0), (6.6, -0.215),
                   fontsize=8, arrowprops={"arrowstyle": "-", "lw": 0.8})
     axes.set(xlabel="approach $h_0$ [nm]", ylabel="load $F$ [µN]", xlim=(-9, 14.5),
              ylim=(1.15*load[low], 0.12))
