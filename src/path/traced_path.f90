@@ -26,7 +26,6 @@ module traced_path
     procedure :: modes_at
     procedure :: comes_from_before
     procedure :: add_to
-    procedure :: arc_about
     procedure :: curve_between
     procedure :: fitted_between
     procedure, private :: find_nearby
@@ -148,19 +147,6 @@ contains
       call arc%add(self%point(j))
     end do
   end subroutine add_to
-
-  !> The arc of the points about s on a mesh.
-  pure type(arc_t) function arc_about(self, mesh, s) result(arc)
-    class(traced_path_t), intent(in) :: self
-    integer, intent(in) :: mesh
-    real(wp), intent(in) :: s
-    integer :: i
-
-    do i = findloc(self%point(:self%held)%mesh, mesh, 1), self%held - 1
-      if (self%point(i + 1)%mesh /= mesh .or. self%point(i + 1)%coordinate > s) exit
-    end do
-    call self%add_to(i, arc)
-  end function arc_about
 
   !> The points through which the polynomial between point i and the next passes.
   pure function fitted_between(self, i) result(fitted)
