@@ -100,6 +100,7 @@ program dispatcher
   use dispatch, only: hand_out, work_through, dismiss
   use sweep_case, only: run_case, sweep_tally_t
   use sweeps, only: run_sweep
+  use joint_fit, only: joint_fit_t
   implicit none
 
   !> A million cases at most, of which the requested number is handed out.
@@ -114,6 +115,7 @@ program dispatcher
   type(scene_t) :: scene
   type(results_t) :: results
   type(sweep_tally_t) :: tally
+  type(joint_fit_t) :: joint
   type(mesh_store_t) :: store
   type(progress_t) :: unseen
   type(failure_t), allocatable :: error
@@ -154,7 +156,7 @@ program dispatcher
       counter%left = cases
       call hand_out(crew, 1, counter, 1, messages)
     else
-      call run_sweep(scene, crew, 1, results, tally)
+      call run_sweep(scene, crew, 1, results, tally, joint)
       cases = scene%sweep%cases()
     end if
     began = time() - began
