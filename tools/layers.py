@@ -66,12 +66,12 @@ def over_hertz(chi, nu, ratio):
 
 
 def dimitriadis(chi):
-    """For incompressible films: Dimitriadis et al. (2002), with coefficients as in others/indentation_of_layers.py."""
+    """For incompressible films: Dimitriadis et al. (2002), equation (12)."""
     return 1 + 1.133 * chi + 1.283 * chi**2 + 0.769 * chi**3 + 0.0975 * chi**4
 
 
 def garcia(chi):
-    """For incompressible films: Garcia and Garcia (2018), with coefficients as in others/indentation_of_layers.py."""
+    """For incompressible films: Garcia and Garcia (2018)."""
     return 1 + 1.133 * chi + 1.497 * chi**2 + 1.469 * chi**3 + 0.755 * chi**4
 
 
