@@ -7,7 +7,10 @@ module special_functions
   use chebyshev, only: chebyshev_points, chebyshev_series, power_series
   implicit none
   private
-  public :: bessel_t, new_bessel, carlson_rf
+  public :: bessel_t, new_bessel, carlson_rf, largest_exponent
+
+  !> Exponent above which exponentials, and products of two of them, would overflow or underflow.
+  real(wp), parameter :: largest_exponent = 300
 
   !> Up to `near`, J0 is a series in the square of its argument. Beyond, amplitude and phase are
   !> series in the inverse square: J0 + i Y0 = sqrt(2/(pi x)) amplitude exp(i (x - pi/4 - lag/x)).

@@ -4,6 +4,7 @@
 !> (`step_attraction`).
 module capillary
   use kinds, only: wp
+  use physical_constants, only: boltzmann, avogadro
   use deck, only: deck_t
   use deck_keys, only: key_spec, real_value, real_list
   use force_law, only: force_law_t
@@ -38,8 +39,6 @@ contains
   subroutine read_law(deck, law)
     type(deck_t), intent(inout) :: deck
     class(force_law_t), allocatable, intent(out) :: law
-    !> [J/(mol K)]
-    real(wp), parameter :: gas_constant = 8.31446261815324_wp
     real(wp), allocatable :: angles(:)
     real(wp) :: tension, radius, humidity, volume, temperature
     character(len=:), allocatable :: key
@@ -56,7 +55,7 @@ contains
       call deck%get('capillary', 'humidity', humidity)
       call deck%get('capillary', 'molar_volume', volume)
       call deck%get('capillary', 'temperature', temperature)
-      radius = volume*tension/(gas_constant*temperature*log(1/humidity))
+      radius = volume*tension/(boltzmann*avogadro*temperature*log(1/humidity))
     else
       key = 'kelvin_radius'
       call deck%get('capillary', 'kelvin_radius', radius)

@@ -10,6 +10,8 @@
 !> The pressure unit is 64 n kT tanh^2(y1/4), y1 the larger potential.
 module double_layer
   use kinds, only: wp
+  use physical_constants, only: elementary_charge, boltzmann, vacuum_permittivity, avogadro
+  use special_functions, only: largest_exponent
   use deck, only: deck_t
   use deck_keys, only: key_spec, real_value, real_list, integer_value, word_value
   use force_law, only: force_law_t, of_slope, usual_closure
@@ -33,14 +35,8 @@ module double_layer
     procedure :: evaluate
   end type double_layer_t
 
-  !> CODATA 2018: elementary charge [C], Boltzmann's constant [J/K], vacuum permittivity [F/m],
-  !> Avogadro's constant [1/mol].
-  real(wp), parameter :: elementary_charge = 1.602176634e-19_wp, boltzmann = 1.380649e-23_wp, &
-    vacuum_permittivity = 8.8541878128e-12_wp, avogadro = 6.02214076e23_wp
   !> Reduced potential above which the linear equation is wrong: 25.7 mV for single charges.
   real(wp), parameter :: small_potential = 1
-  !> Gap in Debye lengths above which exponentials would underflow.
-  real(wp), parameter :: largest_gap = 300
   !> Largest reduced potential, 0.5 V for single charges: above it the finite size of ions matters.
   real(wp), parameter :: largest_potential = 20
 
@@ -174,7 +170,7 @@ contains
     real(wp) :: h(size(gap)), all_values(3)
     integer :: i
 
-    h = max(self%smallest_gap, min(gap, largest_gap))
+    h = max(self%smallest_gap, min(gap, largest_exponent))
     select case (self%model)
     case (linear)
       do i = 1, size(h)

@@ -4,6 +4,7 @@
 !> - 1)).
 module morse
   use kinds, only: wp
+  use special_functions, only: largest_exponent
   use deck, only: deck_t
   use deck_keys, only: key_spec, real_value
   use force_law, only: force_law_t, of_pressure, of_slope
@@ -16,9 +17,6 @@ module morse
   contains
     procedure :: evaluate
   end type morse_t
-
-  !> Exponent above which exponentials would underflow or overflow.
-  real(wp), parameter :: largest_exponent = 340
 
   !> The rows of &morse.
   type(key_spec), parameter :: keys(*) = [ &

@@ -3,6 +3,7 @@
 !> Milner, Witten and Cates, p = kT Gamma^(3/2) (1/(2 u^2) - u + u^4/2); zero beyond u = 1.
 module steric
   use kinds, only: wp
+  use physical_constants, only: boltzmann
   use deck, only: deck_t
   use deck_keys, only: key_spec, real_value, integer_value, word_value
   use force_law, only: force_law_t, of_pressure, of_slope, usual_closure, nearest_power
@@ -18,8 +19,6 @@ module steric
     procedure :: evaluate
   end type steric_t
 
-  !> Boltzmann's constant [J/K].
-  real(wp), parameter :: boltzmann = 1.380649e-23_wp
   !> Exponents of Alexander and de Gennes: osmotic pressure, and elasticity of the chains.
   real(wp), parameter :: osmotic = 9/4.0_wp, elastic = 3/4.0_wp
 

@@ -1,6 +1,7 @@
 !> Oscillatory force of a structured liquid: p = -p0 cos(2 pi h/d + phase) exp(-h/decay_length).
 module structural
   use kinds, only: wp, pi
+  use special_functions, only: largest_exponent
   use deck, only: deck_t
   use deck_keys, only: key_spec, real_value
   use force_law, only: force_law_t, of_pressure, of_slope
@@ -15,9 +16,6 @@ module structural
   contains
     procedure :: evaluate
   end type structural_t
-
-  !> Exponent above which exponentials would underflow or overflow.
-  real(wp), parameter :: largest_exponent = 300
 
   !> The rows of &structural.
   type(key_spec), parameter :: keys(*) = [ &
