@@ -217,7 +217,7 @@ def on_a_terminal(program, folder):
 def test_a_terminal_shows_the_case_that_takes_long(snapin_path, tmp_path):
     drive = (ROOT / "inputs" / "examples" / "drainage.nml").read_text()
     (tmp_path / "d.nml").write_text(
-        drive + "\n&sweep key = 'numerics.accuracy', values = 1e-3, 1.1e-3 /\n")
+        drive + "\n&sweep key = 'numerics.accuracy', values = 2e-4, 2.2e-4 /\n")
     _, *lines = on_a_terminal(snapin_path, tmp_path)
     cases = [found[1] for line in lines if (found := re.match(r"d: case (\d+): drive, ", line))]
     assert cases == sorted(cases) and set(cases) == {"1", "2"}
