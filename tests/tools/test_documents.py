@@ -104,7 +104,7 @@ def test_every_message_that_is_explained_is_one_of_the_program():
     assert [message for message in messages if message not in source] == []
 
 
-def test_the_tour_of_the_code_names_every_room_and_no_module_that_is_gone():
+def test_the_tour_of_the_code_names_every_room_and_no_module_or_procedure_that_is_gone():
     begun = CONTRIBUTING.split("## Where a change goes")[0]
     more = (ROOT / "docs/records/tour.md").read_text(encoding="utf-8").split("`pywrap/` holds")[0]
     tour = begun + more
@@ -112,8 +112,19 @@ def test_the_tour_of_the_code_names_every_room_and_no_module_that_is_gone():
     assert sorted(room for room in rooms if f"| `{room}/` |" not in tour) == []
     known = {path.stem for path in (ROOT / "src").rglob("*.f90")} | rooms
     known |= {path.stem for path in (ROOT / "pywrap").rglob("*.*")}
+    known |= {name for path in SOURCES for name in re.findall(
+        r"^ *(?:[\w()]+ )*(?:subroutine|function) (\w+)", path.read_text(encoding="utf-8"), re.M)}
     named = set(re.findall(r"`([a-z]+(?:_[a-z0-9]+)+)`", tour))
     assert sorted(named - known) == []
+
+
+def test_recipes_that_give_a_name_and_its_module_are_right():
+    files = {path.stem: path.read_text(encoding="utf-8") for path in SOURCES}
+    text = CONTRIBUTING + (ROOT / "docs/records/recipes.md").read_text(encoding="utf-8")
+    pairs = [(name, module) for name, module in re.findall(
+        r"`([\w%]+)`(?: there)?\s+(?:\(|of\s+)`(\w+)`", text) if module in files]
+    assert len(pairs) > 15
+    assert [pair for pair in pairs if not re.search(rf"\b{pair[0]}\b", files[pair[1]])] == []
 
 
 def test_every_note_on_the_compiler_that_code_cites_is_in_the_list_and_none_is_idle():
