@@ -2,9 +2,9 @@
 # tools/wheels.sh [PYTHON ...]: a wheel of the package for each of these interpreters, by default for
 # each of Python 3.9 to 3.14 that this machine has, into dist/, and a run of each. The wheels need
 # no compiler and no library but the C library: OpenBLAS, LAPACK and gfortran's libraries are
-# inside, with their licences (wheel_licences.py). They run on any x86-64 processor. Their tags say how old a C library they accept, which is
-# as old as that of this machine and its libraries allow: build them on the oldest system that they
-# shall run on.
+# inside, with their licences (wheel_licences.py). They run on any x86-64 processor. Their tags say
+# how old a C library they accept, which is as old as that of this machine and its libraries allow:
+# build them on the oldest system that they shall run on.
 #
 # The program and the library are compiled once, for all interpreters. tools/verify/empty_root.sh
 # tries the wheels where there is nothing else.
