@@ -176,8 +176,8 @@ def limit_of(one):
     file = one.folder / "fit.nml"
     if file.is_file():
         fit = f90nml.read(file)["fit"]
-        return FITTED * max(abs(error / value) for error, value in
-                            zip(fit["standard_error"], fit["estimate"]))
+        # One parameter has numbers, several have lists.
+        return FITTED * np.abs(np.divide(fit["standard_error"], fit["estimate"])).max()
     left = [value for name, value in numbers_of(one).items() if name.endswith("worst_residual")]
     return max([EXACT, *(OF_RESIDUAL * float(np.nanmax(value)) for value in left)])
 
