@@ -16,6 +16,7 @@ import warnings
 
 import numpy as np
 import snapin
+from snapin.command import as_command
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT / "tests"))
@@ -64,4 +65,4 @@ def main():
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(as_command(main)())
