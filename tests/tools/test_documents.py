@@ -44,6 +44,16 @@ def test_every_link_leads_to_a_file_and_a_heading(page):
         assert not anchor or anchor in anchors_of(target), link
 
 
+def test_every_picture_is_whole():
+    """One was an empty file: its program had been interrupted."""
+    pictures = sorted((ROOT / "docs").rglob("*.png"))
+    assert len(pictures) > 20
+    # A PNG file has a signature and ends with a chunk IEND.
+    for picture in pictures:
+        data = picture.read_bytes()
+        assert data.startswith(b"\x89PNG") and b"IEND" in data[-12:], picture
+
+
 def test_every_page_can_be_reached_from_the_readme():
     reached, new = set(), {ROOT / "README.md"}
     while new:
