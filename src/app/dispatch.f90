@@ -93,7 +93,7 @@ contains
       end do
       ! At most twice as many cases as in the last batch, since cases differ.
       goal(from) = max(threads, min(2*goal(from), most_cases, &
-        nint(min(batch_seconds*cases/max(seconds, 1.0e-9_wp), real(most_cases, wp)))))
+        nint(batch_seconds*cases/max(seconds, batch_seconds*cases/most_cases))))
     end do
     if (present(messages)) messages = sent
 

@@ -37,6 +37,8 @@ module forecast
   real(wp), parameter :: an_entry = 3.0e-10_wp, long_run = 20
   !> Number of times that a state which does not converge is tried, each time with a shorter step.
   integer, parameter :: attempts = 8
+  !> Error of the first iterate of a state, in the law's lengths.
+  real(wp), parameter :: first_error = 0.1_wp
 
 contains
 
@@ -183,12 +185,12 @@ contains
     if (adhesion > 0) spectrum%least = 1/(1 + 1/cohesive_width(problem))
   end function spectrum_of
 
-  !> Number of plain iterations from an error of a tenth of the law's length to the tolerance.
+  !> Number of plain iterations from the first error to the tolerance.
   pure real(wp) function iterations_of(spectrum, limit, tolerance) result(iterations)
     type(spectrum_t), intent(in) :: spectrum
     real(wp), intent(in) :: limit, tolerance
 
-    iterations = log(max(0.1_wp/tolerance, 2.0_wp))/ &
+    iterations = log(max(first_error/tolerance, 2.0_wp))/ &
       (spectrum%least*min(limit, 2/spectrum%largest, 1.0_wp))
   end function iterations_of
 
@@ -196,7 +198,7 @@ contains
   pure integer function nodes_for(spacing, extent)
     real(wp), intent(in) :: spacing, extent
 
-    nodes_for = ceiling(min(extent/spacing, 1.0e9_wp)) + 1
+    nodes_for = ceiling(min(extent/spacing, real(huge(1)/2, wp))) + 1
   end function nodes_for
 
   pure subroutine add(advice, text)

@@ -205,7 +205,7 @@ contains
     character(len=:), allocatable :: text
     character(len=24) :: buffer
 
-    write (buffer, '(f0.2, a)') bytes/1.0e9_wp, ' GB'
+    write (buffer, '(f0.2, a)') bytes/10.0_wp**9, ' GB'
     text = trim(buffer)
     if (text(1:1) == '.') text = '0'//text
   end function gigabytes

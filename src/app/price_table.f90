@@ -139,7 +139,7 @@ contains
     if (ieee_is_nan(seconds)) then
       text = '-'
     else if (seconds < 1) then
-      text = rounded(1e3_wp*seconds)//' ms'
+      text = rounded(1000*seconds)//' ms'
     else
       text = rounded(seconds)//' s'
     end if
@@ -151,7 +151,7 @@ contains
     character(len=16) :: buffer
 
     write (buffer, '(es9.1e2)') x
-    if (x >= 1e-99_wp) buffer(6:6) = 'e'
+    if (buffer(6:6) == 'E') buffer(6:6) = 'e'
     text = trim(adjustl(buffer))
   end function two_digits
 

@@ -81,7 +81,7 @@ contains
         command = ': '//destination%folder//'/sweep.csv'//command
       end if
       call destination%say(counted(scene%sweep%cases(), 'case')//', '// &
-        rounded(scene%sweep%cases()/max(took, 1e-3_wp))//' a second'//command)
+        rounded(scene%sweep%cases()/max(took, epsilon(took)))//' a second'//command)
     end if
 
   contains

@@ -11,6 +11,9 @@ module quadrature
 
   !> Ratio of the ends of panels that are short against the wavelengths.
   real(wp), parameter :: ratio = 3
+  !> After a step to the roots that is at most this, their errors and those of the slopes there are
+  !> below rounding.
+  real(wp), parameter :: last_step = 1.0e-10_wp
 
 contains
 
@@ -30,7 +33,7 @@ contains
       curvature = (2*z*slope - n*(n + 1)*value)/(1 - z**2)
       step = value/slope*(1 + 0.5_wp*value*curvature/slope**2)
       z = z - step
-      if (maxval(abs(step)) <= 1.0e-10_wp) exit
+      if (maxval(abs(step)) <= last_step) exit
     end do
     slope = slope - step*curvature
     do i = 1, size(z)

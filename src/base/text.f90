@@ -9,6 +9,9 @@ module text
 
   !> Stands for a blank within a name, where blanks separate the names of a list.
   character, parameter :: held_blank = achar(31)
+  !> Whole numbers below the first value and other numbers between the last two are written without
+  !> an exponent.
+  real(wp), parameter :: whole_below = 2.0e9_wp, plain(2) = [1.0e-3_wp, 1.0e4_wp]
 
   !> brief(x), brief(n): a number for a message, with the fewest digits that read back as the same.
   interface brief
@@ -104,12 +107,12 @@ contains
     real(wp) :: back
     integer :: digits, status, mark, order
 
-    if (abs(x) < 2e9_wp .and. abs(x - anint(x)) <= 0.0_wp) then
+    if (abs(x) < whole_below .and. abs(x - anint(x)) <= 0.0_wp) then
       text = brief(nint(x))
       return
     end if
     do digits = 0, 16
-      if (abs(x) >= 1e-3_wp .and. abs(x) < 1e4_wp) then
+      if (abs(x) >= plain(1) .and. abs(x) < plain(2)) then
         write (form, '(a, i0, a)') '(f30.', digits, ')'
       else
         write (form, '(a, i0, a)') '(es30.', digits, 'e3)'

@@ -40,8 +40,8 @@ contains
     logical, intent(out) :: converged
     type(factorisation_t) :: factors
     real(wp), allocatable :: z(:), g(:), dz(:)
-    real(wp) :: dtau, before, moved, apart
-    integer :: step, began, allowed
+    real(wp) :: dtau, before, moved, apart, allowed
+    integer :: step, began
 
     converged = .false.
     if (control%kind /= at_h0) return
@@ -52,7 +52,7 @@ contains
     before = unknown
     moved = unknown
     began = int(equations%cost%factorisations)
-    allowed = max(few_factorisations, int(min(most_cubes/real(size(z), wp)**3, 1.0e6_wp)))
+    allowed = max(real(few_factorisations, wp), most_cubes/real(size(z), wp)**3)
     do step = 1, most_steps
       if (equations%cost%factorisations - began >= allowed) return
       call residual(equations, control, z, g, state)

@@ -48,7 +48,7 @@ module branch_end
   !> step there (law's lengths), so that the minimum of the slope at a pair of folds is not missed.
   !> Steps are planned for a part of this change, since it grows towards a fold.
   real(wp), parameter :: steep = 0.5_wp, small = 0.15_wp, planned = 0.9_wp
-  !> A step to a predicted fold, over the distance to it.
+  !> A step to a predicted fold or to h0, over the distance to it.
   real(wp), parameter :: just_beyond = 1.1_wp
   !> If the slope dh0/dQ of Hermite's polynomial within a step is below this part of the slopes at
   !> its ends, a state is solved there to decide about a pair of folds; and the least distance of
@@ -122,7 +122,7 @@ contains
       step = step*here%tangent%h0
       call here%tangent%turn(passing(here%tangent, is_pinned(self)))
       ! The new coordinate has another length.
-      step = min(step, 1.1_wp*abs(h0 - here%state%h0))/here%tangent%h0
+      step = min(step, just_beyond*abs(h0 - here%state%h0))/here%tangent%h0
       if (here%tangent%h0 < steep) step = min(step, &
         planned*small/maxval(abs(here%tangent%gap - here%tangent%h0)))
       here%q = here%state%h0 - dot_product(here%tangent%along, here%state%gap)
@@ -133,7 +133,7 @@ contains
         expected%gap = expected%gap + sense*step*here%tangent%gap
         if (minval(expected%gap) < 0.5_wp*minval(here%state%gap)) expected = here%state
       else
-        if (step > 0.9_wp*abs(h0 - here%state%h0)) there%q = h0
+        if (just_beyond*step > abs(h0 - here%state%h0)) there%q = h0
         expected = expected_at(self, there%q, memory)
       end if
       there%state = expected

@@ -25,19 +25,20 @@ contains
   !> Number of equilibria of the requested cycle.
   pure integer function states_planned(request)
     class(request_t), intent(in) :: request
-    integer :: k
+    real(wp) :: states
 
-    states_planned = 0
-    if (.not. allocated(request%loading)) return
-    associate (l => request%loading)
-      states_planned = nint(min((l%h0_start - l%h0_end)/l%h0_step, 1.0e9_wp)) + 1
-    end associate
-    if (.not. allocated(request%unloading)) return
-    associate (u => request%unloading)
-      do k = 1, size(u%from)
-        states_planned = states_planned + nint(min((u%h0_end - u%from(k))/u%h0_step, 1.0e7_wp)) + 1
-      end do
-    end associate
+    states = 0
+    if (allocated(request%loading)) then
+      associate (l => request%loading)
+        states = anint((l%h0_start - l%h0_end)/l%h0_step) + 1
+      end associate
+      if (allocated(request%unloading)) then
+        associate (u => request%unloading)
+          states = states + sum(anint((u%h0_end - u%from)/u%h0_step) + 1)
+        end associate
+      end if
+    end if
+    states_planned = nint(min(states, real(huge(1)/2, wp)))
   end function states_planned
 
   !> The plan of a path with one state for every h0; far: where it may begin, law's lengths.

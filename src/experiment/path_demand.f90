@@ -16,9 +16,9 @@ module path_demand
   !> Where the deformation of the bodies is below this fraction of that at the jump, it no longer
   !> affects the load, and closed forms replace the path.
   real(wp), parameter :: no_yielding = 1.0e-9_wp
-  !> Ratio of successive trial radii of the contact; and margin for the error of an h0 of JKR
-  !> theory.
-  real(wp), parameter :: ratio = 1.1_wp, margin = 0.1_wp
+  !> Ratio of successive trial radii of the contact, and the smallest in lateral units; and margin
+  !> for the error of an h0 of JKR theory.
+  real(wp), parameter :: ratio = 1.1_wp, smallest = 0.1_wp, margin = 0.1_wp
   !> Number of h0 at which the tension of rigid bodies is evaluated.
   integer, parameter :: tried = 100
 
@@ -222,7 +222,7 @@ contains
     do while (position(c) > wanted)
       c = 2*c
     end do
-    do while (c > 0.1_wp .and. position(c/ratio) < wanted)
+    do while (c > smallest .and. position(c/ratio) < wanted)
       c = c/ratio
     end do
     h0 = h0_at(c)

@@ -17,6 +17,8 @@ module stepper
 
   !> Number of states for the extrapolation in h0.
   integer, parameter :: memory = 4
+  !> Rounding errors of the values of h0 of an experiment, relative to 1 or to h0.
+  real(wp), parameter :: rounding = 1.0e-12_wp
 
   !> The position of an experiment: the present state and the past states that the next step can
   !> use. Positions are copied for later use (turning points, refinements).
@@ -145,7 +147,7 @@ contains
     end if
     ! After a turn of the experiment the same values of h0 occur again.
     do j = 1, position%held
-      if (abs(position%h0(j) - state%h0) <= 1.0e-12_wp*max(1.0_wp, abs(state%h0))) then
+      if (abs(position%h0(j) - state%h0) <= rounding*max(1.0_wp, abs(state%h0))) then
         call forget(position, j)
         exit
       end if

@@ -239,7 +239,7 @@ contains
         of_memory%nodes = most_nodes
         grid = fixed_mesh(of_memory, relaxed)
         steps%material = new_material(grid, count(abs(grid%panel%right - grid%panel%left - &
-          grid%panel(1)%right) <= 1.0e-9_wp*grid%panel(1)%right), &
+          grid%panel(1)%right) <= sqrt(epsilon(1.0_wp))*grid%panel(1)%right), &
           left_out*request%numerics%accuracy)
         steps%cost%kernel_entries = steps%cost%kernel_entries + steps%material%kernel_entries()
       end associate

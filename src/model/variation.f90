@@ -115,12 +115,13 @@ contains
     !> law, and for the heights of the shape.
     logical function is_smooth()
       integer, parameter :: tried = 40
+      real(wp), parameter :: nearest = 0.1_wp
       real(wp), allocatable :: gap(:), separation(:), r(:), pressure(:, :), height(:, :)
       real(wp) :: from
       integer :: k
 
       associate (law => problem%law)
-        from = max(law%rest_gap, 0.1_wp)
+        from = max(law%rest_gap, nearest)
         gap = from*(calm_gap(problem)/from)**[(k/(tried - 1.0_wp), k=0, tried - 1)]
         r = [(problem%lateral*problem%shape%position_of(gap(k)), k=1, tried)]
         if (law%step_width > 0) gap = [gap, law%step_at + law%step_width*[(k/4.0_wp, k=-12, 12)]]

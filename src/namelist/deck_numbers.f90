@@ -185,7 +185,7 @@ contains
       refused = outside(spec, value)
       ! The steps of a range give integers only up to rounding.
       if (spec%kind == integer_value .and. .not. refused) &
-        refused = abs(value - anint(value)) > 1e-9_wp*abs(value)
+        refused = abs(value - anint(value)) > sqrt(epsilon(value))*abs(value)
       if (refused) then
         call fail(error, bad_input, brief(value) // ' is out of range for ' // quoted(path) // &
                   '; allowed: ' // allowed(spec))

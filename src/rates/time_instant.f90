@@ -24,12 +24,14 @@ module time_instant
     integer :: since_turn = 0
   end type instant_t
 
+  !> Smallest scale and smallest gap of an extrapolated state, over those of the later state.
+  real(wp), parameter :: least_scale = 0.5_wp, least_gap = 0.7_wp
+
 contains
 
   !> Linear extrapolation of a state from two states on one mesh. ahead: distance beyond the later
   !> state over the distance between the two. The deformations are extrapolated; the undeformed
-  !> shape is known. If an extrapolated gap is much smaller than the later gap, the result is the
-  !> later state.
+  !> shape is known. If the scale or a gap becomes much smaller, the result is the later state.
   pure subroutine extrapolate(shape, grid, before, now, ahead, state)
     class(shape_t), intent(in) :: shape
     type(discretisation_t), intent(in) :: grid
@@ -40,13 +42,13 @@ contains
     state = now
     state%scale = now%scale + ahead*(now%scale - before%scale)
     state%h0 = now%h0 + ahead*(now%h0 - before%h0)
-    if (state%scale > 0.5_wp*now%scale) then
+    if (state%scale > least_scale*now%scale) then
       associate (n => grid%nodes, x => grid%x)
         state%gap = (1 + ahead)*(now%gap - shape%height(now%scale*x(:n))) - &
           ahead*(before%gap - shape%height(before%scale*x(:n))) + &
           shape%height(state%scale*x(:n))
       end associate
-      if (.not. any(state%gap < 0.7_wp*now%gap)) return
+      if (.not. any(state%gap < least_gap*now%gap)) return
     end if
     state = now
   end subroutine extrapolate

@@ -32,6 +32,8 @@ module regime_rows
     'indentation']
   !> Largest error of a theory that is recommended.
   real(wp), parameter :: acceptable = 0.1_wp
+  !> Largest error that a message shows.
+  real(wp), parameter :: largest_shown = 1.0e6_wp
 
 contains
 
@@ -178,7 +180,7 @@ contains
       best = minloc(worst(:by_jkr_layered), 1)
       call summary%set('regime_theory', merge(real(best, wp), 0.0_wp, worst(best) <= acceptable))
       where_worst = maxloc(abs(errors(:, best)), 1)
-      write (percent, '(f16.1)') 100*min(worst(best), 1.0e6_wp)
+      write (percent, '(f16.1)') 100*min(worst(best), largest_shown)
       nearest = 'nearest is '//trim(theories(best))//', off by at most '//trim(adjustl(percent))// &
         ' % ('//trim(numbers(where_worst))//')'
       if (worst(best) <= acceptable) then

@@ -48,8 +48,6 @@ RUNS = {
     "&sweep key = 'bodies.stiffness', from = 1e10, to = 2e10, count = 2 /\n",
 }
 
-# Literals that need no name: small integers and their halves, thirds and quarters in use.
-PLAIN = {0.0, 0.25, 0.5, 1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 10.0, 100.0}
 LITERAL = re.compile(r"(?<![\w.])(\d+\.\d*(?:e[+-]?\d+)?|\d+e[+-]?\d+)(?:_wp)?(?![\w.])")
 BEGIN = re.compile(r"^(?:(?:pure|elemental|impure|recursive|module|real\(\w+\)|integer(?:\(\w+\))?"
                    r"|logical|type\(\w+\)|character(?:\([^)]*\))?)\s+)*"
@@ -95,6 +93,12 @@ def room_of(name):
     return sources()[name].relative_to(SOURCE).parts[0]
 
 
+def is_plain(value):
+    """Return whether a literal needs no name: eighths up to 12, which are coefficients of formulas,
+    and percent."""
+    return value == 100 or (value <= 12 and 8*value == int(8*value))
+
+
 def constants():
     """Return the numbers of real constants with names, and the literals without: path, line,
     text."""
@@ -112,7 +116,7 @@ def constants():
                         flat = re.sub(r"[(\[][^()\[\]]*[)\]]", "", flat)
                     named += flat.count("=")
             elif not declared:
-                unnamed += [(path, line, text) for value in literals if float(value) not in PLAIN]
+                unnamed += [(path, line, text) for value in literals if not is_plain(float(value))]
     return named, unnamed
 
 

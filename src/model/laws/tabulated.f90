@@ -5,7 +5,8 @@ module tabulated
   use deck, only: deck_t
   use deck_keys, only: key_spec, real_value, word_value, text_value
   use data_table, only: data_table_t, read_columns
-  use force_law, only: force_law_t, of_pressure, of_energy, closure_of_power, length_of_power
+  use force_law, only: force_law_t, of_pressure, of_energy, closure_of_power, length_of_power, &
+    usual_closure, nearest_power
   use force_table, only: force_table_t, new_force_table, largest_step
   use table_noise, only: noise_of, noise_of_integral
   use group_reading, only: check_decades
@@ -232,10 +233,10 @@ contains
           // 'so that it cannot be continued to smaller ones')
         return
       end if
-      ! For the ninth power these are the numbers of the Lennard-Jones law.
-      this%smallest_gap = 10.0_wp**(-min(12.0_wp, 110/(this%fine%power + 1)))
+      ! For the ninth power the last two are the numbers of the Lennard-Jones law.
+      this%smallest_gap = max(nearest_power, 10.0_wp**(-110/(this%fine%power + 1)))
       this%repulsion_length = length_of_power/max(this%fine%power, 1.0_wp)
-      this%closure_fraction = closure_of_power/max(this%fine%power, 9.0_wp)
+      this%closure_fraction = min(usual_closure, closure_of_power/this%fine%power)
       this%group = 'tabulated'
       this%strength_key = 'file'
       this%length_key = 'file'

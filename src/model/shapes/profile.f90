@@ -32,6 +32,8 @@ module profile
   real(wp), parameter :: straight = 0.02_wp
   !> Relative difference of the slopes between points below which a flank is straight.
   real(wp), parameter :: same_slope = 1.0e-9_wp
+  !> Smallest difference of a slope from those of the chords beside it, over the difference of these.
+  real(wp), parameter :: least_bend = 0.1_wp
 
   !> The row of a profile in &shape.
   type(key_spec), parameter :: keys(*) = [ &
@@ -166,7 +168,7 @@ contains
     chord = (this%taylor(0, 2:) - this%taylor(0, :n - 1))/(this%at(2:) - this%at(:n - 1))
     slope = this%taylor(1, :)
     do i = 2, n - 1
-      apart = 0.1_wp*(chord(i) - chord(i - 1))
+      apart = least_bend*(chord(i) - chord(i - 1))
       slope(i) = min(max(slope(i), chord(i - 1) + apart), chord(i) - apart)
     end do
     slope(n) = max(slope(n), 2*chord(n - 1) - slope(n - 1))
