@@ -3,14 +3,13 @@
 module sweep_group
   use kinds, only: wp
   use failure, only: failure_t
-  use text, only: brief, lower, quoted, spelled, word_count, word_of
+  use text, only: brief, lower, quoted, word_count, word_of
   use deck, only: deck_t
   use deck_numbers, only: words_of, number_of_word, holds_text
   use case_rows, only: case_rows_t
   use deck_keys, only: key_spec, real_list, logical_value, text_value, names_value
   use scene_groups, only: scene_t, sweep_t, case_file_t
-  use sweep_ranges, only: take_ranges
-  use sweep_texts, only: take_texts
+  use sweep_values, only: take_ranges, take_texts, take_curves
   implicit none
   private
   public :: sweep_keys, take_sweep
@@ -195,34 +194,6 @@ contains
       if (lower(word_of(sweep%names, k)) == key) return
     end do
   end function position_of
-
-  !> The numbers of all curves of the file in &measurement.
-  subroutine take_curves(deck, sweep, values)
-    type(deck_t), intent(inout) :: deck
-    type(sweep_t), intent(inout) :: sweep
-    real(wp), allocatable, intent(inout) :: values(:)
-    type(failure_t), allocatable :: trouble
-    character(len=:), allocatable :: names
-    integer :: skip
-
-    allocate (values(0))
-    skip = 0
-    call deck%get('measurement', 'curves', names)
-    call deck%get('measurement', 'skip_lines', skip)
-    if (word_count(names) == 0 .or. .not. deck%is_set('measurement', 'file')) then
-      call deck%mistake('sweep', 'key', 'without values it takes all curves of one file: give ' &
-        // 'file and curves in &measurement')
-      return
-    end if
-    call sweep%index%find_curves(deck%path_of('measurement', 'file'), &
-      spelled(word_of(names, 1)), skip, trouble)
-    if (allocated(trouble)) then
-      call deck%mistake('measurement', 'file', trouble%message)
-      return
-    end if
-    call deck%note_file('measurement', 'file', sweep%index%digest)
-    values = sweep%index%number
-  end subroutine take_curves
 
   !> Refuses keys that contradict `other`.
   subroutine refuse(deck, keys, other)
