@@ -42,10 +42,9 @@ module simulation
   use fit_columns, only: verdicts
   use measured_fit, only: fit_measured
   use fit_doubts, only: doubts_of
-  use fit_rows, only: write_fit_rows, fit_text
+  use fit_rows, only: write_fit_rows, fit_text, report_joint
   use fit_words, only: words_of_fit
   use joint_fit, only: joint_fit_t
-  use joint_rows, only: report_joint
   implicit none
   private
   public :: run_scene

@@ -1,8 +1,12 @@
-!> The results of a fit: fit.csv, sample by sample; fit.nml, the unknowns.
+!> The results of a fit: fit.csv, sample by sample; fit.nml, the unknowns; and of a fit of several
+!> curves together fit.nml and lines of the summary.
 module fit_rows
   use kinds, only: wp
   use dimensionless_problem, only: adhesion_strength, tabor_parameter
+  use text, only: counted, rounded
+  use units, only: with_unit
   use namelist_writer, only: line_t, assignment_of
+  use summary, only: summary_t
   use results, only: results_t
   use tables, only: direction_of
   use fit_request, only: unknown_t, of_radius
@@ -12,10 +16,11 @@ module fit_rows
   use baseline_test, only: lacking_t
   use fit_alternatives, only: alternative_t
   use fit_run, only: fit_outcome_t
+  use joint_fit, only: joint_fit_t
   use fit_doubts, only: doubts_of
   implicit none
   private
-  public :: write_fit_rows, fit_text, of_fitted, numbers
+  public :: write_fit_rows, fit_text, report_joint
 
   character(len=1), parameter :: nl = new_line('a')
 
@@ -201,5 +206,49 @@ contains
     written = values
     text = assignment_of(key, written)
   end function numbers
+
+  !> The text of fit.nml: the shared parameters.
+  function joint_text(joint, title) result(text)
+    type(joint_fit_t), intent(in) :: joint
+    character(len=:), allocatable, intent(in) :: title
+    character(len=:), allocatable :: text
+    type(line_t), allocatable :: doubts(:)
+
+    allocate (doubts(merge(1, 0, allocated(joint%doubt))))
+    if (size(doubts) > 0) doubts(1)%text = joint%doubt
+    text = '! A fit by snapin of several curves together, SI units: the shared parameters. ' // &
+      'sweep.csv has those of each curve.' // nl // '&fit' // nl // &
+      assignment_of('title', title) // of_fitted(joint%unknown, joint%fitted) // &
+      numbers('curves', [real(joint%curves, wp)]) // &
+      numbers('chi_squared_alone', [joint%alone]) // &
+      numbers('degrees_of_freedom_alone', [real(joint%fitted%freedom - joint%spared, wp)]) // &
+      assignment_of('warnings', doubts) // '/' // nl
+  end function joint_text
+
+  !> Writes fit.nml, and tells in the summary how well the fit describes the curves, and the shared
+  !> parameters.
+  subroutine report_joint(joint, title, results, summary)
+    type(joint_fit_t), intent(in) :: joint
+    character(len=:), allocatable, intent(in) :: title
+    type(results_t), intent(inout) :: results
+    type(summary_t), intent(inout) :: summary
+    integer :: i
+
+    if (allocated(joint%trouble)) then
+      call summary%fail_with('no fit of all curves: ' // joint%trouble)
+      return
+    end if
+    ! Results that could not be written ended the fits.
+    if (.not. allocated(joint%unknown)) return
+    call results%write_text('fit.nml', joint_text(joint, title))
+    if (allocated(joint%doubt)) call summary%warn('fit: ' // joint%doubt)
+    call summary%note(counted(joint%curves, 'curve') // ' fitted together: chi squared ' // &
+      rounded(joint%fitted%chi_squared) // ' with ' // &
+      counted(joint%fitted%freedom, 'degree') // ' of freedom')
+    do i = 1, size(joint%unknown)
+      call summary%note(joint%unknown(i)%name // ' = ' // with_unit(joint%fitted%value(i), &
+        joint%fitted%deviation(i), joint%unknown(i)%unit))
+    end do
+  end subroutine report_joint
 
 end module fit_rows

@@ -17,7 +17,7 @@ MODULES = {
     "timed_pass", "timed_record", "timed_run", "rate_groups", "rate_entries",
     # theories of others, and fits
     "theory_groups", "classical_rows", "regime_rows", "approximation_tables", "fit_group",
-    "unknown_bounds", "measurement_group", "fit_rows", "fit_words", "joint_rows", "fit_columns",
+    "unknown_bounds", "measurement_group", "fit_rows", "fit_words", "fit_columns",
     "case_fit", "measured_fit",
     # processes
     "ranks", "forks",
@@ -49,7 +49,7 @@ SEAMS = {
     # one kind of run more
     "simulation": {
         "approximation_tables", "classical_rows", "fit_columns", "fit_doubts", "fit_rows",
-        "fit_run", "fit_words", "joint_fit", "joint_rows", "measured_fit", "ranks",
+        "fit_run", "fit_words", "joint_fit", "measured_fit", "ranks",
         "run_identity"},
     "sweeps": {"case_fit", "curve_index", "forks", "joint_fit", "ranks"},
     "sweep_case": {"fit_columns"},
