@@ -3,8 +3,10 @@ module solver_options
   use kinds, only: wp
   implicit none
   private
-  public :: solver_options_t, tightened, newton_of, rescue_of
+  public :: solver_options_t, tightened, newton_of, rescue_of, usual_tolerance
 
+  !> Largest residual, in the law's lengths, of states that others are computed from.
+  real(wp), parameter :: usual_tolerance = 1.0e-8_wp
   !> A tolerance well above the rounding of equations with terms of hundreds of the law's lengths.
   real(wp), parameter :: tight_tolerance = 1.0e-12_wp
   !> Newton's method needs few iterations if it converges.
@@ -16,7 +18,7 @@ module solver_options
     !> Jacobian, of which Newton's method is a special case (`newton_of`).
     logical :: mixing = .false.
     !> Largest acceptable residual, in the law's lengths.
-    real(wp) :: tolerance = 1.0e-8_wp
+    real(wp) :: tolerance = usual_tolerance
     !> Number of previous steps in the combination of Anderson acceleration: with a factorised
     !> Jacobian, and of the mixing.
     integer :: depth = 5, mixing_depth = 0

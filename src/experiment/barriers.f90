@@ -5,7 +5,7 @@ module barriers
   use undeformed, only: load_undeformed
   implicit none
   private
-  public :: pass_barrier
+  public :: pass_barrier, ratio
 
   !> Slope of the bodies at the edge of a contact above which a drive stops before a barrier: the
   !> slope is no longer small, and paths through such wide contacts take minutes.

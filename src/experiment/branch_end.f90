@@ -13,7 +13,7 @@ module branch_end
   use fixed_branch, only: expected_at, is_expected, is_pinned, change
   use branch_tangent, only: branch_tangent_t, tangent_at, joins, passing
   use solver_options, only: solver_options_t
-  use stepper, only: stepper_t, branch_point_t, remember
+  use stepper, only: stepper_t, branch_point_t, remember, exact
   implicit none
   private
   public :: follow, branch_end_t, arrived, at_fold, lost
@@ -54,8 +54,7 @@ module branch_end
   !> its ends, a state is solved there to decide about a pair of folds; and the least distance of
   !> such a state from the ends, over the step.
   real(wp), parameter :: flat = 0.5_wp, apart = 0.02_wp
-  !> Error of the h0 of a fold (law's lengths), and largest number of states for it.
-  real(wp), parameter :: exact = 1.0e-9_wp
+  !> Largest number of states for a fold.
   integer, parameter :: most_rounds = 12
 
 contains

@@ -11,7 +11,7 @@ module drained_way
   use timed_record, only: pass_t, accept, lose
   implicit none
   private
-  public :: step_drained
+  public :: step_drained, longer, safety, remainder
 
   !> Largest deviation in a step from a straight line through the two previous instants: of the
   !> load, over the largest load or a pull-off, and of the gap on the axis, over the gap. Largest

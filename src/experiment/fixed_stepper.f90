@@ -15,7 +15,7 @@ module fixed_stepper
   use fixed_motion, only: advance, has_fallen, known_tangent, is_joined
   use branch_tangent, only: branch_tangent_t
   use stepper, only: stepper_t, branch_point_t, step_result_t, extreme_t, remember, move_to
-  use solver_options, only: solver_options_t
+  use solver_options, only: solver_options_t, usual_tolerance
   implicit none
   private
   public :: fixed_stepper_t
@@ -36,8 +36,6 @@ module fixed_stepper
   !> change of deformation above the law's length, and above this many times the change of h0,
   !> counts as a jump.
   real(wp), parameter :: paper_jump = 5
-  !> Largest residual of states between which folds are looked for, in the law's lengths.
-  real(wp), parameter :: accurate = 1.0e-8_wp
 
 contains
 
@@ -173,7 +171,7 @@ contains
 
     options = self%options
     if (options%mixing) options = solver_options_t()
-    options%tolerance = min(accurate, self%options%tolerance)
+    options%tolerance = min(usual_tolerance, self%options%tolerance)
     if (position%held > 0 .and. .not. is_equilibrium(position)) then
       by_way_of = position%state%h0
       position%state = position%past(position%held)

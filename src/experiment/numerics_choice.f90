@@ -8,7 +8,7 @@ module numerics_choice
   use contact_scales, only: largest_radius, contact_level, smallest_feature
   use experiment_request, only: request_t, numerics_t
   use path_demand, only: range_of
-  use solver_options, only: solver_options_t, newton_of
+  use solver_options, only: solver_options_t, newton_of, usual_tolerance
   implicit none
   private
   public :: choice_t, choose, size_grid, fixed_mesh, more_digits, with_fewer_nodes, with_less_extent
@@ -46,10 +46,11 @@ module numerics_choice
   !> many times as much: the other runs have this part of the nodes, and of the extent, which should
   !> still contain the contact.
   real(wp), parameter :: more_digits = 1.5_wp, part_of_nodes = 2/3.0_wp, part_of_extent = 5/6.0_wp
-  !> Tolerance of residuals over the accuracy, and its largest value. Except for mixing and on
-  !> uniform grids, it is at most a smaller part of the accuracy, but not below a least value.
-  real(wp), parameter :: part_of_accuracy = 0.01_wp, largest_tolerance = 1.0e-8_wp, &
-    small_part = 1.0e-4_wp, small_tolerance = 1.0e-10_wp
+  !> Tolerance of residuals over the accuracy, if this is below the usual tolerance. Except for
+  !> mixing and on uniform grids, it is at most a smaller part of the accuracy, but not below a least
+  !> value.
+  real(wp), parameter :: part_of_accuracy = 0.01_wp, small_part = 1.0e-4_wp, &
+    small_tolerance = 1.0e-10_wp
   !> Depth of the accelerated mixing.
   integer, parameter :: mixing_depth = 10
   !> Error of the place of an extremum over the accuracy (the error of the load is a few times
@@ -126,7 +127,7 @@ contains
     type(problem_t), intent(in) :: problem
 
     options%mixing = mixes(numerics%method)
-    options%tolerance = min(largest_tolerance, part_of_accuracy*numerics%accuracy)
+    options%tolerance = min(usual_tolerance, part_of_accuracy*numerics%accuracy)
     ! The residual at which an iteration stops, below its tolerance, depends on rounding, which
     ! changes loads by a thousandth of the tolerance. The lower tolerance moves this change beyond
     ! the requested digits, at the cost of a few products. For mixing the cost would be larger, and

@@ -3,7 +3,7 @@
 module path_demand
   use kinds, only: wp, pi
   use dimensionless_problem, only: problem_t, coupling_over, yielding_gap
-  use barriers, only: pass_barrier
+  use barriers, only: pass_barrier, ratio
   use contact_scales, only: beyond_contact
   use convex_contact, only: jkr_like_pull_off
   use undeformed, only: load_undeformed
@@ -16,9 +16,9 @@ module path_demand
   !> Where the deformation of the bodies is below this fraction of that at the jump, it no longer
   !> affects the load, and closed forms replace the path.
   real(wp), parameter :: no_yielding = 1.0e-9_wp
-  !> Ratio of successive trial radii of the contact, and the smallest in lateral units; and margin
-  !> for the error of an h0 of JKR theory.
-  real(wp), parameter :: ratio = 1.1_wp, smallest = 0.1_wp, margin = 0.1_wp
+  !> Smallest trial radius of the contact, in lateral units; and margin for the error of an h0 of JKR
+  !> theory.
+  real(wp), parameter :: smallest = 0.1_wp, margin = 0.1_wp
   !> Number of h0 at which the tension of rigid bodies is evaluated.
   integer, parameter :: tried = 100
 

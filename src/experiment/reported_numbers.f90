@@ -8,8 +8,8 @@ module reported_numbers
   use reported_place, only: quantities, of_load, of_profile, least, rounding
   implicit none
   private
-  public :: number_t, run_numbers_t, judge, differentiate, chance, chance_on_grids, largest_error, &
-    largest_of, of_table, name_length
+  public :: number_t, run_numbers_t, judge, differentiate, margin, chance, chance_on_grids, &
+    largest_error, largest_of, of_table, name_length
 
   integer, parameter :: name_length = 24
 

@@ -6,7 +6,7 @@ module tension_stretch
   use branch_tangent, only: find_load_slope
   use root_finding, only: root_search_t, new_root_search
   use largest_tension, only: lower
-  use stepper, only: stepper_t, branch_point_t, step_result_t
+  use stepper, only: stepper_t, branch_point_t, step_result_t, exact
   use reported_place, only: place_t, place_of_state, place_without_state, of_h0
   implicit none
   private
@@ -42,11 +42,9 @@ module tension_stretch
   !> Largest number of halvings of a stretch until the slope of the load has both signs, and the
   !> smallest part of the stretch. If they are exhausted, the tension is largest at an end of the
   !> stretch: a jump, whose load is known, or an end of the experiment. Number of states of the
-  !> search for the root, and the error of h0 that ends it unless the tolerance is larger.
+  !> search for the root.
   integer, parameter :: most_halvings = 12, most_rounds = 12
-  real(wp), parameter :: enough = 1.0e-3_wp, exact = 1.0e-9_wp
-  !> Smallest bracket of a search, relative or in the law's lengths.
-  real(wp), parameter :: closest = 1.0e-9_wp
+  real(wp), parameter :: enough = 1.0e-3_wp
   !> Steps short enough for every jump of the contact edge to be located, in the law's lengths.
   real(wp), parameter :: short_step = 0.1_wp
 
@@ -131,7 +129,7 @@ contains
     do round = 1, most_halvings
       if (.not. abs(slope) > 0) exit
       ! Between such close steps rounding hides any extremum.
-      if (.not. abs(bound - best%state%h0) > max(enough*width, closest*max(1.0_wp, abs(bound)))) &
+      if (.not. abs(bound - best%state%h0) > max(enough*width, exact*max(1.0_wp, abs(bound)))) &
         exit
       trial = best
       call steps%step_to(0.5_wp*(best%state%h0 + bound), trial, event)

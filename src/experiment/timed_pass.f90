@@ -10,7 +10,7 @@ module timed_pass
   use time_stepper, only: time_stepper_t
   use time_jump, only: step_along
   use rest, only: begin_at_rest, load_at_rest, longest_step
-  use drained_way, only: step_drained
+  use drained_way, only: step_drained, longer, safety, remainder
   use timed_record, only: pass_t, accept, take_row, note, lose, most_steps, &
     of_tension, of_end_h0, of_end_load, of_end_displacement, of_dissipation
   implicit none
@@ -22,14 +22,11 @@ module timed_pass
   !> first step, as fractions of a segment (approach, dwell or retract).
   real(wp), parameter :: bend = 8.0e-3_wp, edge_moves = 2, longest_part = 0.05_wp, &
     first_part = 1.0e-3_wp
-  !> Smallest and largest ratio of a step to the previous one; safety factor of the step with the
-  !> permitted deviation; deviation from a line that is neglected.
-  real(wp), parameter :: least_ratio = 0.3_wp, most_ratio = 2, safety = 0.9_wp, straight = 0.05_wp
+  !> Smallest ratio of a step to the previous one; deviation from a line that is neglected.
+  real(wp), parameter :: least_ratio = 0.3_wp, straight = 0.05_wp
   !> The shortest chosen step over the shortest retardation time, and its limits as fractions of a
   !> segment.
   real(wp), parameter :: shortest_chosen = 1.0e-4_wp, shortest_of_way(2) = [1.0e-8_wp, 1.0e-5_wp]
-  !> A remainder of the segment below this part of a step is added to the step.
-  real(wp), parameter :: remainder = 0.01_wp
   !> Number of steps after a rejected one before longer steps are tried again.
   integer, parameter :: patience = 3
   !> Limits below which a step is not divided further: over the shortest retardation time; its
@@ -117,7 +114,7 @@ contains
       call go_to(end)
       moved = missed(steps, from, now)
       now%step = (now%at%time - from%time)* &
-        min(most_ratio, max(least_ratio, safety/sqrt(moved)))
+        min(longer, max(least_ratio, safety/sqrt(moved)))
       now%step = min(max(now%step, shortest), longest_part*whole)
       if (now%held > most_steps) call lose(now)
     end subroutine choose_step

@@ -32,9 +32,6 @@ module timed_run
   private
   public :: run_timed
 
-  !> The error of a pass over its difference from the pass before and from the one before that: half
-  !> the steps have a quarter of the error.
-  real(wp), parameter :: of_halves = 1/3.0_wp, of_quarters = 1/15.0_wp
   !> Largest number of passes, and the largest change of the path's coordinate in a step of the
   !> first pass: a larger change is a jump, or needs shorter steps.
   integer, parameter :: most_passes = 9
@@ -78,7 +75,9 @@ contains
     real(wp) :: began, low
     integer :: pass, whole, i
 
-    others%part = [of_halves, of_quarters]
+    ! The error of a pass over its difference from the pass before and from the one before that:
+    ! half the steps have a quarter of the error.
+    others%part = 1/([4, 16] - 1.0_wp)
     call prepare()
     if (allocated(request%drive%time_step)) blank%time_step = request%drive%time_step
     began = seconds()

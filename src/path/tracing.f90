@@ -6,6 +6,7 @@ module tracing
   use contact_state, only: state_t, undeformed_state
   use equilibrium, only: equations_t
   use solver, only: solver_t
+  use solver_options, only: usual_tolerance
   use mesh_plan, only: approach
   use contact_scales, only: largest_radius, lost_in_rounding
   use path_coordinate, only: h0_control
@@ -30,11 +31,11 @@ module tracing
   !> Number of steps between messages to the listener: a message takes a tenth of the time of a
   !> step.
   integer, parameter :: steps_a_message = 8
-  !> Largest residual of the path's points, in the law's lengths, even if the deck allows larger
-  !> ones for the experiment's states; and that of points that define a smooth curve. Extrapolation
-  !> multiplies the residual a hundred times; if this exceeded the permitted miss, no step would be
-  !> short enough.
-  real(wp), parameter :: path_tolerance = 1.0e-8_wp, curve_tolerance = 1.0e-10_wp
+  !> Largest residual of points that define a smooth curve, in the law's lengths; that of other
+  !> points is the usual one, even if the deck allows larger ones for the experiment's states.
+  !> Extrapolation multiplies the residual a hundred times; if this exceeded the permitted miss, no
+  !> step would be short enough.
+  real(wp), parameter :: curve_tolerance = 1.0e-10_wp
 
 contains
 
@@ -68,7 +69,7 @@ contains
       largest_radius(solver%problem, h0_low, solver%meshes%level))
     tolerance = solver%options%tolerance
     solver%options%tolerance = min(tolerance, &
-      merge(curve_tolerance, path_tolerance, present(demand)))
+      merge(curve_tolerance, usual_tolerance, present(demand)))
     finished = .false.
     steps = 0
     if (present(demand)) call walker%follow_closely()

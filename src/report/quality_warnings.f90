@@ -9,6 +9,7 @@ module quality_warnings
   use summary, only: summary_t
   use scene_groups, only: scene_t
   use mending, only: too_much
+  use solver_options, only: usual_tolerance
   use model_warnings, only: judge_model
   use experiment_result, only: experiment_result_t
   use numerics_choice, only: edge_locked
@@ -24,8 +25,6 @@ module quality_warnings
   !> Ratio of estimated error and accuracy above which there is a warning; an estimate has a safety
   !> factor.
   real(wp), parameter :: clearly = 3
-  !> Residual below which there is no warning.
-  real(wp), parameter :: usual_residual = 1.0e-8_wp
   !> Largest power of the position with which a force falls slowly far away: up to here, derivatives
   !> by the power differed from those of whole runs by 1e-5 to 4e-3 at an accuracy of 1e-6.
   real(wp), parameter :: slow = 4
@@ -114,7 +113,7 @@ contains
     subroutine judge_accuracy()
       associate (tolerance => outcome%chosen%options%tolerance)
         if (summary%is_true('converged') .and. .not. outcome%chosen%options%stop_on_change .and. &
-          quality%residual > max(tolerance, scene%numerics%accuracy, usual_residual)) &
+          quality%residual > max(tolerance, scene%numerics%accuracy, usual_tolerance)) &
           call summary%warn('rounding leaves residuals of up to '//rounded(quality%residual)// &
           ' lengths of the force law, above the tolerance of '//rounded(tolerance))
       end associate

@@ -9,6 +9,7 @@ module stability_records
   use contact_state, only: state_t
   use equilibrium, only: cost_t
   use records, only: observer_t, record_t, stable_yes, stable_no, stable_unasked
+  use reported_numbers, only: margin
   use text, only: counted
   use summary, only: summary_t
   use stability, only: smallest_eigenvalue, unknown
@@ -40,8 +41,6 @@ module stability_records
   real(wp), parameter :: zero = 100
   !> Eigenvalue below which a state is at a fold.
   real(wp), parameter :: least = 1.0e-12_wp
-  !> Factor of errors.
-  real(wp), parameter :: margin = 3
 
 contains
 

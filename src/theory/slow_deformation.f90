@@ -7,7 +7,7 @@
 module slow_deformation
   use kinds, only: wp, pi, nan
   use adaptive_quadrature, only: integral_t, new_integral, in_order
-  use exponential, only: exponential_t
+  use exponential, only: exponential_t, largest_exponent
   use lennard_jones, only: lennard_jones_t
   use dimensionless_problem, only: problem_t
   implicit none
@@ -219,7 +219,6 @@ contains
   !> exp(-gap), limited to a finite value.
   elemental real(wp) function decay(gap)
     real(wp), intent(in) :: gap
-    real(wp), parameter :: largest_exponent = 700
 
     decay = exp(min(-gap, largest_exponent))
   end function decay

@@ -9,7 +9,7 @@ module exponential
   use group_reading, only: is_law, require, refuse_foreign, accept_law
   implicit none
   private
-  public :: exponential_t, keys, read_law, read_exponentials
+  public :: exponential_t, keys, read_law, read_exponentials, largest_exponent
 
   type, extends(force_law_t) :: exponential_t
     !> 1, or -1 for an attraction.
