@@ -36,24 +36,15 @@ def test_control_characters_of_a_name_stay_out_of_messages(snapin, tmp_path):
     assert done.stderr.startswith("a??[31mb\u00e9.nml:1: ")
 
 
-def test_pipe_is_read(snapin, tmp_path):
-    os.mkfifo(tmp_path / "pipe")
-    writer = threading.Thread(target=(tmp_path / "pipe").write_text, args=(GOOD,))
-    writer.start()
-    done = snapin("--check", "pipe", cwd=tmp_path)
-    writer.join()
-    assert (done.returncode, done.stdout) == (0, "pipe: ok\n")
-
-
-@pytest.mark.slow
-def test_a_writer_may_take_its_time(snapin, tmp_path):
+@pytest.mark.parametrize("seconds", [0, pytest.param(1.5, marks=pytest.mark.slow)])
+def test_a_pipe_is_read_however_long_its_writer_takes(snapin, tmp_path, seconds):
     """The program waits for a pipe that is open for writing."""
     os.mkfifo(tmp_path / "pipe")
 
     def write():
         with open(tmp_path / "pipe", "w", encoding="utf-8") as pipe:
             for part in GOOD[:20], GOOD[20:]:
-                time.sleep(1.5)
+                time.sleep(seconds)
                 pipe.write(part)
                 pipe.flush()
 

@@ -1,4 +1,5 @@
-"""The header of the contact law, compiled and called through ctypes."""
+"""The header of the contact law, compiled and called through ctypes, and what its values should
+be."""
 
 import copy
 import ctypes
@@ -7,6 +8,7 @@ import shutil
 import subprocess
 
 import numpy as np
+import pytest
 
 FOLDER = pathlib.Path(__file__).resolve().parents[2] / "contact_law"
 HEADER = FOLDER / "snapin_contact.h"
@@ -71,6 +73,18 @@ class Header:
                                   numbers)))
         return (failed, dict(zip(FUNCTIONS, found.T)), after.astype(bool),
                 dict(zip(NUMBERS, numbers)))
+
+
+def assert_same(law, h0, before, functions, after, numbers):
+    """Functions and contact at h0, and numbers, of another program are those of the law."""
+    assert (after == law.in_contact(h0, before)).all()
+    for name, found in zip(FUNCTIONS, functions):
+        expected = getattr(law, name)(h0, before)
+        assert (np.abs(found - expected) <= allowed(law, name, h0, expected)).all(), name
+    for name, found in zip(NUMBERS, numbers):
+        # The energy lost is a difference of energies.
+        least = 1e-9*scales_of(law)["energy"] if name == "energy_lost" else 0
+        assert found == pytest.approx(getattr(law, name), rel=1e-9, abs=least, nan_ok=True), name
 
 
 def bodies_at(mu, radius=2e-6, work=0.04, z0=0.35e-9):

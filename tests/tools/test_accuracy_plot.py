@@ -4,17 +4,12 @@ import numpy as np
 import pytest
 import snapin
 from conftest import ROOT
-from support.pictures import size_of
+from support.pictures import BODIES, CYCLE, FORCE, SWEEP, size_of
 
 pytest.importorskip("matplotlib")
 from snapin.plots.accuracy import draw_accuracy  # noqa: E402 (needs matplotlib)
 
 SCRIPT = ROOT / "pywrap" / "plots" / "accuracy.py"
-BODIES = "&bodies radius = 1.5e-2, stiffness = 1.0e10 /\n"
-FORCE = "&force law = 'lennard_jones', hamaker = 1.0e-20, z0 = 0.5e-9 /\n"
-CYCLE = """&loading h0_start = 4e-9, h0_end = -1e-9, h0_step = 0.25e-9 /
-&unloading from = 0e-9, -1e-9 /
-"""
 ACCURACY = {
     "accuracy": BODIES + FORCE + CYCLE
     + "&sweep key = 'numerics.accuracy', values = 1e-3, 1e-6, 1e-9 /\n",
@@ -23,8 +18,7 @@ ACCURACY = {
     "nodes": BODIES + FORCE + CYCLE + "&numerics grid = 'uniform' /\n"
     "&sweep key = 'numerics.nodes', values = 60, 120 /\n",
     # These have no costs.
-    "sweep": BODIES + FORCE + "&equilibrium_path h0_end = 0 /\n"
-    "&sweep key = 'force.hamaker', values = 1e-21, 1e-20 /\n",
+    "sweep": SWEEP,
     "cycle": BODIES + FORCE + CYCLE,
 }
 

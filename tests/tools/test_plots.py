@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 import snapin
 from conftest import ROOT
-from support.pictures import size_of
+from support.pictures import BODIES, CYCLE, FORCE, PATH, SWEEP, size_of
 from support.processes import HANG
 
 pytest.importorskip("matplotlib")
@@ -23,11 +23,6 @@ from snapin.plots.map import draw_map  # noqa: E402 (needs matplotlib)
 from snapin.plots.profiles import draw_profiles  # noqa: E402 (needs matplotlib)
 
 SCRIPTS = ROOT / "pywrap" / "plots"
-BODIES = "&bodies radius = 1.5e-2, stiffness = 1.0e10 /\n"
-FORCE = "&force law = 'lennard_jones', hamaker = 1.0e-20, z0 = 0.5e-9 /\n"
-CYCLE = """&loading h0_start = 4e-9, h0_end = -1e-9, h0_step = 0.25e-9 /
-&unloading from = 0e-9, -1e-9 /
-"""
 DECKS = {
     "cycle": "&scene title = 'Cycle' /\n" + BODIES + FORCE + CYCLE
     + "&profiles h0 = 2e-9, 0e-9 /\n&classical /\n",
@@ -36,14 +31,13 @@ DECKS = {
     "&loading h0_start = 4e-9, h0_end = 0e-9, h0_step = 1e-9 /\n&profiles h0 = 1e-9 /\n",
     "rigid": "&bodies radius = 1e-2, rigid = .true. /\n" + FORCE
     + "&loading h0_start = 4e-9, h0_end = 1e-9, h0_step = 1e-9 /\n&profiles h0 = 1e-9 /\n",
-    "sweep": BODIES + FORCE + "&equilibrium_path h0_end = 0 /\n"
-    "&sweep key = 'force.hamaker', values = 1e-21, 1e-20 /\n",
-    "map": BODIES + FORCE + "&equilibrium_path h0_end = 0 /\n&sweep key = 'force.hamaker', "
+    "sweep": SWEEP,
+    "map": BODIES + FORCE + PATH + "&sweep key = 'force.hamaker', "
     "'bodies.radius', from = 1e-21, 1e-3, to = 1e-20, 1e-1, count = 3, 9, scale = 'log' /\n",
-    "three": BODIES + FORCE + "&equilibrium_path h0_end = 0 /\n&sweep key = 'force.hamaker', "
+    "three": BODIES + FORCE + PATH + "&sweep key = 'force.hamaker', "
     "'bodies.radius', 'bodies.stiffness', from = 1e-21, 1e-3, 1e9, to = 1e-20, 1e-1, 1e10, "
     "count = 3, 8, 2, scale = 'log' /\n",
-    "words": BODIES + FORCE + "&equilibrium_path h0_end = 0 /\n&sweep key = 'numerics.method', "
+    "words": BODIES + FORCE + PATH + "&sweep key = 'numerics.method', "
     "'force.hamaker', words = 'newton', 'anderson', values = 1e-21, 1e-20 /\n",
     "regime": BODIES + FORCE + "&equilibrium_path h0_end = -1e-9 /\n&regime /\n",
     "theories": BODIES + FORCE + "&classical h0_start = 1e-9, h0_end = -1e-9 /\n",
