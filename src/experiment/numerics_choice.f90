@@ -47,8 +47,8 @@ module numerics_choice
   !> still contain the contact.
   real(wp), parameter :: more_digits = 1.5_wp, part_of_nodes = 2/3.0_wp, part_of_extent = 5/6.0_wp
   !> Tolerance of residuals over the accuracy, if this is below the usual tolerance. Except for
-  !> mixing and on uniform grids, it is at most a smaller part of the accuracy, but not below a least
-  !> value.
+  !> mixing and on uniform grids, it is at most a smaller part of the accuracy, but not below a
+  !> least value.
   real(wp), parameter :: part_of_accuracy = 0.01_wp, small_part = 1.0e-4_wp, &
     small_tolerance = 1.0e-10_wp
   !> Depth of the accelerated mixing.

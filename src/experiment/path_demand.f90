@@ -16,8 +16,8 @@ module path_demand
   !> Where the deformation of the bodies is below this fraction of that at the jump, it no longer
   !> affects the load, and closed forms replace the path.
   real(wp), parameter :: no_yielding = 1.0e-9_wp
-  !> Smallest trial radius of the contact, in lateral units; and margin for the error of an h0 of JKR
-  !> theory.
+  !> Smallest trial radius of the contact, in lateral units; and margin for the error of an h0 of
+  !> JKR theory.
   real(wp), parameter :: smallest = 0.1_wp, margin = 0.1_wp
   !> Number of h0 at which the tension of rigid bodies is evaluated.
   integer, parameter :: tried = 100

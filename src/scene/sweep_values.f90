@@ -1,6 +1,6 @@
-!> The values of a key of &sweep: from `from`, `to`, `count` and `scale`; the texts in `words`, among
-!> which a pattern stands for all files that it matches if the key names a file; or the numbers of
-!> all curves of a file.
+!> The values of a key of &sweep: from `from`, `to`, `count` and `scale`; the texts in `words`,
+!> among which a pattern stands for all files that it matches if the key names a file; or the
+!> numbers of all curves of a file.
 module sweep_values
   use, intrinsic :: iso_c_binding, only: nul => c_null_char
   use kinds, only: wp, long

@@ -32,7 +32,8 @@ module profile
   real(wp), parameter :: straight = 0.02_wp
   !> Relative difference of the slopes between points below which a flank is straight.
   real(wp), parameter :: same_slope = 1.0e-9_wp
-  !> Smallest difference of a slope from those of the chords beside it, over the difference of these.
+  !> Smallest difference of a slope from those of the chords beside it, over the difference of
+  !> these.
   real(wp), parameter :: least_bend = 0.1_wp
 
   !> The row of a profile in &shape.
