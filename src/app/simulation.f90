@@ -242,7 +242,7 @@ contains
       if (allocated(scene%varied)) call rate_numbers(scene, results, outcome)
       summary = summary_of(scene, problem, outcome)
       ! An error that is not allocated counts as absent.
-      call recorder%warn(summary, outcome%error_estimate)
+      if (scene%has_eigenvalues()) call recorder%warn(summary, outcome%error_estimate)
       if (allocated(scene%varied)) &
         call write_sensitivities(scene%varied, problem, outcome, summary, results)
       cost = outcome%cost

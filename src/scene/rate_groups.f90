@@ -9,7 +9,7 @@ module rate_groups
   use curve_groups, only: check_order
   implicit none
   private
-  public :: rate_keys, take_rates
+  public :: rate_keys, take_drive, take_creep, take_fluid
 
   !> Largest number of terms of a creep.
   integer, parameter :: most_terms = 20
@@ -60,15 +60,7 @@ module rate_groups
 
 contains
 
-  !> Reads &drive, &viscoelastic and &fluid.
-  subroutine take_rates(scene)
-    type(scene_t), intent(inout) :: scene
-
-    if (scene%deck%has_group('drive')) call take_drive(scene)
-    if (scene%deck%has_group('viscoelastic')) call take_creep(scene)
-    if (scene%deck%has_group('fluid')) call take_fluid(scene)
-  end subroutine take_rates
-
+  !> Reads &drive.
   subroutine take_drive(scene)
     type(scene_t), intent(inout) :: scene
     real(wp) :: time
@@ -109,6 +101,7 @@ contains
     end associate
   end subroutine take_drive
 
+  !> Reads &viscoelastic.
   subroutine take_creep(scene)
     type(scene_t), intent(inout) :: scene
     real(wp), allocatable :: relaxed, compliance(:), time(:)
@@ -142,6 +135,7 @@ contains
     end associate
   end subroutine take_creep
 
+  !> Reads &fluid.
   subroutine take_fluid(scene)
     type(scene_t), intent(inout) :: scene
     real(wp), allocatable :: slip(:)

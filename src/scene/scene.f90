@@ -13,7 +13,7 @@ module scene
   use curve_groups, only: cycle_keys, take_loading, take_unloading, path_keys, profiles_keys, &
     take_path, take_readings, take_regime, take_profiles, has_states
   use deck_family, only: sensitivity_keys, take_sensitivity
-  use rate_groups, only: rate_keys, take_rates
+  use rate_groups, only: rate_keys, take_drive, take_creep, take_fluid
   use theory_groups, only: theory_keys, take_approximations, take_classical
   use sweep_group, only: sweep_keys, take_sweep
   use fit_group, only: fit_keys, take_fit, check_sharing, load_curve
@@ -104,7 +104,9 @@ contains
     call take_readings(scene)
     if (deck%has_group('sensitivity')) call take_sensitivity(scene)
     if (deck%has_group('regime')) call take_regime(scene)
-    call take_rates(scene)
+    if (deck%has_group('drive')) call take_drive(scene)
+    if (deck%has_group('viscoelastic')) call take_creep(scene)
+    if (deck%has_group('fluid')) call take_fluid(scene)
     if (deck%has_group('profiles')) call take_profiles(scene)
     if (deck%has_group('approximations')) call take_approximations(scene)
     if (deck%has_group('classical')) call take_classical(scene)
