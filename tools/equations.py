@@ -38,6 +38,32 @@ NAMES = {
     37: "separation at the jump", 38: "form without units", 39: "Λ", 40: "σ",
     41: "no equation of the paper"}
 
+# Its formula, in the symbols that the page explains. No bar: it would end the cell of a table.
+FORMULAS = {
+    1: "F = −(3/2) πwR", 2: "F = −2πwR", 3: "p(r) = (2E*/(πR)) √(a² − r²), r < a", 4: "δ = a²/R",
+    5: "F = 4E*a³/(3R)", 6: "δ = (3F/(4E*√R))^(2/3), that is F = (4/3) E* √R δ^(3/2)",
+    7: "p1/√(1 − r²/a²), r < a", 8: "−πa²w", 9: "p1 = −√(2wE*/(πa))",
+    10: "4E*a³/(3R) = F + 3πwR + √(6πwRF + (3πwR)²), that is F = 4E*a³/(3R) − √(8πwE*a³)",
+    11: "δ = a²/R − √(2πwa/E*)", 12: "F = −(5/6) πwR, where a³ = πwR²/(8E*)",
+    13: "u = −(1/(2πE*)) ∫ (p/s) dA, with the distance s of the area dA",
+    14: "u(r) = −(1/(2E*)) ∫ p(t) k(r,t) t dt",
+    15: "k(r,t) = 4 K(m)/(π max(r,t)), m = (min(r,t)/max(r,t))²", 16: "p(r) = p_s(h(r))",
+    17: "h(r) = h0(r) − 2u(r)", 18: "h0(r) = h0 + r²/(2R)", 19: "δ = h(0) − h0 = −2u(0)",
+    20: "F = 2π ∫ p r dr", 21: "u(r) = u(0)", 22: "δ = (2/E*) ∫ p_s(h(0) + t²/(2R)) dt",
+    23: "F = 2πR ∫ p_s dh, from h(0) to infinity",
+    24: "μ = (1/(πE*)) ∫ (p_s′(h) ε/s) dA, for a perturbation ε of u", 25: "−1 < μ/ε < 1",
+    26: "ε = α p_s(h)/p_s′(h), with a small α", 27: "μ = −2αu", 28: "−1 < 2u p_s′(h)/p_s(h) < 1",
+    29: "2u(0) p_s′(h(0))/p_s(h(0)) > −1", 30: "p_s = p0 exp(−h/L)",
+    31: "δ = p_s(h(0)) √(2πRL)/E*", 32: "F = 2πRL p_s(h(0))",
+    33: "p_s = A/(6πh³) ((z0/h)⁶ − 1)", 34: "w = A/(16πz0²)",
+    35: "(a) δ = (A√(2R)/(3πE*)) (I₈ (z0/h)⁶ − I₂)/h^(5/2), with h = h(0), I₈ = 6435π/65536 and "
+        "I₂ = 3π/16; (b) attraction alone: δ = −A√(2R)/(16E*h^(5/2))",
+    36: "(a) F = (AR/(6h²)) ((z0/h)⁶/4 − 1), with h = h(0); (b) attraction alone: F = −AR/(6h²)",
+    37: "(29) for (35b): h(0) = (3A√(2R)/(16E*))^(2/7), with h0 = (4/3) h(0)",
+    38: "u/λ = Θ U, F/(2E*√(Rλ³)) = Θ W, with functionals U and W of u/λ, and λ = L or z0",
+    39: "Λ = p0 exp(−h0/L) √(R/L)/(2E*)", 40: "σ = w √(R/z0³)/(2E*) = μ^(3/2)/2, with Tabor's μ",
+    41: ""}
+
 # Why an equation has no place in the program.
 REASONS = {
     8: "JKR theory is used in its results, (9) to (12), which follow from this energy",
@@ -140,15 +166,24 @@ def page():
         "Each equation of Attard and Parker (1992), where the program computes it, the tests that",
         "name it, and the [figures](reproduction/report.md) of the paper in whose chapters it",
         "occurs. `tools/equations.py` makes this page from the comments of the sources.", "",
+        "The formulas have w for the paper's γ, L for its 1/κ, and E\\* = E/(2(1−ν²)). F is positive",
+        "in compression, a is the contact radius, δ the displacement, p_s(h) the force law;",
+        "integrals without limits are over the whole surface. [Methods](methods.md) has all other",
+        "symbols, and how the program solves (14) to (20). The program applies (28) where surfaces",
+        "attract each other less as they separate, where it reads 2u p_s′/p_s > −1 as in (29).", "",
+        "In JKR and DMT theory the gap of the contact is 0, in the model about z0. At one load both",
+        "have the same δ, but h0 of a theory is lower by z0: see",
+        "[theories of a run](results.md#theories).", "",
         "The method of section II C, (14) to (20), can be read in `src/equilibrium/`, beginning",
         "with `h0_step.f90`.", "",
-        "| equation | | file and procedure | test | figure |", "|---|---|---|---|---|"]
+        "| equation | what it is | file and procedure | test | figure |", "|---|---|---|---|---|"]
     for number, where in index().items():
         source = "<br>".join(_place(path, names) for path, names in where["source"].items())
         test = "<br>".join(_place(path, names) for path, names in _few(where["test"]))
         drawn = ", ".join(map(str, sorted(where["figure"])))
-        lines.append(f"| ({number}) | {NAMES[number]} | {source or REASONS[number]} | {test} "
-                     f"| {drawn} |")
+        formula = FORMULAS[number].replace("*", r"\*")
+        named = "<br>".join(filter(None, [NAMES[number], formula]))
+        lines.append(f"| ({number}) | {named} | {source or REASONS[number]} | {test} | {drawn} |")
     return "\n".join(lines) + "\n"
 
 
