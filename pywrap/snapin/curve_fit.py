@@ -20,22 +20,30 @@ _QUANTITIES = {"force": "load"}
 
 
 class Fit(NamedTuple):
-    """The result of a fit, SI. Dictionaries have the parameters of the fit as keys."""
+    """The result of a fit, SI. Dictionaries have the parameters of the fit as keys.
+
+    Attributes:
+        estimate: the value of each parameter.
+        standard_error: its standard error.
+        interval_95: the ends of its 95 % interval.
+        correlation: the correlations of the estimates, in the order of the parameters.
+        chi_squared: the sum of the squares of the residuals over the noise.
+        degrees_of_freedom: the number of samples less that of the unknowns.
+        noise: the standard deviation of the signal.
+        warnings: what limits the result; empty if the model describes the data.
+        samples: position [m], signal as measured and by the model, and residual of each sample.
+        result: the whole result; `result.fitted` has the classical theories too.
+    """
 
     estimate: dict[str, float]
     standard_error: dict[str, float]
-    #: The ends of the 95 % interval of each parameter.
     interval_95: dict[str, tuple[float, float]]
     correlation: Array
     chi_squared: float
     degrees_of_freedom: float
-    #: Standard deviation of the signal.
     noise: float
-    #: What limits the result; empty where the model describes the data.
     warnings: list[str]
-    #: Position [m], signal as measured and by the model, and residual of each sample.
     samples: np.ndarray
-    #: The whole result: `result.fitted` has the classical theories too.
     result: Result
 
 
@@ -49,19 +57,30 @@ def fit(z: Optional[ArrayLike], force: ArrayLike, *, deck: Deck,
         noise: Optional[ArrayLike] = None) -> Fit:
     """Fit numbers of a deck to a measured curve and return a `Fit`.
 
-    z: position of the base of the spring [m], or with quantity = "separation" the separation of the
-    bodies; None for contact radii under loads. force: force [N], repulsion positive; the signal [V]
-    if `sensitivity` [m/V] is given; the force over the radius of the deck [N/m] with `over_radius`.
-    segment: 0 for each sample of the approach, 1 for the retract; without it the curve is divided
-    where z turns. contact_radius: radius of the contact [m] in each sample, 0 or NaN where it was
-    not seen. spring_constant [N/m]: only separations and loads do not need it. deck: the scene as a
-    dictionary of groups, a text or a path, without &measurement and &fit. parameters: the unknowns,
-    such as "force.surface_energy", "bodies.stiffness", "measurement.contact_point"; lower, upper,
-    prior: one number for each. branches: "both", "approach" or "retract". noise: standard deviation
-    of the signal, if it is known, and then that of the radius.
-
     Samples without a finite z and force do not count. A wrong deck raises `DeckError`, a curve that
     cannot be fitted `SnapinError` with the reason.
+
+    Args:
+        z: position of the base of the spring [m], or with quantity = "separation" the separation of
+            the bodies; None for contact radii under loads.
+        force: force [N], repulsion positive; the signal [V] if `sensitivity` [m/V] is given; the
+            force over the radius of the deck [N/m] with `over_radius`.
+        deck: the scene as a dictionary of groups, a text or a path, without &measurement and &fit.
+        parameters: the unknowns, such as "force.surface_energy", "bodies.stiffness",
+            "measurement.contact_point".
+        spring_constant: that of the spring [N/m]; only separations and loads do not need it.
+        segment: 0 for each sample of the approach, 1 for the retract; without it the curve is
+            divided where z turns.
+        contact_radius: radius of the contact [m] in each sample, 0 or NaN if it was not observed.
+        quantity: "position" or "separation", what z is.
+        over_radius: whether `force` is over the radius.
+        sensitivity: deflection of the spring for a volt of the signal [m/V].
+        contact_point: position of the base at which undeformed bodies would touch [m].
+        branches: "both", "approach" or "retract".
+        lower: the least value of each parameter.
+        upper: the largest value of each parameter.
+        prior: the standard deviation of each parameter about its value in the deck.
+        noise: standard deviation of the signal, if it is known, and then that of the radius.
     """
     columns = columns_of(z, force, segment, contact_radius)
     with tempfile.TemporaryDirectory() as folder:

@@ -14,6 +14,7 @@ from .arguments import Array, Path, SnapinError, SnapinWarning, folder_path
 from .curve_fit import columns_of, fit_groups, header_of, names_in, values_of, with_groups
 from .deck import Deck
 from .experiment import run
+from .results import Result
 
 # The column that numbers the curves, the files, and the keys of a curve's place.
 _NUMBER, _CURVES, _CASES = "curve", "curves.csv", "cases.csv"
@@ -22,26 +23,41 @@ _TOLD = ("verdict", "warning", "failure")
 
 
 class Shared(NamedTuple):
-    """The parameters with one value for all curves, SI. Dictionaries have their names as keys."""
+    """The parameters with one value for all curves, SI. Dictionaries have their names as keys.
+
+    Attributes:
+        estimate: the value of each parameter.
+        standard_error: its standard error.
+        interval_95: the ends of its 95 % interval.
+        correlation: the correlations of the estimates.
+        chi_squared: that of all curves together, with all unknowns.
+        degrees_of_freedom: likewise.
+        curves: number of the curves that were fitted together: those that the model describes
+            alone.
+        warnings: those of the fit of all; a warning of one curve is in its record.
+    """
 
     estimate: dict[str, float]
     standard_error: dict[str, float]
-    #: The ends of the 95 % interval of each parameter.
     interval_95: dict[str, tuple[float, float]]
     correlation: Array
-    #: Of all curves together, with all unknowns.
     chi_squared: float
     degrees_of_freedom: float
-    #: Number of the curves that were fitted together: those that the model describes alone.
     curves: int
-    #: What is said of the fit of all; that of a curve is in its record.
     warnings: list[str]
 
 
 class Fits:
     """The fits of many curves, SI. `table` has a row for each curve, in their order: the columns of
     sweep.csv. `parameters`: the names of the unknowns; `units`: of the columns. `shared`: if some
-    of them have one value for all curves, the fit of these; None without them."""
+    of them have one value for all curves, the fit of these; None without them. `result`: that of
+    the whole run."""
+
+    result: Result
+    parameters: tuple[str, ...]
+    table: np.ndarray
+    units: dict[str, str]
+    shared: Optional[Shared]
 
     def __init__(self, result, parameters, broken):
         self.result, self.parameters = result, parameters
@@ -72,10 +88,12 @@ class Fits:
 
     @property
     def estimate(self):
+        """The value of each parameter by curve."""
         return self.of_each("estimate")
 
     @property
     def standard_error(self):
+        """Its standard error by curve."""
         return self.of_each("standard_error")
 
     @property
@@ -156,16 +174,24 @@ def fit_many(curves: Iterable[Sequence[ArrayLike]], *, deck: Deck,
              resume: bool = False, quiet: bool = True, **further: Any) -> Fits:
     """Fit numbers of a deck to each of many measured curves and return the `Fits`.
 
-    curves: an iterable of (z, force), (z, force, segment) or (z, force, segment, contact_radius),
-    as of `fit`; a curve that is none is a record with the reason. parameters: the unknowns of each
-    curve, which is fitted alone. shared, own: instead, the unknowns with one value for all curves
-    and those with a value for each; all curves are fitted together. places: x and y of each
-    curve [m]. each: values of further keys of the deck, one for each curve, such as
-    {"bodies.radius": [...]}. spring_constant: one number, or one for each curve. further: other
-    arguments of `fit`.
+    As many processes as OMP_NUM_THREADS says fit curves at the same time.
 
-    Curves are fitted at once by as many processes as OMP_NUM_THREADS says. out: the folder for
-    curves and results, in which `resume` goes on with the curves that are left.
+    Args:
+        curves: an iterable of (z, force), (z, force, segment) or (z, force, segment,
+            contact_radius), as of `fit`; one that is no curve is a record with the reason.
+        deck: the scene, as of `fit`.
+        parameters: the unknowns of each curve, which is fitted alone.
+        shared: instead, the unknowns with one value for all curves, which are fitted together.
+        own: with `shared`, the unknowns with a value for each curve.
+        spring_constant: one number, or one for each curve [N/m].
+        places: x and y of each curve [m].
+        over_radius: whether the forces are over the radius.
+        each: values of further keys of the deck, one for each curve, such as
+            {"bodies.radius": [...]}.
+        out: the folder for curves and results.
+        resume: whether to go on in `out` with the curves that are left.
+        quiet: whether to show no progress.
+        further: other arguments of `fit`.
     """
     each = dict(each or {})
     if np.ndim(spring_constant) > 0:

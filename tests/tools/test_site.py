@@ -32,6 +32,32 @@ def test_every_page_is_laid_out_with_what_it_links_to(tmp_path):
     assert "::: snapin.run\n" in api and "::: snapin.read_results\n" in api
 
 
+def test_the_page_of_the_python_api_has_the_types_of_results_and_their_fields():
+    api = lay_out.api_page()
+    assert "::: snapin.numerics.LawValues\n\nFields: `pressure`, `slope`, `energy`." in api
+    # Returned by a method of what a function returns, and a field of it.
+    assert "::: snapin.numerics.KernelMatrix\n" in api and "::: snapin.many_curves.Shared\n" in api
+    assert len(re.findall("^::: ", api, re.M)) == len(set(re.findall("^::: .*", api, re.M)))
+
+
+def test_small_numbers_stay_in_one_line_outside_of_code():
+    text, _ = lay_out.laid_out(
+        "1e-6, `2e-6`, [3e-6](4e-6.md#5e-6)\n\n    6e-6\n\n```\n7e-6\n```\n",
+        lay_out.pathlib.PurePosixPath("a.md"))
+    assert re.findall("<nobr>(.*?)</nobr>", text) == ["1e-6", "3e-6"]
+
+
+def test_long_names_may_break_after_an_underscore():
+    text, _ = lay_out.laid_out("| `test_a_long_name_of_a_claim` | `max_tension` |\n",
+                               lay_out.pathlib.PurePosixPath("a.md"))
+    assert "<code>test_<wbr>a_<wbr>long_" in text and "`max_tension`" in text
+
+
+def test_the_calculator_leads_back_to_the_pages(tmp_path):
+    lay_out.lay_out(tmp_path)
+    assert 'href="../index.html"' in (tmp_path / "docs/calculator.html").read_text()
+
+
 def test_dead_links_and_what_a_network_would_bring_are_found(tmp_path):
     (tmp_path / "a").mkdir()
     (tmp_path / "a/b.html").write_text('<h1 id="top">B</h1><a href="../index.html">up</a>')

@@ -21,6 +21,11 @@ from html.parser import HTMLParser
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 _LINK = re.compile(r"(\]\()([^)\s]+)(\))")
 _CODE = re.compile(r"(^```.*?^```)", re.S | re.M)
+# Browsers break a line in 1e-6, after the hyphen; what is code or the target of a link stays.
+_SMALL = re.compile(r"`[^`\n]*`|\]\([^)]*\)|^    .*$|\b(\d[\d.]*e-\d+)\b", re.M)
+
+# Names so long that a table would be wider than a screen may break after an underscore.
+_LONG_NAME = re.compile(r"`(\w{24,})`")
 
 
 def page_names():
@@ -55,6 +60,10 @@ def laid_out(text, page):
     for number in range(0, len(parts), 2):
         # A comment above a table would be part of its paragraph.
         parts[number] = _LINK.sub(link, re.sub(r"^<!--.*?-->$", "", parts[number], flags=re.M))
+        parts[number] = _SMALL.sub(lambda found: f"<nobr>{found[1]}</nobr>" if found[1]
+                                   else found[0], parts[number])
+        parts[number] = _LONG_NAME.sub(
+            lambda found: f"<code>{found[1].replace('_', '_<wbr>')}</code>", parts[number])
     return "".join(parts), wanted
 
 
@@ -66,13 +75,60 @@ def public_names():
     return names
 
 
+def classes():
+    """Return (module, syntax) of each class of the Python package by its name."""
+    return {node.name: (path.stem, node)
+            for path in sorted((ROOT / "pywrap/snapin").glob("*.py"))
+            for node in ast.parse(path.read_text(encoding="utf-8")).body
+            if isinstance(node, ast.ClassDef)}
+
+
+def fields_of(node):
+    """Return the fields of a named tuple in their order; they have no docstrings."""
+    if [base.id for base in node.bases] != ["NamedTuple"]:
+        return []
+    return [item.target.id for item in node.body if isinstance(item, ast.AnnAssign)]
+
+
+def returned_classes(names):
+    """Return the names of classes that public functions return, or that are in their fields, and
+    that are not public themselves."""
+    known, found = classes(), []
+    trees = [ast.parse(path.read_text(encoding="utf-8"))
+             for path in sorted((ROOT / "pywrap/snapin").glob("*.py"))]
+    waiting = [node.returns for tree in trees for node in tree.body
+               if isinstance(node, ast.FunctionDef) and node.name in names and node.returns]
+    while waiting:
+        for name in [node.id for node in ast.walk(waiting.pop(0)) if isinstance(node, ast.Name)]:
+            if name in known and name not in found:
+                found.append(name)
+                body = known[name][1].body
+                waiting += [item.annotation for item in body if isinstance(item, ast.AnnAssign)]
+                waiting += [item.returns for item in body
+                            if isinstance(item, ast.FunctionDef) and item.returns]
+    return sorted(name for name in found if name not in names)
+
+
 def api_page():
-    """Return the page of the Python API: a heading for each public name, its docstring below."""
-    lines = ["# Python API", "", "Every public name of `import snapin`, with its docstring. "
-             "[python.md](python.md) introduces them by examples.", ""]
-    for name in public_names():
-        lines += [f"::: snapin.{name}", ""]
+    """Return the page of the Python API: a heading for each public name, its docstring and its
+    fields below, then the same for what the functions return."""
+    names, known = public_names(), classes()
+    lines = ["# Python API", "", "Every public name of `import snapin`, with its docstring, and "
+             "then the types of results. [python.md](python.md) introduces them by examples.", ""]
+    for name in [*names, *returned_classes(names)]:
+        place = name if name in names else f"{known[name][0]}.{name}"
+        lines += [f"::: snapin.{place}", ""]
+        fields = fields_of(known[name][1]) if name in known else []
+        if fields and "Attributes:" not in ast.get_docstring(known[name][1]):
+            lines += [f"Fields: {', '.join(f'`{field}`' for field in fields)}.", ""]
     return "\n".join(lines)
+
+
+def with_way_back(text):
+    """Return the page of the calculator, which knows no site, with a link to its first page."""
+    begin, header, rest = text.partition("<header>\n")
+    assert header
+    return f'{begin}{header}<p><a href="../index.html">snapin: all pages</a></p>\n{rest}'
 
 
 def lay_out(folder):
@@ -82,10 +138,16 @@ def lay_out(folder):
         text, links = laid_out((ROOT / page).read_text(encoding="utf-8"), page)
         wanted |= links
         (folder / page).parent.mkdir(parents=True, exist_ok=True)
+        if page.name == "README.md":
+            # The only page of its part: an empty list beside it would take a fifth of the width.
+            text = f"---\nhide: [navigation]\n---\n\n{text}"
         (folder / page).write_text(text, encoding="utf-8")
     for name in sorted(wanted):
         (folder / name).parent.mkdir(parents=True, exist_ok=True)
         shutil.copy(ROOT / name, folder / name)
+    calculator = folder / "docs/calculator.html"
+    calculator.write_text(
+        with_way_back(calculator.read_text(encoding="utf-8")), encoding="utf-8")
     (folder / "docs/python_api.md").write_text(api_page(), encoding="utf-8")
     for name in ("icon.svg", "site.css", "iframe-worker.js"):
         shutil.copy(ROOT / "tools/site" / name, folder / "docs" / name)
