@@ -11,7 +11,7 @@ import pages
 import snapin
 
 PAGE = pages.ROOT / "docs" / "forces.md"
-# Work of adhesion, radius and separation at rest are 1.
+# Work of adhesion, radius and equilibrium separation are 1.
 RANGES = (0.2, 0.5, 1, 2, 5)
 LAWS = {
     **{f"{n:g}, {m:g}": {"force": {"law": "lennard_jones", "surface_energy": 1.0, "z0": 1.0,
@@ -30,7 +30,7 @@ def pull_offs(law, tabor, accuracy=1e-8):
     reach = -1 / snapin.force_law(law, [edge]).pressure[0]
     modulus = (tabor * reach) ** -1.5
     with warnings.catch_warnings():
-        # R is 1, and so is the separation at rest.
+        # R is 1, and so is the equilibrium separation.
         warnings.simplefilter("ignore", snapin.SnapinWarning)
         summary = snapin.run({
             "bodies": {"radius": 1.0, "stiffness": 2 * modulus}, **law,

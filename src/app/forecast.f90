@@ -106,14 +106,14 @@ contains
     problem = problem_of(scene)
     if (problem%rigid) return
     chosen = choose(scene, problem)
-    ! Without contact nothing is stiff, and there is no neck.
+    ! Without contact nothing is stiff, and there is no cohesive zone.
     if (.not. chosen%is_fixed() .or. chosen%low > max(1.0_wp, yielding_gap(problem, 1.0_wp))) return
     if (chosen%grid == uniform .and. problem%law%adhesion > 0) then
       spacing = chosen%extent/(chosen%nodes - 1)
       if (spacing_over_neck(problem, spacing) > comfortable) call add(advice, 'nodes are ' // &
         rounded(spacing*problem%lateral) // ' m apart, ' // &
-        rounded(spacing_over_neck(problem, spacing)) // ' widths of the neck: the contact ' // &
-        'edge will be pinned between them, and the pull-off too large; about ' // &
+        rounded(spacing_over_neck(problem, spacing)) // ' widths of the cohesive zone: the ' // &
+        'contact edge will be pinned between them, and the pull-off too large; about ' // &
         brief(nodes_for(comfortable*neck_width(problem), chosen%extent)) // &
         ' nodes resolve it, or grid = ''auto''')
     end if
@@ -159,7 +159,7 @@ contains
   !> The eigenvalues at an H0 in contact. The pressure in the middle of the contact is that of JKR
   !> or Hertz theory. Where the slope of the law is proportional to a pressure of Hertz, the row of
   !> -W p' on the axis has the sum pi coupling a |p'|, which no eigenvalue exceeds. The edge moves
-  !> nearly freely: the narrower its neck, the smaller the eigenvalue.
+  !> nearly freely: the narrower its cohesive zone, the smaller the eigenvalue.
   type(spectrum_t) function spectrum_of(problem, h0) result(spectrum)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: h0

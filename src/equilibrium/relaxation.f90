@@ -14,8 +14,8 @@ module relaxation
   public :: relax
 
   !> Largest number of steps of pseudo-time; number of factorisations that is always allowed (a
-  !> contact edge that moves across a hundred neck widths needs about 200); and the limit of further
-  !> ones, in cubes of the matrix's order (about ten seconds).
+  !> contact edge that moves over a hundred cohesive zones needs about 200); and the limit of
+  !> further ones, in cubes of the matrix's order (about ten seconds).
   integer, parameter :: most_steps = 2000, few_factorisations = 500
   real(wp), parameter :: most_cubes = 1.0e11_wp
   !> First step of pseudo-time (the stiffest modes relax in less than one unit), its largest growth,

@@ -237,7 +237,7 @@ module result_rows
     row_t('worst_residual', '', &
       'largest residual of all equilibria, over the law''s length', always), &
     row_t('spacing_over_neck', '', &
-      'largest distance of nodes at the contact edge over the width of the neck', always), &
+      'largest distance of nodes at the contact edge over width of the cohesive zone', always), &
     row_t('resolved', '', 'whether spacing_over_neck is at most 0.2, or 0.4 on a mesh that ' // &
       'moves with the edge (sweep.csv: 1 or 0)', always), &
     row_t('error_estimate', '', 'largest estimated error of all numbers, relative', always), &

@@ -22,7 +22,7 @@ module mesh_digits
   real(wp), parameter :: for_folds = 1.5_wp, for_folds_of_lengths = 1, enough_for_folds = 9
   !> Digits to be added, relative to a path under the Lennard-Jones law: for bodies without jumps;
   !> for laws with a step; for oscillating laws; for profiles, which are sensitive to the
-  !> position of the edge; for profiles, for each decade of sigma, since the neck is narrower; for
+  !> position of the edge; for profiles, for each decade of sigma, as the cohesive zone narrows; for
   !> bodies with a kink over which panels pass.
   real(wp), parameter :: without_jumps = -0.5_wp, for_steps = 0.6_wp, for_waves = 1.1_wp, &
     for_profiles = 2, for_narrow_necks = 0.3_wp, for_kinks = 1.5_wp

@@ -109,7 +109,7 @@ contains
   end function new_mesh_plan
 
   !> Whether short panels cover all places with the law's special gaps, so that each mesh is for a
-  !> narrower band of radii and is laid out for seen gaps.
+  !> narrower band of radii and is laid out for computed gaps.
   pure logical function is_narrow(problem)
     type(problem_t), intent(in) :: problem
 

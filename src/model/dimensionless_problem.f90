@@ -43,7 +43,7 @@ module dimensionless_problem
   !> range (depth of the well over largest tension), exceeds this: it is 0.2 for the Lennard-Jones
   !> law, 0.35 for Morse's, 0.9 and more for a step.
   real(wp), parameter :: even = 0.5_wp
-  !> Width of the neck times sigma, lateral units.
+  !> Width of the cohesive zone times sigma, lateral units.
   real(wp), parameter :: neck = 0.375_wp
 
   !> Stiffness of the repulsion, relative to that of the bodies, at which its kinks have no effect.
@@ -112,7 +112,7 @@ contains
     if (adhesion_strength(problem) > 0) neck_width = neck/adhesion_strength(problem)
   end function neck_width
 
-  !> A distance between nodes (lateral units) over the width of the neck; 0 without a neck.
+  !> A distance between nodes (lateral units) over the width of the cohesive zone; 0 without one.
   pure real(wp) function spacing_over_neck(problem, spacing)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: spacing

@@ -51,7 +51,7 @@ module layered_body
     procedure :: is_alike
     procedure :: take_one
     procedure :: cosine_sums
-    procedure :: yielding
+    procedure :: compliance
   end type layered_body_t
 
 contains
@@ -95,7 +95,7 @@ contains
     body%plain = largest <= resolved
     ! NaN if the panels do not reach the largest k, so that no state converges.
     if (body%ends(size(body%ends)) < last) body%series = nan
-    body%bottom = body%yielding(tiny(last))
+    body%bottom = body%compliance(tiny(last))
     ! On a rigid base only rounding errors are left.
     if (body%bottom < resolved) body%bottom = 0
 
@@ -108,22 +108,22 @@ contains
       integer :: j
 
       k = from + (to - from)*(1 + chebyshev_points(degree))/2
-      coefficient = chebyshev_series([(body%yielding(max(k(j), tiny(last))) - 1, j=0, degree)])
+      coefficient = chebyshev_series([(body%compliance(max(k(j), tiny(last))) - 1, j=0, degree)])
     end function series_on
 
   end function new_layered_body
 
   !> L at a wave number.
-  pure real(wp) function yielding(self, k)
+  pure real(wp) function compliance(self, k)
     class(layered_body_t), intent(in) :: self
     real(wp), intent(in) :: k
     integer :: i
 
-    yielding = 0
+    compliance = 0
     do i = 1, 2
-      if (self%part(i) > 0) yielding = yielding + self%part(i)*self%surface(i)%yielding(k)
+      if (self%part(i) > 0) compliance = compliance + self%part(i)*self%surface(i)%compliance(k)
     end do
-  end function yielding
+  end function compliance
 
   pure logical function is_homogeneous(self)
     class(layered_body_t), intent(in) :: self

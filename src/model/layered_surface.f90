@@ -34,19 +34,19 @@ module layered_surface
     logical :: on_rigid = .false.
     real(wp) :: base_shear = 1, base_poisson = 0
   contains
-    procedure :: yielding
+    procedure :: compliance
   end type layered_surface_t
 
 contains
 
   !> L at a wave number k > 0, in one over the unit of the thicknesses.
-  pure real(wp) function yielding(self, k)
+  pure real(wp) function compliance(self, k)
     class(layered_surface_t), intent(in) :: self
     real(wp), intent(in) :: k
     real(wp) :: y(5), below
     integer :: i
 
-    yielding = 1
+    compliance = 1
     if (size(self%thickness) == 0) return
     y = [0, 0, 0, 0, 1]
     if (.not. self%on_rigid) then
@@ -67,8 +67,8 @@ contains
       y = y/maxval(abs(y))
       below = self%shear(i)
     end do
-    yielding = y(4)/((1 - self%poisson(1))*y(5))
-  end function yielding
+    compliance = y(4)/((1 - self%poisson(1))*y(5))
+  end function compliance
 
   !> exp(M a - 2 a) y.
   pure function raised(y, nu, a) result(top)

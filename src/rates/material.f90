@@ -1,4 +1,4 @@
-!> A mesh fixed in the material, for the memory of the bodies. Pressures are interpolated from
+!> A mesh fixed in the material, for the bodies' internal variables. Pressures are interpolated from
 !> meshes that move with the contact, and the rise of the gap due to these pressures is computed on
 !> the fixed mesh. Fine panels resolve the contact edge wherever it may pass. Away from the edge a
 !> pressure is smooth, and long panels, each in place of several fine panels, represent it.

@@ -168,7 +168,7 @@ contains
       merge(0.5_wp*(from%power + to%power), to%power, from%since_turn > 0)
   end subroutine remember_fluid
 
-  !> Sets the memories of an instant to those of relaxed bodies under the present pressure.
+  !> Sets the internal variables of an instant to those of relaxed bodies under its pressure.
   subroutine set_memory(self, at)
     class(remembering_t), intent(in) :: self
     type(instant_t), intent(inout) :: at

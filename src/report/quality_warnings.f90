@@ -1,4 +1,4 @@
-!> Warnings about the numbers in a summary: whether the mesh resolves the cohesive zone (neck), and
+!> Warnings about the numbers in a summary: whether the mesh resolves the cohesive zone, and
 !> whether the numbers have the accuracy that the deck asks for. `model_warnings` has those about
 !> the model.
 module quality_warnings
@@ -86,7 +86,7 @@ contains
       decay = of%shape%growth*of%law%tail_power
     end function decay
 
-    !> Warns of a neck that is not resolved, with advice. locked: the mesh is locked to the edge.
+    !> Warns of a cohesive zone that is not resolved, with advice. locked: meshes follow the edge.
     subroutine judge_resolution(locked)
       logical, intent(in) :: locked
       character(len=:), allocatable :: advice
@@ -104,7 +104,7 @@ contains
             rounded(spacing/resolved_spacing)//' times as many nodes or grid = ''auto'''
         end if
         call summary%warn('under-resolved: nodes are '//rounded(spacing)// &
-          ' neck widths apart at the contact edge'//advice)
+          ' cohesive zones apart at the contact edge'//advice)
       end associate
     end subroutine judge_resolution
 

@@ -85,7 +85,7 @@ contains
         end if
       end if
       if (timed%memory_tail > unresolved) call summary%warn('the mesh does not resolve the ' // &
-        'memory of the bodies: ' // rounded(timed%memory_tail) // ' of it is lost between ' // &
+        'bodies'' internal variables: ' // rounded(timed%memory_tail) // ' is lost between ' // &
         'nodes; ask for a higher accuracy')
     end associate
   end subroutine summarise_timed

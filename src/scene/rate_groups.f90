@@ -108,7 +108,7 @@ contains
 
     associate (deck => scene%deck, bodies => scene%bodies)
       if (.not. allocated(scene%drive)) call deck%mistake('viscoelastic', '', 'needs &drive; ' // &
-        'bodies at rest are elastic ones with the relaxed stiffness')
+        'relaxed bodies are elastic ones with the relaxed stiffness')
       if (bodies%rigid) call deck%mistake('viscoelastic', '', &
         'needs bodies that deform, and these are rigid')
       if (deck%has_group('classical')) call deck%mistake('classical', '', &

@@ -44,7 +44,7 @@ def whole_numbers(tables):
     pytest.param(2, id="whole path"),
     pytest.param(-2, id="two pieces", marks=pytest.mark.long)])
 def test_the_table_is_computed_from_solved_paths(number, monkeypatch):
-    """One panel anew. What paths of accuracy 1e-9 leave open is a few of its last digits."""
+    """One panel anew. The error of paths of accuracy 1e-9 is in its last few digits."""
     # It takes most of the time, and test_contact_law compares it between panels.
     monkeypatch.setattr(law_tables.Near, "_energy", lambda *_: 0.0)
     stored = coefficients()["near"][number]

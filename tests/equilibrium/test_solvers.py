@@ -1,6 +1,6 @@
 """Claims about the three iterations: one equilibrium, judged by its true residual.
 
-All dimensionless (src/model/dimensionless_problem.f90), on one mesh fine enough for the necks that
+All dimensionless (src/model/dimensionless_problem.f90), on one mesh fine enough for the zones that
 occur here.
 """
 

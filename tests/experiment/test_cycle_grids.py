@@ -64,7 +64,7 @@ def test_mixing_converges_to_the_same_curve_where_nothing_is_stiff(run, hamaker,
 
 
 def coarse_scene(spacing, **numerics):
-    """Sigma 8.7 on a grid of the given spacing, in necks."""
+    """Sigma 8.7 on a grid of the given spacing, in widths of the zone."""
     neck, reach = 0.375 / STRONG, 9.0
     return lennard_jones(
         STRONG,
@@ -78,7 +78,7 @@ def coarse_scene(spacing, **numerics):
 
 @pytest.mark.slow
 def test_a_coarse_grid_warns_and_exaggerates_the_pull_off(run):
-    """The contact edge is pinned between nodes; 1.7 necks are the paper's 200 nm at sigma 8.7."""
+    """The contact edge is pinned between nodes; 1.7 zones are the paper's 200 nm at sigma 8.7."""
     result = run(coarse_scene(1.7))
     assert not result.summary["resolved"]
     assert result.summary["spacing_over_neck"] == pytest.approx(1.7, rel=0.05)

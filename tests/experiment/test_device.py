@@ -110,7 +110,7 @@ def test_the_softest_springs_jump_in_from_the_attraction_of_undeformed_bodies(ru
     found = run(springs(sigma, [stiffness]))
     far = (16 * math.pi * sigma / (3 * stiffness)) ** (1 / 3)
     assert numbers(found, "jump_in_z")[0] == pytest.approx(1.5 * far, rel=1e-8)
-    # And let go at the largest tension.
+    # And separate at the largest tension.
     assert -numbers(found, "jump_out_load")[0] == pytest.approx(
         found.summary["max_tension"], rel=1e-8)
     z, load = numbers(found, "jump_out_z")[0], numbers(found, "jump_out_load_after")[0]

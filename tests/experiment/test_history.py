@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from support.scenes import deck, loading, read_table
 
-# Fig. 10(a): sigma = 1.7. The neck is 589 nm wide; nodes lie from the axis to 15 um.
+# Fig. 10(a): sigma = 1.7. The cohesive zone is 589 nm wide; nodes lie from the axis to 15 um.
 NECK, R_MAX = 589e-9, 15e-6
 TURNS = [0.0, -2e-9, -5e-9]
 RULE = {"method": "mixing", "mixing_limit": 0.2, "convergence": "displacement_change",
@@ -65,7 +65,7 @@ def test_solved_on_a_coarse_grid_pull_off_is_too_large_whatever_the_penetration(
     excess = pull_off / converged - 1
     assert (np.diff(excess, axis=0) > 0).all()
     assert (excess[3] > 0.1).all() and (excess[4] > 1).all()
-    # One neck width apart pull-offs agree to 5e-4, a hundredth of what the grid adds.
+    # One width of the zone apart pull-offs agree to 5e-4, a hundredth of what the grid adds.
     assert np.ptp(pull_off[3]) < 0.01 * (pull_off[3].mean() - converged[0])
 
 

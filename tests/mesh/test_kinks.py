@@ -44,7 +44,7 @@ def test_states_are_those_of_a_mesh_that_ends_at_the_kink(h0):
 
 
 def strong(accuracy):
-    """The path of a thin brush between soft bodies, whose kink lies far outside the neck."""
+    """The path of a thin brush between soft bodies, whose kink lies far outside the zone."""
     return snapin.run({
         "bodies": {"radius": 15e-3, "stiffness": 6e8}, "force": LENNARD_JONES,
         "steric": {"brush_thickness": 2e-9, "grafting_density": 1e16},

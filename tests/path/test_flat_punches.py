@@ -165,7 +165,7 @@ def test_paths_about_the_axis_reach_their_end(run, way):
 
 
 BLUNT = {
-    # Bodies, shape, layer, hamaker constant and gap at rest, last h0.
+    # Bodies, shape, layer, hamaker constant and equilibrium gap, last h0.
     "a stiff coat": (
         {"radius": 1.418e-5, "young": 3.847e9, "poisson": 0.3}, {"kind": "power", "exponent": 8},
         {"thickness": 1.34e-7, "young": 3.847e10, "poisson": 0.4, "partner": "rigid"},

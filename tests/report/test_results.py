@@ -234,7 +234,7 @@ def test_a_table_that_cannot_be_written_leaves_no_results(snapin, tmp_path, coun
 
 
 def test_contact_ends_a_tenth_of_the_length_of_the_law_above_the_gap_at_rest(run):
-    """For Morse's law this is far from 1.1 times the gap at rest."""
+    """For Morse's law this is far from 1.1 times the equilibrium gap."""
     found = run(path_of(1e9, -2e-9, 1e-8, radius=1e-6, force=None,
                         morse={"surface_energy": 0.02, "z0": 0.2e-9, "decay_length": 1e-9},
                         profiles={"h0": [-2e-9]}))

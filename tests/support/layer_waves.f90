@@ -21,7 +21,7 @@ program layer_waves
     read (*, *) waves
     allocate (k(waves))
     read (*, *) k
-    print '(*(es25.16))', (surface%yielding(k(i)), i=1, waves)
+    print '(*(es25.16))', (surface%compliance(k(i)), i=1, waves)
     deallocate (surface%thickness, surface%shear, surface%poisson, k)
   end do
 end program layer_waves

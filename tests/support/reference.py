@@ -81,7 +81,7 @@ class Path:
         while True:
             wide = min(3.0, max(1.05 * largest / c, 1.1))
             fine = resolution.scale * neck(self.sigma, wide * c) / (c * math.sqrt(wide))
-            # While the contact is smaller than its neck, sharp features are close to the axis too.
+            # While the contact is smaller than the zone, sharp features are close to the axis too.
             finer = 2 if c < 4 * neck(self.sigma, c) else 1
             reach = max(REACH / c, 50.0)
             mesh = Mesh(1.0, min(fine, resolution.scale), reach, resolution, finer)

@@ -104,7 +104,7 @@ def finished(sigma, mesh, c, gap, h0):
 
 
 def neck(sigma, c):
-    """The shortest length at the edge: of the neck, or of Hertz's edge between large bodies."""
+    """The shortest length at the edge: the cohesive zone, or Hertz's edge between large bodies."""
     return min(0.375 / sigma, 0.5 * max(c, 1.0) ** (-1 / 3))
 
 

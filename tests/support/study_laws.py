@@ -39,7 +39,7 @@ TWO_WAYS, NARROW = 1e-3, 1e-5
 
 
 class Law(NamedTuple):
-    """The groups of a law, the approximate gap at rest, and its length [m]."""
+    """The groups of a law, the approximate equilibrium gap, and its length [m]."""
 
     groups: dict
     rest: float

@@ -53,7 +53,7 @@ def test_the_softest_springs_jump_from_the_attraction_alone_and_stiff_ones_not_a
     stiffness = 1e-5 * LARGEST_SLOPE
     inward, outward = spring.jumps(force, slope, stiffness, nearest, farthest)
     assert inward.start == pytest.approx((HAMAKER / (2 * np.pi * stiffness)) ** 0.25, rel=1e-6)
-    # And let go at the largest tension.
+    # And separate at the largest tension.
     assert outward.start == pytest.approx(3 ** (1 / 6) * Z0, rel=1e-4)
     assert slope(np.array([STEEPEST]))[0] == pytest.approx(LARGEST_SLOPE, rel=1e-12)
     assert spring.jumps(force, slope, 1.0001 * LARGEST_SLOPE, nearest, farthest) is None

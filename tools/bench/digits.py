@@ -126,7 +126,7 @@ def measure_law(program, quick, say):
         if problem.adhesive and problem is not problems.ADHESIVE[3]:
             rows += _reach_rows(program, problem, _REACHES[::3] if quick else _REACHES)
         if problem is not problems.ADHESIVE[3]:
-            # If the neck is far from resolved, there is no law, and a run takes minutes.
+            # If the cohesive zone is far from resolved, there is no law, and a run takes minutes.
             for count in nodes if problem is not problems.ADHESIVE[2] else nodes[:6]:
                 run = program.run(problem.cycle(
                     f"grid = 'uniform', nodes = {count}, accuracy = 1e-4", 4 * problem.step))

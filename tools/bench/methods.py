@@ -89,7 +89,7 @@ class LennardJones:
 
     @staticmethod
     def feature(strength, a):
-        """The width of the neck, or what the repulsion resolves."""
+        """The width of the cohesive zone, or what the repulsion resolves."""
         return min(0.375 / strength, 0.5, (0.01 / a) ** (1 / 3))
 
 

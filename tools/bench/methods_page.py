@@ -36,7 +36,7 @@ def _table(rows):
         cells = [["smallest eigenvalue", *(f"{row['least']:.2g}" for row in first)],
                  ["largest eigenvalue", *(_short(row["largest"]) for row in first)]]
         if mesh == "uniform":
-            cells.insert(0, ["spacing over the neck", *(
+            cells.insert(0, ["spacing over the cohesive zone", *(
                 _short(row["resolution"]) if row["resolution"] else "" for row in first)])
         for method, depth, ratio, name in _SHOWN:
             cells.append([name, *(

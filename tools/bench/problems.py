@@ -56,7 +56,7 @@ class Problem:
 def lennard_jones(sigma):
     """Return the Lennard-Jones problem of a strength of adhesion sigma, (40) of the paper."""
     stiffness = stiffness_of(sigma)
-    # The retreat jumps apart at about this h0, in units of z0, and a little more.
+    # Unloading, the bodies snap off at about this h0, in units of z0, and a little more.
     start = 5 + 3.2 * sigma ** (2 / 3)
     start, turn = float(f"{start:.2g}"), -float(f"{0.25 * start:.1g}")
     return Problem(

@@ -15,7 +15,7 @@ _PANELS = (("a", "separation", 1e-9, "separation [nm]", (0, 16), (0, 15)),
 
 
 def _radii_differ(results):
-    """Return the largest relative excess of the retreat's contact radius at the same load."""
+    """Return the largest relative excess of the contact radius in unloading at the same load."""
     # In this part of the approach the load increases, so that a load belongs to one state.
     loading, retreat = (rows[(rows["contact_radius"] > 0) & (rows["load"] > 0)]
                         for rows in map(results.branch, ("loading", "unloading_1")))

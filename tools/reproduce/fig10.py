@@ -25,7 +25,7 @@ def _reached(converged):
 
 
 def _common(results):
-    """Return the largest tension over JKR's of each retreat for h0 that all retreats pass."""
+    """Return the largest tension over JKR's of each unloading for h0 that all pass."""
     summary = results.summary
     passed = np.max(summary["unload_from"]) - 1e-13
     return [-curve["load"][curve["h0"] > passed].min() / summary["jkr_pull_off"]

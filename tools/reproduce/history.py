@@ -13,12 +13,12 @@ _RULES = ("paper", "residual")
 DECKS = (*(f"history_{letter}_{rule}" for letter in "cba" for rule in _RULES),
          *(f"fig10{letter}_converged" for letter in _CASES))
 _LOOKS = (*style.RETREATS[:3], (style.BLUE, "o"))
-# Spacing over the width of the neck up to which the program calls a grid resolved.
+# Spacing over the width of the cohesive zone up to which the program calls a grid resolved.
 _RESOLVED = 0.2
 
 
 def _pulls(results, turns):
-    """Return spacings over the neck, finest first, largest residuals, and pull-offs over JKR's,
+    """Return spacings over the zone, finest first, largest residuals, and pull-offs over JKR's,
     one row for each turning point."""
     cases = np.sort(results.sweep, order="spacing_over_neck")
     pulls = penetrations.of_sweep(cases, len(turns))

@@ -5,7 +5,7 @@ repulsion; negative: attraction). Without force the gap would be h_rest, so that
 
     stiffness (h - h_rest) = p(h).
 
-Approach and retreat change h_rest. At p'(h) = stiffness the equilibrium is lost, since the two
+Approach and retract change h_rest. At p'(h) = stiffness the equilibrium is lost, since the two
 forces change at the same rate. The spring jumps to the next gap at which the forces balance. By the
 mean-value theorem p' equals the stiffness once more between start and end of a jump. If p' exceeds
 the stiffness on one interval of gaps only, its two ends are the starts, and each jump ends beyond
@@ -32,7 +32,7 @@ class Jump(NamedTuple):
 
 
 class Jumps(NamedTuple):
-    """The jump of the approach and that of the retreat."""
+    """The jump of the approach and that of the retract."""
 
     inward: Jump
     outward: Jump

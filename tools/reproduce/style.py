@@ -19,7 +19,7 @@ from PIL import Image
 
 GREY = "#8C8C8C"
 WIDTH, DPI = 6.4, 120
-# Colours and markers of the retreats from the turning points of a cycle.
+# Colours and markers of the unloadings from the turning points of a cycle.
 RETREATS = ((ORANGE, "s"), (GREEN, "^"), (PURPLE, "D"), (SKY, "v"))
 DASHED = {"dashes": (5, 2)}
 

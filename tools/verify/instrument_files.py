@@ -179,8 +179,8 @@ HEAD = """# Records: files of instruments
 
 <!-- written by tools/verify/instrument_files.py -->
 
-All files of measured curves with which {packages} are tested, from the instrument's format to a fit, or
-the reason why there is none: of {count} files {fitted} are fitted, {refused} are refused, and {told} are no curves.
+All files of measured curves with which {packages} are tested, from the instrument's format to a fit,
+or to the reason why there is none. Of {count} files {fitted} are fitted, {refused} are refused, and {told} are no curves.
 
 - The approach is fitted by bodies that only repel each other. The stiffness is E' = 2 E\\*, for an assumed
   radius of the tip (5 µm except for a few): no file has it. Residuals are over the noise.

@@ -23,7 +23,7 @@ def jkr():
     a = (low + high) / 2 + (high - low) / 2 * x
     load = a**3 - a * np.sqrt(6 * a)
     slope = 2 * a - np.sqrt(6 / a) / 3
-    # Tension from D = 0 back to the jump apart, which ends at zero load.
+    # Tension from D = 0 back to snap-off, which ends at zero load.
     area = -float(np.sum(weight * load * slope) * (high - low) / 2)
     return math.pi * (math.pi * 3 / 4) ** (2 / 3) * area
 

@@ -60,7 +60,7 @@ def draw(_):
 
 
 def _stable(found):
-    """Return the pieces of a path on an approach and a retreat."""
+    """Return the pieces of a path on an approach and a retract."""
     if found.jump_in is None:
         return [(-found.h0, found.load)]
     first, last = (int(np.argmin(abs(found.h0 - h0) + abs(found.load + tension)))
