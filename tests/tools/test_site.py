@@ -47,6 +47,19 @@ def test_small_numbers_stay_in_one_line_outside_of_code():
     assert re.findall("<nobr>(.*?)</nobr>", text) == ["1e-6", "3e-6"]
 
 
+def test_pages_of_sources_keep_asterisks_and_load_nothing(tmp_path):
+    (tmp_path / "css").mkdir()
+    (tmp_path / "search.html").touch()
+    page = tmp_path / "index.html"
+    page.write_text('<head><link href="https://example.org/a.css"></head><em>All files…</em>'
+                    "<p>1/E<em> = 1/E1 + 1/E2. E</em> is</p>")
+    lay_out.dress(tmp_path)
+    text = page.read_text()
+    assert "1/E* = 1/E1 + 1/E2. E* is" in text and "<em>All files…</em>" in text
+    assert "https:" not in text and "css/sources.css" in text
+    assert not (tmp_path / "search.html").exists()
+
+
 def test_long_names_may_break_after_an_underscore():
     text, _ = lay_out.laid_out("| `test_a_long_name_of_a_claim` | `max_tension` |\n",
                                lay_out.pathlib.PurePosixPath("a.md"))

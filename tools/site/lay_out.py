@@ -165,12 +165,15 @@ _OF_BOOTSTRAP = re.compile(
 def dress(folder):
     """Take what pages of FORD load from a network out of them, and give them a style."""
     shutil.copy(ROOT / "tools/site/sources.css", folder / "css/sources.css")
+    (folder / "search.html").unlink(missing_ok=True)  # It is empty: the search of FORD is off.
     for page in folder.rglob("*.html"):
         style = os.path.relpath(folder / "css/sources.css", page.parent)
         text = _FROM_NETWORK.sub("", page.read_text(encoding="utf-8"))
         # Places of procedures that FORD names, and does not make.
         text = re.sub(r"#moduleprocedure-[^\"']*", "", text)
         text = _OF_BOOTSTRAP.sub("", text)
+        # Asterisks of products and of E*; what FORD itself emphasises ends in dots.
+        text = re.sub(r"<em>([^<]*[^<…])</em>", r"*\1*", text)
         home = os.path.relpath(folder.parent / "index.html", page.parent)
         text = re.sub(r"(<ul class=\"navbar-nav[^>]*>)", rf'\1<li><a href="{home}">Pages</a></li>',
                       text, count=1)
