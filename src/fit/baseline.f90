@@ -1,6 +1,6 @@
 !> The baseline of a measured curve, the signal without a force: a polynomial of the position, with
 !> one constant for the approach and one for the retract, and a ripple, as interference of light
-!> makes it in a detector. A drift in time gives the two ways (approach and retract) different
+!> makes it in a detector. A drift in time gives the two segments (approach and retract) different
 !> slopes.
 module baseline
   use kinds, only: wp, pi
@@ -8,8 +8,8 @@ module baseline
   private
   public :: baseline_t, waves_of, ways_in, scaled
 
-  !> degree: of the polynomial. slope_each_way: the slopes of the two ways are independent. ripple:
-  !> a sinusoid of one period on both ways, with its own amplitude and phase on each.
+  !> degree: of the polynomial. slope_each_way: the slopes of the two segments are independent.
+  !> ripple: a sinusoid of one period on both segments, with its own amplitude and phase on each.
   type :: baseline_t
     integer :: degree = 1
     logical :: slope_each_way = .false., ripple = .false.
@@ -22,9 +22,9 @@ module baseline
 
 contains
 
-  !> The columns whose sums are baselines, at positions z on the way in or out. If the amplitudes of
-  !> the ripple are known, one column is its derivative by the period, so that errors include that
-  !> of the period.
+  !> The columns whose sums are baselines, at positions z on approach or retract. If the amplitudes
+  !> of the ripple are known, one column is its derivative by the period, so that errors include
+  !> that of the period.
   pure function columns(self, z, inward) result(column)
     class(baseline_t), intent(in) :: self
     real(wp), intent(in) :: z(:)
@@ -65,7 +65,7 @@ contains
     column = reshape([column, new], [size(new), size(column, 2) + 1])
   end subroutine add
 
-  !> Cosine and sine of a period, each on one of the two ways.
+  !> Cosine and sine of a period, each on one of the two segments.
   pure function waves_of(z, inward, period) result(wave)
     real(wp), intent(in) :: z(:), period
     logical, intent(in) :: inward(:)
@@ -83,7 +83,7 @@ contains
     end do
   end function waves_of
 
-  !> The number of ways that have samples, 1 or 2.
+  !> The number of segments that have samples, 1 or 2.
   pure integer function ways_in(inward) result(ways)
     logical, intent(in) :: inward(:)
 

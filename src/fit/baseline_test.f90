@@ -1,4 +1,4 @@
-!> Tests whether a fit lacks a part of its baseline: a bow, a slope of its own on each way, a
+!> Tests whether a fit lacks a part of its baseline: a bow, a slope of its own on each segment, a
 !> ripple. Each is a direction in the space of the residuals r. Let g be the unit vector of this
 !> direction without the components that the unknowns and the present baseline explain. The part
 !> would then lower chi squared by (g.r)^2 and move the unknowns by known amounts. No further fit is

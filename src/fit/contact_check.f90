@@ -64,9 +64,9 @@ contains
     end if
   end subroutine check_contact
 
-  !> By how many standard errors the mean of the nearest samples of a way exceeds a straight line
-  !> through the others: the maximum over 2, 4, 8 and more samples. This finds a short, weak contact
-  !> best.
+  !> By how many standard errors the mean of the nearest samples of a segment exceeds a straight
+  !> line through the others: the maximum over 2, 4, 8 and more samples. This finds a short, weak
+  !> contact best.
   pure real(wp) function end_off_line(measured, inward, deviation) result(off)
     type(measured_curve_t), intent(in) :: measured
     logical, intent(in) :: inward

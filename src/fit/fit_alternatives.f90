@@ -52,7 +52,7 @@ contains
 
   contains
 
-    !> Fits one way alone, from the values of the fit of both.
+    !> Fits one segment alone, from the values of the fit of both.
     subroutine try_way(inward, name)
       logical, intent(in) :: inward
       character(len=*), intent(in) :: name

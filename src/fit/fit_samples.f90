@@ -25,8 +25,8 @@ module fit_samples
     real(wp) :: noise_radius = 0
     logical :: noise_radius_is_given = .false.
     type(measured_jump_t) :: jump(2)
-    !> The samples that count. For all samples: the way, the side of its jump (`load_on`), and the
-    !> number of the run.
+    !> The samples that count. For all samples: the segment, the side of its jump (`load_on`), and
+    !> the number of the run.
     integer, allocatable :: sample(:), way(:), side(:), run(:)
     !> The columns of the baseline at all samples; an orthonormal basis of the whitened columns at
     !> the samples that count, and the triangle that maps these to the basis.
@@ -73,7 +73,7 @@ contains
         end associate
       end do
       counts = self%side >= 0 .and. data%usable
-      ! A run is a sequence of neighbours of one way and one side of its jump.
+      ! A run is a sequence of neighbours of one segment and one side of its jump.
       ! Contact radii beside a signal have white noise: each is a run.
       self%run = [(1, i=1, n)]
       do i = 2, n
@@ -95,7 +95,7 @@ contains
     is_beside = self%measured%observed(i) /= self%measured%observed(1)
   end function is_beside
 
-  !> Drops the samples of the other way.
+  !> Drops the samples of the other segment.
   subroutine keep_way(self, inward)
     class(fit_samples_t), intent(inout) :: self
     logical, intent(in) :: inward

@@ -55,10 +55,10 @@ module force_model
     real(wp), allocatable :: rate(:), radius_rate(:)
   end type load_at_t
 
-  !> The two ways.
+  !> The two segments.
   integer, parameter :: inward = 1, outward = 2
 
-  !> The branches of a way in order, and the position of the drive at the end of each. The main
+  !> The branches of a segment in order, and the position of the drive at the end of each. The main
   !> jump, that with the largest change of load, starts from the end of branch number `main` of
   !> these; 0: there is none. predicted = .false.: the theory does not predict the jump.
   type :: way_t
@@ -104,8 +104,8 @@ module force_model
 
 contains
 
-  !> The load at a position on a way. side: 1 before the main jump, 2 after it, at any position; 0:
-  !> with the jumps of the model.
+  !> The load at a position on a segment. side: 1 before the main jump, 2 after it, at any position;
+  !> 0: with the jumps of the model.
   pure type(load_at_t) function load_on(self, way, side, position) result(found)
     class(response_t), intent(in) :: self
     integer, intent(in) :: way, side
@@ -123,7 +123,7 @@ contains
     load = self%branch(self%branch_on(way, side, position))%value_at(position)
   end function value_on
 
-  !> The branch of a position on a way, as for `load_on`.
+  !> The branch of a position on a segment, as for `load_on`.
   pure integer function branch_on(self, way, side, position) result(branch)
     class(response_t), intent(in) :: self
     integer, intent(in) :: way, side
@@ -143,8 +143,8 @@ contains
     end associate
   end function branch_on
 
-  !> The start of the main jump of a way: position of the drive, its derivatives by the unknowns,
-  !> and the load there.
+  !> The start of the main jump of a segment: position of the drive, its derivatives by the
+  !> unknowns, and the load there.
   pure subroutine jump_from(self, way, position, rate, load)
     class(response_t), intent(in) :: self
     integer, intent(in) :: way

@@ -44,7 +44,7 @@ module measured_curve
   !> travel of a base [m].
   real(wp), parameter :: even = 0.5_wp, uneven = 0.25_wp, shortest = 1.0e-12_wp, longest = 1.0e-3_wp
   integer, parameter :: parts = 20
-  !> The part of a way's samples at either end over which the ends are averaged.
+  !> The part of a segment's samples at either end over which the ends are averaged.
   real(wp), parameter :: end_part = 0.1_wp
 
 contains
@@ -281,8 +281,8 @@ contains
 
   end subroutine check_columns
 
-  !> Finds the direction of z on the approach. Fails if a way is too short or goes back, or if both
-  !> ways have the same direction.
+  !> Finds the direction of z on the approach. Fails if a segment is too short or goes back, or if
+  !> both segments have the same direction.
   subroutine find_facing(file, measured, error)
     character(len=*), intent(in) :: file
     type(measured_curve_t), intent(inout) :: measured
@@ -332,7 +332,7 @@ contains
     mean = [(sum(number(1 + (i - 1)*n/parts:i*n/parts))/(i*n/parts - (i - 1)*n/parts), i=1, parts)]
   end function means_of
 
-  !> The change of z from the begin to the end of a way.
+  !> The change of z from the begin to the end of a segment.
   pure real(wp) function travel_of(z) result(travel)
     real(wp), intent(in) :: z(:)
     integer :: part

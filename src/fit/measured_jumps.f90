@@ -52,8 +52,8 @@ module measured_jumps
 
 contains
 
-  !> The largest jump on the way in or out. deviation: of the noise. stiffness: of the spring, units
-  !> of signal over z.
+  !> The largest jump on approach or retract. deviation: of the noise. stiffness: of the spring,
+  !> units of signal over z.
   pure type(measured_jump_t) function find_jump(measured, deviation, stiffness, inward) result(jump)
     type(measured_curve_t), intent(in) :: measured
     real(wp), intent(in) :: deviation, stiffness
@@ -252,7 +252,7 @@ contains
 
   end subroutine find_far
 
-  !> The step of z about each sample: the mean over its way, or half the distance to the second
+  !> The step of z about each sample: the mean over its segment, or half the distance to the second
   !> sample on either side if that is larger.
   pure function steps_about(measured) result(step)
     type(measured_curve_t), intent(in) :: measured
@@ -274,7 +274,7 @@ contains
     end do
   end function steps_about
 
-  !> The signal minus the straight line through the baseline of its way.
+  !> The signal minus the straight line through the baseline of its segment.
   pure function off_baseline(measured) result(left)
     type(measured_curve_t), intent(in) :: measured
     real(wp) :: left(size(measured%z))

@@ -1,6 +1,6 @@
 !> A measured curve as a model with given unknowns predicts it:
 !>
-!>     signal = F(Z)/(k s) + baseline of the way + slope z ,   Z = facing (z - contact point) ,
+!>     signal = F(Z)/(k s) + baseline of the segment + slope z ,   Z = facing (z - contact point) ,
 !>
 !> k: stiffness of the spring; s: sensitivity of the detector. The last response of the model is
 !> kept, since another contact point or detector needs no new solution.
@@ -165,7 +165,7 @@ contains
     end do
   end function signal_rates
 
-  !> Position of the base at the start of the model's main jump on a way; NaN without one.
+  !> Position of the base at the start of the model's main jump on a segment; NaN without one.
   real(wp) function jump_of(self, value, way) result(z)
     class(modelled_curve_t), intent(in) :: self
     real(wp), intent(in) :: value(:)

@@ -1,4 +1,4 @@
-!> Slopes of a measured curve: of straight lines through the samples of a way over parts of the
+!> Slopes of a measured curve: of straight lines through the samples of a segment over parts of the
 !> travel.
 module part_slopes
   use kinds, only: wp
@@ -13,7 +13,7 @@ module part_slopes
 contains
 
   !> The slopes of the parts with enough samples, units of signal over z; positive where the signal
-  !> rises towards the other body, as in contact. In jumps it changes the other way.
+  !> rises towards the other body, as in contact. In jumps it changes the opposite way.
   pure function slopes_of_parts(measured) result(slope)
     type(measured_curve_t), intent(in) :: measured
     real(wp), allocatable :: slope(:)

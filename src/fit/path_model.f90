@@ -1,5 +1,5 @@
 !> The model whose loads are those of the equilibrium path, solved for each trial of the unknowns:
-!> the branches are the path's stable pieces behind the spring, and the ways those of `device`.
+!> the branches are the path's stable pieces behind the spring, and the segments those of `device`.
 module path_model
   use kinds, only: wp
   use failure, only: failure_t
@@ -271,7 +271,7 @@ contains
     branch%turns_last = piece%last_turns
   end subroutine make_branch
 
-  !> Finds the branches of the way in and of the way out, and the main jump of each.
+  !> Finds the branches of approach and retract, and the main jump of each.
   subroutine find_ways(problem, driven, response)
     type(problem_t), intent(in) :: problem
     type(driven_t), intent(in) :: driven
@@ -290,7 +290,7 @@ contains
           problem%law%separation_of(driven%drive%position(driven%leg(i)%to))]
       end associate
     end do
-    ! The jumps of a way start from its legs, in order, except the last leg.
+    ! The jumps of a segment start from its legs, in order, except the last leg.
     largest = 0
     do i = 1, size(driven%jumped)
       k = merge(inward, outward, driven%jumped(i)%inward)

@@ -15,7 +15,7 @@ module turn_rest
 
 contains
 
-  !> Marks the rests of both ways as skipped. stiffness: of the spring, units of signal over z.
+  !> Marks the rests of both segments as skipped. stiffness: of the spring, units of signal over z.
   pure subroutine leave_out_rest(measured, noise, stiffness)
     type(measured_curve_t), intent(inout) :: measured
     type(noise_t), intent(in) :: noise
@@ -25,7 +25,7 @@ contains
 
     measured%rested = [(.false., i=1, size(measured%z))]
     do way = 1, 2
-      ! The samples of a way, beginning at the turn.
+      ! The samples of a segment, beginning at the turn.
       at = pack([(i, i=1, size(measured%z))], measured%usable .and. &
         (measured%inward .eqv. way == 1))
       if (size(at) < 2) cycle

@@ -1,18 +1,19 @@
 !> The motion of a drive: an approach at constant velocity, a dwell, and a retract; these are its
-!> ways.
+!> segments.
 module motion
   use kinds, only: wp
   implicit none
   private
   public :: motion_t, new_motion, names_of_ways
 
-  !> The ways of a motion, in order.
+  !> The segments of a motion, in order.
   character(len=*), parameter :: names_of_ways(3) = [character(len=8) :: 'approach', 'dwell', &
     'retreat']
 
-  !> Times [s] at which the ways begin, their durations [s], and the positions between which they
-  !> lead (law's lengths). Time is counted from the beginning of a way, so that a long dwell does
-  !> not round the steps after it. least: the time [s] in which the drive moves by `negligible`.
+  !> Times [s] at which the segments begin, their durations [s], and the positions between which
+  !> they lead (law's lengths). Time is counted from the beginning of a segment, so that a long
+  !> dwell does not round the steps after it. least: the time [s] in which the drive moves by
+  !> `negligible`.
   type :: motion_t
     real(wp) :: began(3) = 0, lasts(3) = 0, position(0:3) = 0, least = 0
   contains
@@ -21,7 +22,7 @@ module motion
   end type motion_t
 
   !> A motion (law's lengths) within the errors of positions: over it, rates of gaps would be
-  !> rounding. A way that is shorter, in length or time, is left out.
+  !> rounding. A segment that is shorter, in length or time, is left out.
   real(wp), parameter :: negligible = 1.0e-9_wp
 
 contains
@@ -39,7 +40,7 @@ contains
     motion%began(3) = sum(motion%lasts(:2))
   end function new_motion
 
-  !> The position of the drive on a way at a time since its beginning.
+  !> The position of the drive on a segment at a time since its beginning.
   pure real(wp) function at(self, way, time) result(position)
     class(motion_t), intent(in) :: self
     integer, intent(in) :: way
@@ -50,7 +51,7 @@ contains
       (self%position(way - 1) - position)*(self%lasts(way) - time)/self%lasts(way)
   end function at
 
-  !> The distance between the ends of a way.
+  !> The distance between the ends of a segment.
   pure real(wp) function length_of(self, way)
     class(motion_t), intent(in) :: self
     integer, intent(in) :: way

@@ -8,7 +8,7 @@ module time_instant
   private
   public :: instant_t, extrapolate
 
-  !> Bodies at a time [s] since the beginning of a way. The position of the drive, Q = H0 -
+  !> Bodies at a time [s] since the beginning of a segment. The position of the drive, Q = H0 -
   !> compliance*load, and the state; on the material's mesh the memories (nodes, terms of `creep`)
   !> and the pressure. dissipated: by dashpots and the fluid in the step that ends at this time. Of
   !> the fluid: the dissipated power [1/s], the largest suction and its radius (lateral units).
