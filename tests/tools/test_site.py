@@ -66,6 +66,15 @@ def test_long_names_may_break_after_an_underscore():
     assert "<code>test_<wbr>a_<wbr>long_" in text and "`max_tension`" in text
 
 
+def test_the_paper_has_its_title_citations_and_references():
+    text = lay_out.paper_page((ROOT / "docs/paper.md").read_text(encoding="utf-8"),
+                              (ROOT / "docs/paper.bib").read_text(encoding="utf-8"))
+    assert text.startswith("# snapin: ") and "@" not in text and "$" not in text
+    assert "Attard and Parker (1992)" in text and "(Carpick et al., 1999)" in text
+    references = text.split("## References")[1]
+    assert references.count("\n- ") == 11 and not re.search(r"[{}\\]", references)
+
+
 def test_the_calculator_leads_back_to_the_pages(tmp_path):
     lay_out.lay_out(tmp_path)
     assert 'href="../index.html"' in (tmp_path / "docs/calculator.html").read_text()

@@ -124,6 +124,47 @@ def api_page():
     return "\n".join(lines)
 
 
+def works(bibliography):
+    """Return the fields of each work of a file of BibTeX by its key; LaTeX's accents as letters."""
+    letters = {r"{\'e}": "é", r"{\c{c}}": "ç", r'{\"u}': "ü", r'{\"o}': "ö", "---": "—",
+               "--": "–"}
+    for latex, letter in letters.items():
+        bibliography = bibliography.replace(latex, letter)
+    found = {}
+    for key, entry in re.findall(r"^@\w+{(\w+),\n(.*?)(?=^@|\Z)", bibliography, re.M | re.S):
+        fields = re.findall(r"(\w+) = {((?:[^{}]|{[^{}]*})*)}", entry)
+        found[key] = {name: re.sub(r"[{}]", "", " ".join(value.split())) for name, value in fields}
+    return found
+
+
+def paper_page(text, bibliography):
+    """Return the paper, which is written for Pandoc, as a page with its title, citations and
+    references."""
+    known = works(bibliography)
+
+    def names(work):
+        authors = [author.partition(",")[0] for author in work["author"].split(" and ")]
+        return authors[0] + (" et al." if len(authors) > 2 else f" and {authors[1]}"
+                             if len(authors) > 1 else "")
+
+    def in_brackets(match):
+        keys = re.findall(r"@(\w+)", match[1])
+        return f"({'; '.join('{}, {}'.format(names(known[k]), known[k]['year']) for k in keys)})"
+
+    _, head, body = text.split("---\n", 2)
+    body = re.sub(r"\[(@[^\]]*)\]", in_brackets, body)
+    body = re.sub(r"@(\w+)", lambda m: f"{names(known[m[1]])} ({known[m[1]]['year']})", body)
+    body = re.sub(r"\$([^$]*)\$", lambda m: m[1].replace(r"\sigma", "σ"), body)
+    body = re.sub(r"^# ", "## ", body, flags=re.M)
+    title = re.search(r"^title: '(.*)'$", head, re.M)[1]
+    lines = []
+    for work in sorted(known.values(), key=lambda work: work["author"]):
+        authors = work["author"].replace(" and ", "; ").rstrip(".")
+        place = ", ".join(filter(None, (work.get("volume"), work.get("pages"))))
+        lines.append(f"- {authors}. {work['title']}. *{work['journal']}* {place} ({work['year']}).")
+    return f"# {title}\n{body.rstrip()}\n\n" + "\n".join(lines) + "\n"
+
+
 def with_way_back(text):
     """Return the page of the calculator, which knows no site, with a link to its first page."""
     begin, header, rest = text.partition("<header>\n")
@@ -135,7 +176,10 @@ def lay_out(folder):
     """Copy pages and linked files into a folder."""
     wanted = set()
     for page in page_names():
-        text, links = laid_out((ROOT / page).read_text(encoding="utf-8"), page)
+        text = (ROOT / page).read_text(encoding="utf-8")
+        if page.as_posix() == "docs/paper.md":
+            text = paper_page(text, (ROOT / "docs/paper.bib").read_text(encoding="utf-8"))
+        text, links = laid_out(text, page)
         wanted |= links
         (folder / page).parent.mkdir(parents=True, exist_ok=True)
         if page.name == "README.md":
