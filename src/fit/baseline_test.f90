@@ -40,7 +40,7 @@ module baseline_test
   !> Ripples have from one to `most_periods` periods over the travel, and at least `fewest_samples`
   !> samples in a period. Number of trials for each of these, number of sections that refine the
   !> best one, and number of samples for the search.
-  integer, parameter :: most_periods = 64, fewest_samples = 5, oversampling = 4, sections = 25, &
+  integer, parameter :: most_periods = 64, fewest_samples = 5, oversampling = 4, sections = 16, &
     enough = 40
   !> Change of the phase of a ripple over the travel that does not matter.
   real(wp), parameter :: same_phase = 0.01_wp
@@ -180,7 +180,11 @@ contains
     real(wp), allocatable, intent(out) :: amplitude(:)
     type(bracket_t) :: bracket
     type(lacking_t) :: there
-    real(wp) :: travel, points(2), best
+    ! The whitened directions that the baseline and the unknowns explain, and the residuals without
+    ! them; all at the samples that count.
+    real(wp) :: known(size(data%sample), size(data%basis, 2) + size(tangent%basis, 2)), &
+      left(size(data%sample)), travel, points(2), best
+    logical :: beside(size(data%sample))
     integer :: samples(2), i, last
 
     period = 0
@@ -191,6 +195,13 @@ contains
       samples = [count(inward), count(.not. inward)]
     end associate
     last = min(most_periods, minval(samples, samples > 0)/fewest_samples)
+    beside = [(data%is_beside(data%sample(i)), i=1, size(data%sample))]
+    associate (n => size(data%sample), m => size(data%basis, 2))
+      known(:, :m) = data%basis
+      known(:, m + 1:) = tangent%basis(:n, :)
+      left = tangent%residual(:n) - matmul(tangent%basis(:n, :), matmul(tangent%residual, &
+        tangent%basis))
+    end associate
     best = -1
     do i = oversampling, oversampling*last
       gain = gain_at(real(i, wp)/oversampling)
@@ -211,13 +222,37 @@ contains
 
   contains
 
+    !> The gain of `explained`, from inner products of the waves: b.G^-1.b, b those with what is
+    !> left, G those of the waves without the known directions.
     real(wp) function gain_at(periods)
       real(wp), intent(in) :: periods
-      type(lacking_t) :: there
+      real(wp), allocatable :: all_waves(:, :), wave(:, :), part(:), of_known(:, :), &
+        square(:, :), whole(:)
+      integer :: j, k
 
-      there = explained(data, tangent, waves_of(data%measured%z, data%measured%inward, &
-        travel/periods))
-      gain_at = there%gain
+      all_waves = waves_of(data%measured%z, data%measured%inward, travel/periods)
+      wave = all_waves(data%sample, :)
+      do k = 1, size(wave, 2)
+        where (beside) wave(:, k) = 0
+      end do
+      call data%whiten_columns(wave)
+      part = matmul(left, wave)
+      of_known = matmul(transpose(known), wave)
+      square = matmul(transpose(wave), wave)
+      gain_at = 0
+      whole = [(square(k, k), k=1, size(part))]
+      square = square - matmul(transpose(of_known), of_known)
+      ! Elimination, column by column; a column without a rest counts for nothing.
+      do k = 1, size(part)
+        if (.not. square(k, k) > rounding**2*whole(k)) cycle
+        gain_at = gain_at + part(k)**2/square(k, k)
+        do j = k + 1, size(part)
+          associate (share => square(j, k)/square(k, k))
+            part(j) = part(j) - share*part(k)
+            square(j:, j) = square(j:, j) - share*square(j:, k)
+          end associate
+        end do
+      end do
     end function gain_at
 
   end subroutine find_period

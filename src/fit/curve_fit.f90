@@ -17,8 +17,9 @@ module curve_fit
   public :: fit_curve
 
   !> Number of contact points tried for which the nearest sample is in contact, and for which it is
-  !> not; number of samples used for each, and of sections that refine the best ones.
-  integer, parameter :: tried = 160, tried_apart = 40, samples = 250, sections = 25
+  !> not; number of samples used for each, and of sections that refine the best ones to a hundredth
+  !> of the distance between two: the search goes on from there.
+  integer, parameter :: tried = 160, tried_apart = 40, samples = 250, sections = 11
   !> Largest numbers of contact points kept for each candidate, of searches from the best
   !> candidates, of their results that are followed up, and of rounds in which the data are examined
   !> again.

@@ -30,7 +30,8 @@ module fit_samples
     integer, allocatable :: sample(:), way(:), side(:), run(:)
     !> The columns of the baseline at all samples; an orthonormal basis of the whitened columns at
     !> the samples that count, and the triangle that maps these to the basis.
-    real(wp), allocatable, private :: column(:, :), basis(:, :), triangle(:, :)
+    real(wp), allocatable, private :: column(:, :), triangle(:, :)
+    real(wp), allocatable :: basis(:, :)
     !> For each sample that counts, the factor that gives its residual the noise of the signal.
     real(wp), allocatable, private :: weight(:)
   contains
@@ -38,6 +39,7 @@ module fit_samples
     procedure :: keep_way
     procedure :: is_beside
     procedure :: baseline_numbers
+    procedure :: whiten_columns
     procedure :: clean
     procedure :: baseline_under
     procedure :: amplitudes_under
@@ -131,9 +133,9 @@ contains
     self%weight = [(1.0_wp, i=1, size(self%sample))]
     if (self%noise_radius > 0) self%weight = [(merge(self%noise%left(0)/self%noise_radius, 1.0_wp, &
       self%is_beside(self%sample(i))), i=1, size(self%sample))]
-    self%basis = spread(self%weight, 2, size(column, 2))*column(self%sample, :)
+    self%basis = column(self%sample, :)
     call move_alloc(column, self%column)
-    call whiten(self%noise, self%run(self%sample), self%basis)
+    call self%whiten_columns(self%basis)
     call orthonormalise(self%basis, self%triangle)
   end subroutine set_baseline
 
@@ -170,10 +172,25 @@ contains
     class(fit_samples_t), intent(in) :: self
     real(wp), intent(inout) :: column(:, :)
 
-    column = spread(self%weight, 2, size(column, 2))*column
-    call whiten(self%noise, self%run(self%sample), column)
-    column = column - matmul(self%basis, matmul(transpose(self%basis), column))
+    integer :: k
+
+    call self%whiten_columns(column)
+    do k = 1, size(column, 2)
+      column(:, k) = column(:, k) - matmul(self%basis, matmul(column(:, k), self%basis))
+    end do
   end subroutine clean
+
+  !> Whitens columns of numbers, one number for each sample that counts.
+  pure subroutine whiten_columns(self, column)
+    class(fit_samples_t), intent(in) :: self
+    real(wp), intent(inout) :: column(:, :)
+    integer :: k
+
+    do k = 1, size(column, 2)
+      column(:, k) = self%weight*column(:, k)
+    end do
+    call whiten(self%noise, self%run(self%sample), column)
+  end subroutine whiten_columns
 
   !> The best baseline, at all samples, of a signal without force.
   pure function baseline_under(self, signal) result(line)
@@ -190,8 +207,8 @@ contains
     real(wp), intent(in) :: signal(:)
     real(wp) :: left(size(self%sample), 1), part(size(self%column, 2))
 
-    left(:, 1) = self%weight*signal(self%sample)
-    call whiten(self%noise, self%run(self%sample), left)
+    left(:, 1) = signal(self%sample)
+    call self%whiten_columns(left)
     part = matmul(left(:, 1), self%basis)
     call solve_triangle(self%triangle, part)
   end function amplitudes_under

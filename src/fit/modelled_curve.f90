@@ -50,7 +50,7 @@ module modelled_curve
     procedure :: split
     procedure :: reach
     procedure :: contact_height
-    procedure, private :: number_of, position_of, newtons
+    procedure, private :: number_of, positions_of, newtons
   end type modelled_curve_t
 
 contains
@@ -115,18 +115,20 @@ contains
     integer, intent(in), optional :: side
     real(wp) :: signal(size(sample))
     type(load_at_t) :: state
+    real(wp) :: position(size(sample)), newtons
     integer :: i, n, on_side
 
+    position = self%positions_of(value, sample)
+    newtons = self%newtons(value)
     do n = 1, size(sample)
       i = sample(n)
       on_side = max(self%data%side(i), 0)
       if (present(side)) on_side = side
       if (self%data%measured%observed(i) == of_radius) then
-        state = self%response%load_on(self%data%way(i), on_side, self%position_of(value, i))
+        state = self%response%load_on(self%data%way(i), on_side, position(n))
         signal(n) = state%radius
       else
-        signal(n) = self%response%value_on(self%data%way(i), on_side, &
-          self%position_of(value, i))/self%newtons(value)
+        signal(n) = self%response%value_on(self%data%way(i), on_side, position(n))/newtons
       end if
     end do
   end function signal_of
@@ -137,9 +139,10 @@ contains
     real(wp), intent(in) :: value(:)
     real(wp) :: by(size(self%data%sample), size(value))
     type(load_at_t) :: load
-    real(wp) :: k, compliance, newtons, by_force
+    real(wp) :: k, compliance, newtons, by_force, position(size(self%data%sample))
     integer :: i, n
 
+    position = self%positions_of(value, self%data%sample)
     k = self%number_of(value, of_spring, self%spring)
     ! Under loads there is no spring.
     compliance = 0
@@ -149,7 +152,7 @@ contains
     by_force = merge(0.0_wp, compliance, self%is_force)
     do n = 1, size(self%data%sample)
       i = self%data%sample(n)
-      load = self%response%load_on(self%data%way(i), self%data%side(i), self%position_of(value, i))
+      load = self%response%load_on(self%data%way(i), self%data%side(i), position(n))
       by(n, :) = 0
       if (k > 0 .and. self%data%side(i) == 0 .and. &
         abs(load%slope)/(steep*newtons) > self%largest_slope) cycle
@@ -258,16 +261,17 @@ contains
       contact_height = self%number_of(value, of_contact_point, self%contact_point)
   end function contact_height
 
-  !> Position of the drive at a sample.
-  pure real(wp) function position_of(self, value, i) result(position)
+  !> Positions of the drive at samples.
+  pure function positions_of(self, value, sample) result(position)
     class(modelled_curve_t), intent(in) :: self
     real(wp), intent(in) :: value(:)
-    integer, intent(in) :: i
+    integer, intent(in) :: sample(:)
+    real(wp) :: position(size(sample))
 
-    position = self%data%measured%facing*(self%data%measured%z(i) - &
+    position = self%data%measured%facing*(self%data%measured%z(sample) - &
       self%number_of(value, of_contact_point, self%contact_point))
     if (self%data%measured%under_loads()) position = position*self%newtons(value)
-  end function position_of
+  end function positions_of
 
   !> The load of a unit of the signal, k s.
   pure real(wp) function newtons(self, value)

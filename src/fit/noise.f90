@@ -253,18 +253,21 @@ contains
     type(noise_t), intent(in) :: noise
     integer, intent(in) :: run(:)
     real(wp), intent(inout) :: column(:, :)
-    real(wp) :: raw(size(column, 2), 0:longest)
-    integer :: known(size(run)), i
+    integer :: known(size(run)), i, j
 
+    if (noise%order == 0) then
+      column = column/noise%left(0)
+      return
+    end if
     known = predicting(noise, run)
-    raw = 0
-    do i = 1, size(run)
-      raw(:, 1:) = raw(:, :longest - 1)
-      raw(:, 0) = column(i, :)
-      column(i, :) = raw(:, 0)
-      if (known(i) > 0) column(i, :) = column(i, :) - &
-        matmul(raw(:, 1:known(i)), noise%weight(:known(i), known(i)))
-      column(i, :) = column(i, :)/noise%left(known(i))
+    do j = 1, size(column, 2)
+      ! From the last sample, so that those that predict a sample are still the given ones.
+      do i = size(run), 1, -1
+        associate (k => known(i))
+          column(i, j) = (column(i, j) - &
+            dot_product(noise%weight(:k, max(1, k)), column(i - 1:i - k:-1, j)))/noise%left(k)
+        end associate
+      end do
     end do
   end subroutine whiten
 
