@@ -122,7 +122,7 @@ contains
     if (allocated(request%varied) .and. allocated(outcome%readings)) then
       call observer%hear('differentiating')
       if (outcome%readings%solved) call rates_along(steps%equations_t, steps%known%path, &
-        request%varied, outcome%readings%rate, outcome%differentiated)
+        request%varied, 0.0_wp, outcome%readings%rate, outcome%differentiated)
     end if
     outcome%cost = steps%cost
   end subroutine run_locked

@@ -16,6 +16,7 @@ module curve_models
     type(stepped_model_t) :: stepped
   contains
     procedure :: set
+    procedure :: set_wider
   end type curve_models_t
 
 contains
@@ -40,5 +41,23 @@ contains
     end if
     model%with_radius = with_radius
   end subroutine set
+
+  !> Sets the model of a wider family, whose first parameters are those of `like`, another model of
+  !> the same bodies, and takes over what that one has solved.
+  subroutine set_wider(self, family, like, model)
+    class(curve_models_t), intent(inout), target :: self
+    class(problem_family_t), intent(in) :: family
+    class(force_model_t), intent(in) :: like
+    class(force_model_t), pointer, intent(out) :: model
+
+    select type (like)
+    type is (path_model_t)
+      self%path = like
+      call self%path%widen_to(family)
+      model => self%path
+    type is (stepped_model_t)
+      call self%set(family, like%numerics, .false., like%with_radius, model)
+    end select
+  end subroutine set_wider
 
 end module curve_models

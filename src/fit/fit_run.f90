@@ -102,7 +102,7 @@ contains
     if (allocated(outcome%trouble)) return
     residuals%curve = curve
     call residuals%curve%use_model(model)
-    call examine_fit(residuals, fit, numerics, family, wider, problem%law%adhesion > 0, outcome)
+    call examine_fit(residuals, fit, family, wider, outcome)
     if (.not. outcome%fitted%lack%is_noise()) then
       call listener%hear('looking for what is wrong')
       call find_alternative(family, problem, curve, model, asked_most(outcome%held) == &
@@ -291,20 +291,18 @@ contains
   end subroutine run_fit
 
   !> Tests a fit, outcome%fitted, and finds the numbers that follow from it. residuals: of its
-  !> curve, with a model. Others: as of `run_fit`; attracts: whether the bodies do.
-  subroutine examine_fit(residuals, fit, numerics, family, wider, attracts, outcome)
+  !> curve, with a model. Others: as of `run_fit`.
+  subroutine examine_fit(residuals, fit, family, wider, outcome)
     type(curve_residuals_t), intent(inout) :: residuals
     type(fit_t), intent(in) :: fit
-    type(numerics_t), intent(in) :: numerics
     class(problem_family_t), intent(in) :: family, wider
-    logical, intent(in) :: attracts
     type(fit_outcome_t), intent(inout) :: outcome
     type(problem_t) :: problem
     type(failure_t), allocatable :: error
 
     outcome%curve = residuals%curve
     associate (value => outcome%fitted%value, unknown => outcome%curve%unknown)
-      call test_held(outcome%curve, value, numerics, wider, attracts, outcome%held)
+      call test_held(outcome%curve, value, wider, outcome%held)
       call test_baseline(residuals, value, outcome%lacking)
       outcome%theory = [theory_fit_t ::]
       outcome%derived = [derived_t ::]

@@ -6,10 +6,9 @@
 module held_numbers
   use kinds, only: wp
   use fit_request, only: unknown_t, of_model, of_contact_point, of_sensitivity, of_spring, &
-    of_position, of_radius
+    of_position
   use failure, only: failure_t
   use variation, only: problem_family_t, variation_t, vary, to_search
-  use experiment_request, only: numerics_t
   use modelled_curve, only: modelled_curve_t
   use curve_residuals, only: curve_residuals_t
   use force_model, only: force_model_t
@@ -31,14 +30,12 @@ module held_numbers
 contains
 
   !> Tests all numbers that are held. curve, value: the fit. wider: the family of the fit with the
-  !> deck's other positive numbers as further parameters. attracts: whether the bodies do. Numbers
-  !> that the unknowns compensate completely, or that cannot be varied, are left out.
-  subroutine test_held(curve, value, numerics, wider, attracts, held)
+  !> deck's other positive numbers as further parameters. Numbers that the unknowns compensate
+  !> completely, or that cannot be varied, are left out.
+  subroutine test_held(curve, value, wider, held)
     type(modelled_curve_t), intent(in) :: curve
     real(wp), intent(in) :: value(:)
-    type(numerics_t), intent(in) :: numerics
     class(problem_family_t), intent(in) :: wider
-    logical, intent(in) :: attracts
     type(held_t), allocatable, intent(out) :: held(:)
     class(problem_family_t), allocatable :: family
     type(curve_models_t), target :: models
@@ -54,7 +51,7 @@ contains
     n = size(value)
     allocate (family, source=wider)
     call keep_variable(pack(value, curve%unknown%role == of_model), family)
-    call models%set(family, numerics, attracts, curve%data%measured%has(of_radius), model)
+    call models%set_wider(family, curve%model, model)
     residuals%curve = curve
     call add_held(family, curve, residuals%curve%unknown)
     all_values = [value, residuals%curve%unknown(n + 1:)%value]

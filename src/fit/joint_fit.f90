@@ -108,8 +108,7 @@ contains
         end associate
         if (allocated(joint%doubt)) curve%outcome%of_all = joint%doubt
         curve%outcome%resolved = curve%models%path%left_out <= too_much*curve%numerics%accuracy
-        call examine_fit(own, curve%fit, curve%numerics, curve%family, curve%wider, &
-          curve%attracts, curve%outcome)
+        call examine_fit(own, curve%fit, curve%family, curve%wider, curve%outcome)
         if (curve%outcome%fitted%lack%excess > joint%fitted%lack%excess) &
           joint%fitted%lack = curve%outcome%fitted%lack
       end associate

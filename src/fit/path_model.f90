@@ -18,6 +18,7 @@ module path_model
   use device, only: driven_t, drive_bodies
   use experiment_request, only: request_t, numerics_t
   use numerics_choice, only: choice_t, choose
+  use path_end, only: demand_t
   use path_demand, only: demand_of
   use path_stepper, only: path_stepper_t
   use force_model, only: force_model_t, response_t, force_branch_t, way_t, inward, outward
@@ -37,26 +38,42 @@ module path_model
   !> The part of its value by which the level of the contact is varied for a difference.
   real(wp), parameter :: change = 1.0e-3_wp
 
+  !> Of the points of a path, the part of the accuracy that may be missed (`demand_t`): the curve
+  !> between them is then exact to a thousandth of this. And the part of the derivatives of the
+  !> equations that may remain in those of a curve.
+  real(wp), parameter :: missed = 0.1_wp, enough = 1.0e-5_wp
+
+  !> A trial: its path at these values of the unknowns. solved: there is one.
+  type :: trial_t
+    real(wp), allocatable :: value(:)
+    type(path_stepper_t) :: steps
+    type(driven_t) :: driven
+    real(wp) :: stiffness = 0, farthest = 0, largest = 0
+    logical :: solved = .false.
+    !> Derivatives of its curve, once they were asked for.
+    type(rate_t), allocatable :: rate(:, :)
+    !> The edges at its points, if the contact radius is wanted.
+    type(edge_t), allocatable :: edge(:)
+  contains
+    procedure :: serves
+  end type trial_t
+
   type, extends(force_model_t) :: path_model_t
     !> The problems; the unknowns are its parameters.
     class(problem_family_t), allocatable :: family
     type(numerics_t) :: numerics
     !> Trials share their meshes.
     type(mesh_store_t), private :: store
-    !> The trial that was solved last, at these values.
-    real(wp), allocatable, private :: value(:)
-    type(path_stepper_t), private :: steps
-    type(driven_t), private :: driven
-    real(wp), private :: stiffness = 0, farthest = 0, largest = 0
-    logical, private :: solved = .false.
-    !> Derivatives of its curve, once they were asked for.
-    type(rate_t), allocatable, private :: rate(:, :)
-    !> The edges at its points, if the contact radius is wanted.
-    type(edge_t), allocatable, private :: edge(:)
-    !> The part of the load that its meshes leave out (`mending`).
+    !> The trial that was asked for last, at `last`, and another one. The best values of a fit are
+    !> asked for again after trials elsewhere without derivatives, so a trial with derivatives stays
+    !> until there are some of another one.
+    type(trial_t), private :: trial(2)
+    integer, private :: last = 1
+    !> The part of the load that the meshes of the trial solved last leave out (`mending`).
     real(wp) :: left_out = 0
   contains
     procedure :: respond
+    procedure :: widen_to
     procedure, private :: solve_trial
   end type path_model_t
 
@@ -71,54 +88,87 @@ contains
     type(rate_t), allocatable :: rate(:, :)
     integer :: i
 
-    found = allocated(self%value) .and. largest <= self%largest .and. farthest <= self%farthest
-    if (found) found = all(abs(value - self%value) <= 0) .and. abs(stiffness - self%stiffness) <= 0
-    if (.not. found) call self%solve_trial(value, stiffness, farthest, largest)
-    found = self%solved
-    if (.not. found) return
-    allocate (rate(merge(size(value), 0, with_rates), self%steps%known%path%last))
-    if (size(rate) > 0 .and. allocated(self%rate)) then
-      rate = self%rate
-    else if (size(rate) > 0) then
-      call find_rates(self, rate, found)
+    if (.not. self%trial(self%last)%serves(value, stiffness, farthest, largest)) then
+      i = 3 - self%last
+      if (self%trial(i)%serves(value, stiffness, farthest, largest)) then
+        self%last = i
+      else
+        if (allocated(self%trial(self%last)%rate)) self%last = i
+        call self%solve_trial(value, stiffness, farthest, largest, self%trial(self%last))
+      end if
+    end if
+    associate (trial => self%trial(self%last))
+      found = trial%solved
       if (.not. found) return
-      self%rate = rate
-    end if
-    allocate (response%branch(size(self%driven%piece)))
-    do i = 1, size(response%branch)
-      call make_branch(self%steps%problem, self%steps%known%path, self%driven%piece(i), rate, &
-        self%edge, response%branch(i))
-      call response%branch(i)%close(stiffness)
-    end do
-    if (stiffness > 0) then
-      call find_ways(self%steps%problem, self%driven, response)
-    else
-      ! Under dead loads the last piece is that in contact.
-      response%way(inward) = way_t([i - 1], [-huge(1.0_wp)])
-      response%way(outward) = way_t([i - 1], [huge(1.0_wp)])
-    end if
+      if (with_rates .and. .not. allocated(trial%rate)) then
+        call find_rates(self%family, trial, found)
+        if (.not. found) return
+      end if
+      allocate (rate(merge(size(value), 0, with_rates), trial%steps%known%path%last))
+      if (with_rates) rate = trial%rate
+      allocate (response%branch(size(trial%driven%piece)))
+      do i = 1, size(response%branch)
+        call make_branch(trial%steps%problem, trial%steps%known%path, trial%driven%piece(i), rate, &
+          trial%edge, response%branch(i))
+        call response%branch(i)%close(stiffness)
+      end do
+      if (stiffness > 0) then
+        call find_ways(trial%steps%problem, trial%driven, response)
+      else
+        ! Under dead loads the last piece is that in contact.
+        response%way(inward) = way_t([i - 1], [-huge(1.0_wp)])
+        response%way(outward) = way_t([i - 1], [huge(1.0_wp)])
+      end if
+    end associate
   end subroutine respond
 
+  !> Whether a trial is that at some values of the unknowns, and its path long enough.
+  pure logical function serves(self, value, stiffness, farthest, largest)
+    class(trial_t), intent(in) :: self
+    real(wp), intent(in) :: value(:), stiffness, farthest, largest
+
+    serves = allocated(self%value) .and. largest <= self%largest .and. farthest <= self%farthest
+    if (serves) serves = all(abs(value - self%value) <= 0) .and. &
+      abs(stiffness - self%stiffness) <= 0
+  end function serves
+
+  !> Takes another family, whose first parameters are those of the present one and whose others, at
+  !> their own values, pose the same problems. The trials need not be solved again.
+  subroutine widen_to(self, family)
+    class(path_model_t), intent(inout) :: self
+    class(problem_family_t), intent(in) :: family
+    integer :: i
+
+    do i = 1, size(self%trial)
+      associate (trial => self%trial(i))
+        if (.not. allocated(trial%value)) cycle
+        trial%value = [trial%value, family%parameter(size(trial%value) + 1:)%value]
+        if (allocated(trial%rate)) deallocate (trial%rate)
+      end associate
+    end do
+    deallocate (self%family)
+    allocate (self%family, source=family)
+  end subroutine widen_to
+
   !> Traces the path of a trial and drives the bodies along it.
-  subroutine solve_trial(self, value, stiffness, farthest, largest)
+  subroutine solve_trial(self, value, stiffness, farthest, largest, trial)
     class(path_model_t), intent(inout) :: self
     real(wp), intent(in) :: value(:), stiffness, farthest, largest
-    type(path_stepper_t) :: fresh
+    type(trial_t), intent(inout) :: trial
+    type(trial_t) :: fresh
     type(request_t) :: request
+    type(demand_t) :: demand
     type(problem_t) :: problem
     type(choice_t) :: chosen
     type(listener_t) :: silent
     type(failure_t), allocatable :: error
     real(wp), allocatable :: anywhere
 
-    self%value = value
-    self%stiffness = stiffness
-    self%largest = largest
-    self%farthest = farthest
-    self%solved = .false.
-    if (allocated(self%rate)) deallocate (self%rate)
-    if (allocated(self%edge)) deallocate (self%edge)
-    self%steps = fresh
+    trial = fresh
+    trial%value = value
+    trial%stiffness = stiffness
+    trial%largest = largest
+    trial%farthest = farthest
     call self%family%pose(value, problem, error)
     if (allocated(error)) return
     if (.not. problem%law%adhesion > 0) return
@@ -129,55 +179,58 @@ contains
     request%device%z_start = farthest
     request%fixed_loads = [largest]
     chosen = choose(request, problem)
-    call self%steps%set_up(problem, chosen%options)
-    self%steps%options%mixing = .false.
-    self%steps%meshes = new_mesh_family(problem, chosen%high, chosen%low, chosen%digits, &
-      store=self%store)
-    call self%steps%find_path(chosen%high, chosen%low, chosen%ends_at, .true., &
-      self%numerics%accuracy, silent, demand_of(request, problem))
-    self%left_out = self%steps%known%left_out
-    if (.not. self%steps%known%path%held > 1) return
-    if (self%with_radius) call find_edges(self%steps, self%edge)
-    if (.not. stiffness > 0) then
-      call find_pieces(self%steps%solver_t, self%steps%known%path, through_spring(0.0_wp), &
-        self%driven)
-      self%solved = self%driven%whole .and. size(self%driven%piece) > 0
-      return
-    end if
-    call drive_bodies(self%steps%solver_t, self%steps%known%path, &
-      through_spring(stiffness*problem%length/problem%load), chosen%low, anywhere, anywhere, &
-      self%driven)
-    self%solved = self%driven%solved .and. self%driven%caught .and. size(self%driven%leg) > 1
+    demand = demand_of(request, problem)
+    demand%miss = max(demand%miss, missed*self%numerics%accuracy)
+    associate (steps => trial%steps, driven => trial%driven)
+      call steps%set_up(problem, chosen%options)
+      steps%options%mixing = .false.
+      steps%meshes = new_mesh_family(problem, chosen%high, chosen%low, chosen%digits, &
+        store=self%store)
+      call steps%find_path(chosen%high, chosen%low, chosen%ends_at, .true., &
+        self%numerics%accuracy, silent, demand)
+      self%left_out = steps%known%left_out
+      if (.not. steps%known%path%held > 1) return
+      if (self%with_radius) call find_edges(steps, trial%edge)
+      if (.not. stiffness > 0) then
+        call find_pieces(steps%solver_t, steps%known%path, through_spring(0.0_wp), driven)
+        trial%solved = driven%whole .and. size(driven%piece) > 0
+        return
+      end if
+      call drive_bodies(steps%solver_t, steps%known%path, &
+        through_spring(stiffness*problem%length/problem%load), chosen%low, anywhere, anywhere, &
+        driven)
+      trial%solved = driven%solved .and. driven%caught .and. size(driven%leg) > 1
+    end associate
   end subroutine solve_trial
 
-  !> Derivatives of the curve of the trial solved last by its unknowns.
-  subroutine find_rates(self, rate, found)
-    class(path_model_t), intent(inout) :: self
-    type(rate_t), intent(out) :: rate(:, :)
+  !> Finds the derivatives of a trial's curve by its unknowns.
+  subroutine find_rates(family, trial, found)
+    class(problem_family_t), intent(inout) :: family
+    type(trial_t), intent(inout) :: trial
     logical, intent(out) :: found
-    type(variation_t) :: varied(size(rate, 1))
-    type(rate_t), allocatable :: all_rates(:, :)
+    type(variation_t) :: varied(size(trial%value))
+    type(rate_t), allocatable :: rate(:, :)
     type(failure_t), allocatable :: error
-    real(wp) :: level(size(rate, 1))
+    real(wp) :: level(size(trial%value))
     integer :: i, k
 
-    self%family%parameter%value = self%value
-    where (abs(self%value) > 0) self%family%parameter%scale = abs(self%value)
+    family%parameter%value = trial%value
+    where (abs(trial%value) > 0) family%parameter%scale = abs(trial%value)
     found = .true.
     do i = 1, size(varied)
-      call vary(self%family, i, to_search, varied(i), error)
+      call vary(family, i, to_search, varied(i), error)
       found = found .and. .not. allocated(error)
     end do
     if (.not. found) return
-    if (.not. allocated(self%edge)) then
-      call rates_along(self%steps%equations_t, self%steps%known%path, varied, all_rates, found)
+    if (.not. allocated(trial%edge)) then
+      call rates_along(trial%steps%equations_t, trial%steps%known%path, varied, enough, rate, found)
     else
-      call rates_along(self%steps%equations_t, self%steps%known%path, varied, all_rates, found, &
-        self%edge%place)
+      call rates_along(trial%steps%equations_t, trial%steps%known%path, varied, enough, rate, &
+        found, trial%edge%place)
     end if
     if (.not. found) return
-    rate = all_rates
-    if (.not. allocated(self%edge)) return
+    call move_alloc(rate, trial%rate)
+    if (.not. allocated(trial%edge)) return
     do i = 1, size(varied)
       level(i) = 0
       do k = 1, size(varied(i)%weight)
@@ -187,8 +240,8 @@ contains
         end associate
       end do
     end do
-    do k = 1, size(self%edge)
-      self%edge(k)%rate = self%edge(k)%by_level*(level - rate(:, k)%separation)
+    do k = 1, size(trial%edge)
+      trial%edge(k)%rate = trial%edge(k)%by_level*(level - trial%rate(:, k)%separation)
     end do
   end subroutine find_rates
 

@@ -25,12 +25,13 @@ module path_sensitivity
 contains
 
   !> The element rate(i, j) is the derivative by parameter i at point j of the path, at fixed x.
-  !> found = .false.: at some point the derivatives do not exist. radius(j): the radius of a
-  !> separation at point j, over the scale of its mesh; 0: there is none.
-  subroutine rates_along(equations, path, varied, rate, found, radius)
+  !> found = .false.: at some point the derivatives do not exist. enough: as of `differentiate`.
+  !> radius(j): the radius of a separation at point j, over the scale of its mesh; 0: there is none.
+  subroutine rates_along(equations, path, varied, enough, rate, found, radius)
     type(equations_t), intent(inout) :: equations
     type(traced_path_t), intent(in) :: path
     type(variation_t), intent(in) :: varied(:)
+    real(wp), intent(in) :: enough
     type(rate_t), allocatable, intent(out) :: rate(:, :)
     logical, intent(out) :: found
     real(wp), intent(in), optional :: radius(:)
@@ -48,7 +49,7 @@ contains
           end do
           cycle
         end if
-        call differentiate(equations, point, frozen, varied, change, found)
+        call differentiate(equations, point, frozen, varied, change, found, enough)
         if (.not. found) return
         do i = 1, size(varied)
           n = size(change(i)%separation) - 1

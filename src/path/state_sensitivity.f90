@@ -43,34 +43,39 @@ contains
 
   !> The derivatives of an equilibrium of the path by each varied parameter. found = .false.: the
   !> Jacobian is singular, or a varied problem is not defined at the state. The factors are renewed.
-  subroutine differentiate(equations, point, frozen, varied, change, found)
+  !> enough: the part of the derivative of the equations that may remain, for which rough factors
+  !> suffice; 0: that of rounding.
+  subroutine differentiate(equations, point, frozen, varied, change, found, enough)
     type(equations_t), intent(inout) :: equations
     type(path_point_t), intent(in) :: point
     type(frozen_jacobian_t), intent(inout) :: frozen
     type(variation_t), intent(in) :: varied(:)
     type(change_t), intent(out) :: change(:)
     logical, intent(out) :: found
+    real(wp), intent(in) :: enough
     integer :: i
 
     call freeze(equations, path_control(equations%problem, equations%meshes, point%mesh, &
-      point%coordinate), point%state, frozen, exact=.true.)
+      point%coordinate), point%state, frozen, exact=.not. enough > 0)
     found = frozen%factors%valid
     do i = 1, size(varied)
       if (.not. found) return
-      call find_line(equations, point, frozen, varied(i), change(i), found)
+      call find_line(equations, point, frozen, varied(i), enough, change(i), found)
     end do
   end subroutine differentiate
 
   !> The line of states along which the equations remain satisfied.
-  subroutine find_line(equations, point, frozen, varied, change, found)
+  subroutine find_line(equations, point, frozen, varied, enough, change, found)
     type(equations_t), intent(inout) :: equations
     type(path_point_t), intent(in) :: point
     type(frozen_jacobian_t), intent(in) :: frozen
     type(variation_t), intent(in) :: varied
+    real(wp), intent(in) :: enough
     type(change_t), intent(out) :: change
     logical, intent(out) :: found
     type(change_t) :: trial
     real(wp), allocatable :: defect(:)
+    real(wp) :: at_first
     integer :: round
     logical :: finished
 
@@ -80,8 +85,10 @@ contains
       call follow_line(equations, point, varied, trial, defect, found)
       if (.not. found) return
       trial%left = largest(defect, point%state)*varied%parameter%scale/equations%problem%length
+      if (round == 0) at_first = trial%left
       if (round > 0 .and. .not. trial%left < change%left) exit
-      finished = round > 0 .and. .not. trial%left < gain*change%left
+      finished = trial%left <= enough*at_first
+      if (round > 0) finished = finished .or. .not. trial%left < gain*change%left
       change = trial
       if (finished) exit
       call solve(frozen%factors, defect)
