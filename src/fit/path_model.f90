@@ -38,10 +38,10 @@ module path_model
   !> The part of its value by which the level of the contact is varied for a difference.
   real(wp), parameter :: change = 1.0e-3_wp
 
-  !> Of the points of a path, the part of the accuracy that may be missed (`demand_t`): the curve
-  !> between them is then exact to a thousandth of this. And the part of the derivatives of the
-  !> equations that may remain in those of a curve.
-  real(wp), parameter :: missed = 0.1_wp, enough = 1.0e-5_wp
+  !> The accuracy for which the points of a path are at their closest; for a coarser one they are
+  !> farther apart (`demand_t`). And the part of the derivatives of the equations that may remain in
+  !> those of a curve.
+  real(wp), parameter :: closest_for = 1.0e-6_wp, enough = 1.0e-5_wp
 
   !> A trial: its path at these values of the unknowns. solved: there is one.
   type :: trial_t
@@ -180,7 +180,7 @@ contains
     request%fixed_loads = [largest]
     chosen = choose(request, problem)
     demand = demand_of(request, problem)
-    demand%miss = max(demand%miss, missed*self%numerics%accuracy)
+    demand%looser = max(1.0_wp, self%numerics%accuracy/closest_for)
     associate (steps => trial%steps, driven => trial%driven)
       call steps%set_up(problem, chosen%options)
       steps%options%mixing = .false.

@@ -13,7 +13,6 @@ module continuation
   use path_point, only: path_point_t
   use path_tangent, only: tangent_along
   use arc, only: arc_t
-  use path_end, only: miss_of_curve
   implicit none
   private
   public :: continuation_t, add_with_tangent
@@ -32,9 +31,10 @@ module continuation
   real(wp), parameter :: too_far = 0.01_wp, short = 1.0e-3_wp
   !> Relative error of slopes that serve only for predictions.
   real(wp), parameter :: slope_error = 1.0e-7_wp
-  !> Longest step on a path whose points define a smooth curve, for `miss_of_curve`, and the number
-  !> of states for such small errors.
-  real(wp), parameter :: step_of_curve = 0.12_wp
+  !> Largest distance between guess and state in h0 and load, and longest step, on a path whose
+  !> points define a smooth curve, and the number of states for such small errors. Between the
+  !> points, polynomials have errors a thousand times smaller than beyond them.
+  real(wp), parameter :: miss_of_curve = 1.0e-7_wp, step_of_curve = 0.12_wp
   integer, parameter :: states_of_curve = 4
   !> Steps longer than this are shortened, by the given factor, so that they end on the mesh.
   real(wp), parameter :: shortest_passage = 0.05_wp, shortening = 0.6_wp
@@ -60,14 +60,13 @@ module continuation
 contains
 
   !> Selects steps so short that the curve between the points of the path is exact to many digits.
-  !> miss: largest distance between guess and state in h0 and load; the longest step follows from it
-  !> by the order of the extrapolation.
-  pure subroutine follow_closely(self, miss)
+  !> looser: how many times larger its errors may be; steps grow by the order of the extrapolation.
+  pure subroutine follow_closely(self, looser)
     class(continuation_t), intent(inout) :: self
-    real(wp), intent(in) :: miss
+    real(wp), intent(in) :: looser
 
-    self%longest_step = step_of_curve*(miss/miss_of_curve)**(0.5_wp/states_of_curve)
-    self%miss_of_curve = miss
+    self%longest_step = step_of_curve*looser**(0.5_wp/states_of_curve)
+    self%miss_of_curve = miss_of_curve*looser
     self%slope_error = 0
     self%extrapolated_from = states_of_curve
   end subroutine follow_closely

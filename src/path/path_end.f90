@@ -18,19 +18,15 @@ module path_end
   use traced_path, only: traced_path_t
   implicit none
   private
-  public :: demand_t, touches, outer_end, astray, collapsed, miss_of_curve
-
-  !> The miss at which the curve through the points of a path is exact to ten digits: polynomials
-  !> between the points have an error a thousand times smaller than those beyond them.
-  real(wp), parameter :: miss_of_curve = 1.0e-7_wp
+  public :: demand_t, touches, outer_end, astray, collapsed
 
   !> What a path must contain: undeformed bodies from h0 = `farthest` to its start, and at its end Q
   !> = by_h0*h0 - by_load*load <= `until`, for each element. If `closes`, the bodies are also in
   !> contact within all barriers at the end, and Q is below all its earlier values, so that every
-  !> jump ends on the path. miss: the largest distance in h0 and load between a point and its guess
-  !> by extrapolation, which sets how close the points are.
+  !> jump ends on the path. looser: how many times larger errors of the curve through the points may be
+  !> than at their closest (`continuation`).
   type :: demand_t
-    real(wp) :: farthest = 0, miss = miss_of_curve
+    real(wp) :: farthest = 0, looser = 1
     real(wp), allocatable :: by_h0(:), by_load(:), until(:)
     logical, allocatable :: closes(:)
   contains

@@ -72,7 +72,7 @@ contains
       merge(curve_tolerance, usual_tolerance, present(demand)))
     finished = .false.
     steps = 0
-    if (present(demand)) call walker%follow_closely(demand%miss)
+    if (present(demand)) call walker%follow_closely(demand%looser)
     call walker%take(solver, start, approach, lost)
     if (lost) known%ending%cause = path_lost
     mender = new_mender(accuracy, solver%problem%law)
