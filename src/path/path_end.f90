@@ -23,8 +23,8 @@ module path_end
   !> What a path must contain: undeformed bodies from h0 = `farthest` to its start, and at its end Q
   !> = by_h0*h0 - by_load*load <= `until`, for each element. If `closes`, the bodies are also in
   !> contact within all barriers at the end, and Q is below all its earlier values, so that every
-  !> jump ends on the path. looser: how many times larger errors of the curve through the points may be
-  !> than at their closest (`continuation`).
+  !> jump ends on the path. looser: how many times larger errors of the curve through the points may
+  !> be than where the points are closest (`continuation`).
   type :: demand_t
     real(wp) :: farthest = 0, looser = 1
     real(wp), allocatable :: by_h0(:), by_load(:), until(:)
