@@ -291,6 +291,15 @@ def test_a_wrong_spring_constant_is_named(branches, tmp_path, factor):
     assert found == pytest.approx(SPRING, rel=0.1)
 
 
+@pytest.mark.parametrize("factor, asked", [(1.02, "smaller"), (0.98, "larger")])
+def test_a_number_that_the_data_contradict_is_named(branches, tmp_path, factor, asked):
+    """The score test of the numbers that a fit holds finds a spring constant that is 2 % off."""
+    result = fitted(tmp_path, branches.measure(200, 5e-11, seed=1), LENNARD_JONES,
+                    [STRENGTH, STIFFNESS, POINT], measurement={"spring_constant": factor * SPRING})
+    assert any(f"the data ask for a {asked} measurement.spring_constant than the deck has" in text
+               for text in told(result)), told(result)
+
+
 @pytest.mark.slow
 def test_the_retract_is_proposed_where_it_alone_is_described(branches, tmp_path):
     """Hysteresis of a sample: the approach needs a larger force at the same depth."""
