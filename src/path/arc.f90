@@ -50,10 +50,10 @@ contains
 
   !> The equilibrium at the coordinate s. The guess from the arc is corrected to rounding or, if
   !> rounding is not reached, to the tolerance of the options. If that fails, the other kind of
-  !> guess is tried (see `moved`). slope_error: if present, the options' tolerance is enough, and
-  !> the tangent may have this relative error. miss: the largest change of a gap from the guess;
-  !> from the other kind of guess (huge if there is none); and of h0 and load. Changes are relative
-  !> or in the law's lengths.
+  !> guess is tried (see `moved`). slope_error: the permitted relative error of the tangent; if
+  !> present, the options' tolerance is enough for the state. miss: differences between state and
+  !> guess, relative or in the law's lengths: the largest one of a gap; the same for the other kind
+  !> of guess (huge if there is none); the larger one of h0 and load.
   subroutine solve_at(self, solver, s, point, converged, slope_error, miss)
     class(arc_t), intent(in) :: self
     class(solver_t), intent(inout) :: solver
@@ -114,8 +114,7 @@ contains
     end associate
   end function has_moving_parts
 
-  !> The largest difference of a gap between a state and its guess, relative or in the law's
-  !> lengths.
+  !> The largest |H - H_guess|/(1 + |H_guess|) over the nodes, in the law's lengths.
   pure real(wp) function distance(state, guess)
     type(state_t), intent(in) :: state, guess
 
@@ -152,8 +151,8 @@ contains
   end subroutine drop_first
 
   !> The points of the polynomial about s: the ends of the interval that contains s, and on either
-  !> side the nearest point that is far enough away. Beyond an end of the arc: the nearest few
-  !> points.
+  !> side the nearest point that is not too close to this end. Beyond an end of the arc they are the
+  !> `extrapolated_from` points nearest to this end.
   pure subroutine support(self, s, nodes, n)
     class(arc_t), intent(in) :: self
     real(wp), intent(in) :: s
@@ -188,14 +187,15 @@ contains
     call self%guess_from(problem, grid, nodes(:n), s, expected, moved)
   end function guess
 
-  !> The state at s by the polynomial through the points `nodes` of the arc, in the arrays that
-  !> `expected` has. The gaps are interpolated. Outside the edge the heights of the shape at the
-  !> nodes are interpolated too: their exact values are known, and the error of the interpolated
-  !> heights is subtracted from the guess. It is most of the error of the guess near an end of the
-  !> bodies or a kink of their profile. Inside the edge the gap is smooth even where the shape is
-  !> not. A parabola's heights are proportional to the square of the scale and need no such
-  !> correction. moved: gaps outside the edge are those of `moved_outside` or, about the axis, gaps
-  !> near the edge those of `move_with_edge`; .false. if absent.
+  !> The state at s by the polynomial through the points `nodes` of the arc; it is written into the
+  !> allocated arrays of `expected`. The gaps are interpolated. Outside the edge the heights of the
+  !> shape at the nodes are interpolated too: their exact values are known, and the error of the
+  !> interpolated heights is subtracted from the guess. Near an end of the bodies or a kink of their
+  !> profile this error is most of the error of the guess. Inside the edge the gap is smooth even
+  !> where the shape is not. A parabola's heights are proportional to the square of the scale and
+  !> need no such correction. moved (.false. if absent): the gaps outside the edge are those of
+  !> `moved_outside`; on a mesh about the axis, the gaps near the edge are those of
+  !> `move_with_edge`.
   pure subroutine guess_from(self, problem, grid, nodes, s, expected, moved)
     class(arc_t), intent(in) :: self
     type(problem_t), intent(in) :: problem
@@ -264,9 +264,10 @@ contains
     call take_if_sound(h0, scale, expected)
   end function between
 
-  !> Replaces gaps, H0 and scale of an expected state, so far those of the nearest known state, by
-  !> extrapolated values, unless these leave the law's domain. The extrapolated gaps are passed in
-  !> the array of pressures, which are computed anew later.
+  !> Gives an expected state its extrapolated gaps, H0 and scale. So far it has those of the nearest
+  !> known state, and keeps them if an extrapolated gap is below half of the smallest known one, as
+  !> the law may have no pressure there. The extrapolated gaps are passed in the array of the
+  !> pressures, which are computed later.
   pure subroutine take_if_sound(h0, scale, expected)
     real(wp), intent(in) :: h0, scale
     type(state_t), intent(inout) :: expected
@@ -309,8 +310,8 @@ contains
     slope = about%slope(s)
   end function slope
 
-  !> The second derivative of weights(1) h0 + weights(2) load by s, from slopes on either side of s;
-  !> at a point, where the polynomial changes, this is the mean of both sides.
+  !> The second derivative of weights(1) h0 + weights(2) load by s, from slopes on either side of s.
+  !> At a point of the arc the polynomial changes, and the result is the mean over both sides.
   pure real(wp) function curvature(self, weights, s)
     class(arc_t), intent(in) :: self
     real(wp), intent(in) :: weights(2), s

@@ -17,13 +17,13 @@ module continuation
   private
   public :: continuation_t, add_with_tangent
 
-  !> States kept for the extrapolation; the first, the shortest and the longest step (changes of the
-  !> coordinate).
+  !> Number of states kept for the extrapolation. Lengths of the first, the shortest and the longest
+  !> step, as changes of the coordinate.
   integer, parameter :: memory = 4
   real(wp), parameter :: first_step = 0.04_wp, shortest_step = 1.0e-6_wp, longest_step = 0.5_wp
-  !> Largest distance between guess and state that two or three iterations correct: of gaps
-  !> (relative or in the law's lengths), and of h0 and load. Then the limits of the ratio of
-  !> successive steps, and the factor of which this ratio is a power.
+  !> Largest difference between guess and state that two or three iterations correct: of gaps, h0
+  !> and load, relative or in the law's lengths. Largest and smallest ratio of successive steps;
+  !> between these limits the ratio is an integer power of `rung`.
   real(wp), parameter :: wanted_miss = 1.5e-3_wp, growth = 2.5_wp, shrinkage = 0.3_wp, &
     rung = 1.2_wp
   !> If guess and state differ by more than this, the step may have passed folds unnoticed and is
@@ -31,12 +31,13 @@ module continuation
   real(wp), parameter :: too_far = 0.01_wp, short = 1.0e-3_wp
   !> Relative error of slopes that serve only for predictions.
   real(wp), parameter :: slope_error = 1.0e-7_wp
-  !> Largest distance between guess and state in h0 and load, and longest step, on a path whose
-  !> points define a smooth curve, and the number of states for such small errors. Between the
-  !> points, polynomials have errors a thousand times smaller than beyond them.
+  !> For a path whose points define a smooth curve: largest difference of h0 and load between guess
+  !> and state, longest step, and number of states for the extrapolation. The error of a polynomial
+  !> is a thousand times smaller between its points than beyond them.
   real(wp), parameter :: miss_of_curve = 1.0e-7_wp, step_of_curve = 0.12_wp
   integer, parameter :: states_of_curve = 4
-  !> Steps longer than this are shortened, by the given factor, so that they end on the mesh.
+  !> Steps longer than `shortest_passage` are multiplied by `shortening` until they end within the
+  !> range of the mesh.
   real(wp), parameter :: shortest_passage = 0.05_wp, shortening = 0.6_wp
 
   !> The last states on the current mesh, newest last.
@@ -60,7 +61,8 @@ module continuation
 contains
 
   !> Selects steps so short that the curve between the points of the path is exact to many digits.
-  !> looser: how many times larger its errors may be; steps grow by the order of the extrapolation.
+  !> looser: factor by which its errors may be larger. The error of the extrapolation from n states
+  !> is of order 2 n, so the longest step grows as looser**(1/(2 n)).
   pure subroutine follow_closely(self, looser)
     class(continuation_t), intent(inout) :: self
     real(wp), intent(in) :: looser
@@ -158,8 +160,8 @@ contains
   end subroutine advance
 
   !> The ratio of the next step to this one. ratio: the allowed miss over the miss of this step;
-  !> order: that of the error of the extrapolation, two for each state with its tangent. The result
-  !> is a power of `rung`, so that rounding does not change the positions of points.
+  !> order: the order of the error of the extrapolation, two for each state with its tangent. The
+  !> result is a power of `rung`, so that rounding does not change the positions of points.
   pure real(wp) function factor_for(ratio, order) result(factor)
     real(wp), intent(in) :: ratio
     integer, intent(in) :: order
@@ -179,9 +181,10 @@ contains
       step = min(self%step, self%step_past_step(equations%problem, meshes%is_about_axis(mesh)))
       if (.not. equations%problem%law%edge_gap > 0) return
       s = self%point(self%held)%coordinate
-      ! No other mesh follows the last mesh if that is about the axis.
+      ! The last mesh has no end if it is about the axis.
       if (mesh == size(meshes%grid) .and. meshes%is_about_axis(mesh)) return
-      ! Does the coordinate end where the mesh does?
+      ! The mesh ends at a known coordinate if it is the last one, or in an outer contact, or locked
+      ! to the same radius as the next one.
       locked = mesh == size(meshes%grid) .or. meshes%is_in_outer_contact(mesh)
       if (.not. locked) locked = locked_alike(equations, mesh, mesh + 1)
       if (locked) then
@@ -202,8 +205,9 @@ contains
     class(continuation_t), intent(in) :: self
     type(problem_t), intent(in) :: problem
     logical, intent(in) :: about_axis
-    !> Fraction of the step's width that one step of the path may pass; range about the step, in its
-    !> widths.
+    !> Largest change of the gap on the axis in one step of the path, near the step of the pressure;
+    !> distance from that step up to which a gap counts as near. Both are in widths of the step of
+    !> the pressure.
     real(wp), parameter :: at_once = 0.25_wp, reach = 4
 
     longest = huge(longest)

@@ -1,6 +1,7 @@
-!> Single equilibria of the path: at a place, or where Q = weights(1) h0 + weights(2) load has a
-!> given value or an extremum. They are on the path's meshes or, farther out, those of undeformed
-!> bodies. Their contact radii and energies are read.
+!> Solves single equilibria of the path: at a given coordinate, or where Q = weights(1) h0 +
+!> weights(2) load has a given value or an extremum. They are solved on the meshes of the path;
+!> farther out they are states of undeformed bodies. Their contact radii and energies are computed
+!> too.
 module curve_states
   use kinds, only: wp
   use dimensionless_problem, only: problem_t
@@ -19,13 +20,14 @@ module curve_states
   private
   public :: read_points, solve_at, state_where, states_where, find_turns
 
-  !> Parts of an interval of undeformed bodies at whose ends the slope is evaluated.
+  !> Number of parts of an interval of undeformed bodies; the slope is evaluated at the ends of each
+  !> part.
   integer, parameter :: looks = 8
 
 contains
 
-  !> The points of a path, up to the end of its last stable piece, with their readings. At a fold
-  !> the number of modes is that of the more unstable side.
+  !> The points of a path, up to the end of its last stable piece, with contact radii and energies.
+  !> At a fold the number of unstable modes is that of the more unstable side.
   function read_points(solver, path) result(points)
     class(solver_t), intent(in) :: solver
     type(traced_path_t), intent(in) :: path
@@ -44,7 +46,7 @@ contains
     end do
   end function read_points
 
-  !> The equilibrium at the coordinate x after point i, with its readings.
+  !> The equilibrium at the coordinate x after point i, with its contact radius and energy.
   subroutine solve_at(solver, path, i, x, found)
     class(solver_t), intent(inout) :: solver
     type(traced_path_t), intent(in) :: path
@@ -70,7 +72,7 @@ contains
     call finish(solver, path, i, converged, found)
   end subroutine solve_at
 
-  !> Undeformed bodies at the coordinate x after point i, with their readings.
+  !> The state of undeformed bodies at the coordinate x after point i, with its energy.
   pure type(path_point_t) function undeformed_at(problem, i, x) result(point)
     type(problem_t), intent(in) :: problem
     integer, intent(in) :: i
@@ -102,7 +104,7 @@ contains
     if (converged) call read_state(solver, point)
   end subroutine finish
 
-  !> Reads the contact radius and the energy of a point on a mesh.
+  !> Computes the contact radius and the energy of a point on a mesh.
   subroutine read_state(solver, point)
     class(solver_t), intent(in) :: solver
     type(path_point_t), intent(inout) :: point
@@ -175,7 +177,7 @@ contains
       end associate
       do k = 1, size(x) - 1
         if ((beyond(k) < 0) .eqv. (beyond(k + 1) < 0)) cycle
-        ! Far out a load underflows to zero, which is no equilibrium without load.
+        ! Far out the load underflows to zero; such a state does not count as one without load.
         if (path%point(i)%mesh == no_mesh .and. .not. abs(beyond(k)) > 0) cycle
         call state_where(solver, path, i, weights, wanted, x(k), x(k + 1), found)
         solved = solved .and. found%converged

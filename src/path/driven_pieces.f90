@@ -2,11 +2,11 @@
 !> the motion of bodies along them. The drive moves inward or outward; at the end of a piece the
 !> bodies jump to another piece. `piece_search` finds pieces and jumps.
 !>
-!> A drive is the controlled quantity Q = a h0 + b F: the position z = h0 - F/k of the base of a
-!> spring of stiffness k (a = 1, b = -1/k), h0 itself (a = 1, b = 0), or a dead load -F (a = 0, b =
-!> -1). A state is stable at fixed Q if no mode of the bodies is unstable at
-!> fixed h0 and k - dF/dh0 > 0, the Schur complement of bodies and spring. On the path followed
-!> inward Q decreases there.
+!> A drive controls the quantity Q = a h0 + b F. For a spring of stiffness k, Q is the position z =
+!> h0 - F/k of its base (a = 1, b = -1/k). At prescribed h0, Q is h0 (a = 1, b = 0). Under a dead
+!> load, Q is -F (a = 0, b = -1). A state is stable at fixed Q on two conditions: no mode of the
+!> bodies is unstable at fixed h0, and k - dF/dh0, the Schur complement of bodies and spring, is
+!> positive. Along the path inward, Q decreases where the states are stable.
 module driven_pieces
   use kinds, only: wp
   use quadrature, only: gauss_legendre
@@ -67,8 +67,8 @@ module driven_pieces
     procedure :: piece_with
   end type driven_pieces_t
 
-  !> The motion along one stable piece. jumps: it goes to the end of the piece, where the drive
-  !> turns, and a jump follows.
+  !> The motion along one stable piece. jumps: the motion goes to the end of the piece, where Q
+  !> turns, and the bodies jump from there.
   type :: leg_t
     logical :: inward = .true.
     integer :: piece = 0
@@ -76,7 +76,7 @@ module driven_pieces
   end type leg_t
 
   !> Legs in order. arrives: the last leg ends at the requested position. Otherwise it ends at the
-  !> end of its piece, from which no jump leads to a known state or at which the known path ends.
+  !> end of its piece: the known path ends there, or the jump from there leads to no known state.
   type :: walk_t
     type(leg_t), allocatable :: leg(:)
     logical :: arrives = .false.
@@ -105,8 +105,8 @@ contains
   end function position
 
   !> Energy of bodies and spring, or of bodies and dead load. At fixed Q equilibria are stationary
-  !> points of this energy; a jump dissipates the difference. The derivative by Q is minus the
-  !> conjugate of Q.
+  !> points of this energy; a jump dissipates the difference. Its derivative by Q is minus the
+  !> conjugate of Q, which is the load, or h0 for a dead load.
   elemental real(wp) function energy(self, point)
     class(drive_t), intent(in) :: self
     type(path_point_t), intent(in) :: point
@@ -118,8 +118,7 @@ contains
     end if
   end function energy
 
-  !> The integral of the conjugate of Q (the load, or h0 for a dead load) over Q from one place to
-  !> another place farther in.
+  !> The integral of the conjugate of Q over Q, from one state to another state farther in.
   pure real(wp) function work_between(self, path, from, to) result(work)
     class(drive_t), intent(in) :: self
     type(traced_path_t), intent(in) :: path
@@ -225,8 +224,8 @@ contains
     end do
   end function jump_over
 
-  !> The way from a piece inward or outward to a position of the drive, to the piece `until`, or to
-  !> a position on this piece.
+  !> The legs from the piece `from`, inward or outward. They lead to a position of the drive, to the
+  !> piece `until` or, if both are given, to this position on this piece.
   pure type(walk_t) function way_along(pieces, from, inward, position, until) result(walk)
     class(driven_pieces_t), intent(in) :: pieces
     integer, intent(in) :: from

@@ -23,21 +23,26 @@ module further_meshes
     real(wp) :: locked = 0, reach(2) = 0
   end type further_mesh_t
 
-  !> Ratio of the rates of the two coordinates at which a mesh is locked to the faster one.
+  !> The next mesh is locked to the edge of an outer contact if the logarithm of its radius changes
+  !> this many times faster than the coordinate on the axis; in the opposite case it is about the
+  !> axis.
   real(wp), parameter :: faster = 2
-  !> Largest change of the gap on the axis over that of h0 in a contact that grows in a minimum.
+  !> Largest ratio of the change of the axis gap to that of h0 in a contact that grows in a
+  !> secondary minimum.
   real(wp), parameter :: resting = 0.2_wp
-  !> Depth for which a mesh about the axis is made, over the depth where it begins.
+  !> A mesh about the axis is made for |h0| up to this multiple of the |h0| at which it begins.
   real(wp), parameter :: deeper = 1.5_wp
-  !> States of an arc, of which two are from the mesh before, after which a mesh is inserted.
+  !> Least number of states on a mesh before another one is inserted; two of them were transferred
+  !> from the previous mesh.
   integer, parameter :: enough = 4
-  !> Change of the coordinate over the states of an arc below which another mesh would not help.
+  !> Least change of the coordinate over the states of an arc; if it is smaller, another mesh would
+  !> not help.
   real(wp), parameter :: least_progress = 1.0e-4_wp
 
 contains
 
-  !> The mesh on which the path should continue after that of an arc, if it should leave this one.
-  !> most: part of the load that the nodes may miss.
+  !> The mesh on which the path should continue, if it should leave the mesh of the arc. most: part
+  !> of the load that the nodes may miss.
   pure type(further_mesh_t) function further_mesh(equations, arc, most) result(further)
     type(equations_t), intent(in) :: equations
     type(arc_t), intent(in) :: arc
@@ -79,8 +84,8 @@ contains
     end associate
   end function further_mesh
 
-  !> The smallest gap of an outer edge above another gap; 0: there is none, or the bodies are in
-  !> contact.
+  !> The smallest of the law's gaps at outer edges that is larger than a given gap; 0: there is
+  !> none, or the bodies are in contact.
   pure real(wp) function edge_beyond(law, gap) result(edge)
     class(force_law_t), intent(in) :: law
     real(wp), intent(in) :: gap

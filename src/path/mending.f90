@@ -1,7 +1,7 @@
-!> Refinement of meshes under laws and shapes with lengths of their own. A mesh is laid out for
-!> predicted gaps; the computed gaps are known once the path has reached the end of the mesh. If the
-!> nodes miss too much of the pressure of these gaps, the mesh is laid out anew for the computed
-!> gaps, and the path is traced again from its entry into that mesh. Gaps are smoother than
+!> Refinement of meshes for laws and shapes that have additional characteristic lengths. A mesh is
+!> laid out for predicted gaps; the computed gaps are known once the path has reached the end of the
+!> mesh. If the nodes miss too much of the pressure of these gaps, the mesh is laid out anew for the
+!> computed gaps, and the path is traced again from its entry into that mesh. Gaps are smoother than
 !> pressures, so the gaps on a mesh that is too coarse are accurate enough to lay out a finer one.
 module mending
   use kinds, only: wp
@@ -22,9 +22,10 @@ module mending
   private
   public :: mender_t, new_mender, left_on_path, left_in_state, too_much
 
-  !> Tolerated quadrature error, over the accuracy, if meshes cannot be refined (`left_out` is an
-  !> upper bound under oscillating laws). At a fold the error of the load is between a thousandth of
-  !> the square of the tail and a few times this square.
+  !> Tolerated quadrature error, over the accuracy, if meshes cannot be refined (for oscillating
+  !> laws `left_out` is only an upper bound of it). If t is the relative size of the last Legendre
+  !> coefficients of the pressure, the error of the load at a fold is between t^2/1000 and a few
+  !> times t^2.
   real(wp), parameter :: too_much = 30
 
   type :: mender_t
@@ -32,8 +33,8 @@ module mending
     real(wp) :: most = 0
     !> Number of refinements of each mesh.
     integer, allocatable :: rounds(:)
-    !> Part of the load that each mesh missed when a refinement last reduced it, and its number of
-    !> nodes then.
+    !> Part of the load that each mesh missed, and its number of nodes, after the last refinement
+    !> that reduced this part.
     real(wp), allocatable :: left(:)
     integer, allocatable :: nodes(:)
   contains
@@ -48,8 +49,9 @@ module mending
   !> Largest number of refinements of a mesh, and of successive halvings of a panel in one
   !> refinement.
   integer, parameter :: most_rounds = 6, most_halvings = 3
-  !> Growth of the number of nodes at which halving stops until the path has been traced again: the
-  !> estimated errors of a path that is lost may require any number of nodes.
+  !> Panels are halved until the number of nodes has grown by this factor; then the path is traced
+  !> again. Without this limit the estimated errors of a path that is lost might require any number
+  !> of nodes.
   real(wp), parameter :: most_growth = 1.5_wp
   !> A refinement has helped if the quadrature error fell below this fraction of the earlier one.
   !> Otherwise a mesh on which the path is lost is not refined again, and other meshes only until
@@ -59,8 +61,9 @@ module mending
 contains
 
   !> The refinement of meshes for a path with a given accuracy. `left_out` counts oscillations in
-  !> full, while only a part of their error affects the load. Errors due to a step change quickly as
-  !> the step passes from node to node, so that they shift extrema of the load more than the load.
+  !> full, while only a part of their error affects the load. Errors due to a step of the law change
+  !> quickly as the step passes from node to node; therefore they change the position of an extremum
+  !> of the load more than the load itself.
   pure type(mender_t) function new_mender(accuracy, law) result(mender)
     real(wp), intent(in) :: accuracy
     class(force_law_t), intent(in) :: law
@@ -72,8 +75,8 @@ contains
   end function new_mender
 
   !> Refines a mesh whose end the path has reached, or on which the path is lost, if the nodes miss
-  !> too much of the load. leaving: the path passes to the next mesh, which takes over its newest
-  !> state. mended: the path has to be traced again from its entry into the mesh.
+  !> too much of the load. leaving: the path passes to the next mesh; its newest state then counts
+  !> for that mesh only. mended: the path has to be traced again from its entry into the mesh.
   subroutine mend(self, equations, path, mesh, leaving, lost, mended)
     class(mender_t), intent(inout) :: self
     type(equations_t), intent(inout) :: equations
@@ -138,8 +141,9 @@ contains
     end do
   end function left_on_path
 
-  !> The shape of a mesh for the gaps of all its states on the path, and for gaps extrapolated to
-  !> the other radii of the mesh, since the next path may enter the mesh at another radius.
+  !> The shape of a mesh for the gaps of all its states on the path. It is also for gaps that are
+  !> extrapolated to the other radii of the mesh, since the path that is traced next may enter the
+  !> mesh at another radius.
   function shape_for_seen(equations, path, mesh, most) result(shape)
     type(equations_t), intent(in), target :: equations
     type(traced_path_t), intent(in) :: path
@@ -199,8 +203,9 @@ contains
     end do
   end function with_short_panels
 
-  !> The largest part of the load that the nodes of each panel miss over the states of a mesh up to
-  !> the `last` point; grid: the mesh itself or a finer one, at whose nodes gaps are interpolated.
+  !> For each panel, the largest part of the load that its nodes miss, over the states of a mesh
+  !> among the points up to `last`. grid: the mesh itself, or a finer one, to whose nodes the gaps
+  !> are interpolated.
   pure function left_on_mesh(equations, path, mesh, grid, last) result(left)
     type(equations_t), intent(in) :: equations
     type(traced_path_t), intent(in) :: path

@@ -18,11 +18,11 @@ module mesh_passage
 
 contains
 
-  !> Whether the contact radius has crossed the passage to the next mesh, and the previous state is
-  !> near the passage or beyond it. A path stays on its first mesh for two steps, since the last
-  !> step before a passage is on the next mesh. If no step converged, the gap on the axis may have
-  !> turned: between blunt bodies on layers it may rise again while the contact grows. Then a
-  !> growing contact is enough, if the next mesh is locked to its edge.
+  !> Whether the contact radius has exceeded the radius of the passage to the next mesh, and that of
+  !> the previous state is at least near it. A path stays on its first mesh for two steps, since the
+  !> last step before a passage is repeated on the next mesh. If no step converged, the gap on the
+  !> axis may have turned: between blunt bodies on layers it may rise again while the contact grows.
+  !> Then it is sufficient that the contact grows, if the next mesh is locked to its edge.
   pure logical function has_come_to_next(walker, equations) result(come)
     type(continuation_t), intent(in) :: walker
     type(equations_t), intent(in) :: equations
@@ -71,12 +71,13 @@ contains
     if (lost .or. next%held < 2) return
     associate (old => walker%point(walker%held - 1)%tangent, new => next%point(1)%tangent)
       if (.not. old%goes_with(new)) return
-      ! The gap may not reach the step of a law where the path enters the next mesh.
+      ! Where the path enters the next mesh, that mesh may not contain the step of a law. If dF/dh0
+      ! differs there, the path stays on this mesh as long as it resolves the load.
       if (solver%problem%law%step_width > 0 .and. .not. old%is_alike(new) .and. &
         left_in_state(solver%equations_t, walker%mesh, walker%point(walker%held - 1)%state) <= &
         walker%most) return
     end associate
-    ! Steps in time use radii alone.
+    ! Steps in time pass from mesh to mesh by radii alone, so this radius must be the true one.
     if (walker%stuck) solver%meshes%passage(walker%mesh) = next%point(1)%state%scale
     walker%arc_t = next
     walker%step = 0.5_wp*walker%step
@@ -99,7 +100,7 @@ contains
     next%extrapolated_from = arc%extrapolated_from
     do j = arc%held - 1, arc%held
       state = arc%point(j)%state
-      ! The two states are a step of the path apart.
+      ! The two states are a step of the path apart, too far for common factors.
       call solver%frozen%forget()
       call move_to_mesh(solver, arc%mesh, next%mesh, state, done)
       lost = .not. done

@@ -12,15 +12,16 @@ module moved_gaps
   private
   public :: moved_outside, move_with_edge
 
-  !> Part of a distance over which a derivative is taken.
+  !> Step of a difference quotient, as a fraction of the distance from the edge or of its radius.
   real(wp), parameter :: part = 1.0e-5_wp
 
 contains
 
-  !> The gaps outside the edge to which a mesh is locked, at a given scale, by polynomials of the
-  !> coordinate at constant distance from the edge, with the weights of values and slopes of the
-  !> points `nodes`. Rings of an oscillating pressure, and the step of a pressure, keep their
-  !> distance from the edge approximately, while they pass many nodes.
+  !> The gaps at a given scale outside the edge to which a mesh is locked. At constant distance from
+  !> the edge they are polynomials of the coordinate through the points `nodes`; of_value and
+  !> of_slope are the weights of the values and slopes at these points. Rings of an oscillating
+  !> pressure, and the step of a pressure, keep their distance from the edge approximately, while
+  !> they pass many nodes.
   pure function moved_outside(shape, grid, points, nodes, of_value, of_slope, scale) result(gap)
     class(shape_t), intent(in) :: shape
     type(discretisation_t), intent(in) :: grid
@@ -46,10 +47,11 @@ contains
     end do
   end function moved_outside
 
-  !> Replaces gaps near the edge, on a mesh about the axis, by polynomials of the coordinate at
-  !> constant distance from the edge, with the weights of values and slopes of the points `nodes`.
-  !> Inside the edge the gaps move with it; outside, the gaps less the heights of the shape do. Far
-  !> from the edge gaps change at a fixed radius.
+  !> Replaces the gaps near the edge on a mesh about the axis. At constant distance from the edge
+  !> the new gaps are polynomials of the coordinate through the points `nodes`; of_value and
+  !> of_slope are the weights of the values and slopes at these points. Inside the edge the gaps
+  !> move with it; outside, the gaps less the heights of the shape do. Far from the edge gaps change
+  !> at a fixed radius.
   pure subroutine move_with_edge(problem, grid, points, nodes, of_value, of_slope, gap)
     type(problem_t), intent(in) :: problem
     type(discretisation_t), intent(in) :: grid
@@ -104,7 +106,7 @@ contains
 
   end subroutine move_with_edge
 
-  !> The change of a gap at the edge by the coordinate, over the slope of the gap there.
+  !> The derivative of the gap at the edge by the coordinate, over its derivative by the radius.
   pure real(wp) function tangent_at_edge(grid, gap, tangent, radius) result(ratio)
     type(discretisation_t), intent(in) :: grid
     real(wp), intent(in) :: gap(:), tangent(:), radius
@@ -115,8 +117,8 @@ contains
     end associate
   end function tangent_at_edge
 
-  !> Values at some positions, plus the derivative of `change` by the position times `step`: the
-  !> mean of two neighbouring positions is the value between them.
+  !> The interpolated `value` at the positions `at`, plus `step` times the derivative of `change` by
+  !> the position. Both follow from interpolated values at the positions at - step and at + step.
   pure function mean_beside(grid, value, change, at, step) result(mean)
     type(discretisation_t), intent(in) :: grid
     real(wp), intent(in) :: value(:), change(:), at(:), step(:)

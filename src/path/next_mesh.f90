@@ -15,28 +15,30 @@ module next_mesh
 
   !> The largest radius that the path may reach on a mesh, over the largest of its band.
   real(wp), parameter :: beyond_passage = 1.1_wp
-  !> States ahead for which a mesh about the axis is laid out before contact, in steps of the arc.
+  !> Before contact, a mesh about the axis is laid out for states that are extrapolated by these
+  !> multiples of the last step.
   integer, parameter :: ahead(*) = [0, 1, 2, 3, 4, 6, 8]
   !> Largest distance by which the edge may move in contact on a mesh about the axis, over the
   !> smallest feature of the pressure.
   real(wp), parameter :: widths_ahead = 2
-  !> Largest number of digits of a layout for computed gaps: they have kinks where the polynomials
-  !> of neighbouring panels meet, which no panel of another mesh resolves.
+  !> Largest number of digits of a layout for computed gaps: these gaps have kinks where the
+  !> polynomials of neighbouring panels meet, and no panel of another mesh resolves a kink.
   real(wp), parameter :: most_digits_seen = 10
-  !> A band is divided if half of it needs less than this fraction of its nodes, or if it needs more
-  !> than the second value times the nodes of the mesh before; unless the ratio of its radii would
-  !> be less than `narrowest`.
+  !> A band is divided if half of it needs less than the fraction `fewer` of its nodes, or if it
+  !> needs more than `many_more` times the nodes of the previous mesh. It is not divided if the
+  !> ratio of the radii of a half would be below `narrowest`.
   real(wp), parameter :: fewer = 0.8_wp, many_more = 1.5_wp, narrowest = 1.02_wp
 
 contains
 
-  !> Lays out the mesh after that of an arc for the gaps of its newest state. An inserted mesh is
-  !> for the state before, since the old nodes may miss too much of the newest one; about the axis
-  !> it is also for states extrapolated from that state. A band of radii of the edge is halved as
-  !> long as it needs many more nodes than the mesh before, for example around a small contact far
-  !> inside a sharp rim. Under a law that does not oscillate it is also halved if half of it needs
-  !> clearly fewer nodes. (Many narrow bands predict less well the rings that appear as a contact
-  !> grows under an oscillating law.)
+  !> Lays out the mesh that follows the mesh of an arc, for the gaps of the arc's newest state. An
+  !> inserted mesh is laid out for the state before the newest one, since the old nodes may miss too
+  !> much of the newest one. If an inserted mesh is about the axis, it is also for states
+  !> extrapolated from this state. A band of edge radii is halved as long as it needs many more
+  !> nodes than the previous mesh, for example around a small contact far inside a sharp rim. Under
+  !> a law that does not oscillate it is also halved if half of it needs clearly fewer nodes. (Under
+  !> an oscillating law new rings appear as the contact grows, and many narrow bands predict them
+  !> less well.)
   subroutine lay_out_next(equations, arc)
     type(equations_t), intent(inout), target :: equations
     type(arc_t), intent(in) :: arc
@@ -76,8 +78,8 @@ contains
     end associate
   end subroutine lay_out_next
 
-  !> The shape of the mesh after that of an arc, for its state number i and, about the axis, for
-  !> states that follow it.
+  !> The shape of the mesh that follows the mesh of an arc. It is for state number i of the arc and,
+  !> about the axis, for later states too.
   type(mapped_shape_t) function shape_for_next(equations, arc, i) result(shape)
     type(equations_t), intent(in), target :: equations
     type(arc_t), intent(in) :: arc

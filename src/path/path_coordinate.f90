@@ -1,8 +1,8 @@
 !> The coordinate s of the equilibrium path, in which the path has no folds and which increases
-!> inward. On meshes about the axis s is minus the logarithm of the gap on the axis less nine tenths
-!> of the equilibrium separation. At smaller gaps, to which flat faces may be pressed, it continues
-!> with the same slope and curvature, and finally linearly in the gap. On other meshes it is the
-!> logarithm of the radius to which they are locked (`mesh_plan`). And the controls that
+!> inward. On meshes about the axis s = -ln(H_a - 0.9 H_eq), where H_a is the gap on the axis and
+!> H_eq the equilibrium separation. At H_a < H_eq, to which flat faces may be pressed, s continues
+!> with the same slope and curvature and becomes linear in H_a. On other meshes s is the logarithm
+!> of the radius to which they are locked (`mesh_plan`). The module also has the controls that
 !> prescribe s or h0 on a mesh.
 module path_coordinate
   use kinds, only: wp
@@ -76,8 +76,8 @@ contains
     end if
   end function coordinate_of
 
-  !> The coordinate of a state on a mesh about the axis. The state may be nearer than those on this
-  !> mesh.
+  !> The coordinate of a state on a mesh about the axis. The gap on the axis may be smaller than
+  !> those of the path on this mesh.
   pure real(wp) function axis_coordinate(law, state) result(s)
     class(force_law_t), intent(in) :: law
     type(state_t), intent(in) :: state
@@ -121,7 +121,7 @@ contains
     end associate
   end function axis_gap_rate
 
-  !> The x of x + x^2/(2 + 2 x) = u.
+  !> The solution x of x + x^2/(2 + 2 x) = u.
   pure real(wp) function within(u) result(x)
     real(wp), intent(in) :: u
 

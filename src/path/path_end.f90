@@ -1,10 +1,11 @@
 !> Stopping criteria of the continuation: the requested range is reached, the contact radius exceeds
 !> its limit, or the bodies collapse.
 !>
-!> A path for a contact at a given h0 ends there in the innermost stable state, within all barriers.
-!> Soft bodies may already be in contact outside a barrier: they repel each other at gaps beyond the
-!> well of contact, and deform instead of coming nearer. The path ends in such an outer contact if
-!> it is stable at this h0. Only the law and the path decide this, not the meshes of the path.
+!> A path that is requested for the contact at a given h0 ends at this h0 in the innermost stable
+!> state, within all barriers. Soft bodies may already be in contact outside a barrier: they repel
+!> each other at gaps beyond the well of contact, and deform instead of coming nearer. The path ends
+!> in such an outer contact if it is stable at this h0. Only the law and the path decide this, not
+!> the meshes of the path.
 module path_end
   use kinds, only: wp
   use interpolation, only: hermite_t
@@ -20,11 +21,11 @@ module path_end
   private
   public :: demand_t, touches, outer_end, astray, collapsed
 
-  !> What a path must contain: undeformed bodies from h0 = `farthest` to its start, and at its end Q
-  !> = by_h0*h0 - by_load*load <= `until`, for each element. If `closes`, the bodies are also in
-  !> contact within all barriers at the end, and Q is below all its earlier values, so that every
-  !> jump ends on the path. looser: how many times larger errors of the curve through the points may
-  !> be than where the points are closest (`continuation`).
+  !> What a path must contain. It begins with undeformed bodies at h0 = `farthest`. At its end Q =
+  !> by_h0*h0 - by_load*load is at most `until`, for each element of the arrays. If `closes`, the
+  !> bodies are also in contact within all barriers at the end, and Q is below all its earlier
+  !> values, so that every jump ends on the path. looser: factor by which the errors of the curve
+  !> through the points may be larger than with the closest points (`continuation`).
   type :: demand_t
     real(wp) :: farthest = 0, looser = 1
     real(wp), allocatable :: by_h0(:), by_load(:), until(:)
@@ -33,11 +34,11 @@ module path_end
     procedure :: is_met
   end type demand_t
 
-  !> Largest change of the gap on the axis over that of h0 in an outer contact: nine tenths of the
-  !> approach deform the bodies. (Where meshes are locked to the edge of an outer contact is a
-  !> question of cost: `further_meshes`.)
+  !> Largest ratio of the change of the axis gap to that of h0 in an outer contact: at least nine
+  !> tenths of the approach go into the deformation of the bodies. (Whether meshes are locked to the
+  !> edge of an outer contact is another question, which the cost decides: `further_meshes`.)
   real(wp), parameter :: resting = 0.1_wp
-  !> Parts of an interval of the path at whose ends Q is evaluated.
+  !> Number of parts of an interval of the path; Q is evaluated at the ends of each part.
   integer, parameter :: looks = 4
   !> Contact radius, over the largest expected, that no path reaches.
   real(wp), parameter :: too_large = 5
@@ -84,8 +85,7 @@ contains
 
   end function is_met
 
-  !> The interval of the path in which it comes to h0_end in a stable outer contact; 0: there is
-  !> none.
+  !> The interval in which the path reaches h0_end in a stable outer contact; 0: there is none.
   integer function outer_end(solver, path, h0_end) result(i)
     class(solver_t), intent(inout) :: solver
     type(traced_path_t), intent(in) :: path
@@ -154,8 +154,8 @@ contains
     end associate
   end function astray
 
-  !> Whether the newest state of a path belongs to a collapse: the path was lost on an unstable
-  !> branch within the attraction.
+  !> Whether the newest state of a path belongs to a collapse: its gap on the axis is below the
+  !> law's limit, or the path was lost on an unstable branch within the attraction.
   pure logical function collapsed(problem, path, lost)
     type(problem_t), intent(in) :: problem
     type(traced_path_t), intent(in) :: path

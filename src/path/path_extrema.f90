@@ -15,8 +15,8 @@ module path_extrema
   private
   public :: find_extrema, may_turn
 
-  !> Number of places of an interval at which the slope is evaluated; the sign of the least slope is
-  !> doubtful within this multiple of its error.
+  !> Number of parts of an interval, at whose ends the slope is evaluated. The sign of the least
+  !> slope is in doubt if the slope is below `doubtful` times its error.
   integer, parameter :: places = 16
   real(wp), parameter :: doubtful = 2
   !> Steps of the search for the least slope; fraction of an interval that counts as its end.
@@ -70,8 +70,9 @@ contains
 
   contains
 
-    !> Two extrema are doubtful also if only the cubic between the two states has them, which is not
-    !> smoothed by earlier states.
+    !> Looks for extrema of the arc's polynomial and, if it has none, of the cubic through the two
+    !> states alone, which earlier states do not smooth. Two extrema of this cubic alone are in
+    !> doubt.
     subroutine look_at(near)
       type(arc_t), intent(in) :: near
       real(wp) :: value(2), slope(2)
@@ -102,9 +103,9 @@ contains
   end function may_turn
 
   !> Whether extrema lie between two neighbouring states at the coordinates x. The slopes `ends` at
-  !> the states are exact. turns: one extremum; doubt: perhaps two more extrema, to be decided by a
-  !> state at s, since the slope is least between the states. The argument `error` is the error of
-  !> the curve's slope, huge if unknown.
+  !> the states are exact. turns: there is one extremum. doubt: there may be two more, since the
+  !> slope has a minimum at s between the states; the state at s decides. The argument `error` is
+  !> the error of the curve's slope, huge if unknown.
   pure subroutine look(curve, x, ends, error, turns, doubt, s)
     type(hermite_t), intent(in) :: curve
     real(wp), intent(in) :: x(2), ends(2), error

@@ -72,7 +72,7 @@ contains
   end subroutine add_extrema
 
   !> Inserts an extremum of h0 (a fold) or of the load among the last points, by its coordinate.
-  !> maximum: of h0 or load along the path inward.
+  !> maximum: whether h0 or the load has a maximum there, along the path inward.
   subroutine put(path, extremum, fold, maximum)
     type(traced_path_t), intent(inout) :: path
     type(path_point_t), intent(in) :: extremum

@@ -24,7 +24,7 @@ module path_point
     procedure, private :: become => become_tangent
   end type tangent_t
 
-  !> One equilibrium, a point of the path or between two of its points.
+  !> One equilibrium: a point of the path, or a state between two of its points.
   type :: path_point_t
     !> The state, whose arrays are not allocated for undeformed bodies; its derivatives by the
     !> path's coordinate; the mesh, and the coordinate on this mesh (`path_coordinate`).
@@ -35,17 +35,16 @@ module path_point
     !> The number of the point on the path, or of the point before it; 0: it is not known.
     integer :: interval = 0
     !> The number of unstable modes at fixed h0 between this point and the next one, and whether the
-    !> path continues to that one. (Where the path passes to another mesh, two points exist on both,
-    !> and it does not continue from the first of these.)
+    !> path continues to that one. (Where the path passes to another mesh, its last two points exist
+    !> on both meshes. The path does not continue between the two on the old mesh.)
     integer :: modes = 0
     logical :: leads_on = .false.
     !> Whether a point of the path is an extremum of h0, and whether one of the load.
     logical :: fold = .false., load_extremum = .false.
     !> Whether the state was solved.
     logical :: converged = .true.
-    !> What is reported of states that are read (`curve_states`): contact radius, lateral units;
-    !> energy in the units of `dimensionless_problem`, and its error due to rounding and the
-    !> residual.
+    !> Quantities that `curve_states` computes: the contact radius in lateral units; the energy in
+    !> the units of `dimensionless_problem`, and its error due to rounding and the residual.
     real(wp) :: radius = 0, energy = 0, uncertainty = 0
   contains
     procedure :: become
@@ -82,7 +81,7 @@ contains
     goes_with = self%h0*other%h0 > 0 .and. self%load*other%load > 0
   end function goes_with
 
-  !> Whether the derivative of the load by h0 is nearly the same along two tangents, which may be by
+  !> Whether dF/dh0 is nearly the same along two tangents. The tangents may be derivatives by
   !> different coordinates.
   pure logical function is_alike(self, other)
     class(tangent_t), intent(in) :: self
@@ -106,7 +105,8 @@ contains
     self%coordinate = other%coordinate
   end subroutine become
 
-  !> The ends of the part of interval i, from ends(1) to ends(2), that is between two points.
+  !> The ends of the part of interval i that is between two points; ends: those of the whole
+  !> interval.
   pure function part_of(ends, i, from, to) result(part)
     real(wp), intent(in) :: ends(2)
     integer, intent(in) :: i

@@ -15,25 +15,27 @@ module path_search
   private
   public :: find_place, place_on
 
-  !> Largest number of states solved in one search. A change of place below which rounding may keep
-  !> the residual from falling. The largest change of place, over the interval, for which a state is
-  !> moved along its tangent without another solve; the error is the square of the change.
+  !> Largest number of states solved in one search. Change of the coordinate below which rounding
+  !> may prevent the residual from decreasing. Largest change of the coordinate, over the length of
+  !> the interval, for which a state is moved along its tangent without another solve; the error is
+  !> the square of this change.
   integer, parameter :: most_rounds = 60
   real(wp), parameter :: rounding_rules = 1.0e-6_wp, along_tangent = 1.0e-6_wp
-  !> Difference from the wanted value of Q that rounding allows, relative or in the law's lengths;
-  !> correction of the coordinate that rounding of the load causes; and largest correction that may
-  !> remain at the end.
+  !> Difference between Q and its wanted value that may be due to rounding, relative or in the law's
+  !> lengths. Change of the coordinate that the rounding of the load may cause. Largest correction
+  !> of the coordinate that may remain at the end of the search.
   real(wp), parameter :: near_enough = 2.0e-13_wp, found_at = 1.0e-12_wp, left_over = 1.0e-5_wp
 
 contains
 
-  !> The equilibrium between two places at which Q, monotonic there, has the value `wanted` or, if
-  !> `wanted` is absent, the one extremum of Q there. For a value the iteration is Newton's, since
-  !> the slope of Q is exact at a state. For an extremum each state joins the arc, whose polynomial
-  !> gives the next place. A small last step is along the tangent, without another solve. If steps
-  !> do not reduce the miss, for example under a force that changes by orders of magnitude, the
-  !> bracket is halved. A value just outside the bracket, due to rounding, is found at the nearer
-  !> end. done = .false.: there is no such state, or a solve failed.
+  !> The equilibrium at which Q has the value `wanted`, between the coordinates `ends`, where Q is
+  !> monotonic. If `wanted` is absent, the equilibrium at the only extremum of Q between them. For a
+  !> value the iteration is Newton's, since the slope of Q is exact at a state. For an extremum each
+  !> state joins the arc, whose polynomial gives the next place. A small last step is along the
+  !> tangent, without another solve. If a step does not reduce the residual, for example under a
+  !> force that changes by orders of magnitude, the bracket is halved. If rounding puts the value
+  !> just outside the bracket, the state at the nearer end is the result. done = .false.: there is
+  !> no such state, or a solve failed.
   subroutine find_place(solver, arc, ends, weights, found, done, wanted)
     class(solver_t), intent(inout) :: solver
     type(arc_t), intent(in) :: arc
@@ -141,7 +143,8 @@ contains
 
   end subroutine find_place
 
-  !> Moves an equilibrium by a small change of its coordinate. slope: that of the law at its gaps.
+  !> Moves an equilibrium by a small change of its coordinate. slope: the derivative of the law at
+  !> the gaps of the equilibrium.
   subroutine move(found, change, slope)
     type(path_point_t), intent(inout) :: found
     real(wp), intent(in) :: change
@@ -158,8 +161,8 @@ contains
     end associate
   end subroutine move
 
-  !> The place between two places at which a curve has the value `wanted` or, if `wanted` is absent,
-  !> an extremum; if there is none, the end with the smaller miss.
+  !> The coordinate between `ends` at which a curve has the value `wanted` or, if `wanted` is
+  !> absent, an extremum. If there is none, the result is the end with the smaller residual.
   pure real(wp) function place_on(curve, ends, wanted) result(s)
     type(hermite_t), intent(in) :: curve
     real(wp), intent(in) :: ends(2)
@@ -187,7 +190,7 @@ contains
 
   end function place_on
 
-  !> Adds a point to an arc; a full arc loses the point farthest from it.
+  !> Adds a point to an arc; if the arc is full, its end farther from the new point is removed.
   subroutine join(near, point)
     type(arc_t), intent(inout) :: near
     type(path_point_t), intent(in) :: point

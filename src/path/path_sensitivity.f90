@@ -25,8 +25,9 @@ module path_sensitivity
 contains
 
   !> The element rate(i, j) is the derivative by parameter i at point j of the path, at fixed x.
-  !> found = .false.: at some point the derivatives do not exist. enough: as of `differentiate`.
-  !> radius(j): the radius of a separation at point j, over the scale of its mesh; 0: there is none.
+  !> found = .false.: at some point the derivatives do not exist. enough: see `differentiate`.
+  !> radius(j): the radius at which a separation is differentiated at point j, over the scale of its
+  !> mesh; 0: there is none.
   subroutine rates_along(equations, path, varied, enough, rate, found, radius)
     type(equations_t), intent(inout) :: equations
     type(traced_path_t), intent(in) :: path
@@ -81,9 +82,10 @@ contains
     rate%uncertainty = abs(rate%load - sum(varied%coarser*load))
   end function rate_undeformed
 
-  !> The derivatives at a fixed value of weights(1) h0 + weights(2) load, SI units, instead of a
-  !> fixed x: at fixed h0 with weights 1, 0; at a fixed position of a drive of stiffness k with 1,
-  !> -1/k; under a fixed load with 0, 1. They are infinite where this value turns along the path.
+  !> The derivatives at a fixed value of Q = weights(1) h0 + weights(2) load, in SI units, instead
+  !> of a fixed x. The weights are 1, 0 at fixed h0; 1, -1/k at a fixed position of a drive of
+  !> stiffness k; 0, 1 under a fixed load. The derivatives are infinite where Q turns along the
+  !> path.
   pure type(rate_t) function held(problem, node, rate, weights)
     type(problem_t), intent(in) :: problem
     type(path_point_t), intent(in) :: node

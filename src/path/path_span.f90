@@ -1,6 +1,6 @@
-!> The equilibria between two neighbouring points of the path as one polynomial of the path's
-!> coordinate, computed once for many of these equilibria: gaps, H0 and scale, fitted to values and
-!> tangents of up to four points.
+!> The equilibria between two neighbouring points of the path, approximated by one polynomial of the
+!> path's coordinate. It gives gaps, H0 and scale, and passes through up to four points with their
+!> tangents. It is made once for many equilibria.
 module path_span
   use kinds, only: wp
   use interpolation, only: hermite_t, most_hermite_nodes
@@ -100,8 +100,8 @@ contains
     end associate
   end subroutine solve_at_h0
 
-  !> Solves at prescribed h0 if the contact is wide and far from a fold, where the last digit of the
-  !> coordinate changes h0 by more than the tolerance.
+  !> Solves at prescribed h0. This is needed for wide contacts far from a fold, where the last digit
+  !> of the coordinate changes h0 by more than the tolerance.
   subroutine finish_at_h0(solver, mesh, h0, s, state)
     class(solver_t), intent(inout) :: solver
     integer, intent(in) :: mesh

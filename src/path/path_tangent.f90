@@ -1,6 +1,6 @@
 !> The tangent of the equilibrium path: derivatives of a state by the value of its control, to a
-!> given relative error. The factors that corrected the state are used again; iterative refinement
-!> corrects their solution to that of the tangent's equations.
+!> given relative error. The equations of the tangent are solved with the factors that corrected the
+!> state. These belong to a Jacobian nearby, so the solution is improved by iterative refinement.
 module path_tangent
   use kinds, only: wp, pi
   use beyond_mesh, only: load_slope_beyond
@@ -18,9 +18,9 @@ module path_tangent
   private
   public :: tangent_along
 
-  !> The last correction of a tangent over the permitted error: the next one would be smaller by a
-  !> larger factor. Largest ratio of successive corrections, and largest number of corrections, for
-  !> which factors are kept.
+  !> Refinement ends with a correction below this multiple of the permitted error, since the next
+  !> correction would be smaller by a larger factor. Factors are kept up to a ratio `shrinking` of
+  !> successive corrections, and up to `most_corrections` corrections.
   real(wp), parameter :: last_over_error = 100, shrinking = 0.3_wp
   integer, parameter :: most_corrections = 12
 
@@ -144,7 +144,7 @@ contains
         state%scale**2*dot_product(grid%weight, law_slope%times(tangent%gap)))
       if (.not. grid%is_bounded()) return
       ! The load beyond a bounded mesh depends on the position of the mesh's end and on the gap
-      ! there; this gap changes with the gap at the last node and with the position of the end.
+      ! there. This gap changes with the gap at the last node and with that position.
       reach = load_reach(grid, state)
       last = state%scale*grid%x(n)
       of_end = load_slope_beyond(equations%problem, gap_at_end(shape, grid, state), reach)

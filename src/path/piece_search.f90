@@ -12,8 +12,8 @@ module piece_search
   private
   public :: find_pieces, find_jumps, state_driven
 
-  !> Least relative decrease of Q over a piece. If a turn is a state of the path on two meshes,
-  !> rounding makes spurious pieces over which Q hardly decreases.
+  !> Least relative decrease of Q over a piece. If Q turns at a state that the path has on two
+  !> meshes, rounding makes spurious pieces, over which Q hardly decreases.
   real(wp), parameter :: least_fall = 1.0e-9_wp
 
 contains

@@ -13,13 +13,13 @@ module potential_energy
   private
   public :: energy_of, energy_of_surface
 
-  !> Power of r of a pressure that hardly acts beyond a mesh.
+  !> A pressure that falls at least as fast as this power of r hardly acts beyond a mesh.
   real(wp), parameter :: falls_far = 3
 
 contains
 
-  !> 2 pi Int [e(H) + P (H - H0 - f)/2] rho drho in units of load times length: e is the
-  !> `energy_density` of the surface force, and H - H0 - f is the deformation of the bodies.
+  !> 2 pi Int [e(H) + P (H - H0 - f)/2] rho drho, in units of load times length. Here e is the
+  !> `energy_density` of the surface force, and H - H0 - f the deformation of the bodies.
   !> uncertainty: error of the energy due to rounding and the residual of the equations.
   subroutine energy_of(equations, mesh, state, energy, uncertainty)
     type(equations_t), intent(in) :: equations
@@ -40,9 +40,9 @@ contains
     end associate
   end subroutine energy_of
 
-  !> The part of the surface force, 2 pi Int e(H) rho drho. Beyond a bounded mesh bodies count as
-  !> undeformed and have the same energy at both ends of a jump, so that nothing is added: pressures
-  !> there, which deform nothing, would shift both branches by nearly the same h0.
+  !> The part of the surface force, 2 pi Int e(H) rho drho. Beyond a bounded mesh nothing is added.
+  !> There the bodies count as undeformed and have the same energy at both ends of a jump; pressures
+  !> there would shift both branches by nearly the same h0.
   real(wp) function energy_of_surface(equations, mesh, state) result(energy)
     type(equations_t), intent(in) :: equations
     integer, intent(in) :: mesh
@@ -52,10 +52,10 @@ contains
     call find_energy_of_surface(equations, mesh, state, energy, whole)
   end function energy_of_surface
 
-  !> The energy of the surface force, and the sum of the magnitudes of its terms. If the energy
-  !> falls slowly, that of undeformed bodies is subtracted at each node and added as an exact
-  !> integral. The H0 of these bodies is chosen such that their energy per area is smooth on the
-  !> mesh: the height at the contact edge, or a gap beyond the law's features.
+  !> The energy of the surface force, and the sum of the magnitudes of its terms. If the energy per
+  !> area falls slowly with the radius, that of undeformed bodies is subtracted at each node and
+  !> added as an exact integral. The H0 of these bodies is chosen such that their energy per area is
+  !> smooth on the mesh: the height at the contact edge, or a gap beyond the law's features.
   subroutine find_energy_of_surface(equations, mesh, state, energy, whole)
     type(equations_t), intent(in) :: equations
     integer, intent(in) :: mesh
@@ -73,7 +73,7 @@ contains
       terms = 2*pi*c**2*grid%weight(:n)*energy_density(problem, state%gap, c*grid%x(:n), reference)
       energy = sum(terms)
       whole = sum(abs(terms))
-      ! At 1 it is zero.
+      ! Slowly falling energies are relative to that of undeformed bodies at H0 = 1.
       if (reference > 1) energy = energy + energy_undeformed(problem, reference)
     end associate
   end subroutine find_energy_of_surface

@@ -27,8 +27,8 @@ module reported_place
 
   !> A place, in the units of `dimensionless_problem`.
   type :: place_t
-    !> The point of the traced path at the place, or from which the jump starts that lands here; 0:
-    !> there is none.
+    !> The number of the point of the traced path at the place or, if `landing`, of the point whose
+    !> jump lands at the place; 0: there is none.
     integer :: point = 0
     logical :: landing = .false.
     !> The equilibrium and its mesh; mesh 0: undeformed bodies.
@@ -39,14 +39,14 @@ module reported_place
     !> led here.
     real(wp) :: drive(2) = [1.0_wp, 0.0_wp], turn_of(2) = 0
     integer :: after = 0
-    !> Values at the place, and what the iteration and rounding leave of them as an error; both are
-    !> set by `located_places`, except h0 and load; located: they are set.
+    !> Values at the place, and their errors due to the iteration and rounding. `located_places`
+    !> sets both, except the values of h0 and load, which exist before; located: they are set.
     logical :: located = .false.
     real(wp), dimension(read_of_states) :: at = 0, left = 0
-    !> Magnitudes to which errors are relative where quantities are smaller.
+    !> Errors are relative to this value if the magnitude of the quantity is smaller.
     real(wp) :: scale(quantities) = 0
-    !> in_time: of a drive in time. Its accuracy is that of loads, energies and suctions, since
-    !> positions are given functions of time.
+    !> Whether the place belongs to a drive in time. Only its loads, energies and suctions count for
+    !> the accuracy, since positions are given functions of time.
     logical :: in_time = .false.
     !> Whether a profile is read at the place.
     logical :: with_profile = .false.
@@ -130,7 +130,7 @@ contains
     has_state = allocated(self%state%gap)
   end function has_state
 
-  !> Whether something turns here.
+  !> Whether Q or h0 turns at the place.
   pure logical function turns(self)
     class(place_t), intent(in) :: self
 

@@ -1,6 +1,6 @@
 !> Derivatives of an equilibrium by a parameter of the problem, in SI units, at a fixed place on the
-!> path: at a fixed separation on the axis before contact, at a fixed contact radius in contact,
-!> where the separation at the edge is kept too.
+!> path. Before contact the separation on the axis is fixed. In contact the contact radius is fixed,
+!> and so is the separation at the edge.
 !>
 !> The equations of the varied problems are evaluated at states that change linearly with the
 !> parameter; positions and separations are in SI units. Along the correct line the derivative of
@@ -43,8 +43,8 @@ contains
 
   !> The derivatives of an equilibrium of the path by each varied parameter. found = .false.: the
   !> Jacobian is singular, or a varied problem is not defined at the state. The factors are renewed.
-  !> enough: the part of the derivative of the equations that may remain, for which rough factors
-  !> suffice; 0: that of rounding.
+  !> enough: the fraction of the derivative of the equations that may remain; factors in single
+  !> precision suffice for it. If it is 0, only rounding remains.
   subroutine differentiate(equations, point, frozen, varied, change, found, enough)
     type(equations_t), intent(inout) :: equations
     type(path_point_t), intent(in) :: point

@@ -1,7 +1,7 @@
 !> The equilibrium path: its points in order from large separations inward, among them every fold in
 !> h0 and every extremum of the load, and the number of unstable modes between one point and the
-!> next. Each point is on one mesh; where the path passes to the next mesh, two points are on both.
-!> Before the first traced point the points are those of undeformed bodies.
+!> next. Each point is on one mesh; where the path passes to the next mesh, two states are points on
+!> both meshes. Before the first traced point the points are those of undeformed bodies.
 module traced_path
   use kinds, only: wp
   use dimensionless_problem, only: problem_t

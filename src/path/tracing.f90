@@ -24,24 +24,24 @@ module tracing
 
   !> Number of points beyond which a path is given up.
   integer, parameter :: longest = 3000
-  !> If the nodes miss this part of the load, a mesh is refined before the path has reached its end,
-  !> since later states would be useless; and number of steps between these checks.
+  !> If the nodes miss this part of the load, a mesh is refined before the path has reached the end
+  !> of the mesh, since later states would be useless. Number of steps between these checks.
   real(wp), parameter :: most_adrift = 0.1_wp
   integer, parameter :: steps_a_check = 8
   !> Number of steps between messages to the listener: a message takes a tenth of the time of a
   !> step.
   integer, parameter :: steps_a_message = 8
-  !> Largest residual of points that define a smooth curve, in the law's lengths; that of other
-  !> points is the usual one, even if the deck allows larger ones for the experiment's states.
-  !> Extrapolation multiplies the residual a hundred times; if this exceeded the permitted miss, no
-  !> step would be short enough.
+  !> Largest residual of points that define a smooth curve, in the law's lengths; for other points
+  !> it is `usual_tolerance`, even if the deck allows larger residuals for the experiment's states.
+  !> Extrapolation amplifies the residual a hundred times. If the result exceeded the permitted
+  !> difference between guess and state, no step would be short enough.
   real(wp), parameter :: curve_tolerance = 1.0e-10_wp
 
 contains
 
   !> Traces the path from a state at large separation, on the mesh for the approach, until it is
-  !> stable at h0_low; into_contact: until the bodies are also in contact, which may be an outer
-  !> contact at h0_end, or at h0_low if h0_end is absent. Meshes that miss too much of the load for
+  !> stable at h0_low. into_contact: the bodies must also be in contact at the end; an outer contact
+  !> at h0_end (at h0_low if h0_end is absent) is enough. Meshes that miss too much of the load for
   !> the accuracy are refined. demand: if present, the path goes as far as the demand says, and its
   !> points are close enough for a smooth curve.
   subroutine trace(solver, start, h0_low, into_contact, accuracy, listener, known, demand, h0_end)
@@ -153,7 +153,7 @@ contains
     call walker%forget()
     call solver%frozen%forget()
     if (path%held > 0) then
-      ! The path ended between its last two points; now it may pass to the refined mesh later.
+      ! The path passed to the refined mesh between its last two points; now it may pass later.
       path%point(path%held - 1)%leads_on = .true.
       call stand_at_end(path, walker)
       call pass_on(path, walker, solver, lost)
@@ -161,7 +161,7 @@ contains
     end if
     associate (shape => solver%problem%shape)
       state = undeformed_state(shape, solver%meshes%grid(approach), start%h0, start%scale)
-      ! With the h0 of the start, at which an experiment may begin.
+      ! The state keeps the h0 of the start, at which an experiment may begin.
       call solver%correct(h0_control(shape, solver%meshes, approach, start%h0), state, done)
     end associate
     lost = .not. done
