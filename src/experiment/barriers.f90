@@ -7,12 +7,13 @@ module barriers
   private
   public :: pass_barrier, ratio
 
-  !> Slope of the bodies at the edge of a contact above which a drive stops before a barrier: the
-  !> slope is no longer small, and paths through such wide contacts take minutes.
+  !> A drive stops before a barrier if the slope of the bodies at the edge of the contact behind it
+  !> would exceed this value: the slope is then no longer small, and paths through such wide
+  !> contacts take minutes.
   real(wp), parameter :: too_steep = 0.1_wp
-  !> Number of gaps at which the pressure of a barrier is evaluated, and their ratio. Number of
-  !> contact radii (lateral units) and gaps of undeformed bodies at which loads are evaluated, their
-  !> ratio, and the smallest radius.
+  !> Number of gaps at which the pressure of a barrier is evaluated, and the ratio of successive
+  !> gaps. Numbers of contact radii (lateral units) and of gaps between undeformed bodies at which
+  !> loads are evaluated, the ratio of successive values, and the smallest radius.
   integer, parameter :: gaps = 600, radii = 400, distances = 200
   real(wp), parameter :: gap_ratio = 1.02_wp, ratio = 1.1_wp, smallest_radius = 1/ratio**60
 
@@ -20,7 +21,7 @@ contains
 
   !> Estimates of the h0 and the load at which the highest barrier outside contact is overcome: by
   !> undeformed bodies, or by a Hertz contact whose pressure on the axis is that of the barrier.
-  !> passed: the contact behind it is within the model.
+  !> passed: the contact behind the barrier is within the model.
   pure subroutine pass_barrier(problem, h0, load, passed)
     type(problem_t), intent(in) :: problem
     real(wp), intent(out) :: h0, load

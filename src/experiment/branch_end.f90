@@ -2,8 +2,8 @@
 !>
 !> A branch ends at a fold of h0. `follow` solves states along the curve of equilibria, in the
 !> coordinate Q of `branch_tangent`, each connected with the one before. The branch ends where
-!> dh0/dQ passes zero. So an end is found or excluded for any step of the experiment, and a state
-!> that does not converge is no end.
+!> dh0/dQ passes zero. Therefore an end is found, or excluded, for any length of the experiment's
+!> steps. A state that does not converge is not taken for an end.
 module branch_end
   use kinds, only: wp
   use interpolation, only: hermite_t, hermite_through, hermite_weights
@@ -37,22 +37,25 @@ module branch_end
     real(wp) :: q = 0
   end type point_t
 
-  !> Largest distance of the state at h0 from its guess between two states, in the law's lengths.
+  !> Largest difference between the state at h0 and its guess, which is interpolated between two
+  !> states; in the law's lengths.
   real(wp), parameter :: beside = 0.05_wp
   !> Largest number of states: where the edge passes node after node, a step needs a hundred.
   integer, parameter :: most_states = 500
-  !> The first step over the distance to h0, its change after a state that is not connected with the
-  !> one before, and its smallest length.
+  !> The first step over the distance to h0. The factor by which a step is shortened if its state is
+  !> not connected with the previous one. The smallest step, over this distance or the law's length,
+  !> whichever is smaller.
   real(wp), parameter :: first_step = 0.2_wp, shorter = 1.0_wp/3, least = 1.0e-6_wp
-  !> The slope dh0/dQ below which folds may be near, and the largest change of the deformation in a
-  !> step there (law's lengths), so that the minimum of the slope at a pair of folds is not missed.
-  !> Steps are planned for a part of this change, since it grows towards a fold.
+  !> A fold may be near if dh0/dQ is below `steep`. There the deformation may change by at most
+  !> `small` (law's lengths) in a step, so that the minimum of dh0/dQ at a pair of folds is not
+  !> missed. Steps are planned for the fraction `planned` of this change, since the change grows
+  !> towards a fold.
   real(wp), parameter :: steep = 0.5_wp, small = 0.15_wp, planned = 0.9_wp
   !> A step to a predicted fold or to h0, over the distance to it.
   real(wp), parameter :: just_beyond = 1.1_wp
-  !> If the slope dh0/dQ of Hermite's polynomial within a step is below this part of the slopes at
-  !> its ends, a state is solved there to decide about a pair of folds; and the least distance of
-  !> such a state from the ends, over the step.
+  !> If dh0/dQ of Hermite's polynomial within a step is below `flat` times its values at the ends, a
+  !> state is solved there; it shows whether there is a pair of folds. apart: the least distance of
+  !> this state from the ends, over the step.
   real(wp), parameter :: flat = 0.5_wp, apart = 0.02_wp
   !> Largest number of states for a fold.
   integer, parameter :: most_rounds = 12
@@ -78,7 +81,7 @@ contains
     if (.not. here%tangent%regular) return
     sense = sign(1.0_wp, h0 - here%state%h0)
     if (.not. here%tangent%stable) then
-      ! The state is at the end of its branch, to the tolerance.
+      ! Within the tolerance the state is at the end of its branch.
       found = branch_end_t(at_fold, here%state, here%state, here%state%h0, here%state%load, &
         options%tolerance)
       return
@@ -120,7 +123,7 @@ contains
 
       step = step*here%tangent%h0
       call here%tangent%turn(passing(here%tangent, is_pinned(self)))
-      ! The new coordinate has another length.
+      ! A change of h0 has another length in the new coordinate.
       step = min(step, just_beyond*abs(h0 - here%state%h0))/here%tangent%h0
       if (here%tangent%h0 < steep) step = min(step, &
         planned*small/maxval(abs(here%tangent%gap - here%tangent%h0)))
@@ -146,7 +149,8 @@ contains
 
   end subroutine follow
 
-  !> Solves the state at point%q from a guess, with its tangent, in the coordinate of another point.
+  !> Solves the state at Q = point%q, beginning with point%state, and its tangent. along: the
+  !> weights in Q.
   subroutine reach(self, options, along, point, good)
     class(stepper_t), intent(inout) :: self
     type(solver_options_t), intent(in) :: options
@@ -183,8 +187,8 @@ contains
     end if
   end function lowest_within
 
-  !> The step after one from `here` to `there`: twice as long, but only just beyond the fold to
-  !> which the slopes dh0/dQ point.
+  !> The step after the one from `here` to `there`: twice as long, but not farther than just beyond
+  !> the fold that the slopes dh0/dQ predict.
   pure real(wp) function next_step(here, there, step) result(next)
     type(point_t), intent(in) :: here, there
     real(wp), intent(in) :: step

@@ -2,8 +2,9 @@
 !> curve connects two states.
 !>
 !> The coordinate of the curve is Q = h0 - sum(along*gap). A branch that is stable at prescribed h0
-!> ends at a fold of h0, where gaps change infinitely fast with h0. With `along` against this change
-!> Q has no fold there: the curve can be followed past the fold, which is a zero of dh0/dQ.
+!> ends at a fold of h0, where gaps change infinitely fast with h0. If `along` is opposite to this
+!> change, Q has no fold there. The curve can then be followed past the fold of h0, which is a zero
+!> of dh0/dQ.
 module branch_tangent
   use kinds, only: wp, pi, nan
   use beyond_mesh, only: load_slope_beyond
@@ -34,10 +35,11 @@ module branch_tangent
     procedure :: turn
   end type branch_tangent_t
 
-  !> The curve connects two states if, at both of them, the tangent times the distance in Q differs
-  !> from the difference of the states by at most these parts of the difference and of the distance.
-  !> Near the cusp at which a pair of folds begins, h0 is a cubic of the coordinate, and the error
-  !> of at least one tangent is two thirds of the difference, for any step.
+  !> The curve connects two states if the tangents at both of them predict the difference D of the
+  !> states. The prediction is the tangent times the distance d in Q; its error is at most
+  !> of_difference*|D| + of_distance*|d|. Near the cusp at which a pair of folds begins, h0 is a
+  !> cubic of the coordinate, and the error of at least one tangent is two thirds of the difference,
+  !> for any step.
   real(wp), parameter :: of_difference = 0.25_wp, of_distance = 0.05_wp
   !> Differences, in the law's lengths and of the relative load, that are too small for a jump.
   real(wp), parameter :: too_small = 1.0e-3_wp
@@ -111,10 +113,11 @@ contains
     if (has) has = all(abs(frozen%state%gap - state%gap) <= 0)
   end function has_factors_at
 
-  !> Weights with which Q increases with h0 here and past the next fold. Near a fold the attraction
-  !> changes fast with h0, so the weights are those of the attractive part of the load. If the load
-  !> decreases with h0, no fold is near, and Q is h0. If the edge is pinned between nodes, a fold
-  !> affects a few nodes and hardly the load, and the weights are the changes of the gaps.
+  !> Weights for which Q increases along the curve, here and past the next fold. Near a fold the
+  !> attraction changes fast with h0, so the weights are those of the attractive part of the load.
+  !> If the load decreases with h0, no fold is near, and Q is h0. If the edge is pinned between
+  !> nodes, a fold affects a few nodes and hardly the load, and the weights are the changes of the
+  !> gaps.
   pure function passing(tangent, pinned) result(along)
     type(branch_tangent_t), intent(in) :: tangent
     logical, intent(in) :: pinned
@@ -129,7 +132,7 @@ contains
     end if
   end function passing
 
-  !> Changes the coordinate.
+  !> Converts the tangent to the coordinate Q with other weights.
   pure subroutine turn(self, along)
     class(branch_tangent_t), intent(inout) :: self
     real(wp), intent(in) :: along(:)

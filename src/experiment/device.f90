@@ -35,9 +35,9 @@ module device
 
 contains
 
-  !> Drives the bodies from large separation, or from `start`, to `finish` or, if it is not
-  !> allocated, to the innermost piece at h0_end, and back. Positions are those of the drive
-  !> (`driven_pieces`).
+  !> Drives the bodies inward to `finish` and back. They begin at `start` or, if it is not
+  !> allocated, at large separation. If `finish` is not allocated, they are driven to the innermost
+  !> piece at h0_end. Positions are those of the drive (`driven_pieces`).
   subroutine drive_bodies(solver, path, drive, h0_end, start, finish, driven)
     class(solver_t), intent(inout) :: solver
     type(traced_path_t), intent(in) :: path
@@ -145,7 +145,7 @@ contains
 
     associate (first => min(leg%from%interval, leg%to%interval) + 1, &
       last => max(leg%from%interval, leg%to%interval))
-      ! A point without a next one is also on the next mesh.
+      ! A point from which the path does not continue is repeated on the next mesh.
       nodes = pack(all_nodes(first:last), all_nodes(first:last)%leads_on)
     end associate
     if (.not. leg%inward) nodes = nodes(size(nodes):1:-1)

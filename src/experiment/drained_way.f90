@@ -15,15 +15,16 @@ module drained_way
 
   !> Largest deviation in a step from a straight line through the two previous instants: of the
   !> load, over the largest load or a pull-off, and of the gap on the axis, over the gap. Largest
-  !> motion of the edge, over the smallest feature there. A step with `rejected` times these values
-  !> is repeated as a shorter step, unless the shorter step has a deviation of more than `no_less`
-  !> times that: for continuous loads a third of the step has a third of the deviation.
+  !> motion of the edge, over the smallest feature there. A step with more than `rejected` times
+  !> these values is repeated as a shorter step. If the shorter step still has more than `no_less`
+  !> times the deviation of the longer one, the load jumps and the step is accepted: for continuous
+  !> loads a third of the step has a third of the deviation.
   real(wp), parameter :: bend = 2.0e-3_wp, bend_of_gap = 1.0e-2_wp, edge_moves = 1, rejected = 4, &
     no_less = 0.5_wp
   !> Largest and smallest ratio of a step to the previous step.
   real(wp), parameter :: longer = 2, least_ratio = 0.2_wp
-  !> The part of the step with the permitted deviation that is taken next, and after a step that is
-  !> repeated; the ratio after a step that did not converge.
+  !> The next step over the estimated step with the permitted deviation: after an accepted step, and
+  !> for a step that is repeated. The ratio of a step to one that did not converge.
   real(wp), parameter :: safety = 0.9_wp, repeated = 0.7_wp, lost_step = 0.3_wp
   !> A remainder of the segment below this part of a step is added to the step.
   real(wp), parameter :: remainder = 0.01_wp
@@ -36,17 +37,17 @@ module drained_way
   !> Fraction of a contact's radius by which the edge may move, even if the smallest feature is
   !> smaller.
   real(wp), parameter :: part_of_radius = 0.01_wp
-  !> Rounding error of the rate of a gap, over that of the gap divided by the step: the rate is that
-  !> of a parabola through three gaps, each with an error of a few roundings.
+  !> Rounding error of dH/dt, over the rounding error of H divided by the time step. The rate is
+  !> that of a parabola through three gaps, each with an error of a few roundings.
   real(wp), parameter :: of_rate = 8
 
 contains
 
   !> Takes a step from an instant, or chooses a shorter one for the next attempt. At snap-in the gap
   !> closes at a time that differs slightly from pass to pass, with ever shorter steps. Therefore
-  !> each pass chooses its own steps, half as long as those of the previous pass. Steps follow the
-  !> motion and are at most `longest_part` of a segment. If the deck gives the step, it is shortened
-  !> only if it does not converge.
+  !> each pass chooses its own steps, half as long as those of the previous pass. The length of a
+  !> step follows from the motion and is at most `longest_part` of a segment. A step of the deck is
+  !> shortened only if it does not converge.
   subroutine step_drained(longest_part, steps, now)
     real(wp), intent(in) :: longest_part
     type(time_stepper_t), intent(inout) :: steps
@@ -115,7 +116,8 @@ contains
     ahead = (next%time - now%at%time)/(now%at%time - steps%before%time)
     unit = max(now%result%largest_load, abs(next%state%load), tiny(1.0_wp), &
       pi*steps%problem%law%adhesion)
-    ! The load of the film at a rate due to rounding; shorter steps do not reduce it, but add to it.
+    ! Rounding of the gap causes an error of its rate, and thus of the load of the film. Shorter
+    ! steps increase this error.
     rounded = of_rate*epsilon(1.0_wp)/(next%time - now%at%time)*0.5_wp*pi*steps%drainage%strength
     associate (before => steps%before%state, last => now%at%state, new => next%state)
       missed = max(missed, (abs(new%load - last%load - ahead*(last%load - before%load)) - &

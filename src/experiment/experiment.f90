@@ -1,7 +1,8 @@
-!> Runs the requested experiments of the elastic problem: the equilibrium path, the cycle stepped in
-!> h0. A run is a function from the problem and the numerics to named numbers (`one_run`). The error
-!> of a number is its difference from that of another run; if it is larger than the accuracy of the
-!> deck, the finer run becomes the result. Effects that are not requested are not set up.
+!> Runs the requested experiments of the elastic problem: the equilibrium path, and the cycle that
+!> is stepped in h0. A run is a function from the problem and the numerics to named numbers
+!> (`one_run`). The error of a number is estimated from its difference to that of another run. If an
+!> error exceeds the accuracy of the deck, the finer run becomes the result. Effects that are not
+!> requested are not set up.
 module experiment
   use kinds, only: wp, long
   use dimensionless_problem, only: problem_t
@@ -30,8 +31,8 @@ module experiment
   real(wp), parameter :: unyielding = 1.0e-18_wp
 
   !> Largest number of runs with more digits. If a run with more digits does not reduce the largest
-  !> error to this fraction, the error has another cause, such as rounding, and further runs are
-  !> useless, unless one of the two runs lacks some numbers.
+  !> error to the fraction below, the error has another cause, such as rounding. Then no further run
+  !> is made, unless one of the two runs lacks some numbers.
   integer, parameter :: most_rounds = 4
   real(wp), parameter :: helped = 0.5_wp
   !> Least number of digits of the run for comparison under a law with a step: with fewer, the nodes
@@ -40,8 +41,8 @@ module experiment
 
 contains
 
-  !> Runs the path and the cycle; does nothing if neither is requested. store: of edge-locked
-  !> meshes.
+  !> Runs the path and the cycle; does nothing if neither is requested. store: earlier meshes that
+  !> are locked to the contact edge.
   subroutine run_experiment(request, problem, observer, outcome, store)
     class(request_t), intent(in) :: request
     type(problem_t), intent(in) :: problem
@@ -127,8 +128,8 @@ contains
     outcome%cost = steps%cost
   end subroutine run_locked
 
-  !> Runs the experiments of a similar scene once, with the numerics of another run, like. The
-  !> numbers of the outcome have no errors of other runs. cost: that of this run is added.
+  !> Runs the experiments of a similar scene once, with the numerics of the run `like`. The numbers
+  !> of the outcome have no errors from other runs. cost: the cost of this run is added to it.
   subroutine run_again(request, problem, like, cost, outcome)
     class(request_t), intent(in) :: request
     type(problem_t), intent(in) :: problem
@@ -181,8 +182,8 @@ contains
   end subroutine run_again
 
   !> Runs a scene with more and more digits until the numbers of two successive runs agree within
-  !> the accuracy. The coarser of these, outcome, is the result, and ahead is the other. steps: the
-  !> stepper of the result, one of the two given.
+  !> the accuracy. The coarser of these two, `outcome`, is the result; `ahead` is the other one.
+  !> steps: the stepper of the result, one of the two given.
   subroutine agree(one, other, request, problem, observer, outcome, ahead, steps, store)
     class(locked_stepper_t), intent(inout), target :: one, other
     class(request_t), intent(in) :: request
@@ -239,7 +240,8 @@ contains
   end subroutine agree
 
   !> Runs the cycle on a grid that is fixed in space, then on a coarser and on a smaller grid; their
-  !> errors are added, so that they cannot cancel. outcome: has the numbers of the path.
+  !> errors are added, so that they cannot cancel. outcome: contains the numbers of the path
+  !> already.
   subroutine run_fixed(steps, request, problem, observer, outcome)
     type(fixed_stepper_t), intent(inout) :: steps
     class(request_t), intent(in) :: request

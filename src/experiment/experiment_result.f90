@@ -45,7 +45,8 @@ module experiment_result
   !> Numbers of each drive that may not exist.
   character(len=*), parameter :: of_each_way(*) = [character(len=18) :: 'device_jump_in', &
     'device_landing_in', 'device_jump_out', 'device_landing_out']
-  !> Number of rows of a leg of a table that are judged, and of intervals between them.
+  !> Number of rows of each leg of a table whose errors are estimated, and of intervals between
+  !> rows.
   integer, parameter :: judged_rows = 16
 
 contains
@@ -96,7 +97,8 @@ contains
     do k = 1, size(driven%jumped)
       associate (jump => driven%jumped(k), drive => driven%drive%weights)
         before = place_on_curve(jump%before, drive)
-        ! The turn of the drive, or the fold of h0 before it.
+        ! Q of the drive turns here, or h0 does at a fold before Q turns: it is the one with the
+        ! smaller derivative along the path.
         before%turn_of = merge(drive, h0_alone, abs(jump%before%tangent%of(drive)) <= &
           abs(jump%before%tangent%of(h0_alone)))
         if (allocated(after)) deallocate (after)
@@ -178,8 +180,8 @@ contains
     end do
   end subroutine enter_turns
 
-  !> Enters some rows of each leg of the table as places; if `like` is present, at the h0 of the
-  !> rows that it has.
+  !> Enters some rows of each leg of the table as places. If `like` is present, they are the states
+  !> at the h0 of its rows.
   subroutine enter_table(steps, readings, places, like)
     class(stepper_t), intent(inout) :: steps
     type(path_readings_t), intent(inout) :: readings
@@ -246,9 +248,9 @@ contains
 
   end subroutine enter_table
 
-  !> The error of the cubic between each row and the next, up to a common factor: the width to the
-  !> fourth power, times the larger change of the third derivative to a neighbour over their
-  !> distance.
+  !> The error of cubic interpolation between each row and the next, up to a common factor: the
+  !> fourth power of the width, times an estimate of the fourth derivative. The estimate is the
+  !> larger one of the changes of the third derivative to both neighbours, each over the distance.
   pure function bends(rows) result(bend)
     type(path_point_t), intent(in) :: rows(:)
     real(wp), dimension(size(rows) - 1) :: bend, width, third

@@ -1,6 +1,6 @@
-!> The motion of bodies in equilibrium from one h0 to another on a mesh fixed in space: along a
-!> branch, from its end by a relaxation to another branch, and so on. The end of a branch depends
-!> neither on the steps of the experiment nor on the iteration (`branch_end`).
+!> Moves bodies in equilibrium from one h0 to another on a mesh fixed in space. They follow a
+!> branch, relax from its end to another branch, and so on. The end of a branch depends neither on
+!> the steps of the experiment nor on the iteration (`branch_end`).
 module fixed_motion
   use kinds, only: wp, nan
   use dimensionless_problem, only: over_neck => spacing_over_neck
@@ -24,16 +24,18 @@ module fixed_motion
   !> A change of the deformation below this cannot contain a jump: near a pair of folds the
   !> deformation changes by a fifth of the law's length while h0 changes by a hundredth of it.
   real(wp), parameter :: unnoticed = 0.02_wp
-  !> A contact edge that is pinned between nodes slips many times from one to the next; in steps
-  !> longer than this (in the law's lengths) these slips are not located individually.
+  !> A contact edge that is pinned between nodes slips many times from node to node; in steps longer
+  !> than this (in the law's lengths) these slips are not located individually.
   real(wp), parameter :: short_step = 0.11_wp
-  !> The largest ratio of the spacing to the width of the cohesive zone for this: with larger
-  !> spacing each slip changes the load noticeably, and the slips are few.
+  !> The slips are located individually in all steps if the ratio of the spacing to the width of the
+  !> cohesive zone exceeds this value: each slip then changes the load noticeably, and the slips are
+  !> few.
   real(wp), parameter :: fine_enough = 0.4_wp
 
 contains
 
-  !> Moves the position, whose state is an equilibrium, to h0. event%converged: to another one.
+  !> Moves the position, whose state is an equilibrium, to h0. event%converged: the state at h0 is
+  !> an equilibrium too.
   subroutine advance(self, options, h0, position, event)
     class(stepper_t), intent(inout) :: self
     type(solver_options_t), intent(in) :: options
@@ -163,8 +165,8 @@ contains
   end subroutine leave
 
   !> Adds the energy that bodies lose in a jump from a fold: the difference between the energies of
-  !> both states at the h0 of the fold. It is not known if the branch after the jump does not extend
-  !> back to this h0.
+  !> both states at the h0 of the fold. This energy is not known if the branch after the jump does
+  !> not extend back to this h0.
   subroutine lose_energy(self, options, found, landed, position)
     class(stepper_t), intent(inout) :: self
     type(solver_options_t), intent(in) :: options
@@ -208,7 +210,8 @@ contains
     call move_to(position, landed)
   end subroutine land
 
-  !> The tangent at a state, if there are factors of its Jacobian; otherwise it is not regular.
+  !> The tangent at a state, if there are factors of its Jacobian; otherwise tangent%regular is
+  !> .false.
   subroutine known_tangent(self, state, tangent)
     class(stepper_t), intent(inout) :: self
     type(state_t), intent(in) :: state
@@ -218,8 +221,8 @@ contains
       call tangent_at(self, control_t(value=state%h0), state, tangent)
   end subroutine known_tangent
 
-  !> Whether a state is on the same stable branch as the one before it. tangent: of the state
-  !> before, or not regular.
+  !> Whether a state is on the same stable branch as the one before it. tangent: of the previous
+  !> state; it is not used if it is not regular.
   logical function is_joined(self, tangent, before, state) result(joined)
     class(stepper_t), intent(inout) :: self
     type(branch_tangent_t), intent(inout) :: tangent

@@ -3,7 +3,7 @@
 !> between nodes.
 !>
 !> The deck's iteration solves the rows. A jump is a fold between two rows that converged
-!> (`fixed_motion`); rows that did not converge are no jump and no end of a branch.
+!> (`fixed_motion`); rows that did not converge show neither a jump nor the end of a branch.
 module fixed_stepper
   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
   use kinds, only: wp, nan
@@ -114,7 +114,7 @@ contains
   !> A step by mixing. If it converges, the bodies are also moved from the last row that converged,
   !> since mixing does not distinguish a jump from a branch that continues. Plain mixing begins at
   !> constant separation and is itself a relaxation, which gives the state after a jump; accelerated
-  !> mixing is not.
+  !> mixing is no relaxation.
   subroutine mixing_step(self, h0, position, event)
     class(fixed_stepper_t), intent(inout) :: self
     real(wp), intent(in) :: h0

@@ -15,10 +15,11 @@ module frozen_start
 
 contains
 
-  !> Estimate of the relative change of the largest tension by the part of the initial deformation
-  !> that remains at that time. The tension of a contact of radius a is about proportional to the
-  !> radius of curvature of the bodies, so the relative change is that of their height over a. row:
-  !> of the drive, SI units, with times since its start; position: of the start.
+  !> Estimate of the relative change of the largest tension by the initial deformation, as far as
+  !> this remains when the tension is largest. The tension of a contact of radius a is about
+  !> proportional to the radius of curvature of the bodies, so it changes by the same ratio as their
+  !> height at a. row: the rows of the drive in SI units, with times since its start; position:
+  !> where the drive starts.
   real(wp) function effect_of_start(steps, position, row) result(effect)
     type(time_stepper_t), intent(inout) :: steps
     real(wp), intent(in) :: position
@@ -48,7 +49,7 @@ contains
     part = sum(creep%share*exp(-time/creep%time))/creep%relaxed()
   end function kept_part
 
-  !> The change of the bodies' height over a radius by their deformation, over this height.
+  !> The change of the bodies' height at a radius by their deformation, divided by this height.
   pure real(wp) function change_of_height(steps, mesh, state, radius) result(change)
     type(time_stepper_t), intent(in) :: steps
     integer, intent(in) :: mesh
@@ -60,7 +61,7 @@ contains
     associate (r => steps%meshes%grid(mesh)%x*state%scale)
       j = min(count(r < radius) + 1, size(r))
       height = steps%problem%shape%height(r)
-      ! Measured on the axis the deformation is the gap there less h0.
+      ! Heights are measured from the axis, so the deformation of the axis is subtracted.
       change = abs((state%gap(j) - height(j)) - state%axis_gap)/height(j)
     end associate
   end function change_of_height

@@ -116,7 +116,7 @@ contains
     real(wp), intent(in), optional :: also(:)
     type(h0_schedule_t) :: plan
     real(wp), allocatable :: h0(:), profiles(:)
-    !> A remainder that is due to rounding, in steps, is no step.
+    !> A remainder of the range below this fraction of a step is due to rounding, and makes no step.
     real(wp), parameter :: remainder = 1.0e-6_wp
     real(wp) :: sense, same
     integer :: steps, i

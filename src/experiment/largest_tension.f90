@@ -11,8 +11,8 @@ module largest_tension
 
 contains
 
-  !> Makes `place` that of the largest tension if its tension is larger. lowest: not allocated if
-  !> there is no attraction. lowered: whether it is now `place`.
+  !> Replaces `lowest`, the place of the largest tension, by `place` if the tension there is larger.
+  !> Without attraction `lowest` is not allocated. lowered: whether it was replaced.
   pure subroutine lower(lowest, place, lowered)
     type(place_t), allocatable, intent(inout) :: lowest
     type(place_t), intent(in) :: place
@@ -50,8 +50,8 @@ contains
     end do
   end subroutine lower_along
 
-  !> The same for the way at prescribed h0 from h0 = from, on a stable piece of the path, to another
-  !> h0: the load is lowest at an extremum, at a fold or after a jump. The states at both ends are
+  !> The same for a motion at prescribed h0, from h0 = `from` on a stable piece of the path to h0 =
+  !> `to`. The load is lowest at an extremum, at a fold or after a jump. The states at both ends are
   !> not considered.
   subroutine lower_on_way(path, pieces, piece, from, to, lowest)
     type(traced_path_t), intent(in) :: path

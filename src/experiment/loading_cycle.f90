@@ -1,5 +1,5 @@
-!> A loading, and an unloading from each of its turning points, whatever computes a branch: a
-!> stepper (`one_run`), or integrals for rigid bodies (`rigid_bodies`).
+!> Runs a loading, and an unloading from each of its turning points. Branches are computed by a
+!> stepper (`one_run`) or, for rigid bodies, by integrals (`rigid_bodies`).
 module loading_cycle
   use kinds, only: wp
   use force_law, only: force_law_t
@@ -56,7 +56,7 @@ contains
     plan = loading_plan(request, law, branches%from)
     if (.not. rows) plan = thinned(plan, branches%from)
     call branches%run_branch(plan, 0, loading, places, reached)
-    ! If the path has the jumps, they are exact.
+    ! If the path was traced, its jumps are exact and were entered before.
     if (allocated(loading%jump) .and. .not. places%has('jump_in')) &
       call places%enter('jump_in', 1, loading%jump)
     if (allocated(request%unloading)) allocate (unloading(size(branches%from)))

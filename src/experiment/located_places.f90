@@ -29,8 +29,8 @@ module located_places
 contains
 
   !> Sets the values at all places, except those that another stepper, on other meshes, has located.
-  !> like: the table of another run of the same scene, whose profiles have the radii at which gaps
-  !> are wanted; without it, these are the nodes.
+  !> like: the table of another run of the same scene; gaps are computed at the radii of its
+  !> profiles. Without it, they are computed at the nodes.
   subroutine locate_places(steps, places, like)
     class(stepper_t), intent(inout) :: steps
     type(places_t), intent(inout) :: places
@@ -141,7 +141,7 @@ contains
     end associate
   end subroutine add_leftovers
 
-  !> Reads gaps and pressures at the radii place%r; own: these are the nodes.
+  !> Computes gaps and pressures at the radii place%r; own: these radii are the nodes.
   subroutine read_profile(steps, place, own)
     class(solver_t), intent(in) :: steps
     type(place_t), intent(inout) :: place
@@ -159,7 +159,7 @@ contains
       do j = 1, size(place%r)
         x = place%r(j)/state%scale
         if (x > grid%end) exit
-        ! Under layers the gap in the tail is no polynomial of few nodes.
+        ! The gap between layered bodies cannot be interpolated from the few nodes of the tail.
         if (grid%in_tail(x) .and. .not. problem%body%is_homogeneous()) exit
         place%gap(j) = gap_at(problem%shape, grid, state, x)
         place%pressure(j:j) = problem%law%pressure(place%gap(j:j))

@@ -34,8 +34,8 @@ module locked_stepper
 
   abstract interface
     !> Traces the path from h0_high, or from where the bodies hardly deform, until it is stable at
-    !> h0_low; into_contact: until the bodies are also in contact, at ends_at; accuracy, demand: see
-    !> `trace`; with `demand` the points define a smooth curve. To be called before the first step.
+    !> h0_low. into_contact: until the bodies are also in contact, at ends_at. accuracy, demand: see
+    !> `trace`. With `demand` the points define a smooth curve. To be called before the first step.
     !> The listener receives messages about the progress.
     subroutine find_the_path(self, h0_high, h0_low, ends_at, into_contact, accuracy, listener, &
       demand)

@@ -27,8 +27,8 @@ module numerics_choice
     !> The name of the iteration in results, and the reason for the grid.
     character(len=:), allocatable :: method, because
     type(solver_options_t) :: options
-    !> Digits of edge-locked meshes; and the accuracy that is asked for, or a smaller one for a run
-    !> that is compared.
+    !> Digits of edge-locked meshes. The requested accuracy, or a smaller value in a run for
+    !> comparison.
     real(wp) :: digits = 7, accuracy = 1.0e-6_wp
     !> For fixed grids: number of nodes and extent (lateral units), nodes of a panel, and the
     !> panel's size over the smallest feature.
@@ -43,12 +43,12 @@ module numerics_choice
   real(wp), parameter :: comfortable = 0.2_wp
   integer, parameter :: fewest = 200, most = 1500
   !> Additional digits of a finer run on edge-locked meshes. On a fixed grid a finer run would cost
-  !> many times as much: the other runs have this part of the nodes, and of the extent, which should
-  !> still contain the contact.
+  !> many times as much. There the runs for comparison are coarser: they have `part_of_nodes` of the
+  !> nodes, or `part_of_extent` of the extent, which should still contain the contact.
   real(wp), parameter :: more_digits = 1.5_wp, part_of_nodes = 2/3.0_wp, part_of_extent = 5/6.0_wp
-  !> Tolerance of residuals over the accuracy, if this is below the usual tolerance. Except for
-  !> mixing and on uniform grids, it is at most a smaller part of the accuracy, but not below a
-  !> least value.
+  !> The tolerance of residuals is `part_of_accuracy` times the accuracy, but at most the usual
+  !> tolerance. Except for mixing and on uniform grids it is lowered to `small_part` times the
+  !> accuracy, but not below `small_tolerance`.
   real(wp), parameter :: part_of_accuracy = 0.01_wp, small_part = 1.0e-4_wp, &
     small_tolerance = 1.0e-10_wp
   !> Depth of the accelerated mixing.
@@ -57,8 +57,8 @@ module numerics_choice
   !> larger), and its largest value. Error of slopes over that of places.
   real(wp), parameter :: place_over_accuracy = 1.0e-5_wp, largest_place_error = 1.0e-7_wp, &
     slope_over_place = 0.1_wp
-  !> Nodes of a panel on a grid that is fixed in space: this number, for each decade of accuracy,
-  !> and their limits.
+  !> Number of nodes of a panel on a grid that is fixed in space: a constant, the number to be added
+  !> for each decade of accuracy, and the limits of their sum.
   real(wp), parameter :: panel_nodes = 4.6_wp, panel_nodes_of_decade = 0.8_wp
   integer, parameter :: fewest_on_panel = 6, most_on_panel = 16
 
@@ -156,7 +156,8 @@ contains
     if (numerics%method == 'newton') options = newton_of(options)
   end function options_of
 
-  !> Whether a method is the paper's mixing, accelerated or not: products alone, at prescribed h0.
+  !> Whether a method is the paper's mixing, accelerated or not. It uses only products, and
+  !> prescribes h0.
   pure logical function mixes(method)
     character(len=*), intent(in) :: method
 
@@ -170,7 +171,7 @@ contains
     type(problem_t), intent(in) :: problem
     real(wp) :: widest, feature
 
-    ! For a relative accuracy of load and displacement.
+    ! The number of nodes is chosen for the relative accuracy of load and displacement.
     chosen%panel_order = min(most_on_panel, max(fewest_on_panel, &
       nint(panel_nodes - panel_nodes_of_decade*log10(numerics%accuracy))))
     if (allocated(numerics%panel_order)) chosen%panel_order = numerics%panel_order
@@ -207,7 +208,7 @@ contains
     end if
     widest = min(largest_radius(problem, chosen%low, contact_level(problem)), chosen%extent)
     finest = chosen%panel_over_feature*smallest_feature(problem, widest)
-    ! At most as many nodes as a uniform grid would have.
+    ! The panels have at most as many nodes as a uniform grid would have.
     count = ceiling(min(widest/finest, real(max(1, chosen%nodes/chosen%panel_order), wp)))
     finest = widest/count
     allocate (outer(0))

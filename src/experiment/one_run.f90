@@ -65,7 +65,7 @@ contains
     if (request%reads_path()) allocate (demand, source=demand_of(request, problem))
     call lay_out(fronts=.true.)
     if (.not. allocated(steps%known)) return
-    ! The radius to which meshes are locked may decrease.
+    ! The path is lost if the radius of the front to which meshes are locked decreases.
     if (steps%known%ending%cause == path_lost .and. steps%meshes%fronts) call lay_out(.false.)
 
   contains
@@ -234,8 +234,9 @@ contains
       branch, places)
   end subroutine run_stepped
 
-  !> Enters the energy that was lost in jumps between the start of a loading and the position at the
-  !> end of an unloading on a mesh fixed in space, if the branch leads from there back to the start.
+  !> Enters the energy that was lost in jumps on a mesh fixed in space, from the start of a loading
+  !> to `position`, the end of an unloading. It is entered if the branch leads from there back to
+  !> the start.
   subroutine enter_energy_of(steps, start, position, unloading, places)
     class(stepper_t), intent(inout) :: steps
     type(branch_point_t), intent(in) :: start
@@ -245,7 +246,8 @@ contains
     type(step_result_t) :: event
     type(place_t) :: place
 
-    ! With a path, the energy is that of the path. Without a jump none is lost; NaN means unknown.
+    ! If there is a path, its energy has been entered. Without a jump no energy is lost; NaN means
+    ! that the energy is not known.
     if (places%has('energy_lost') .or. ieee_is_nan(position%lost)) return
     if (.not. abs(position%lost) > 0) return
     if (unloading%ending%early() .or. .not. allocated(start%state%gap)) return

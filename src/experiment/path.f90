@@ -1,6 +1,6 @@
-!> The equilibrium path as a result, from large separation, or a given h0, to a contact at a given
-!> h0: stable and unstable states, every fold in h0, every extremum of the load, and enough points
-!> between these for a smooth curve.
+!> The equilibrium path as a result. It leads from large separation, or from a given h0, to a
+!> contact at a given h0. It has stable and unstable states, every fold in h0, every extremum of the
+!> load, and enough points between these for a smooth curve.
 module path
   use kinds, only: wp
   use force_law, only: of_pressure
@@ -27,8 +27,8 @@ module path
     !> Largest tension, which is the pull-off at controlled load; the first state; the last state,
     !> if it is stable.
     type(place_t), allocatable :: lowest, start, finish
-    !> The least h0 below the end at which the bodies are stable outside a barrier; the end itself
-    !> if there is none.
+    !> The least h0 at which the bodies are stable outside a barrier, if this is below the requested
+    !> end; otherwise the requested end.
     real(wp) :: deepest_outside = 0
     !> The stable pieces on which the path begins and ends; 0 if it is unstable there.
     integer :: first_piece = 0, last_piece = 0
@@ -94,7 +94,7 @@ contains
       call take(row, profile=any(abs(profiles - h0_end) <= 0))
     end do
     ! The tension is largest at an extremum or an end. States with which the path passes to another
-    ! mesh do not count: their errors would decide.
+    ! mesh do not count: the errors of the meshes would decide which of them is the extremum.
     if (row%converged) then
       reported = place_of_row(row)
       call lower_along(steps%known%path, first, last, path%lowest)
@@ -184,7 +184,7 @@ contains
       end if
       if (row%load_extremum) call places%add('load_folds', reported)
       if (.not. row%fold) return
-      ! A part of the path may begin with another fold.
+      ! The first fold is the snap-in only if the path begins on the outermost piece.
       if (path%first_piece == 1 .and. .not. places%has('folds')) &
         call places%enter('jump_in', 1, reported)
       call places%add('folds', reported)
@@ -229,7 +229,8 @@ contains
     end associate
   end subroutine find_end
 
-  !> The place of a row; that of a point of the path, if something turns there.
+  !> The place of a row. If h0 or the load has an extremum there, it is the place of a point of the
+  !> path.
   pure type(place_t) function place_of_row(row) result(reported)
     type(path_point_t), intent(in) :: row
 

@@ -39,8 +39,8 @@ contains
     end if
   end function path_start
 
-  !> An h0 beyond another one, and beyond the largest tension of undeformed bodies farther out:
-  !> outside a barrier the tension may be largest far from contact.
+  !> An h0 larger than `from`, and larger than the h0 of the largest tension of undeformed bodies
+  !> beyond `from`. Outside a barrier the tension may be largest far from contact.
   pure real(wp) function beyond_pull(problem, from) result(h0)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: from
@@ -205,14 +205,15 @@ contains
     associate (law => problem%law)
       well = law%length
       if (law%rest_gap > 0) well = law%separation_of(law%rest_gap)
-      ! Within an attraction in contact, tensions have no limit.
+      ! If the law attracts in contact, the tension has no limit at small gaps, which are omitted.
       do step = merge(0, -tried/2, law%falls_below > 0), tried/2
         tension = max(tension, -load_undeformed(problem, law%gap_of(well*ratio**step)))
       end do
     end associate
   end function largest_pull
 
-  !> An h0 below the one at which a h0 - b load in contact is `wanted`, by JKR theory (10), (11).
+  !> An h0 below that at which Q = a h0 - b load has the value `wanted` in contact, by JKR theory
+  !> (10), (11).
   pure real(wp) function h0_in_contact(problem, a, b, wanted) result(h0)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: a, b, wanted

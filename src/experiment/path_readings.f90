@@ -24,14 +24,14 @@ module path_readings
     type(path_point_t), allocatable :: node(:)
     !> A drive for each stiffness; and one at prescribed h0, for the table.
     type(driven_t), allocatable :: device(:), prescribed
-    !> The equilibria under given loads, for each its number in the list of loads, and this list.
+    !> The equilibria under given loads; for each of them the index of its load; the list of loads.
     type(path_point_t), allocatable :: loaded(:)
     integer, allocatable :: load_of(:)
     real(wp), allocatable :: load(:)
     !> Derivatives at the nodes by each parameter of &sensitivity, (parameters, nodes).
     type(rate_t), allocatable :: rate(:, :)
-    !> The h0 from which the path was traced, and the larger h0 from which the bodies are undeformed
-    !> up to there; -huge: none.
+    !> The path was traced from the h0 `traced_from`. Between the larger h0 `undeformed_from` and
+    !> this one the bodies count as undeformed. -huge: there is no such h0.
     real(wp) :: traced_from = -huge(1.0_wp), undeformed_from = -huge(1.0_wp)
     !> For the table, the largest error of cubic interpolation of the load between rows.
     real(wp) :: table_interpolation_error = 0
@@ -122,7 +122,7 @@ contains
 
       associate (device => request%device, problem => steps%problem)
         stiffness = device%stiffness
-        ! Without springs h0 is prescribed, as by a spring that does not yield.
+        ! Without springs h0 is prescribed, as by a rigid spring.
         if (size(stiffness) == 0) stiffness = [ieee_value(1.0_wp, ieee_positive_inf)]
         allocate (readings%device(size(stiffness)))
         do i = 1, size(stiffness)

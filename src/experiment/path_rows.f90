@@ -1,6 +1,6 @@
-!> The rows of the equilibrium path: points of the path, states at given h0, and so many states
-!> between them that straight lines from row to row show load and contact radius against h0
-!> accurately, also near folds and at large separations.
+!> The rows of the equilibrium path: points of the path, states at given h0, and further states
+!> between them. Straight lines from row to row show load and contact radius against h0 accurately,
+!> also near folds and at large separations.
 module path_rows
   use kinds, only: wp
   use dimensionless_problem, only: contact_level_of
@@ -39,7 +39,8 @@ contains
 
   !> The rows between point i and the next, within a range of h0, in order: requested profiles
   !> (profile = .true.), and rows for the curve. Rows for the curve that do not converge are
-  !> omitted. widest: contact radius, lateral units; 0: there are no rows for the curve.
+  !> omitted. widest: the largest contact radius in lateral units; 0: there are no rows for the
+  !> curve.
   subroutine rows_between(solver, path, i, from, until, widest, profiles, rows, profile)
     class(solver_t), intent(inout) :: solver
     type(traced_path_t), intent(in) :: path
@@ -100,8 +101,8 @@ contains
   end function row_for_curve
 
   !> Coordinates of a span between `from` and `to`, in order, at equal distances, since the distance
-  !> of the curve from a line is proportional to the square of the line's length. widest: contact
-  !> radius, lateral units.
+  !> of the curve from a line is proportional to the square of the line's length. widest: the
+  !> largest contact radius in lateral units.
   pure function places_between(solver, span, from, to, widest) result(places)
     class(solver_t), intent(in) :: solver
     type(path_span_t), intent(in) :: span

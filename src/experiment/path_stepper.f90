@@ -132,8 +132,9 @@ contains
     position%held = 0
   end subroutine jump_with
 
-  !> Solves the state at h0 on the position's piece: by iteration at fixed h0 or, if this does not
-  !> converge to the state on the path, or near a fold, by a search along the path.
+  !> Solves the state at h0 on the position's piece by iteration at fixed h0. Near a fold, or if the
+  !> iteration does not converge to the state on the path, the state is found by a search along the
+  !> path.
   subroutine solve_on_piece(self, h0, position, event)
     class(path_stepper_t), intent(inout) :: self
     real(wp), intent(in) :: h0

@@ -1,6 +1,6 @@
 !> The table of places at which numbers are reported (`reported_place`). A number of the summary has
-!> a name, one or more elements, and for each element one place, or several places of which it is
-!> the sum, such as the energies before and after jumps.
+!> a name and one or more elements. Each element belongs to one place, or is a sum over several
+!> places, such as the energies before and after jumps.
 module places
   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
   use kinds, only: wp, nan
@@ -50,8 +50,9 @@ module places
 
 contains
 
-  !> Finds a place in the table, or adds it, after the place from which its jump started. A row that
-  !> is also the result of a search has the uncertainty of the search.
+  !> Finds the index of a place in the table. A place that is not in the table is added, after the
+  !> place from which its jump started. A row that is also the result of a search has the
+  !> uncertainty of the search.
   recursive subroutine keep(self, place, i)
     class(places_t), intent(inout) :: self
     type(place_t), intent(in) :: place
@@ -137,7 +138,7 @@ contains
 
     if (allocated(self%entry)) self%entry = pack(self%entry, self%entry%name /= name)
     if (.not. allocated(self%number)) return
-    ! The errors are those of the removed places.
+    ! The numbers with errors are those of the removed places, and lose their name.
     do i = 1, size(self%number)
       if (self%number(i)%name == name) self%number(i)%name = ''
     end do
@@ -242,7 +243,8 @@ contains
     end associate
   end subroutine add_term
 
-  !> Finds the errors of the numbers that have none from those of other runs; part: see `judge`.
+  !> Finds the errors of those numbers that have none yet, by comparison with other runs; part: see
+  !> `judge`.
   pure subroutine judge_by(self, others, part)
     class(places_t), intent(inout) :: self
     type(run_numbers_t), intent(in) :: others(:)

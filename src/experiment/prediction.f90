@@ -1,5 +1,6 @@
-!> The prediction of the next state: on a mesh fixed in space extrapolated from earlier states;
-!> along the path the polynomial of the path plus its extrapolated error at earlier states.
+!> The prediction of the next state. On a mesh fixed in space it is extrapolated from earlier
+!> states. Along the path it is the state of the path's polynomial, corrected by the extrapolated
+!> errors of this polynomial at earlier states.
 module prediction
   use kinds, only: wp
   use dimensionless_problem, only: problem_t
@@ -16,9 +17,9 @@ module prediction
   public :: extrapolated, moved_with_edge, missed_t, expect
 
   !> The errors of a span at the past states of an experiment. Number and h0 identify a state, since
-  !> numbers alone repeat from branch to branch. Then its coordinate, and the corrections of H0,
-  !> scale and gaps (one column for each state). The errors depend on the span and the past only,
-  !> and are computed when these change.
+  !> numbers alone repeat from branch to branch. For each state the type has its coordinate and the
+  !> corrections of H0, scale and gaps (one column for each state). The errors depend only on the
+  !> span and on the past states, and are computed anew when one of these changes.
   type :: missed_t
     private
     integer :: held = 0, number(memory) = 0

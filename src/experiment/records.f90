@@ -15,7 +15,7 @@ module records
 
   type :: record_t
     character(len=:), allocatable :: branch
-    !> [m], [m], [m], [N], [m]; the residual is in units of the law's length.
+    !> Units: m, m, m, N, m; the residual is in units of the law's length.
     real(wp) :: h0 = 0, h_centre = 0, displacement = 0, load = 0, contact_radius = 0
     !> For a drive in time: the time [s], and the position [m] of a spring's base.
     real(wp), allocatable :: time, z
@@ -28,10 +28,10 @@ module records
     real(wp), allocatable :: eigenvalue, local_criterion, axis_criterion
   end type record_t
 
-  !> The quality of some rows: largest residual, widest spacing of nodes at the contact edge over
-  !> the width of the cohesive zone, widest contact [m], largest magnitude of pressure (law's unit),
-  !> deepest approach below h0 = 0 [m], largest magnitude of load [N], and smallest gap (law's
-  !> unit).
+  !> The quality of some rows. For the numerics: largest residual, and widest spacing of nodes at
+  !> the contact edge over the width of the cohesive zone. For the limits of the model: widest
+  !> contact [m], largest magnitude of pressure (law's unit), deepest approach below h0 = 0 [m],
+  !> largest magnitude of load [N], and smallest gap (law's unit).
   type :: quality_t
     real(wp) :: residual = 0, spacing = 0, contact_radius = 0, pressure = 0, depth = 0, load = 0
     real(wp) :: gap = huge(1.0_wp)

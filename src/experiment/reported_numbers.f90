@@ -1,6 +1,6 @@
 !> Named numbers of a run, and their errors from other runs of the same scene. The error of a number
 !> is a multiple of its difference from the same number, by name and element, of another run. A
-!> number that the other run lacks, or has more often, is not known.
+!> number is not known if the other run lacks it, or has another number of its elements.
 module reported_numbers
   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
   use kinds, only: wp, nan
@@ -18,8 +18,8 @@ module reported_numbers
     character(len=name_length) :: name = ''
     integer :: element = 1
     real(wp), dimension(quantities) :: value = 0, error = 0
-    !> The quantities whose relative errors count, and magnitudes to which errors are relative where
-    !> quantities are smaller.
+    !> The quantities whose relative errors count. Errors are relative to the magnitude of a
+    !> quantity or to `scale`, whichever is larger.
     logical :: compared(quantities) = .false.
     real(wp) :: scale(quantities) = least
     !> Whether all other runs have this number.
@@ -46,11 +46,12 @@ module reported_numbers
   !> Kinds of quantities whose relative errors are alike: 1 h0 and displacements, 2 loads and
   !> energies, 3 radii, 4 profiles.
   integer, parameter :: kind_of(quantities) = [1, 2, 1, 2, 3, 3, 2, 1, 2, 2, 4]
-  !> The least error, over the median error: on meshes of other digits, which seldom agree by
-  !> chance, and on grids that are fixed in space, whose errors depend on the place of the contact
-  !> edge between nodes. Of 1025 numbers on meshes locked to the edge under random laws, 1.5 % had
-  !> errors above such estimates and 3.1 % below a thirtieth of them. With one median of all kinds
-  !> it is 1.7 % and 7.2 %, without a least error 2.0 % and 0.6 %.
+  !> The least error, over the median error. It is `chance` on meshes of other digits, which seldom
+  !> agree by chance. It is `chance_on_grids` on grids fixed in space, whose errors depend on the
+  !> position of the contact edge between nodes. Of 1025 numbers on meshes locked to the edge under
+  !> random laws, 1.5 % had errors above such estimates and 3.1 % below a thirtieth of them. With
+  !> one median of all kinds these shares are 1.7 % and 7.2 %, without a least error 2.0 % and 0.6
+  !> %.
   real(wp), parameter :: chance = 0.1_wp, chance_on_grids = 1
   !> The relative error of an unknown value.
   real(wp), parameter :: most = 1.0e6_wp
@@ -126,7 +127,7 @@ contains
       return
     end if
     associate (a => number%value, b => other%number(k)%value)
-      ! A load exists at every place.
+      ! Every place of a number has a load.
       if (ieee_is_nan(a(of_load)) .neqv. ieee_is_nan(b(of_load))) number%known = .false.
       where (.not. (ieee_is_nan(a) .and. ieee_is_nan(b))) number%error = number%error + &
         margin*other%part*abs(a - b)
@@ -146,8 +147,9 @@ contains
 
   !> Sets derivative j of `parameters` from the numbers, in SI units, of runs with other values of
   !> the parameter. The derivatives are sums over the runs with `weight`; their errors are the
-  !> differences from the sums with `coarser`, plus the errors of iteration and rounding. A number
-  !> that some run lacks, or has more often, has no derivative, and found = .false.
+  !> differences from the sums with `coarser`, plus the errors of iteration and rounding. If a run
+  !> lacks a number, or has another number of its elements, this number has no derivative, and found
+  !> is .false.
   pure subroutine differentiate(number, runs, weight, coarser, j, parameters, found)
     type(number_t), intent(inout) :: number(:)
     type(run_numbers_t), intent(in) :: runs(:)

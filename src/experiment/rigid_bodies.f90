@@ -108,8 +108,9 @@ contains
 
   contains
 
-    !> Notes whether the tension is largest in the first or the last row. It cannot grow beyond if
-    !> it is level there, or where bodies touch that a repulsion does not keep apart.
+    !> Records whether the tension is largest in the first or the last row, and may grow beyond it.
+    !> It cannot grow if dF/dh0 = 0 there, or if the bodies touch there under a law without
+    !> repulsion.
     pure subroutine judge_ends(first, last, branch)
       real(wp), intent(in) :: first, last
       type(branch_t), intent(inout) :: branch
@@ -183,8 +184,8 @@ contains
       if (found%at(of_load) < 0) branch%lowest = found
     end subroutine find_largest_tension
 
-    !> The lowest load near a state, between two values of h0 with higher loads, one of which may be
-    !> that of the state: at a root of the derivative, or at the end of the range.
+    !> The lowest load near the state at h0, between two values of h0 with higher loads, one of
+    !> which may be h0 itself. It is at a root of dF/dh0; without a root it is taken at h0.
     pure type(place_t) function lowest_about(h0, before, after) result(found)
       real(wp), intent(in) :: h0, before, after
       type(root_search_t) :: search
@@ -218,7 +219,7 @@ contains
       found%left(of_radius) = radius_error(search%root, found%left(of_h0))
     end function lowest_about
 
-    !> The place of a state, with its error: of the integral, and by the rounding of h0.
+    !> The place of a state, with the errors due to the integral and to the rounding of h0.
     pure type(place_t) function place_at(h0) result(reported)
       real(wp), intent(in) :: h0
       type(measured_t) :: load

@@ -175,8 +175,9 @@ contains
 
   end subroutine run_branch
 
-  !> Compares the place of the largest tension with the h0 of the first and of the last row. An
-  !> extremum, a fold and a landing are points of the path.
+  !> Compares the place of the largest tension with the h0 of the first and of the last row. If the
+  !> tension is largest at a point of the path, it is an extremum, a fold or the end of a jump,
+  !> beyond which the tension does not grow.
   pure subroutine compare_ends(branch, first, last)
     type(branch_t), intent(inout) :: branch
     real(wp), intent(in) :: first, last

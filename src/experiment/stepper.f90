@@ -1,6 +1,6 @@
-!> The interface between a quasi-static experiment at controlled h0 and its solver: an approach from
-!> large separation to the start, steps from one h0 to the next, and the jumps in a step; and the
-!> path that is known under a law that attracts.
+!> The interface between a quasi-static experiment at controlled h0 and its solver. It has an
+!> approach from large separation to the start, steps from one h0 to the next, and the jumps in a
+!> step. Under a law that attracts it also has the traced path.
 module stepper
   use kinds, only: wp
   use discretisation, only: discretisation_t
@@ -60,7 +60,7 @@ module stepper
     real(wp) :: unsure_from = 0
     !> The fold from which the first jump starts, as a point of the path; 0 if it is not known.
     integer :: fold = 0
-    !> Early if there is no state.
+    !> The ending is early if there is no state at h0.
     type(ending_t) :: ending
   end type step_result_t
 

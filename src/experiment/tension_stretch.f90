@@ -12,9 +12,9 @@ module tension_stretch
   private
   public :: stretch_t, found_tension_t, leaps
 
-  !> A part of a branch without a jump: its state of largest tension so far, the state before it,
-  !> and the values of h0 between which the tension is largest (the neighbours of that state, or a
-  !> jump).
+  !> A part of a branch without a jump: its state of largest tension so far, and the state before
+  !> it. The tension is largest between the values of h0 `before` and `after`: those of the
+  !> neighbours of that state, or that of a jump.
   type :: stretch_t
     type(branch_point_t) :: lowest, previous
     real(wp) :: before = 0, after = 0

@@ -1,6 +1,6 @@
-!> One pass of a drive through its motion, step by step, with its results. The steps follow the
-!> change of the load and, for viscoelastic bodies, the motion of the contact edge, or are those of
-!> the deck. A pass after a complete one halves its steps.
+!> One pass of a drive through its motion, step by step, with its results. The deck gives the time
+!> step, or it follows from the change of the load and, for viscoelastic bodies, from the motion of
+!> the contact edge. A pass after a complete one halves its steps.
 module timed_pass
   use kinds, only: wp, pi
   use mesh_plan, only: contact
@@ -29,8 +29,9 @@ module timed_pass
   real(wp), parameter :: shortest_chosen = 1.0e-4_wp, shortest_of_way(2) = [1.0e-8_wp, 1.0e-5_wp]
   !> Number of steps after a rejected one before longer steps are tried again.
   integer, parameter :: patience = 3
-  !> Limits below which a step is not divided further: over the shortest retardation time; its
-  !> motion over the law's length; in roundings of the time.
+  !> A step is not divided further below these limits: its duration over the shortest retardation
+  !> time; the motion of the drive in it over the law's length; its duration in roundings of the
+  !> time.
   real(wp), parameter :: shortest_part = 1.0e-3_wp, shortest_way = 1.0e-6_wp, roundings = 4
 
 contains
@@ -66,8 +67,8 @@ contains
       ! The motion before a turn does not predict the motion after it; rates and loads of a fluid
       ! jump.
       steps%before = now%at
-      ! From a turn close to a fold a path also leads inward, along unstable states; the third
-      ! segment is the retract.
+      ! If the drive turns close to a fold, a path also leads inward from there, along unstable
+      ! states. The third segment is the retract and must lead outward.
       if (way == 3) now%inwards = .false.
       now%at%since_turn = 0
       if (.not. allocated(steps%drainage)) call take_row(now)

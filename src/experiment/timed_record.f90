@@ -23,12 +23,12 @@ module timed_record
   !> Largest number of steps of a pass.
   integer, parameter :: most_steps = 40000
 
-  !> The results of a pass. Numbers are in units of the problem; balance: the dissipated energy by
-  !> the work of the drive, minus that in dashpots and jumps.
+  !> The results of a pass. Numbers are in units of the problem; balance: the dissipated energy that
+  !> follows from the work of the drive, minus the sum over dashpots and jumps.
   type :: timed_result_t
     real(wp) :: number(numbers) = 0, balance = 0
     integer :: steps = 0, jumps = 0
-    !> The number of the pass, each with half the steps of the one before.
+    !> Number of passes; the steps of each are half as long as those of the one before.
     integer :: passes = 0
     !> Where the suction of a fluid is largest: the time [s], h0 and the distance from the axis.
     real(wp) :: suction_at(3) = 0
@@ -45,9 +45,9 @@ module timed_record
     real(wp) :: of_start = 0
   end type timed_result_t
 
-  !> A pass: its results and rows, whose times count from the beginning of a segment; the last three
-  !> loads, the present segment and the time [s] at which it began, the length of the next step [s],
-  !> and the row of the previous pass whose step is halved.
+  !> A pass: its results, and its rows, whose times count from the beginning of a segment. Its
+  !> present state: the last three loads, the segment and the time [s] at which it began, the length
+  !> of the next step [s], and the row of the previous pass whose step is halved.
   type :: pass_t
     type(timed_result_t) :: result
     integer :: held = 0, way = 0, halved = 1
@@ -188,8 +188,8 @@ contains
 
   !> Enters the numbers of a pass. The errors of loads are relative to the largest load. Those of
   !> the energy are relative to the energy or to the largest load times the law's length, whichever
-  !> is larger; those of the suction to the suction or to accuracy times the law's pressure, below
-  !> which a suction has no effect.
+  !> is larger. Those of the suction are relative to the suction or to the accuracy times the law's
+  !> pressure, below which a suction has no effect.
   subroutine enter_numbers(result, accuracy, with_work, with_suction, places)
     type(timed_result_t), intent(in) :: result
     real(wp), intent(in) :: accuracy
@@ -207,14 +207,14 @@ contains
       call places%enter('end', 1, place)
       place%at = nan
       if (number(of_tension) > 0) then
-        ! The load has an extremum there, which the last place does not say.
+        ! The load has an extremum there, other than at the end of the drive.
         place%turn_of = [0.0_wp, 1.0_wp]
         place%at([of_h0, measured_load]) = [number(of_tension_h0), -number(of_tension)]
         call places%enter('max_tension', 1, place)
         if (with_work) call places%enter('effective_work', 1, place)
         place%turn_of = 0
       end if
-      ! Without a load.
+      ! The following numbers have no h0 and no load.
       place%at([of_h0, measured_load]) = [nan, 0.0_wp]
       if (with_suction) then
         place%at(measured_suction) = number(of_suction)

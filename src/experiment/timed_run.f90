@@ -76,7 +76,7 @@ contains
     integer :: pass, whole, i
 
     ! The error of a pass over its difference from the pass before and from the one before that:
-    ! half the steps have a quarter of the error.
+    ! steps half as long have a quarter of the error.
     others%part = 1/([4, 16] - 1.0_wp)
     call prepare()
     if (allocated(request%drive%time_step)) blank%time_step = request%drive%time_step
@@ -140,8 +140,9 @@ contains
 
   contains
 
-    !> Compares with the two passes before the present one. A suction that the last one did not
-    !> determine, at an unresolved jump of the one before, is no measure for later ones.
+    !> Keeps the numbers of this pass and of the one before, with which the next pass is compared.
+    !> If this pass did not determine the suction, because of an unresolved jump in the one before,
+    !> the next suction is not compared with that of the one before.
     subroutine keep_passes()
       integer :: i
 
@@ -155,8 +156,8 @@ contains
       end do
     end subroutine keep_passes
 
-    !> A suction whose error exceeds it is not determined, and does not count: more passes rarely
-    !> help, and the summary has a warning.
+    !> A suction whose error exceeds the suction itself is not determined, and does not count: more
+    !> passes rarely help, and the summary has a warning.
     subroutine ignore_unknown_suction()
       integer :: i
 
@@ -169,7 +170,7 @@ contains
       end do
     end subroutine ignore_unknown_suction
 
-    !> Sets the stepper of the problem, and the motion.
+    !> Prepares the stepper for the problem, and the motion of the drive.
     subroutine prepare()
       associate (asked => request%drive, law => problem%law)
         steps%problem = problem
@@ -187,7 +188,8 @@ contains
           law%gap_of(asked%z_turn), asked%dwell, law%gap_of(asked%z_end))
       end associate
       if (allocated(request%fluid)) then
-        ! Rates are differences over short steps.
+        ! Rates are differences of gaps over short steps, so that the gaps must be exact to
+        ! rounding.
         steps%options = tightened(steps%options)
         allocate (steps%drainage)
         steps%drainage%strength = 12*request%fluid%viscosity*problem%lateral**2/ &
