@@ -1,6 +1,6 @@
 !> Anderson's acceleration (1965) of a fixed-point iteration, in the form that Walker and Ni (2011)
-!> call type II: from the last steps, the combination with the least |f| by linear least squares,
-!> and from there one more plain step.
+!> call type II. Linear least squares give the combination of the last iterates with the least |f|;
+!> from there one more plain step is made.
 !>
 !> The plain step is -ratio f. In `anderson_mixing` f is the residual and the ratio that of the
 !> mixing; in `anderson` f is the residual times the inverse of a factorised Jacobian, and the ratio
@@ -19,8 +19,8 @@ module acceleration
     procedure :: forget
   end type history_t
 
-  !> A difference is dropped if the part of it that is independent of newer ones is below this: the
-  !> least squares would amplify rounding by the inverse.
+  !> A difference is dropped if its part that is linearly independent of newer ones is below this
+  !> fraction of it: the least squares would amplify rounding by the inverse of this fraction.
   real(wp), parameter :: independent = 1.0e-6_wp
 
 contains
@@ -62,8 +62,8 @@ contains
   end subroutine accelerate
 
   !> Adds to the step -ratio f the combination of differences that minimises |f|, and the same
-  !> combination of plain steps: by modified Gram-Schmidt, newest first. A difference that is nearly
-  !> a combination of newer ones is dropped.
+  !> combination of plain steps. The method is modified Gram-Schmidt, with the newest difference
+  !> first. A difference that is nearly a combination of newer ones is dropped.
   pure subroutine combine(dz, df, ratio, f, step)
     real(wp), intent(in), contiguous :: dz(:, :), df(:, :)
     real(wp), intent(in) :: ratio, f(:)

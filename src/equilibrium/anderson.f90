@@ -18,9 +18,10 @@ module anderson
   private
   public :: solve_anderson
 
-  !> An iteration: the unknowns z, their residual g, f (minus the plain step) and the accelerated
-  !> step; the unknowns with the shortest plain step and those with the least residual; the lengths
-  !> of the last and of the shortest plain step, and the least residual.
+  !> The present iterate: the unknowns z, their residual g, f (minus the plain step) and the
+  !> accelerated step. The best iterates: the unknowns with the shortest plain step, and those with
+  !> the least residual. Then the lengths of the last and of the shortest plain step, and the least
+  !> residual.
   type :: iterate_t
     real(wp), allocatable :: z(:), g(:), f(:), step(:), z_best(:), z_least(:)
     real(wp) :: length = huge(1.0_wp), shortest = huge(1.0_wp), least = huge(1.0_wp)
@@ -29,15 +30,16 @@ module anderson
   end type iterate_t
 
   !> Iterations that every state needs. The factorisation is renewed once the further iterations
-  !> have cost as much as a new one: one iteration for each `unknowns_an_iteration` unknowns.
+  !> have cost as much as a new factorisation, which costs one iteration for each
+  !> `unknowns_an_iteration` unknowns.
   integer, parameter :: few_iterations = 2, unknowns_an_iteration = 20
-  !> A step that is so many times longer than the last one is rejected. Largest number of rejected
-  !> steps; after more, the iteration stops.
+  !> A step is rejected if it is more than this many times as long as the last one. Largest number
+  !> of rejected steps; after more, the iteration stops.
   real(wp), parameter :: too_long = 10
   integer, parameter :: most_rejections = 4
   !> With a fluid: a plain step shorter than `last_step` tolerances is the last one; so is a step
   !> below `few_roundings` tolerances that is hardly shorter than the one before. The tolerance is
-  !> some roundings of a gap; with longer last steps, rates were noise.
+  !> some roundings of a gap; after longer last steps the rates of the gaps would be noise.
   real(wp), parameter :: last_step = 0.1_wp, few_roundings = 10, hardly_shorter = 0.5_wp
 
 contains

@@ -24,8 +24,8 @@ module anderson_mixing
   private
   public :: solve_anderson_mixing
 
-  !> Growth of the residual over that of the best state at which a state is rejected. Residuals grow
-  !> several times on the way to equilibrium, since accelerated steps are not monotonic.
+  !> A state is rejected if its residual exceeds that of the best state by this factor. Residuals
+  !> grow several times on the way to equilibrium, since accelerated steps are not monotonic.
   real(wp), parameter :: growth = 10
   !> The iteration ends after this number of rejections since the least residual was last halved,
   !> and after this number of iterations.
@@ -61,8 +61,8 @@ contains
   end subroutine solve_anderson_mixing
 
   !> Relaxes `state` to a stable equilibrium at a prescribed H0 (control kind at_h0): plain mixing,
-  !> interrupted by attempts of the accelerated iteration. On return as `solve_anderson_mixing`.
-  !> spent: iterations for this state so far.
+  !> interrupted by attempts of the accelerated iteration. The results are those of
+  !> `solve_anderson_mixing`. spent: iterations for this state so far.
   subroutine relax_by_mixing(equations, options, control, state, converged, spent)
     type(equations_t), intent(inout) :: equations
     type(solver_options_t), intent(in) :: options

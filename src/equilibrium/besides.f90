@@ -17,8 +17,8 @@ module besides
     procedure :: at_scale
   end type besides_t
 
-  !> Relative difference of positions for the difference quotient, whose relative error is about the
-  !> same, enough for small changes of the scale.
+  !> Relative difference of positions for the difference quotient. Its relative error is about as
+  !> large, which is sufficient for small changes of the scale.
   real(wp), parameter :: apart = 1.0e-6_wp
 
 contains

@@ -43,7 +43,7 @@ contains
     self%iterations = other%iterations
   end subroutine become
 
-  !> The bodies at h0 before any deformation, on a mesh of a scale.
+  !> The undeformed bodies at h0, on a mesh of the given scale.
   pure type(state_t) function undeformed_state(shape, grid, h0, scale) result(state)
     class(shape_t), intent(in) :: shape
     type(discretisation_t), intent(in) :: grid

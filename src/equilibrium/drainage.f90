@@ -39,13 +39,13 @@ module drainage
     real(wp), allocatable :: raised(:)
   end type earlier_t
 
-  !> The fluid in a time step: its films on the meshes of a family, the weight [1/s] of the present
-  !> gap in the rate, the earlier states, and their part of the rate at the nodes of the present
-  !> mesh.
+  !> The fluid in a time step. It has a film on each mesh of a family, and the weight [1/s] of the
+  !> present gap in the rate. It also has the earlier states, and their part of the rate at the
+  !> nodes of the present mesh.
   type, extends(fluid_t) :: drainage_t
     type(running_integrals_t), allocatable :: film(:)
     real(wp) :: weight = 0
-    !> Two of them; allocatable: compiler note 11.
+    !> The two earlier states. (The array is allocatable: compiler note 11.)
     type(earlier_t), allocatable :: earlier(:)
     type(besides_t), private :: known
   contains
@@ -86,7 +86,8 @@ contains
   end function farthest_pole
 
   !> Weights [1/s] of the present value and of the two earlier values in the rate at the end of a
-  !> step: of the parabola through all three, or of the line through the last two if before = 0.
+  !> step. The rate is the slope of the parabola through all three values or, if before = 0, of the
+  !> line through the last two.
   pure function rate_weights(seconds, before) result(weights)
     real(wp), intent(in) :: seconds, before
     real(wp) :: weights(3), ratio
@@ -160,9 +161,9 @@ contains
     end associate
   end function pressure
 
-  !> Changes of sums of the pressure with the gaps, by_gap (sums, nodes), and with the scale of the
-  !> mesh at fixed gaps, by_scale. weights (sums, nodes): of the nodes in each sum; shape_slope:
-  !> x f'(c x), the derivative of the shape by the scale.
+  !> Derivatives of weighted sums of the pressures: by the gaps, by_gap (sums, nodes), and by the
+  !> scale of the mesh at fixed gaps, by_scale. weights (sums, nodes): of the nodes in each sum;
+  !> shape_slope: x f'(c x), the derivative of the shape by the scale.
   subroutine changes(self, mesh, scale, gap, raised, shape_slope, weights, by_gap, by_scale)
     class(drainage_t), intent(in) :: self
     integer, intent(in) :: mesh

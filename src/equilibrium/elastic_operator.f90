@@ -23,7 +23,7 @@ module elastic_operator
   !> further waves are added.
   real(wp), parameter :: smaller = 0.5_wp, larger = 1.4_wp
   !> Number of meshes whose waves are kept: the path passes from one mesh to the next, and jumps
-  !> return.
+  !> lead back to earlier meshes.
   integer, parameter :: most_meshes = 8
 
   type :: elastic_operator_t

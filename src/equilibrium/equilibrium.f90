@@ -6,9 +6,9 @@
 !> rho = c x of bodies of the shape f with the `elastic_operator` A. A control says which quantity
 !> is prescribed. If it is not H0 at a fixed scale, there is one more unknown (H0 or c) and one more
 !> equation (for the gap on the axis or at the contact edge). Behind a spring H0 follows from the
-!> position of its base and the load. In bodies with memory the deformation due to earlier pressures
-!> (`besides`) adds to the gap, and the pressure of a fluid between the bodies (`drainage`) adds to
-!> P(H).
+!> position of its base and the load. In viscoelastic bodies the deformation due to earlier
+!> pressures (`besides`) adds to the gap, and the pressure of a fluid between the bodies
+!> (`drainage`) adds to P(H).
 module equilibrium
   use kinds, only: wp, pi, long
   use dimensionless_problem, only: problem_t, coupling_over
@@ -30,9 +30,9 @@ module equilibrium
   !> Upper limit of all lengths of an equilibrium, in the law's or in lateral units; its cube does
   !> not overflow.
   real(wp), parameter :: largest_unknown = 1.0e80_wp
-  !> Largest part of itself by which the contact radius changes in an iteration.
+  !> Largest relative change of the contact radius in an iteration.
   real(wp), parameter :: largest_change = 0.3_wp
-  !> Pressures below this part of rounding have no effect.
+  !> Pressures below this fraction of the rounding error of the largest pressure have no effect.
   real(wp), parameter :: unfelt = 1.0e-3_wp
 
   !> The fraction of a gap's excess over `far_gap` by which the gap may decrease in one step.
@@ -155,10 +155,10 @@ contains
         g(i) = state%gap(i) - state%h0 - problem%shape%height(state%scale*grid%x(i)) - &
           rise(first_node - 1 + i)
       end do
-      ! The axis need not be a node. In a stiff contact its equation magnifies the error of
-      ! interpolated pressures; extrapolation of the gaps at the nodes is more accurate. On a mesh
-      ! fixed in space the state may be far from equilibrium, and all its values are those of its
-      ! gaps.
+      ! The axis need not be a node. In a stiff contact the equation for the axis magnifies the
+      ! error of interpolated pressures; extrapolation of the gaps at the nodes is more accurate. On
+      ! a mesh fixed in space a state may be far from equilibrium, and its gap on the axis must also
+      ! follow from the gaps at the nodes.
       state%axis_gap = state%h0 + rise(axis_row)
       if (grid%centre > 0 .or. (equations%meshes%is_fixed() .and. control%kind == at_h0)) &
         state%axis_gap = dot_product(grid%at_axis, state%gap)
@@ -251,10 +251,11 @@ contains
     if (.not. holds) holds = state%residual <= residual_floor(problem, state)
   end function holds
 
-  !> The residual due to rounding alone: a few units in the last place of the gaps, and the rounding
-  !> of the sums for the deformation, which grows as the root of the number of nodes; its parts have
-  !> opposite signs in an adhesive contact (the operator on a uniform pressure gives at most 2). It
-  !> is at most the residual up to which a state counts as an equilibrium of the law.
+  !> The residual due to rounding alone. It is a few units in the last place of the gaps, plus the
+  !> rounding of the sums for the deformation, which grows as the square root of the number of
+  !> nodes. The terms of these sums have opposite signs in an adhesive contact (for a uniform
+  !> pressure the operator gives at most 2). The result is limited to the residual up to which a
+  !> state counts as an equilibrium of the law.
   pure real(wp) function residual_floor(problem, state)
     type(problem_t), intent(in) :: problem
     type(state_t), intent(in) :: state
@@ -267,7 +268,8 @@ contains
     residual_floor = min(residual_floor, largest_floor)
   end function residual_floor
 
-  !> Number of leading columns; the pressures after them are below the rounding of the largest.
+  !> Number of leading columns of the operator that matter: the pressures at later nodes are below
+  !> the rounding of the largest pressure.
   pure integer function acting_columns(pressure) result(columns)
     real(wp), intent(in) :: pressure(:)
     real(wp) :: least

@@ -1,5 +1,5 @@
 !> A factorised Jacobian that is used for many states, and the state at which it was made. Equal
-!> states and controls give equal factors, bit by bit, if both are exact or both are not.
+!> states and controls give factors that are equal bit by bit, if both have the same precision.
 module frozen_jacobian
   use contact_state, only: state_t
   use controls, only: control_t
@@ -48,9 +48,9 @@ contains
   end subroutine forget
 
   !> Factorises the Jacobian at a state. frozen%factors%valid: the Jacobian is regular. The factors
-  !> are in single precision, except in three cases: they are to be exact; the mesh is fixed in
-  !> space, where their determinants are used; or there is a fluid, whose pressures depend too
-  !> strongly on the gaps in short steps of time.
+  !> are in double precision in three cases: if `exact` is .true.; if the mesh is fixed in space,
+  !> where their determinants are used; and if there is a fluid, whose pressures depend too strongly
+  !> on the gaps in short time steps. Otherwise they are in single precision.
   subroutine freeze(equations, control, state, frozen, exact)
     type(equations_t), intent(inout) :: equations
     type(control_t), intent(in) :: control

@@ -1,4 +1,4 @@
-!> A step of h0: the method of section II C of the paper, with what stands beside it here.
+!> A step of h0: the method of section II C of the paper, and its alternatives in this program.
 !>
 !> The paper's algorithm in its order, and the module in which each part is found:
 !>
@@ -25,8 +25,8 @@
 !>   last states, or moves the gap with the contact edge. It saves iterations; the equilibrium that
 !>   is found is the same.
 !> - Along the path of all equilibria, which is traced before (`tracing`): the default. The mesh is
-!>   scaled with the contact, whose radius is an unknown. A step only reads the path, so jumps start
-!>   at its folds and land on its next stable piece; `path_stepper`.
+!>   scaled with the contact, whose radius is an unknown. Steps follow the known path: jumps
+!>   start at its folds and end on its next stable piece (`path_stepper`).
 !>
 !> `fixed_stepper` makes the first two. The iteration does not decide what is a jump: between two
 !> rows `fixed_motion` looks for a fold of the equations, whatever the method.

@@ -45,7 +45,7 @@ contains
     equations%cost%factorisations = equations%cost%factorisations + 1
   end subroutine factorise_jacobian
 
-  !> Corrects the derivative by the scale for bodies with memory: the rise due to earlier pressures
+  !> Corrects the derivative by the scale for viscoelastic bodies: the rise due to earlier pressures
   !> is part of the gaps in `scale_derivative`, but is not proportional to the scale.
   subroutine add_besides(besides, control, state, lu)
     type(besides_t), intent(in) :: besides
@@ -247,8 +247,9 @@ contains
     end associate
   end subroutine scale_derivative
 
-  !> Derivative of `residual` by the control's value at a state. The tangent of the path is minus
-  !> the solution of the linear system of the same control's Jacobian with this right-hand side.
+  !> Derivative of `residual` by the control's value at a state. With this right-hand side and the
+  !> Jacobian for the same control, the solution of the linear system is minus the tangent of the
+  !> path.
   function control_derivative(equations, control, state) result(derivative)
     type(equations_t), intent(inout) :: equations
     type(control_t), intent(in) :: control

@@ -13,9 +13,10 @@ module local_criteria
 
   !> Smaller pressures count as zero and are not used as divisors.
   real(wp), parameter :: least_pressure = 1.0e-100_wp
-  !> Points between two neighbouring nodes, and steps of the golden section about the largest.
+  !> Number of points between two neighbouring nodes, and of steps of the golden section about the
+  !> largest value.
   integer, parameter :: points = 4, most_sections = 40
-  !> Number of nodes of the polynomial on meshes whose panels have fewer.
+  !> Number of nodes of the interpolating polynomial if the panels have fewer nodes.
   integer, parameter :: few = 4
   !> The least relative increase in the search; less is rounding.
   real(wp), parameter :: gained = 1.0e-9_wp
@@ -26,7 +27,7 @@ contains
 
   !> The maximum over r of the left side of (28), |2 u p'/p|; above 1 the state is unstable by this
   !> criterion. The criterion is derived for surfaces that attract each other, with p < 0 and p' >
-  !> 0, and only these places count: inside the contact edge p passes zero, and the ratio is
+  !> 0. Only places with these signs count: inside the contact edge p passes zero, and the ratio is
   !> unbounded. Adhesive contacts always violate the criterion just outside the edge. NaN if there
   !> is no attraction. error: due to the interpolation between nodes; by_gap: the magnitude of the
   !> derivative by the gap at this place.
@@ -109,14 +110,13 @@ contains
     if (.not. gap > problem%law%smallest_gap) return
     pressure = problem%law%pressure([gap])
     slope = problem%law%slope([gap])
-    ! Slopes are below 1e121 and lengths below 1e80.
+    ! The product cannot overflow: slopes are below 1e121 and lengths below 1e80.
     if (attracts(pressure(1), slope(1))) ratio = &
       abs((state%h0 + problem%shape%height(state%scale*x) - gap)*slope(1))/(-pressure(1))
   end function ratio
 
   !> The gap at a position, by the polynomial of the panel's deformations or, on panels of few
-  !> nodes, of those at the nearest nodes. fewer: number of nodes, the nearest ones, that are
-  !> left out.
+  !> nodes, of those at the nearest nodes. fewer: the number of nearest nodes that are omitted.
   pure real(wp) function gap_near(problem, grid, state, raised, x, fewer) result(gap)
     type(problem_t), intent(in) :: problem
     type(discretisation_t), intent(in) :: grid

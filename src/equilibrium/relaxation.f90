@@ -13,9 +13,9 @@ module relaxation
   private
   public :: relax
 
-  !> Largest number of steps of pseudo-time; number of factorisations that is always allowed (a
-  !> contact edge that moves over a hundred cohesive zones needs about 200); and the limit of
-  !> further ones, in cubes of the matrix's order (about ten seconds).
+  !> Largest number of steps of pseudo-time. Number of factorisations that is always allowed; a
+  !> contact edge that moves over a hundred cohesive zones needs about 200. Limit of the further
+  !> factorisations, in cubes of the matrix's order (about ten seconds).
   integer, parameter :: most_steps = 2000, few_factorisations = 500
   real(wp), parameter :: most_cubes = 1.0e11_wp
   !> First step of pseudo-time (the stiffest modes relax in less than one unit), its largest growth,
@@ -26,7 +26,8 @@ module relaxation
     shortest_step = 1.0e-3_wp, longest_step = 1.0e12_wp, nudge = 1.0e-4_wp
   !> The residual before the first step is unknown.
   real(wp), parameter :: unknown = 1.0e100_wp
-  !> Largest change of the gaps in a step of the fall, in the law's lengths.
+  !> Steps may grow until the gaps change by this much in a step, in the law's lengths, even if the
+  !> residual does not decrease.
   real(wp), parameter :: travel = 0.3_wp
 
 contains

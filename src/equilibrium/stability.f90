@@ -14,9 +14,9 @@ module stability
   private
   public :: smallest_eigenvalue, unknown
 
-  !> The bound of the error of an eigenvalue lambda: a part relative to 1 - lambda, and a part
-  !> relative to the largest of 1 and the numbers |1 - lambda| of the operator, for unavoidable
-  !> rounding.
+  !> A bound of the error of an eigenvalue lambda. It has a part relative to |1 - lambda|, and a
+  !> part for unavoidable rounding, relative to 1 or to the largest |1 - lambda| of the operator,
+  !> whichever is larger.
   type :: margin_t
     real(wp) :: relative, rounding
   end type margin_t
@@ -30,7 +30,7 @@ module stability
   !> Bound of the errors of all computed eigenvalues.
   type(margin_t), parameter :: lower = margin_t(1.0e-2_wp, 1.0e-12_wp)
   integer, parameter :: most_iterations = 50
-  !> Effect of a node over the largest effect that is below rounding.
+  !> The effect of a node is below rounding if it is below this fraction of the largest effect.
   real(wp), parameter :: negligible = 0.01_wp*epsilon(1.0_wp)
 
 contains
@@ -38,10 +38,10 @@ contains
   !> The smallest eigenvalue of I - A(c) diag(P'), which is positive if the state is stable at fixed
   !> h0. The spectrum is real because A is symmetric under the weights, except for discretisation
   !> errors. LAPACK computes all eigenvalues. The smallest is then refined to the accuracy of the
-  !> operator's factors, and three independent conditions are checked: the eigenpair belongs to the
-  !> operator; the sign of the determinant is that of an even number of smaller eigenvalues; the
-  !> errors of all computed eigenvalues, by Bauer and Fike, exclude a much smaller one. If a
-  !> condition fails, the eigenvalue is NaN and `certain` is .false.
+  !> operator's factors. Three independent conditions are checked. The refined pair satisfies the
+  !> eigenvalue equation of the operator. The sign of the determinant belongs to an even number of
+  !> smaller eigenvalues. The error bounds of all computed eigenvalues (Bauer and Fike) exclude a
+  !> much smaller one. If a condition fails, the eigenvalue is NaN and `certain` is .false.
   subroutine smallest_eigenvalue(problem, grid, state, eigenvalue, certain, cost)
     type(problem_t), intent(in) :: problem
     type(discretisation_t), intent(in) :: grid
