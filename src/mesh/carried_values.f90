@@ -1,8 +1,8 @@
-!> Values at fixed positions, carried from one mesh to the next while the mesh moves, step after
+!> Interpolates values at fixed positions from one mesh to the next, while the mesh moves step by
 !> step. The polynomial of one panel alone ignores the values that enter the panel from its
-!> neighbour: repeated use is an extrapolation whose errors grow without bound. With the neighbour's
-!> value at the common end, the polynomial is a collocation of the flow through the mesh, which is
-!> stable.
+!> neighbour. If it is used repeatedly, this is an extrapolation whose errors grow without bound.
+!> With the neighbour's value at the common end, the polynomial is a collocation of the flow through
+!> the mesh, which is stable.
 module carried_values
   use kinds, only: wp
   use discretisation, only: discretisation_t

@@ -53,9 +53,9 @@ contains
       c = c*(2 - min(1.0_wp, coupling_over(problem, c)/problem%coupling))
   end function largest_radius
 
-  !> An H0 above which there is no contact: that of the jump out of contact at fixed displacement in
-  !> JKR theory, with a margin of a fifth, for half-spaces with the compliance of the bodies at the
-  !> contact radius of zero displacement.
+  !> An H0 above which there is no contact: that of the snap-off at prescribed displacement in JKR
+  !> theory, with a margin of a fifth. The theory is used for half-spaces with the compliance that
+  !> the bodies have at the contact radius of zero displacement.
   pure real(wp) function beyond_contact(problem)
     type(problem_t), intent(in) :: problem
     real(wp) :: strength
@@ -90,9 +90,9 @@ contains
     level = bracket%middle()
   end function contact_level
 
-  !> Width of the zone outside the edge over which the tension decays, lateral units: `neck_width`,
-  !> which assumes a range of one law's length, times the square of the ratio of the law's range to
-  !> that of the Lennard-Jones law, if this ratio is below 1.
+  !> Width of the zone outside the edge over which the tension decays, in lateral units.
+  !> `neck_width` assumes that the law's range is the law's length. If the ratio of the range to
+  !> that of the Lennard-Jones law is below 1, the width is multiplied by the square of this ratio.
   pure real(wp) function cohesive_width(problem) result(width)
     type(problem_t), intent(in) :: problem
     real(wp) :: tension(1)

@@ -31,9 +31,9 @@ module discretisation
     real(wp), allocatable :: x(:)
     !> integral f x dx = sum(weight*f), (nodes).
     real(wp), allocatable :: weight(:)
-    !> matmul(kernel, p) = integral k(r, t) p(t) t dt, (first_node - 1 + nodes, nodes): row axis_row
-    !> is for the axis, row centre_row for the mesh's centre, and rows from first_node on are for
-    !> the nodes. Not allocated for rigid bodies.
+    !> matmul(kernel, p) = integral k(r, t) p(t) t dt, (first_node - 1 + nodes, nodes). Row axis_row
+    !> is for r on the axis, row centre_row for r at the mesh's centre, and the rows from first_node
+    !> on are for the nodes. Not allocated for rigid bodies.
     real(wp), allocatable :: kernel(:, :)
     !> The largest absolute value in each column of the kernel, (nodes).
     real(wp), allocatable :: largest(:)
@@ -148,8 +148,9 @@ contains
     end do
   end subroutine add_kernel
 
-  !> The tail of a pressure on each panel, over the largest pressure or the unit of pressure (about
-  !> the law's largest tension) if that is larger; 0 on a panel to infinity.
+  !> The tail of a pressure (`local_nodes`) on each panel. It is divided by the largest pressure or
+  !> by the unit of pressure (about the law's largest tension), whichever is larger; it is 0 on a
+  !> panel to infinity.
   pure function panel_tails(self, pressure) result(tails)
     class(discretisation_t), intent(in) :: self
     real(wp), intent(in) :: pressure(:)

@@ -88,9 +88,9 @@ contains
     end if
   end subroutine make_mesh
 
-  !> Makes the shape of a mesh from a coarser one, with more nodes on its panels, if a new layout
-  !> would have fewer nodes and so no smaller error. Meshes for computed gaps are laid out anew,
-  !> since their panels may be the cause of an error, unless they are to be kept.
+  !> Makes the shape of a mesh from that of a coarser one, with more nodes on its panels. This is
+  !> done if a new layout would have fewer nodes and thus no smaller error. Meshes for computed gaps
+  !> are laid out anew, since their panels may be the cause of an error, unless they are to be kept.
   subroutine follow(meshes, coarser, mesh, problem, keep)
     type(mesh_family_t), intent(inout) :: meshes
     type(mesh_family_t), intent(in) :: coarser

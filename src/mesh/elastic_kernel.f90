@@ -11,8 +11,9 @@ module elastic_kernel
   private
   public :: kernel, kernel_log_coefficient
 
-  !> A step of the mean is needed if a ratio is below the first of these numbers, one more step
-  !> below the next, and so on. The ratios are then so near to 1 that the series is exact.
+  !> The arithmetic-geometric mean needs one step if a ratio is below the first of these numbers,
+  !> one more step if it is below the second one, and so on. After these steps the ratios are so
+  !> near to 1 that the series is exact.
   real(wp), parameter :: one_more(6) = [0.82_wp, 0.271_wp, 0.019_wp, 9.1e-5_wp, 2.1e-9_wp, &
     1.2e-18_wp]
   !> Coefficients, after 1, of the series of 1/agm(1 + q, 1 - q) in q**2.
@@ -64,8 +65,8 @@ contains
     end do
   end function over_means
 
-  !> The same for a fixed number of values, so that the loops vectorise. All take the number of
-  !> steps that one of them needs. (Consecutive points usually have similar ratios.)
+  !> The same for a fixed number of values, so that the loops vectorise. All values take as many
+  !> steps as the value that needs most. (Consecutive points usually have similar ratios.)
   pure subroutine divide(factor, x, y, quotient)
     real(wp), intent(in) :: factor, x(at_once), y(at_once)
     real(wp), intent(out) :: quotient(at_once)

@@ -1,9 +1,9 @@
 !> Integrals of the elastic kernel over a part of a panel, by quadrature points graded towards the
 !> target.
 !>
-!> With distance = length*v**power and Gauss points in v, a logarithm at distance 0 becomes as
-!> smooth as v**(power - 1) ln(v), and a singularity at a small distance stays away from the points
-!> in proportion. Plain Gauss points are enough for distant targets.
+!> The points are Gauss points in v, with distance = length*v**power. A logarithm at distance 0 then
+!> becomes as smooth as v**(power - 1) ln(v). A singularity at a small distance stays away from the
+!> points in proportion to their spacing. Plain Gauss points are enough for distant targets.
 module graded_kernel
   use kinds, only: wp, pi
   use elastic_kernel, only: kernel
@@ -14,15 +14,17 @@ module graded_kernel
   private
   public :: add_graded
 
-  !> Exponent of the substitution, and number of points at which the error for v**(power - 1) ln(v)
-  !> is of the order of one; it decreases with the power 2*power of this number.
+  !> Exponent of the substitution, and number of points for which the error of the integral of
+  !> v**(power - 1) ln(v) is of the order of one. With n points the error is proportional to
+  !> n**(-2*power).
   integer, parameter :: power = 4
   real(wp), parameter :: least_graded = 1.75_wp
-  !> Number of points for each degree of the nodes' polynomials, graded and plain, and of additional
-  !> plain points.
+  !> Number of graded points, and of plain points, for each degree of the nodes' polynomials; number
+  !> of additional plain points.
   real(wp), parameter :: graded_share = 1.4_wp, plain_share = 0.5_wp
   integer, parameter :: least_plain = 3
-  !> Digits more on a linear panel, where the polynomials of the highest degrees count as well.
+  !> Additional digits on a linear panel, where the polynomials of the highest degrees count as
+  !> well.
   real(wp), parameter :: for_linear = 1
   !> Length in z of a sinh panel that needs as many points as a power panel.
   real(wp), parameter :: length_of_power = 8
@@ -40,11 +42,12 @@ module graded_kernel
 
 contains
 
-  !> Adds the integrals of the kernel against Legendre polynomials, (degree + 1, target), over the
-  !> part of the panel from its left end to the local coordinate `part`, for targets at r = centre +
-  !> target(i), with so many digits. Points are graded also towards a target outside the part, if
-  !> its distance is at most the length of the part; on the axis the kernel is 2/t. place: local
-  !> coordinates of the targets, of those on the panel exactly.
+  !> Adds the integrals of the kernel times Legendre polynomials, (degree + 1, target), with an
+  !> accuracy of `digits` digits. They are over the part of the panel from its left end to the local
+  !> coordinate `part`, for targets at r = centre + target(i). Points are graded also towards a
+  !> target outside the part, if its distance is at most the length of the part; on the axis the
+  !> kernel is 2/t. place: local coordinates of the targets, which are exact for targets on the
+  !> panel.
   subroutine add_graded(panel, part, digits, centre, target, place, moments)
     type(panel_map_t), intent(in) :: panel
     real(wp), intent(in) :: part, digits, centre, target(:), place(:)
@@ -177,9 +180,9 @@ contains
     points = digits*log(10.0_wp)/(2*log(ellipse))
   end function points_against
 
-  !> Points graded towards the place `from`, over `length` of the panel after it or, if negative,
-  !> before it: distances from the place, positions, and weights for integrals of f t dt, with f a
-  !> tail times a polynomial.
+  !> Points graded towards the place `from`, over `length` of the panel after this place or, if
+  !> negative, before it. They are given by their distances from the place, their positions, and
+  !> weights for integrals of f t dt, with f a tail times a polynomial.
   pure subroutine find_points(panel, rule, centre, from, length, distance, t, weight)
     type(panel_map_t), intent(in) :: panel
     type(graded_rule_t), intent(in) :: rule
@@ -207,9 +210,9 @@ contains
     end if
   end subroutine find_points
 
-  !> Points along offset = d sinh(z), from z0 to z0 + delta with delta = 2 half step > 0: distances
-  !> d (sinh(z0 + delta) - sinh(z0)) and, as weights, the derivative of the map by z. grown:
-  !> exp(z0). The distance contains 2 sinh(delta/2), so that there is no cancellation.
+  !> Points along offset = d sinh(z), from z0 to z0 + delta, with delta = 2 half step > 0. The
+  !> distances are d (sinh(z0 + delta) - sinh(z0)); the weights are the derivative of the map by z.
+  !> grown: exp(z0). The distance contains 2 sinh(delta/2), so that there is no cancellation.
   pure subroutine place_along_sinh(d, grown, half, step, distance, weight)
     real(wp), intent(in) :: d, grown, half, step(:)
     real(wp), intent(out) :: distance(:), weight(:)

@@ -42,9 +42,9 @@ contains
   end function nodes_on
 
   !> Lengths in z and numbers of nodes of panels at offsets focus + side*d sinh(z), with the centre,
-  !> focus and d of `mapped`: the given panels with the number `nodes_on` or more, or their halves.
-  !> Contact radii are between low and high; about: the kind of centre. digits: accuracy of load and
-  !> h0. seen: gaps that replace the predicted ones.
+  !> focus and d of `mapped`. A given panel gets the number `nodes_on` of nodes or more, or is
+  !> replaced by its halves. Contact radii are between low and high; about: the kind of centre.
+  !> digits: accuracy of load and h0. seen: gaps that replace the predicted ones.
   subroutine fit_panels(problem, about, side, mapped, low, high, density, fewest, digits, &
     length, order, seen)
     type(problem_t), intent(in) :: problem
@@ -165,7 +165,7 @@ contains
 
     !> Whether the nodes of a panel resolve the pressure of gap number j at a radius. Under a law
     !> with a step, gaps between the first and the last one are tested only if their step is on the
-    !> panel; otherwise their pressures are as smooth as those of the first or the last gap.
+    !> panel. If it is not, their pressures are as smooth as those of the first or the last gap.
     logical function suffices(z, z_length, local, j, radius)
       real(wp), intent(in) :: z, z_length, radius
       type(local_nodes_t), intent(in) :: local
@@ -231,14 +231,14 @@ contains
 
   !> The relative error of load and gap due to the nodes of a panel. Since nodes integrate
   !> polynomials of twice the degree, the error is the tail of the pressure times the ratio of the
-  !> tail to the pressure. If a step is smaller than the pressure around it, the ratio is that to
-  !> the step, which nodes may miss completely.
+  !> tail to the pressure. If a step is smaller than the pressure around it, the tail is divided by
+  !> the height of the step, since nodes may miss the step completely.
   !>
-  !> Pressures are weighted by their area, limited by the length of the panel and by the area of the
-  !> total load, and within the panel by their effect on the gap; under oscillating laws by the area
-  !> of the panel. focus: radius to which the mesh is mapped; ends, r: radii of the panel's ends
-  !> and of its nodes; gap, pressure: at the nodes; load: the reference load without the factor of
-  !> 2 pi.
+  !> Pressures are weighted by their area, which is limited by the length of the panel and by the
+  !> area of the total load. Within the panel they are weighted by their effect on the gap. Under
+  !> oscillating laws they are weighted by the area of the panel. focus: radius to which the mesh is
+  !> mapped; ends, r: radii of the panel's ends and of its nodes; gap, pressure: at the nodes; load:
+  !> the reference load without the factor of 2 pi.
   pure real(wp) function left_out(problem, local, focus, ends, r, gap, pressure, load) result(left)
     type(problem_t), intent(in) :: problem
     type(local_nodes_t), intent(in) :: local

@@ -1,7 +1,7 @@
-!> Meshes mapped to a place, such as the contact edge or the axis: distance = d sinh(z) from it,
-!> Gauss-Legendre panels in z, and beyond some position an algebraic panel to infinity, on which
-!> pressures are a power tail. Distances from d to the mesh's length have equal numbers of nodes per
-!> factor in distance.
+!> Meshes mapped to a place, such as the contact edge or the axis. The distance from this place is d
+!> sinh(z), and the mesh has Gauss-Legendre panels in z. Beyond some position an algebraic panel
+!> extends to infinity, on which the pressure has a power tail. Distances from d to the mesh's
+!> length have equal numbers of nodes per factor in distance.
 module mapped_mesh
   use kinds, only: wp
   use discretisation, only: discretisation_t, mesh_of_panels

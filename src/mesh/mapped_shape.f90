@@ -7,7 +7,7 @@ module mapped_shape
 
   !> Number of nodes above which a panel counts as long.
   integer, parameter :: long = 16
-  !> Part of its nodes that each half of a long panel has at least.
+  !> Least number of nodes of each half of a long panel, over the number of nodes of the panel.
   real(wp), parameter :: nodes_of_half = 0.7_wp
 
   !> The parameters of a mapped mesh.

@@ -18,21 +18,23 @@ module mesh_digits
   real(wp), parameter :: fewest = 4.25_wp, most_digits = 13
   !> Least number of digits for each decade of sigma: with fewer digits folds would be missing or
   !> wrong, since they are closer together for stronger adhesion. For laws with a step or a period:
-  !> the number to be added to `fewest`. The last number always separates the folds in contact.
+  !> the number to be added to `fewest`. `enough_for_folds` digits always separate the folds in
+  !> contact.
   real(wp), parameter :: for_folds = 1.5_wp, for_folds_of_lengths = 1, enough_for_folds = 9
   !> Digits to be added, relative to a path under the Lennard-Jones law: for bodies without jumps;
-  !> for laws with a step; for oscillating laws; for profiles, which are sensitive to the
-  !> position of the edge; for profiles, for each decade of sigma, as the cohesive zone narrows; for
-  !> bodies with a kink over which panels pass.
+  !> for laws with a step; for oscillating laws. Digits to be added for profiles, which are
+  !> sensitive to the position of the edge: a constant; a number for each decade of sigma, as the
+  !> cohesive zone narrows. Digits to be added for bodies with a kink over which panels pass.
   real(wp), parameter :: without_jumps = -0.5_wp, for_steps = 0.6_wp, for_waves = 1.1_wp, &
     for_profiles = 2, for_narrow_necks = 0.3_wp, for_kinks = 1.5_wp
-  !> Digits for each decade of the ratio of the contact's compliance to that on a half-space, times
-  !> the square of the decades by which the contact is wider than the layer. Such a layer differs
-  !> from a half-space for wave numbers of at most `waves_in_layer` over the radius.
+  !> Digits to be added for layers: `for_softer` times the decades by which the compliance of the
+  !> contact exceeds that of a half-space, times the square of the decades by which the contact is
+  !> wider than the layer. Such a layer differs from a half-space for wave numbers of at most
+  !> `waves_in_layer` over the radius.
   real(wp), parameter :: for_softer = 0.6_wp, waves_in_layer = 32
-  !> The sigma at which jumps begin under the Lennard-Jones law (for other laws approximately);
-  !> digits to be added there; the factor in sigma within which they are added; and the part of this
-  !> range, logarithmically, in which the two folds are so close that coarse meshes miss them.
+  !> The sigma at which jumps begin under the Lennard-Jones law, and approximately under other laws.
+  !> Digits to be added there, and the factor in sigma within which they are added. The part of this
+  !> range of ln(sigma) in which the two folds are so close that coarse meshes miss them.
   real(wp), parameter :: onset = 0.29_wp, at_onset = 2, about_onset = 1.5_wp, near_onset = 0.35_wp
 
 contains

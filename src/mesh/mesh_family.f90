@@ -60,7 +60,7 @@ contains
     allocate (grid(size(self%grid) + 1))
     do k = 1, size(self%grid)
       to = k + merge(0, 1, k <= after)
-      ! A kernel is moved, since its copy would take as long as a state.
+      ! A kernel is moved, since a copy would take as long as the solution of a state.
       call move_alloc(self%grid(k)%kernel, kernel)
       if (k == after) grid(k + 1) = self%grid(k)
       grid(to) = self%grid(k)

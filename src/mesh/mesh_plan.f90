@@ -30,9 +30,9 @@ module mesh_plan
 
   !> The meshes are in the order of the path.
   type :: mesh_plan_t
-    !> Radius, in lateral units, at which the path passes to the next mesh: of the edge or the front
-    !> to which the next mesh is locked; for the last mesh the largest expected radius; 0: the path
-    !> passes at once.
+    !> Radius, in lateral units, at which the path passes to the next mesh: that of the edge or the
+    !> front to which the next mesh is locked. For the last mesh it is the largest expected radius.
+    !> 0: the path passes at once.
     real(wp), allocatable :: passage(:)
     !> Whether the path can be traced: the law attracts. Otherwise there is one mesh for contact,
     !> and `hertz_scale` prescribes its scale.
@@ -117,7 +117,7 @@ contains
   end function is_narrow
 
   !> Inserts a mesh after another one: locked to a gap (0: about the axis), for radii of this gap
-  !> between low and high. From the mesh before, the path passes to it at once.
+  !> between low and high. The path passes to this mesh at once from the mesh before.
   pure subroutine insert(self, after, locked, low, high)
     class(mesh_plan_t), intent(inout) :: self
     integer, intent(in) :: after
@@ -227,11 +227,12 @@ contains
     if (allocated(self%locked)) gap = self%locked(mesh)
   end function locked_gap
 
-  !> Contact radius at which the edge becomes too sharp for the mesh of the approach: a fraction of
-  !> the width of the cohesive zone, and of the radius over which the gap between rigid bodies
-  !> increases from the equilibrium separation to that of largest tension. If meshes are locked to a
-  !> front, the pressure inside it is smooth up to its last radius. If further meshes may be
-  !> inserted, the rim of a flat face is passed before. widest: the largest radius.
+  !> Contact radius at which the edge becomes too sharp for the mesh of the approach. It is a
+  !> fraction of two lengths: the width of the cohesive zone, and the radius over which the gap
+  !> between rigid bodies increases from the equilibrium separation to that of largest tension. If
+  !> meshes are locked to a front, the pressure inside it is smooth up to its last radius. If
+  !> further meshes may be inserted, the rim of a flat face is passed before. widest: the largest
+  !> radius.
   pure real(wp) function passage_to_contact(problem, fronts, further, widest) result(c)
     type(problem_t), intent(in) :: problem
     logical, intent(in) :: fronts, further

@@ -22,28 +22,30 @@ module mesh_rule
     density_about_edge(0:2) = [0.15_wp, 0.24_wp, 0.0105_wp]
   !> Relative increase of the density for each factor of e in sigma.
   real(wp), parameter :: for_adhesion = 0.03_wp
-  !> Relative increase for each factor of e of repulsion over adhesion inside the edge; outside it,
-  !> with the logarithm of this logarithm (`contact_shape`).
+  !> Relative increase of the density where repulsion exceeds adhesion: inside the edge proportional
+  !> to the logarithm of the ratio; outside the edge proportional to the logarithm of this logarithm
+  !> (`contact_shape`).
   real(wp), parameter :: inside_repulsion = 0.3_wp, outside_repulsion = 0.5_wp, &
     of_repulsion = 0.75_wp
   !> The density inside the edge over that about it under strong adhesion; the additional part under
   !> weak adhesion, and its decrease with sigma.
   real(wp), parameter :: inside_strong = 0.85_wp, inside_weak = 0.25_wp, weakening = 0.3_wp
-  !> Factors of densities: without adhesion, where only the repulsion is resolved; and outside the
-  !> edge of contacts smaller than their cohesive zone (neck), where the excess decreases with the
-  !> square of the radius over the neck times `beside_neck`.
+  !> Factor of the density without adhesion, where only the repulsion is resolved. Relative increase
+  !> outside the edge of contacts smaller than their cohesive zone (neck), which is divided by 1 +
+  !> beside_neck*(radius/neck)^2.
   real(wp), parameter :: without_adhesion = 1.5_wp, small_contact = 0.5_wp, beside_neck = 3
-  !> Digits of a kernel for each digit of the mesh, less the second number, and for each decade of
-  !> sigma.
+  !> Digits of a kernel: `of_kernel` for each digit of the mesh, less `fewer_of_kernel`, plus
+  !> `for_decade` for each decade of sigma.
   real(wp), parameter :: of_kernel = 1.2_wp, fewer_of_kernel = 2, for_decade = 0.5_wp
-  !> The length d over the smallest feature: errors change little between half this value and twice.
+  !> The length d over the smallest feature: errors change little between half this value and twice
+  !> this value.
   real(wp), parameter :: finer = 0.5_wp
   !> Least positions of the tail's beginning: in lateral units, and in units of the contact radius
   !> from the edge.
   real(wp), parameter :: nearest_tail = 5, tail_of_contact = 3
-  !> Largest length in z of the panels of a fluid: on longer panels, over which a mobility changes
-  !> by many orders of magnitude, the combined matrices of film and bodies are not positive
-  !> definite, and short waves grow in time.
+  !> Largest length in z of the panels for a fluid. On longer panels the mobility changes by many
+  !> orders of magnitude. The combined matrices of film and bodies are then not positive definite,
+  !> and short waves grow in time.
   real(wp), parameter :: longest_film = 3
   !> The panel on the axis of shapes that are not smooth there: its length in z, and the least power
   !> of its local coordinate that is not smooth.
@@ -200,7 +202,7 @@ contains
       end if
     end associate
     if (.not. allocated(shape%order)) allocate (shape%order(0), shape%z_length(0))
-    ! From the axis outward.
+    ! The panels are stored from the axis outward.
     if (side < 0) then
       lengths = lengths(size(lengths):1:-1)
       orders = orders(size(orders):1:-1)
@@ -209,10 +211,11 @@ contains
     shape%z_length = [shape%z_length, lengths]
   end subroutine add_panels
 
-  !> Gives a mesh a power panel on the axis, for shapes that are not smooth there. The pressure of a
-  !> contact contains r**(n-1) near the axis, with a logarithm if n is odd, and the gap on the axis
-  !> contains Int r**(n-1) dr; before contact the powers are higher by `beyond`, which is 2. As a
-  !> power of the panel's local coordinate this term has an exponent of at least `smoothness`.
+  !> Gives a mesh a power panel on the axis, for shapes that are not smooth there. Near the axis the
+  !> pressure of a contact contains a term r**(n-1), with a logarithm if n is odd, and the gap on
+  !> the axis contains Int r**(n-1) dr. Before contact the powers are higher by `beyond`, which is
+  !> 2. The power panel gives this term an exponent of at least `smoothness` in the local
+  !> coordinate.
   pure subroutine resolve_axis(problem, digits, beyond, shape)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: digits, beyond
@@ -221,7 +224,7 @@ contains
 
     if (problem%shape%is_even()) return
     shape%axis_power = ceiling(smoothness/(problem%shape%exponent + beyond))
-    ! A polynomial of the position has the power's multiple of its degree.
+    ! A polynomial of degree n in the position is of degree n*power in the local coordinate.
     order = ceiling((0.5_wp + 0.25_wp*shape%axis_power)*(short_order + short_orders*digits))
     if (shape%z_length(1) > 2*at_axis) then
       shape%z_length = [at_axis, shape%z_length(1) - at_axis, shape%z_length(2:)]

@@ -1,4 +1,5 @@
-!> Where the pressure on a mesh ends: its tail, and whether the end of the bodies matters.
+!> The outer end of a mesh: the tail of the pressure, and whether the force at the end of the bodies
+!> matters.
 module mesh_tail
   use kinds, only: wp
   use root_finding, only: bracket_t
@@ -12,7 +13,7 @@ module mesh_tail
   !> a parabola the poles of the pressure, at rho**2 = -2 H0, have the same distance from it as the
   !> axis has.
   real(wp), parameter :: beyond_poles = 1.3_wp
-  !> Nodes of the tail: this number, and for each digit.
+  !> Number of nodes of the tail: a constant, and the number to be added for each digit.
   real(wp), parameter :: tail_nodes = 1.5_wp, tail_nodes_of_digit = 0.6_wp
   !> The tail begins beyond the end of a body if the end is nearer than this multiple of the usual
   !> beginning of the tail.

@@ -16,19 +16,20 @@ module mesh_waves
   private
   public :: mesh_waves_t, new_mesh_waves
 
-  !> The displacement of a position outside the centre includes waves whose phase changes by less
-  !> than `passing_place` from node to node, a constant and a number per digit, and all waves whose
-  !> phase changes by less than `crossing` per digit between the axis and the position; the smooth
-  !> transition begins at this fraction. With a smaller constant the end of a path on a coat five
-  !> times as stiff as its base needs another mesh.
+  !> The displacement of a position outside the centre includes two kinds of waves. The phase of the
+  !> first changes by less than `passing_place` from node to node (a constant, and a number per
+  !> digit). The phase of the second changes by less than `crossing` per digit between the axis and
+  !> the position. The smooth transition to zero begins at the fraction `from_of_place` of the
+  !> largest wave number. With a smaller constant the end of a path on a coat five times as stiff as
+  !> its base needs another mesh.
   real(wp), parameter :: passing_place(2) = [8.0_wp, 1.0_wp], crossing = 2.4_wp, &
     from_of_place = 0.25_wp
-  !> Largest change of phase over one panel of wave numbers; number of nodes of a panel over which
-  !> the phase does not change, and of a panel over which it changes by `swing` (`wave_rule`), as a
-  !> constant and per digit. (The number is too small for a product of two waves at one position far
-  !> out, but the pressure is small there.) For a coat a hundred times as stiff as its base and
-  !> thirty times thinner than the contact radius, these numbers leave an error of 1e-9 of the load
-  !> at accuracy 1e-6; with three nodes fewer the error is 1e-7.
+  !> Largest change of phase over one panel of wave numbers. Number of nodes of a panel over which
+  !> the phase does not change, and of a panel over which it changes by `swing` (`wave_rule`): a
+  !> constant, and a number per digit. (These nodes are too few for a product of two waves at one
+  !> position far out, but the pressure is small there.) For a coat a hundred times as stiff as its
+  !> base and thirty times thinner than the contact radius, these numbers leave an error of 1e-9 of
+  !> the load at accuracy 1e-6; with three nodes fewer the error is 1e-7.
   real(wp), parameter :: swing = 60, nodes_at_first(2) = [5.0_wp, 17.0_wp], &
     nodes_a_digit(2) = [0.8_wp, 1.5_wp]
 

@@ -25,10 +25,11 @@ module panel_kernel
 
 contains
 
-  !> The sum of matrix(i, j) f(j) over j is the integral of k(r, t) f(t) t dt over the panel, for r
-  !> = centre + target(i) and f a polynomial of the panel's local coordinate (times the tail, if the
-  !> panel has one) that the nodes resolve, on a linear panel any polynomial through the nodes. own:
-  !> the index of the panel's first node among the targets; 0: none is a node.
+  !> Adds the matrix of a panel: the sum of matrix(i, j) f(j) over j is the integral of k(r, t) f(t)
+  !> t dt over the panel, for r = centre + target(i). Here f is a polynomial of the panel's local
+  !> coordinate that the nodes resolve, times the tail if the panel has one. On a linear panel f is
+  !> any polynomial through the nodes. own: the index of the panel's first node among the targets;
+  !> 0: none is a node.
   subroutine add_panel(panel, local, digits, centre, target, own, matrix)
     type(panel_map_t), intent(in) :: panel
     type(local_nodes_t), intent(in) :: local
@@ -104,7 +105,7 @@ contains
       if (near(i)) then
         j = j + 1
         a = kernel_log_coefficient(total, distance)
-        ! At the target itself: the rest of the kernel without its logarithm.
+        ! At the target itself the value is that of the kernel without its logarithm.
         k = minloc(abs(s - place(i)), 1)
         if (.not. abs(s(k) - place(i)) > 0) distance(k) = total(k)
         f(:, i) = measure*(weight*kernel(total, distance) + a*defect(:, j))

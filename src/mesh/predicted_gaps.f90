@@ -10,7 +10,7 @@ module predicted_gaps
   public :: axis_gaps, between, predicted_gap
 
   !> Number of gaps on the axis, or of radii, for which the pressure is evaluated: `tried`, or
-  !> `often` where waves move with them.
+  !> `often` under oscillating laws, whose waves of pressure move with the gaps.
   integer, parameter :: tried = 9, often = 33
 
 contains

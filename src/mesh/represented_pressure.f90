@@ -26,7 +26,7 @@ module represented_pressure
   !> Number of points of the quadrature on a piece of a panel: a constant, and for each node on it.
   real(wp), parameter :: points_a_node = 1.5_wp
   integer, parameter :: few_points = 9
-  !> Largest number of kinks that are few.
+  !> If a law has more kinks than this, the projection is used on all panels.
   integer, parameter :: few = 4
 
   !> The derivatives of a panel's pressures by its gaps, (nodes of the panel, nodes of the panel).
@@ -203,8 +203,9 @@ contains
   end function can_mix
 
   !> Points and weights for integrals over a panel with the gaps h at its nodes, in pieces that end
-  !> at the law's kinks. share: of the projection in the represented pressure: 1 if there is a kink
-  !> on the panel, or if the law has many; 0, without points, if none is near (`share_near`).
+  !> at the law's kinks. share: the share of the projection in the represented pressure: 1 if there
+  !> is a kink on the panel, or if the law has many; 0, without points, if none is near
+  !> (`share_near`).
   pure subroutine split(law, local, h, s, weight, share)
     class(force_law_t), intent(in) :: law
     type(local_nodes_t), intent(in) :: local
@@ -236,8 +237,9 @@ contains
     weight = [(length(i)*rule%weight, i=1, size(place))]
   end subroutine split
 
-  !> The share of the projection on a panel with the gaps y at its begin, nodes and end: 1 for a
-  !> kink between these gaps, falling to 0 for a kink as far outside as the end is from its node.
+  !> The share of the projection on a panel with the gaps y at its begin, nodes and end. It is 1 if
+  !> a kink is between these gaps. Outside it falls to 0 over the difference of gap between the
+  !> nearer end and the node next to it.
   pure real(wp) function share_near(kink, y) result(share)
     real(wp), intent(in) :: kink, y(0:)
     real(wp) :: off, reach

@@ -1,8 +1,8 @@
-!> Integrals of functions given at the nodes, over a mesh from the axis to each node, and from each
-!> node to infinity, by integrals of the panels' polynomials: that over the node's own panel as far
-!> as the node, and those over whole panels before it. On a panel to infinity, with u =
-!> begin/position, the functions of the first integral are bounded polynomials in u, and those of
-!> the second are position**(-6) times a polynomial in u.
+!> Integrals of functions given at the nodes of a mesh, from the axis to each node and from each
+!> node to infinity. They are sums of integrals of the panels' polynomials: over whole panels, and
+!> over the node's own panel as far as the node. On a panel to infinity, with u = begin/position,
+!> the functions of the first integral are bounded polynomials in u, and those of the second are
+!> position**(-6) times a polynomial in u.
 module running_integrals
   use kinds, only: wp
   use discretisation, only: discretisation_t
@@ -14,10 +14,10 @@ module running_integrals
   private
   public :: running_integral_t, running_integrals_t, new_running_integrals
 
-  !> Integrals in one direction. first, last: nodes of the panels in this direction; own(j, i): the
-  !> weight of node j of the panel of node i in the integral over this panel as far as node i;
-  !> whole: the weights in integrals over whole panels; factor: a factor of the integral at each
-  !> node.
+  !> Integrals in one direction. first, last: nodes of the panels in this direction. own(j, i): the
+  !> weight of node j in the integral over the panel of node i as far as node i; j counts the nodes
+  !> of this panel. whole: the weights in integrals over whole panels. factor: a factor of the
+  !> integral at each node.
   type :: running_integral_t
     private
     integer, allocatable :: first(:), last(:)

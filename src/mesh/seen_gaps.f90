@@ -36,11 +36,11 @@ module seen_gaps
     procedure :: load
   end type seen_gaps_t
 
-  !> A state, moved to other radii (lateral units): its number; the radius at which it has the gap
-  !> to which the new mesh is locked or, if that is about the axis, the radius of its edge; the
-  !> least and the largest radius to which this gap is moved; and the radius of a step of the
-  !> pressure in the state, or 0. about_axis: whether the new mesh is about the axis and the state
-  !> has an edge.
+  !> A state whose gaps are moved to other radii (lateral units). state: its number. from: the
+  !> radius of the gap to which the new mesh is locked or, if the new mesh is about the axis, of the
+  !> edge. low, high: the least and the largest radius to which this gap is moved. step: the radius
+  !> of a step of the pressure in the state, or 0. about_axis: whether the new mesh is about the
+  !> axis and the state has an edge.
   type :: moved_t
     integer :: state = 0
     real(wp) :: from = 0, low = 0, high = 0, step = 0
@@ -80,9 +80,9 @@ contains
     self%farthest = max(self%farthest, abs(h0))
   end subroutine add
 
-  !> The gaps of the newest state are to be tried, moved so that the gap at the radius `from` is at
-  !> radii from low to high. step: the radius of a step of the pressure in this state; 0: there is
-  !> none.
+  !> Notes that the newest state is to be tried, with its gaps moved: the gap at the radius `from`
+  !> moves to radii from low to high. step: the radius of a step of the pressure in this state; 0:
+  !> there is none.
   pure subroutine try(self, from, low, high, step)
     class(seen_gaps_t), intent(inout) :: self
     real(wp), intent(in) :: from, low, high, step
@@ -90,8 +90,8 @@ contains
     self%moved = [self%moved, moved_t(self%held, from, min(low, high), high, step)]
   end subroutine try
 
-  !> The gaps of the newest state are to be tried on a mesh about the axis, moved so that its edge
-  !> is at radii from `edge`, where it is (0: there is none), to `high`.
+  !> Notes that the newest state is to be tried on a mesh about the axis, with its gaps moved: the
+  !> edge moves from its own radius `edge` (0: there is no edge) to radii up to `high`.
   pure subroutine try_about_axis(self, edge, high)
     class(seen_gaps_t), intent(inout) :: self
     real(wp), intent(in) :: edge, high
@@ -120,9 +120,9 @@ contains
     if (all(self%moved%about_axis)) edges = [minval(self%moved%low), maxval(self%moved%high)]
   end function edges
 
-  !> The radii at which the tried state number j is tried on a panel: the least and the largest one,
-  !> and between them those with the step at the given offsets from the centre of the mesh or, if
-  !> there is no step, radii in equal ratios.
+  !> The radii at which the tried state number j is tried on a panel. They are the least and the
+  !> largest one, and radii between them. If the pressure has a step, the latter put the step at the
+  !> given offsets from the centre of the mesh; otherwise they are in equal ratios.
   pure function radii(self, j, offset)
     class(seen_gaps_t), intent(in) :: self
     integer, intent(in) :: j
@@ -170,8 +170,9 @@ contains
     end associate
   end function gap
 
-  !> Sets the positions r whose gaps move with the edge to positions `at`, on each side up to the
-  !> nearest kink, if the edge moves by less than the part `nearest` of its distance to this kink.
+  !> Sets the positions r whose gaps move to the positions `at`. Near the edge gaps move with the
+  !> edge. On each side their motion decreases to zero at the nearest kink, if the edge moves by
+  !> less than the fraction `nearest` of its distance to this kink.
   pure subroutine keep_kinks(kinks, from, radius, at, r)
     real(wp), intent(in) :: kinks(:), from, radius, at(:)
     real(wp), intent(inout) :: r(:)

@@ -16,10 +16,10 @@ module shape_panels
   !> Largest number of kinks of a shape at which panels end; a table has more kinks, which are
   !> everywhere.
   integer, parameter :: few = 4
-  !> In widths of the cohesive zone: the largest radius up to which the edge may move on meshes
-  !> about the axis, and the radius up to which it stays on them on a wider face. After a rim within
-  !> that radius it stays on them up to a multiple of the rim's radius, but at most one unit beyond
-  !> it.
+  !> Largest radius, in widths of the cohesive zone, up to which the edge may move on meshes about
+  !> the axis. Radius, in the same unit, up to which the edge stays on these meshes if the face is
+  !> wider than that. If it is not, the edge stays on them up to this multiple of the rim's radius,
+  !> but at most one unit beyond the rim.
   real(wp), parameter :: widths_to_pass = 100, widths_before = 5, beyond_rim = 1.3_wp
   !> Width of the cohesive zone, lateral units, above which adhesion is weak.
   real(wp), parameter :: wide = 10
@@ -28,11 +28,11 @@ contains
 
   !> The radius up to which the edge of a contact on a flat face stays on meshes about the axis.
   !> There the rim is a panel's end, so that the pressure is smooth on all panels. If the edge
-  !> passes over few panels, this is the radius of the widest contact; otherwise somewhat beyond the
-  !> rim; on a face that would need very many panels, well inside the rim. Under weak adhesion the
-  !> cohesive zone is wide, and the number of panels follows from the narrower layer at the edge of
-  !> a pressed contact. Inside a contact on layers, meshes about the axis lack short waves
-  !> (`mesh_waves`). 0: the shape has no flat face.
+  !> passes over few panels, the result is the radius of the widest contact. Otherwise it is a
+  !> radius somewhat beyond the rim or, on a face that would need very many panels, well inside the
+  !> rim. Under weak adhesion the cohesive zone is wide, and the number of panels follows from the
+  !> narrower layer at the edge of a pressed contact. Inside a contact on layers, meshes about the
+  !> axis lack short waves (`mesh_waves`). 0: the shape has no flat face.
   pure real(wp) function rim_passed_at(problem, widest) result(radius)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: widest
@@ -92,9 +92,9 @@ contains
   end function panels_for
 
   !> Lengths in z of panels between two places, at most `longest`. They are also short compared with
-  !> the distance from the rim of a flat face or, beside it, with the length over which the
-  !> undeformed bodies separate there: gaps computed before the edge reaches the rim do not show how
-  !> the pressure changes there.
+  !> the distance from the rim of a flat face. Near the rim they are short compared with the length
+  !> over which the undeformed bodies separate there. Gaps computed before the edge reaches the rim
+  !> do not show how the pressure changes there.
   pure function graded_panels(rims, d, from, to, longest) result(lengths)
     real(wp), intent(in) :: rims(:), d, from, to, longest
     real(wp), allocatable :: lengths(:)
@@ -115,7 +115,7 @@ contains
 
   contains
 
-    !> The length before which there is a number of panels.
+    !> The length from the first place that contains a given number of panels.
     pure real(wp) function place_of(number)
       real(wp), intent(in) :: number
       integer :: k

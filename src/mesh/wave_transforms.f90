@@ -16,19 +16,20 @@ module wave_transforms
   public :: add_spectrum, find_wave, last_on
 
   !> Outside the mesh's centre, waves whose phase changes by more than `passing_pressure` from node
-  !> to node are omitted from the transform of pressures, with a smooth transition that begins at
-  !> the fraction `from_of_pressure` of this value. In the transition the product with a pressure is
-  !> multiplied by a window, which moves with the wave and must be wide enough to average it out.
-  !> Inside the centre, where bodies are in contact, no wave is omitted: for thin films the second
-  !> part of the operator is nearly the negative of the first part, which has all waves.
+  !> to node are omitted from the transform of pressures. The transition is smooth and begins at the
+  !> fraction `from_of_pressure` of this value. In the transition the product of a wave and a
+  !> pressure is multiplied by a window. The window moves with the wave number, and must be wide
+  !> enough to average the product out. Inside the centre, where bodies are in contact, no wave is
+  !> omitted: for thin films the second part of the operator is nearly the negative of the first
+  !> part, which has all waves.
   real(wp), parameter :: passing_pressure = 20, from_of_pressure = 0.6_wp
-  !> On a panel to infinity this is valid for pressures that decrease as this power of the position.
-  !> Pressures that decrease more slowly are larger where waves are omitted; for these, waves are
-  !> omitted only farther out.
+  !> On a panel to infinity the limit is valid for pressures that decrease as this power of the
+  !> position. Pressures that decrease more slowly are larger where waves are omitted; for these,
+  !> waves are omitted only farther out.
   real(wp), parameter :: steep = 6
   !> A panel of n nodes integrates polynomials of degree 2 n - 1. A wave whose phase changes by an
-  !> angle over the panel is a polynomial of degree `degrees` times the angle, plus `more_degrees`.
-  !> On a panel to infinity the end is taken at the local coordinate `nearly_all`.
+  !> angle over the panel counts as a polynomial of degree `degrees` times the angle, plus
+  !> `more_degrees`. On a panel to infinity the end is taken at the local coordinate `nearly_all`.
   real(wp), parameter :: nearly_all = 0.95_wp, degrees = 0.55_wp, more_degrees = 8
   !> Number of nodes of a hat function; ratio of the numbers of nodes for successive groups of
   !> shorter waves.
