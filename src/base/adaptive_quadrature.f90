@@ -1,9 +1,10 @@
 !> The integral of a function of one variable, to rounding. The caller evaluates the function:
 !> while the integral `is_open`, `places` gives the abscissas, and `note` takes the values.
 !>
-!> Each piece is integrated by the Gauss-Kronrod rule with 15 nodes. A piece on which the Gauss rule
-!> with 7 of these nodes differs is halved, so that steps, kinks and poles cost pieces but no
-!> digits. The error estimate is that of QUADPACK (Piessens and others, 1983).
+!> Each piece is integrated by the Gauss-Kronrod rule with 15 nodes. A piece is halved if the Gauss
+!> rule with 7 of these nodes gives a different result. Steps, kinks and poles of the function
+!> therefore need more pieces, but the result does not lose digits. The error estimate is that of
+!> QUADPACK (Piessens and others, 1983).
 module adaptive_quadrature
   use kinds, only: wp
   implicit none
@@ -54,8 +55,8 @@ module adaptive_quadrature
 
 contains
 
-  !> An integral over pieces with these ends. known: another part of the same whole; errors are
-  !> negligible relative to the magnitude of both parts.
+  !> An integral over pieces with these ends. known: another part of the same integral. Whether an
+  !> error is negligible is judged relative to the magnitude of both parts.
   pure type(integral_t) function new_integral(left, right, known) result(integral)
     real(wp), intent(in) :: left(:), right(:)
     type(integral_t), intent(in), optional :: known
@@ -95,7 +96,7 @@ contains
     is_open = self%next <= self%pieces
   end function is_open
 
-  !> Where it needs them, in ascending order.
+  !> The abscissas at which the integral needs values, in ascending order.
   pure function places(self) result(x)
     class(integral_t), intent(in) :: self
     real(wp) :: x(rule_nodes)

@@ -40,7 +40,7 @@ void snapin_j0_far(int count, const double *restrict x, double *restrict value, 
     double at = 2 * (near * inverse) * (near * inverse) - 1;
     double phase = -pi / 4 - power_series(DEGREE_FAR, lag, at) * inverse;
     double size = power_series(DEGREE_FAR, amplitude, at) * sqrt(2 / pi * inverse);
-    /* The cosine of x + phase beside the whole multiple of pi next to it. */
+    /* The cosine of the difference between x + phase and the nearest multiple of pi. */
     double turns = ((x[i] + phase) * (1 / pi) + rounder) - rounder;
     double rest = ((x[i] - turns * pi_first) - turns * pi_rest) + phase;
     double value_of = size * power_series(DEGREE_COSINE, cosine,

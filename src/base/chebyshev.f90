@@ -1,4 +1,5 @@
-!> Chebyshev series on [-1, 1]: through values, its value and slope, its integral.
+!> Chebyshev series on [-1, 1]: the series through given values, and the value, the slope and the
+!> integral of a series.
 module chebyshev
   use kinds, only: wp, pi
   implicit none
@@ -104,8 +105,8 @@ contains
     end do
   end function power_series
 
-  !> A series of powers at x. Even and odd orders are summed apart, since the processor can work on
-  !> both sums at once.
+  !> A series of powers at x. Even and odd orders are summed separately, since the processor can
+  !> work on both sums at once.
   pure real(wp) function power_value(power, x) result(value)
     real(wp), intent(in) :: power(0:), x
     real(wp) :: square, odd

@@ -16,9 +16,10 @@ module checksums
 contains
 
   !> A checksum of 32 bits. Each half word maps the checksum one to one, so that a single wrong half
-  !> word always changes it; the shift brings upper bits down, without which two wrong signs could
-  !> cancel. The products stay below 2^63. (The multiplier is MurmurHash's.) Each product needs the
-  !> one before, so that four lanes, each with every fourth word, run side by side.
+  !> word always changes the result. The shift moves upper bits down; without it two wrong signs
+  !> could cancel. The products stay below 2^63. (The multiplier is MurmurHash's.) Each product
+  !> depends on the one before. To save time, four checksums, each of every fourth word, are
+  !> computed side by side and then combined.
   pure integer(long) function of_words(words) result(checksum)
     integer(long), intent(in) :: words(:)
     integer, parameter :: lanes = 4

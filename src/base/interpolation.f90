@@ -1,5 +1,6 @@
-!> The polynomial through a few scattered values: weights and slope; and Hermite's polynomial, which
-!> has given slopes there too. Piecewise cubic polynomials through many points. A smooth transition.
+!> Interpolation in one variable: the polynomial through a few scattered values; Hermite's
+!> polynomial, which has given values and slopes; piecewise cubic polynomials through many points.
+!> The module also has a smooth transition from 1 to 0.
 module interpolation
   use kinds, only: wp
   use linear_algebra, only: solve_tridiagonal
@@ -125,7 +126,7 @@ contains
 
   contains
 
-    !> The first two nodes from node j to one side, each well apart from the one before it.
+    !> The first two nodes on one side of node j, each well apart from the one before it.
     pure subroutine find_apart(j, side, found, count)
       integer, intent(in) :: j, side
       integer, intent(out) :: found(2), count
@@ -249,8 +250,8 @@ contains
     coefficient = with_slopes(y, slope, width)
   end function spline
 
-  !> The same for slopes that make no extremum between points (Fritsch and Butland, SIAM J. Sci.
-  !> Stat. Comput. 5, 300, 1984).
+  !> The piecewise cubic with slopes that make no extremum between points (Fritsch and Butland, SIAM
+  !> J. Sci. Stat. Comput. 5, 300, 1984).
   pure function monotone(x, y) result(coefficient)
     real(wp), intent(in) :: x(:), y(:)
     real(wp) :: coefficient(0:3, size(x) - 1)

@@ -7,7 +7,7 @@ module kinds
 
   !> Working precision of all reals.
   integer, parameter :: wp = real64
-  !> Precision of factors that only approximate.
+  !> Precision of approximate factors of matrices.
   integer, parameter :: sp = real32
   !> Integers that may exceed 2^31.
   integer, parameter :: long = int64

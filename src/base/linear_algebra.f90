@@ -21,8 +21,8 @@ module linear_algebra
 
 contains
 
-  !> Makes OpenBLAS allocate its buffers now. In a run that has used up the memory OpenBLAS would
-  !> ask for them for ever.
+  !> Makes OpenBLAS allocate its buffers now. If the memory were used up later, OpenBLAS would ask
+  !> for them for ever.
   subroutine claim_buffers()
     real(wp) :: a(2, 2)
     integer :: pivot(2), info
@@ -32,7 +32,7 @@ contains
   end subroutine claim_buffers
 
   !> Factorises the matrix held in factors%lu, in place unless the factors are to be rough. Rough
-  !> factors are in single precision, for iterations that correct what they leave; a matrix that is
+  !> factors are in single precision, for iterations that correct their errors. A matrix that is
   !> singular in this precision gets exact factors. rough: .false. if absent.
   subroutine factorise(factors, rough)
     type(factorisation_t), intent(inout) :: factors
@@ -109,10 +109,10 @@ contains
     end do
   end function determinant_sign
 
-  !> Real parts of all eigenvalues of a square matrix, and a bound of their errors. With the vectors
-  !> V and values B found, a + E = V B V^-1 with E = (V B - a V) V^-1, and by Bauer and Fike (1960)
-  !> E moves no eigenvalue by more than |E| |V| |V^-1|. found = .false. if the iteration did not
-  !> converge, or V is singular.
+  !> Real parts of all eigenvalues of a square matrix, and a bound of their errors. The computed
+  !> vectors V and values B belong exactly to the matrix a + E = V B V^-1, with E = (V B - a V)
+  !> V^-1. By Bauer and Fike (1960) E moves no eigenvalue by more than |E| |V| |V^-1|. found =
+  !> .false. if the iteration did not converge, or V is singular.
   subroutine eigenvalues(a, real_part, error, found)
     real(wp), intent(in) :: a(:, :)
     real(wp), intent(out) :: real_part(:), error

@@ -12,7 +12,7 @@ module listener
 
 contains
 
-  !> Takes the present activity in a few words.
+  !> Receives a short description of the present activity.
   subroutine hear(self, what)
     class(listener_t), intent(inout) :: self
     character(len=*), intent(in) :: what

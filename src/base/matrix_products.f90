@@ -31,7 +31,7 @@ contains
     if (size(x) > 0) then
       call dgemv('t', size(x), size(y), 1.0_wp, a, size(a, 1), x, 1, 0.0_wp, y, 1)
     else
-      ! DGEMV would leave y as it is.
+      ! Without rows DGEMV would leave y as it is.
       y = 0
     end if
   end subroutine multiply_left

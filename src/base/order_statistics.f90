@@ -36,7 +36,7 @@ contains
     number = left(1)
   end function ranked
 
-  !> The number in the middle; of an even number of them the smaller one of the two in the middle.
+  !> The median: the number in the middle or, if there are two, the smaller one of these.
   pure real(wp) function median_of(numbers)
     real(wp), intent(in) :: numbers(:)
 

@@ -29,7 +29,7 @@ contains
     z = [((1 - (1 - 1.0_wp/n)/(8.0_wp*n**2))*cos(pi*(i - 0.25_wp)/(n + 0.5_wp)), i=1, size(z))]
     do iteration = 1, 20
       call legendre(n, z, value, slope)
-      ! Legendre's equation has the second derivative. With it, steps shrink by third powers.
+      ! Legendre's equation has the second derivative. With it, the iteration converges cubically.
       curvature = (2*z*slope - n*(n + 1)*value)/(1 - z**2)
       step = value/slope*(1 + 0.5_wp*value*curvature/slope**2)
       z = z - step
@@ -61,10 +61,10 @@ contains
     end do
   end function legendre_values
 
-  !> Weights v on the Gauss-Legendre nodes x (of [0, 1], weights w) such that
-  !> sum(v*f(x)) is the integral of f(s) ln(s) over [0, 1] for every polynomial f of
-  !> degree below size(x): f is expanded in shifted Legendre polynomials, whose moments
-  !> against ln(s) are -1 for degree 0 and (-1)**(m+1)/(m(m+1)) for degree m.
+  !> Weights v for the Gauss-Legendre nodes x of [0, 1], whose own weights are w. For every
+  !> polynomial f of degree below size(x), sum(v*f(x)) is the integral of f(s) ln(s) over [0, 1]. To
+  !> find v, f is expanded in shifted Legendre polynomials. Their integrals times ln(s) are -1 for
+  !> degree 0 and (-1)**(m+1)/(m(m+1)) for degree m.
   pure function logarithm_weights(x, w) result(v)
     real(wp), intent(in) :: x(:), w(:)
     real(wp) :: v(size(x)), before(size(x)), now(size(x)), next(size(x)), z(size(x))
@@ -120,11 +120,12 @@ contains
   end subroutine legendre
 
   !> Nodes in ascending order from `start` to `last`, and weights. sharpest: the largest k that
-  !> matters for each x. The function is a polynomial of low degree up to `first` and between k and
-  !> 3 k. Over a panel no x turns its wave by more than `swing`. A panel has nodes(2) nodes if the
-  !> phase changes by that, nodes(1) if it does not change, and a number in proportion between. A
-  !> product of two waves whose phases change by 16 has an error of 1e-12 with 20 nodes, by 60 with
-  !> 48; fewer nodes are enough where the weight of x decreases as k grows.
+  !> matters for each x. The function must be close to a polynomial of low degree up to `first`, and
+  !> between k and 3 k. Over a panel the phase k x of no wave that matters changes by more than
+  !> `swing`. A panel has nodes(2) nodes if the largest change of phase is `swing`, nodes(1) nodes
+  !> if it is zero, and a proportional number between. For a product of two waves an error of 1e-12
+  !> needs 20 nodes if their phases change by 16, and 48 nodes if they change by 60; fewer nodes are
+  !> enough where the weight of x decreases as k grows.
   pure subroutine wave_rule(x, sharpest, swing, nodes, start, first, last, k, weight)
     real(wp), intent(in) :: x(:), sharpest(:), swing, nodes(2), start, first, last
     real(wp), allocatable, intent(out) :: k(:), weight(:)

@@ -71,8 +71,8 @@ contains
     if (.not. (x >= self%low .and. x <= self%high)) within = self%middle()
   end function within
 
-  !> Moves an end to the middle or, if given, to `at`: the low end if the root is beyond it, else
-  !> the high end.
+  !> Moves an end to the middle or, if given, to `at`: the low end if the root is beyond this place,
+  !> otherwise the high end.
   elemental subroutine narrow(self, root_beyond, at)
     class(bracket_t), intent(inout) :: self
     logical, intent(in) :: root_beyond
@@ -118,7 +118,7 @@ contains
     search%x(:2) = [a, b]
     search%f(:2) = [f_a, f_b]
     search%root = merge(a, b, abs(f_a) < abs(f_b))
-    ! Equal signs: an end is the root, but for rounding.
+    ! If the signs are equal, an end is the root except for rounding.
     search%met = (f_a > 0 .eqv. f_b > 0) .or. abs(f_a) <= 0 .or. abs(f_b) <= 0
     if (.not. search%met) search%part = f_a/(f_a - f_b)
   end function new_root_search

@@ -1,7 +1,7 @@
 !> LU factors, with partial pivoting, in single precision. Iterations and iterative refinement
-!> correct what such factors leave; from a hundred rows on they take a third to a half less time
-!> than factors in double precision. Of matrices with tens to a few hundred rows, for which LAPACK's
-!> bookkeeping takes as long as its arithmetic, they are made here.
+!> correct the errors of such factors. From a hundred rows on the factorisation takes a third to a
+!> half less time than in double precision. It is done here for matrices with up to a few hundred
+!> rows, for which LAPACK's bookkeeping takes as long as its arithmetic.
 module rough_lu
   use kinds, only: wp, sp
   use lapack, only: sgetrf, sgetrs
@@ -167,8 +167,8 @@ contains
     end do
   end subroutine subtract
 
-  !> Overwrites b with the solution. Its digits are those of single precision less those of the
-  !> matrix's condition.
+  !> Overwrites b with the solution. Its number of accurate digits is that of single precision, less
+  !> the decimal logarithm of the matrix's condition number.
   subroutine solve(self, b)
     class(rough_lu_t), intent(in) :: self
     real(wp), intent(inout) :: b(:)

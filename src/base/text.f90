@@ -34,7 +34,7 @@ contains
 
   !> `text`, such as a file's name, on one line and without control sequences for the terminal:
   !> control characters become question marks, also those of UTF-8 (U+0080 to U+009F). Other
-  !> characters stay, and with `lines` the ends of lines.
+  !> characters stay as they are; so do the ends of lines if `lines` is .true.
   pure function printable(text, lines) result(clean)
     character(len=*), intent(in) :: text
     logical, intent(in), optional :: lines
@@ -54,7 +54,8 @@ contains
     end do
   end function printable
 
-  !> `text` as a namelist string: in single quotes, or between two of `mark`; those inside doubled.
+  !> `text` as a namelist string: in single quotes, or in the quotes `mark`. Quotes of the same kind
+  !> inside the text are doubled.
   pure function quoted(text, mark) result(literal)
     character(len=*), intent(in) :: text
     character, intent(in), optional :: mark
@@ -204,7 +205,7 @@ contains
     word = list(first:first + length - 1)
   end function word_of
 
-  !> A name of a list with its blanks.
+  !> A name from a list, with the blanks that it had.
   pure function spelled(word) result(name)
     character(len=*), intent(in) :: word
     character(len=len(word)) :: name

@@ -17,8 +17,8 @@ module units
 
 contains
 
-  !> What a unit such as 'nm' or 'N' is in SI: base is 'm', 'N' or 'V', or 'R' for the unit N/m of a
-  !> force over a radius; blank if `text` is no such unit. factor is 1e-9 for nano.
+  !> Converts a unit such as 'nm' or 'N' to SI. base is 'm', 'N' or 'V', or 'R' for the unit N/m of
+  !> a force over a radius; it is blank if `text` is no such unit. factor is 1e-9 for nano.
   pure recursive subroutine find_unit(text, factor, base)
     character(len=*), intent(in) :: text
     real(wp), intent(out) :: factor
@@ -105,7 +105,8 @@ contains
     bare = trim(name(:max(0, first - 1)))
   end subroutine split_unit
 
-  !> Whether a cell may stand in a line of units: a unit, of any quantity in brackets, or none.
+  !> Whether a cell may stand in a line of units. It may be a unit that this module knows, anything
+  !> in brackets, another common unit, or empty.
   pure logical function is_unit_cell(cell) result(is)
     character(len=*), intent(in) :: cell
     character(len=:), allocatable :: bare, unit
