@@ -52,8 +52,8 @@ contains
   !> rounding is not reached, to the tolerance of the options. If that fails, the other kind of
   !> guess is tried (see `moved`). slope_error: the permitted relative error of the tangent; if
   !> present, the options' tolerance is enough for the state. miss: differences between state and
-  !> guess, relative or in the law's lengths: the largest one of a gap; the same for the other kind
-  !> of guess (huge if there is none); the larger one of h0 and load.
+  !> guess, relative or in the law's lengths. They are the largest one of a gap; the same for the
+  !> other kind of guess (huge if there is none); and the larger one of h0 and load.
   subroutine solve_at(self, solver, s, point, converged, slope_error, miss)
     class(arc_t), intent(in) :: self
     class(solver_t), intent(inout) :: solver

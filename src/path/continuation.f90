@@ -26,8 +26,8 @@ module continuation
   !> between these limits the ratio is an integer power of `rung`.
   real(wp), parameter :: wanted_miss = 1.5e-3_wp, growth = 2.5_wp, shrinkage = 0.3_wp, &
     rung = 1.2_wp
-  !> If guess and state differ by more than this, the step may have passed folds unnoticed and is
-  !> repeated as a shorter one; steps below the second value are not repeated.
+  !> If guess and state differ by more than `too_far`, the step may have passed folds unnoticed, and
+  !> is repeated as a shorter one. Steps below `short` are not repeated.
   real(wp), parameter :: too_far = 0.01_wp, short = 1.0e-3_wp
   !> Relative error of slopes that serve only for predictions.
   real(wp), parameter :: slope_error = 1.0e-7_wp

@@ -23,9 +23,9 @@ module further_meshes
     real(wp) :: locked = 0, reach(2) = 0
   end type further_mesh_t
 
-  !> The next mesh is locked to the edge of an outer contact if the logarithm of its radius changes
-  !> this many times faster than the coordinate on the axis; in the opposite case it is about the
-  !> axis.
+  !> The next mesh is locked to the edge of an outer contact if the logarithm of the edge's radius
+  !> changes this many times faster than the coordinate on the axis. In the opposite case the next
+  !> mesh is about the axis.
   real(wp), parameter :: faster = 2
   !> Largest ratio of the change of the axis gap to that of h0 in a contact that grows in a
   !> secondary minimum.

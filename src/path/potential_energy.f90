@@ -66,7 +66,8 @@ contains
     associate (n => size(state%gap), c => state%scale, grid => equations%meshes%grid(mesh), &
       problem => equations%problem)
       reference = 1
-      ! Where pressures fall more slowly than this, load and energy beyond the mesh have few digits.
+      ! Where pressures fall more slowly than this, load and energy beyond the mesh have few
+      ! accurate digits.
       if (falls_slowly(problem) .and. problem%law%tail_power >= &
         falls_far/max(problem%shape%exponent, problem%shape%growth)) &
         reference = max(problem%shape%height(c), calm_gap(problem))
