@@ -1,4 +1,4 @@
-!> Barriers: repulsion outside the contact, which bodies overcome before they come into contact.
+!> Barriers: repulsion outside the contact, which the bodies must overcome before contact.
 module barriers
   use kinds, only: wp, pi
   use dimensionless_problem, only: problem_t, coupling_over
@@ -7,9 +7,9 @@ module barriers
   private
   public :: pass_barrier, ratio
 
-  !> A drive stops before a barrier if the slope of the bodies at the edge of the contact behind it
-  !> would exceed this value: the slope is then no longer small, and paths through such wide
-  !> contacts take minutes.
+  !> A drive stops before a barrier if the bodies have a larger slope than this at the edge of the
+  !> contact that overcomes the barrier. The slope is then no longer small, and paths through such
+  !> wide contacts take minutes.
   real(wp), parameter :: too_steep = 0.1_wp
   !> Number of gaps at which the pressure of a barrier is evaluated, and the ratio of successive
   !> gaps. Numbers of contact radii (lateral units) and of gaps between undeformed bodies at which
@@ -21,7 +21,7 @@ contains
 
   !> Estimates of the h0 and the load at which the highest barrier outside contact is overcome: by
   !> undeformed bodies, or by a Hertz contact whose pressure on the axis is that of the barrier.
-  !> passed: the contact behind the barrier is within the model.
+  !> passed: the contact that overcomes the barrier is within the model.
   pure subroutine pass_barrier(problem, h0, load, passed)
     type(problem_t), intent(in) :: problem
     real(wp), intent(out) :: h0, load

@@ -121,7 +121,7 @@ contains
     end subroutine move_to
 
     !> The position at which the motion inward ends on the innermost piece: h0_end or the end of the
-    !> known path, whichever is farther out; -huge if the drive turns before.
+    !> known path, whichever is farther out; -huge if Q has a turning point before.
     subroutine find_innermost(at)
       real(wp), intent(out) :: at
       type(path_point_t) :: there

@@ -16,9 +16,9 @@ module drained_way
   !> Largest deviation in a step from a straight line through the two previous instants: of the
   !> load, over the largest load or a pull-off, and of the gap on the axis, over the gap. Largest
   !> motion of the edge, over the smallest feature there. A step with more than `rejected` times
-  !> these values is repeated as a shorter step. If the shorter step still has more than `no_less`
-  !> times the deviation of the longer one, the load jumps and the step is accepted: for continuous
-  !> loads a third of the step has a third of the deviation.
+  !> these values is repeated as a shorter step. For a continuous load a third of the step has a
+  !> third of the deviation. If the shorter step still has more than `no_less` times the deviation
+  !> of the longer one, the load jumps, and the step is accepted.
   real(wp), parameter :: bend = 2.0e-3_wp, bend_of_gap = 1.0e-2_wp, edge_moves = 1, rejected = 4, &
     no_less = 0.5_wp
   !> Largest and smallest ratio of a step to the previous step.
@@ -46,8 +46,8 @@ contains
   !> Takes a step from an instant, or chooses a shorter one for the next attempt. At snap-in the gap
   !> closes at a time that differs slightly from pass to pass, with ever shorter steps. Therefore
   !> each pass chooses its own steps, half as long as those of the previous pass. The length of a
-  !> step follows from the motion and is at most `longest_part` of a segment. A step of the deck is
-  !> shortened only if it does not converge.
+  !> step follows from the motion and is at most `longest_part` of a segment. A time step that the
+  !> deck gives is shortened only if it does not converge.
   subroutine step_drained(longest_part, steps, now)
     real(wp), intent(in) :: longest_part
     type(time_stepper_t), intent(inout) :: steps

@@ -31,8 +31,8 @@ module experiment
   real(wp), parameter :: unyielding = 1.0e-18_wp
 
   !> Largest number of runs with more digits. If a run with more digits does not reduce the largest
-  !> error to the fraction below, the error has another cause, such as rounding. Then no further run
-  !> is made, unless one of the two runs lacks some numbers.
+  !> error to the fraction `helped`, the error has another cause, such as rounding. Then no further
+  !> run is made, unless one of the two runs lacks some numbers.
   integer, parameter :: most_rounds = 4
   real(wp), parameter :: helped = 0.5_wp
   !> Least number of digits of the run for comparison under a law with a step: with fewer, the nodes

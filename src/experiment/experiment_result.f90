@@ -67,7 +67,8 @@ contains
     end do
   end function quality
 
-  !> Enters the readings of the path: jumps and energies of drives, states under given loads.
+  !> Enters the results that follow from the path: jumps and energies of drives, states under given
+  !> loads.
   subroutine enter_readings(readings, places)
     type(path_readings_t), intent(in) :: readings
     type(places_t), intent(inout) :: places
@@ -124,8 +125,9 @@ contains
     end do
   end subroutine enter_driven
 
-  !> Enters the energy that a cycle dissipates: a path from large separation through all its jumps,
-  !> or a loading and the first unloading if they end on the outermost piece, where they began.
+  !> Enters the energy that a cycle dissipates. The cycle is the path from large separation through
+  !> all its jumps, or a loading and the first unloading, if these begin and end on the outermost
+  !> piece.
   subroutine enter_energy(known, outcome)
     type(known_path_t), intent(in) :: known
     type(experiment_result_t), intent(inout) :: outcome

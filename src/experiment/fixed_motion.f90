@@ -27,9 +27,8 @@ module fixed_motion
   !> A contact edge that is pinned between nodes slips many times from node to node; in steps longer
   !> than this (in the law's lengths) these slips are not located individually.
   real(wp), parameter :: short_step = 0.11_wp
-  !> The slips are located individually in all steps if the ratio of the spacing to the width of the
-  !> cohesive zone exceeds this value: each slip then changes the load noticeably, and the slips are
-  !> few.
+  !> If the spacing exceeds this fraction of the width of the cohesive zone, slips are located
+  !> individually in all steps: each slip then changes the load noticeably, and the slips are few.
   real(wp), parameter :: fine_enough = 0.4_wp
 
 contains

@@ -106,8 +106,8 @@ contains
     thinned%sample = pack(plan%sample, stays)
   end function thinned
 
-  !> Values of h0 [m] from start to finish by step, in either direction, with both ends, the h0 of
-  !> requested profiles and the values `also` (law's lengths) in order.
+  !> Values of h0 [m] from start to finish by step, in either direction and with both ends. The h0
+  !> of requested profiles and the values `also` (law's lengths) are inserted in order.
   function schedule_of(name, start, finish, step, request, law, also) result(plan)
     character(len=*), intent(in) :: name
     real(wp), intent(in) :: start, finish, step

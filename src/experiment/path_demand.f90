@@ -1,5 +1,5 @@
-!> The range of h0 of an experiment, and of the path that is needed for its readings. A soft spring
-!> needs a wide range: snap-in ends deep in contact, and snap-off far apart.
+!> The range of h0 of an experiment, and of the path that it needs. A soft spring needs a wide
+!> range: snap-in ends deep in contact, and snap-off far apart.
 module path_demand
   use kinds, only: wp, pi
   use dimensionless_problem, only: problem_t, coupling_over, yielding_gap

@@ -18,7 +18,7 @@ module path_readings
   private
   public :: path_readings_t, read_path, is_stable_under_load
 
-  !> The readings in the units of `dimensionless_problem`.
+  !> The results of these experiments, in the units of `dimensionless_problem`.
   type :: path_readings_t
     !> The points of the path.
     type(path_point_t), allocatable :: node(:)

@@ -72,8 +72,8 @@ contains
     self%place(i)%after = after
   end subroutine keep
 
-  !> Whether two places are the same: the same point of the path, or the same landing, or equal
-  !> numbers.
+  !> Whether two places are the same: the same point of the path, or the end of the same jump, or
+  !> equal numbers.
   pure logical function is_same(one, other)
     type(place_t), intent(in) :: one, other
     real(wp) :: apart(of_load + size(one%drive) + size(one%turn_of))

@@ -50,8 +50,8 @@ module reported_numbers
   !> agree by chance. It is `chance_on_grids` on grids fixed in space, whose errors depend on the
   !> position of the contact edge between nodes. Of 1025 numbers on meshes locked to the edge under
   !> random laws, 1.5 % had errors above such estimates and 3.1 % below a thirtieth of them. With
-  !> one median of all kinds these shares are 1.7 % and 7.2 %, without a least error 2.0 % and 0.6
-  !> %.
+  !> one median of all kinds these shares are 1.7 % and 7.2 %; without a least error they are 2.0 %
+  !> and 0.6 %.
   real(wp), parameter :: chance = 0.1_wp, chance_on_grids = 1
   !> The relative error of an unknown value.
   real(wp), parameter :: most = 1.0e6_wp

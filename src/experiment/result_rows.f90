@@ -12,9 +12,9 @@ module result_rows
 
   !> The group of summary.nml that has a row.
   integer, parameter :: in_summary = 1, in_cost = 2
-  !> When a row is a column of sweep.csv: never; always; if the deck has a group, forces other than
-  !> the paper's, a theory in &classical, or &regime with layers; or once for each turning point,
-  !> spring or load.
+  !> When a row is a column of sweep.csv: never or always; if the deck has a certain group, or
+  !> forces other than the paper's, or a theory in &classical, or &regime with layers. Some rows
+  !> have one column for each turning point, spring or load.
   character(len=*), parameter :: never = '', always = 'always', classical = 'classical', &
     approximations = 'approximations', regime = 'regime', forces = '(forces)', &
     turning = 'unloading', spring = 'device', given_load = 'fixed_load', &
