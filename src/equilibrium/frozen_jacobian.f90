@@ -48,9 +48,9 @@ contains
   end subroutine forget
 
   !> Factorises the Jacobian at a state. frozen%factors%valid: the Jacobian is regular. The factors
-  !> are in double precision in three cases: if `exact` is .true.; if the mesh is fixed in space,
-  !> where their determinants are used; and if there is a fluid, whose pressures depend too strongly
-  !> on the gaps in short time steps. Otherwise they are in single precision.
+  !> are in double precision if `exact` is .true., or if the mesh is fixed in space, where their
+  !> determinants are used. They are so with a fluid too, whose pressures depend too strongly on the
+  !> gaps in short time steps. Otherwise they are in single precision.
   subroutine freeze(equations, control, state, frozen, exact)
     type(equations_t), intent(inout) :: equations
     type(control_t), intent(in) :: control

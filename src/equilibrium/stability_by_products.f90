@@ -5,8 +5,8 @@
 !> above 1, as (24) and (25) demand of the response to a perturbation. D A has the same eigenvalues
 !> and is self-adjoint under the product q . A q' of pressures (with the weights of the mesh), so
 !> the method of Lanczos makes it tridiagonal with one product for each step. The pivots of 1 minus
-!> the tridiagonal matrix are positive as long as all its eigenvalues are below 1, and these are
-!> never above the largest one of D A.
+!> the tridiagonal matrix are positive as long as all eigenvalues of the tridiagonal matrix are
+!> below 1. These are never above the largest eigenvalue of D A.
 module stability_by_products
   use kinds, only: wp
   use contact_state, only: state_t
