@@ -1,7 +1,8 @@
 !> The error of the Gauss rule for a logarithm.
 !>
 !> A kernel k = -a ln|u - v| + b, with a and b smooth in u, is integrated on the Gauss-Legendre
-!> nodes u_j of [0, 1]. The rule is as exact as polynomials through the nodes represent a f and b f:
+!> nodes u_j of [0, 1]. The rule is as exact as the polynomials through the nodes that represent a f
+!> and b f:
 !>
 !>     integral k(u) f(u) du = sum_j (w_j k(u_j) + a(u_j) c_j) f(u_j),
 !>

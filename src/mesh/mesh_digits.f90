@@ -27,10 +27,10 @@ module mesh_digits
   !> cohesive zone narrows. Digits to be added for bodies with a kink over which panels pass.
   real(wp), parameter :: without_jumps = -0.5_wp, for_steps = 0.6_wp, for_waves = 1.1_wp, &
     for_profiles = 2, for_narrow_necks = 0.3_wp, for_kinks = 1.5_wp
-  !> Digits to be added for layers: `for_softer` times the decades by which the compliance of the
-  !> contact exceeds that of a half-space, times the square of the decades by which the contact is
-  !> wider than the layer. Such a layer differs from a half-space for wave numbers of at most
-  !> `waves_in_layer` over the radius.
+  !> Digits to be added for layers: `for_softer` times s w^2. Here s is the number of decades by
+  !> which the compliance of the contact exceeds that on a half-space, and w that by which the
+  !> contact is wider than the layer. Such a layer differs from a half-space for wave numbers of at
+  !> most `waves_in_layer` over the radius.
   real(wp), parameter :: for_softer = 0.6_wp, waves_in_layer = 32
   !> The sigma at which jumps begin under the Lennard-Jones law, and approximately under other laws.
   !> Digits to be added there, and the factor in sigma within which they are added. The part of this

@@ -3,12 +3,12 @@
 !> Before contact the mesh is about the axis, and the gap on the axis is the coordinate of the path.
 !> In contact meshes are locked to the contact edge: positions are in units of the contact radius c,
 !> the edge stays at 1, and c is the coordinate. Both coordinates are monotonic along the path. (If
-!> the gap on the axis is not, the path passes early to the mesh of the edge: `mesh_passage`.) A
-!> mesh is for a band of contact radii; the path passes from one mesh to the next. If a step of the
-!> pressure pulls the bodies together, further meshes between the approach and contact are locked to
-!> the front of the step (`step_front`) in the same way. While the path is traced, meshes may be
-!> inserted before contact, about the axis or locked to the edge of an outer contact
-!> (`further_meshes`).
+!> the gap on the axis is not monotonic, the path passes early to the mesh of the edge:
+!> `mesh_passage`.) A mesh is for a band of contact radii; the path passes from one mesh to the
+!> next. If a step of the pressure pulls the bodies together, further meshes between the approach
+!> and contact are locked to the front of the step (`step_front`) in the same way. While the path is
+!> traced, meshes may be inserted before contact, about the axis or locked to the edge of an outer
+!> contact (`further_meshes`).
 module mesh_plan
   use kinds, only: wp
   use dimensionless_problem, only: problem_t
@@ -230,9 +230,9 @@ contains
   !> Contact radius at which the edge becomes too sharp for the mesh of the approach. It is a
   !> fraction of two lengths: the width of the cohesive zone, and the radius over which the gap
   !> between rigid bodies increases from the equilibrium separation to that of largest tension. If
-  !> meshes are locked to a front, the pressure inside it is smooth up to its last radius. If
-  !> further meshes may be inserted, the rim of a flat face is passed before. widest: the largest
-  !> radius.
+  !> meshes are locked to a front, the result is half the last radius of the front, inside which the
+  !> pressure is smooth. If further meshes may be inserted, the result is at least the radius up to
+  !> which the edge stays on meshes about the axis (`rim_passed_at`). widest: the largest radius.
   pure real(wp) function passage_to_contact(problem, fronts, further, widest) result(c)
     type(problem_t), intent(in) :: problem
     logical, intent(in) :: fronts, further

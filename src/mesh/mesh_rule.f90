@@ -37,8 +37,7 @@ module mesh_rule
   !> Digits of a kernel: `of_kernel` for each digit of the mesh, less `fewer_of_kernel`, plus
   !> `for_decade` for each decade of sigma.
   real(wp), parameter :: of_kernel = 1.2_wp, fewer_of_kernel = 2, for_decade = 0.5_wp
-  !> The length d over the smallest feature: errors change little between half this value and twice
-  !> this value.
+  !> The length d over the smallest feature: between half and twice this value errors change little.
   real(wp), parameter :: finer = 0.5_wp
   !> Least positions of the tail's beginning: in lateral units, and in units of the contact radius
   !> from the edge.
@@ -234,9 +233,9 @@ contains
     end if
   end subroutine resolve_axis
 
-  !> Digits of the kernel. Its errors matter less than those of the pressure's polynomials, but more
-  !> for more compliant bodies and for bodies that are stiffer at this contact radius than their
-  !> half-spaces.
+  !> Digits of the kernel. Its errors matter less than those of the pressure's polynomials. They
+  !> matter more for more compliant bodies, and for bodies that are stiffer at this contact radius
+  !> than their half-spaces.
   pure real(wp) function kernel_digits(problem, digits, radius)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: digits, radius

@@ -10,8 +10,8 @@ module mesh_tail
   public :: give_tail, end_matters, beyond_poles
 
   !> Beginning of the tail, as a multiple of the radius at which the height of the bodies is H0. For
-  !> a parabola the poles of the pressure, at rho**2 = -2 H0, have the same distance from it as the
-  !> axis has.
+  !> a parabola the poles of the pressure, at rho**2 = -2 H0, are as far from the axis as this
+  !> radius.
   real(wp), parameter :: beyond_poles = 1.3_wp
   !> Number of nodes of the tail: a constant, and the number to be added for each digit.
   real(wp), parameter :: tail_nodes = 1.5_wp, tail_nodes_of_digit = 0.6_wp

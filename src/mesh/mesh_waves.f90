@@ -20,16 +20,16 @@ module mesh_waves
   !> first changes by less than `passing_place` from node to node (a constant, and a number per
   !> digit). The phase of the second changes by less than `crossing` per digit between the axis and
   !> the position. The smooth transition to zero begins at the fraction `from_of_place` of the
-  !> largest wave number. With a smaller constant the end of a path on a coat five times as stiff as
-  !> its base needs another mesh.
+  !> largest wave number. With a smaller constant in `passing_place` the end of a path on a coat
+  !> five times as stiff as its base needs another mesh.
   real(wp), parameter :: passing_place(2) = [8.0_wp, 1.0_wp], crossing = 2.4_wp, &
     from_of_place = 0.25_wp
   !> Largest change of phase over one panel of wave numbers. Number of nodes of a panel over which
   !> the phase does not change, and of a panel over which it changes by `swing` (`wave_rule`): a
   !> constant, and a number per digit. (These nodes are too few for a product of two waves at one
-  !> position far out, but the pressure is small there.) For a coat a hundred times as stiff as its
-  !> base and thirty times thinner than the contact radius, these numbers leave an error of 1e-9 of
-  !> the load at accuracy 1e-6; with three nodes fewer the error is 1e-7.
+  !> position far out, but the pressure is small there.) Take a coat a hundred times as stiff as its
+  !> base and thirty times thinner than the contact radius, at accuracy 1e-6. With these numbers the
+  !> error is 1e-9 of the load; with three nodes fewer it is 1e-7.
   real(wp), parameter :: swing = 60, nodes_at_first(2) = [5.0_wp, 17.0_wp], &
     nodes_a_digit(2) = [0.8_wp, 1.5_wp]
 

@@ -43,8 +43,8 @@ contains
     values = from*(to/from)**[(real(k, wp)/last, k=0, last)]
   end function between
 
-  !> The gap at an offset from the centre: before contact with the gap h on the axis; otherwise
-  !> outside a JKR contact of radius h, with the gap of largest tension at its edge.
+  !> The gap at an offset from the centre. Before contact h is the gap on the axis. Otherwise the
+  !> gap is that outside a JKR contact of radius h, with the gap of largest tension at its edge.
   !>
   !> The JKR gap increases as the square root of the distance from the edge; cohesion rounds the
   !> square root over the distance d.

@@ -23,7 +23,8 @@ module represented_pressure
   private
   public :: pressure_slope_t, pressure_on, slope_on, panel_pressure, pressure_at_nodes
 
-  !> Number of points of the quadrature on a piece of a panel: a constant, and for each node on it.
+  !> Number of points of the quadrature on a piece of a panel: a constant, and a number for each
+  !> node on the piece.
   real(wp), parameter :: points_a_node = 1.5_wp
   integer, parameter :: few_points = 9
   !> If a law has more kinks than this, the projection is used on all panels.
@@ -238,8 +239,8 @@ contains
   end subroutine split
 
   !> The share of the projection on a panel with the gaps y at its begin, nodes and end. It is 1 if
-  !> a kink is between these gaps. Outside it falls to 0 over the difference of gap between the
-  !> nearer end and the node next to it.
+  !> the kink is between these gaps. Outside these it falls to 0 over the difference of the gaps at
+  !> the nearer end of the panel and at the node next to it.
   pure real(wp) function share_near(kink, y) result(share)
     real(wp), intent(in) :: kink, y(0:)
     real(wp) :: off, reach

@@ -90,7 +90,7 @@ contains
     self%moved = [self%moved, moved_t(self%held, from, min(low, high), high, step)]
   end subroutine try
 
-  !> Notes that the newest state is to be tried on a mesh about the axis, with its gaps moved: the
+  !> Notes that the newest state is to be tried on a mesh about the axis, with its gaps moved. The
   !> edge moves from its own radius `edge` (0: there is no edge) to radii up to `high`.
   pure subroutine try_about_axis(self, edge, high)
     class(seen_gaps_t), intent(inout) :: self
