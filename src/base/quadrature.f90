@@ -63,8 +63,8 @@ contains
 
   !> Weights v for the Gauss-Legendre nodes x of [0, 1], whose own weights are w. For every
   !> polynomial f of degree below size(x), sum(v*f(x)) is the integral of f(s) ln(s) over [0, 1]. To
-  !> find v, f is expanded in shifted Legendre polynomials. Their integrals times ln(s) are -1 for
-  !> degree 0 and (-1)**(m+1)/(m(m+1)) for degree m.
+  !> find v, f is expanded in shifted Legendre polynomials. The integral of such a polynomial times
+  !> ln(s) is -1 for degree 0 and (-1)**(m+1)/(m(m+1)) for degree m.
   pure function logarithm_weights(x, w) result(v)
     real(wp), intent(in) :: x(:), w(:)
     real(wp) :: v(size(x)), before(size(x)), now(size(x)), next(size(x)), z(size(x))
@@ -124,7 +124,7 @@ contains
   !> between k and 3 k. Over a panel the phase k x of no wave that matters changes by more than
   !> `swing`. A panel has nodes(2) nodes if the largest change of phase is `swing`, nodes(1) nodes
   !> if it is zero, and a proportional number between. For a product of two waves an error of 1e-12
-  !> needs 20 nodes if their phases change by 16, and 48 nodes if they change by 60; fewer nodes are
+  !> needs 20 nodes if their phases change by 16, and 48 nodes if they change by 60. Fewer nodes are
   !> enough where the weight of x decreases as k grows.
   pure subroutine wave_rule(x, sharpest, swing, nodes, start, first, last, k, weight)
     real(wp), intent(in) :: x(:), sharpest(:), swing, nodes(2), start, first, last

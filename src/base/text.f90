@@ -262,7 +262,7 @@ contains
 
     best = ''
     if (len(word) > 63) return
-    ! With a third of the letters wrong it is still a misspelling, with more another word.
+    ! A word with up to a third of its letters wrong counts as misspelt, with more as another word.
     smallest = max(1, (len(word) + 1)/3) + 1
     do i = 1, word_count(list)
       distance = edits(lower(word), word_of(list, i))
