@@ -13,7 +13,8 @@ module baseline
   type :: baseline_t
     integer :: degree = 1
     logical :: slope_each_way = .false., ripple = .false.
-    !> The period [m]; 0 while it is not known. wave: amplitudes of `waves_of`, once they are known.
+    !> The period [m]; 0 while it is not known. wave: the amplitudes of the functions of `waves_of`,
+    !> once they are known.
     real(wp) :: period = 0
     real(wp), allocatable :: wave(:)
   contains
@@ -22,9 +23,9 @@ module baseline
 
 contains
 
-  !> The columns whose sums are baselines, at positions z on approach or retract. If the amplitudes
-  !> of the ripple are known, one column is its derivative by the period, so that errors include
-  !> that of the period.
+  !> The columns whose linear combinations are the baselines, at positions z on approach or retract.
+  !> If the amplitudes of the ripple are known, a further column is the derivative of the ripple by
+  !> its period, so that the errors of the unknowns include the error of the period.
   pure function columns(self, z, inward) result(column)
     class(baseline_t), intent(in) :: self
     real(wp), intent(in) :: z(:)
@@ -90,7 +91,7 @@ contains
     ways = merge(2, 1, any(inward) .and. .not. all(inward))
   end function ways_in
 
-  !> Positions from -1 to 1 or less, about their mean.
+  !> The positions minus their mean, scaled so that the largest magnitude is 1.
   pure function scaled(z) result(x)
     real(wp), intent(in) :: z(:)
     real(wp) :: x(size(z))

@@ -15,39 +15,42 @@ module baseline_test
   private
   public :: lacking_t, test_baseline, settle_ripple
 
-  !> A part that the baseline does not have. name: the key of &measurement that adds it. gain: the
-  !> decrease of chi squared. chance: logarithm of the probability that noise does this. shift: the
-  !> change of each unknown, in the unit of its key. hidden: its change by a part of one column that
-  !> is hidden in the noise, one of `unseen` standard deviations. period [m]: of a ripple, otherwise
-  !> 0.
+  !> A part that the baseline does not have. name: the key of &measurement that adds this part.
+  !> gain: the decrease of chi squared. chance: the logarithm of the probability that noise alone
+  !> decreases chi squared so much. shift: the change of each unknown, in the unit of its key.
+  !> hidden: the change of each unknown by a part of one column with an amplitude of `unseen`
+  !> standard deviations, which noise can hide. period [m]: the period of a ripple; 0 for other
+  !> parts.
   type :: lacking_t
     character(len=:), allocatable :: name
     real(wp) :: gain = 0, period = 0, chance = 0
     real(wp), allocatable :: shift(:), hidden(:)
   end type lacking_t
 
-  !> Noise alone makes a part of so many standard deviations in one fit of twenty.
+  !> Amplitude of a part, in standard deviations, that noise alone exceeds in one fit of twenty.
   real(wp), parameter :: unseen = 2
 
-  !> The residuals of a fit and an orthonormal basis of their derivatives by the unknowns, which the
-  !> triangle maps to these.
+  !> The residuals of a fit, and their derivatives by the unknowns as a product: an orthonormal
+  !> basis times a triangular matrix.
   type :: model_tangent_t
     real(wp), allocatable :: residual(:), basis(:, :), triangle(:, :)
   end type model_tangent_t
 
-  !> Smallest part of a direction that must remain: smaller ones are rounding of the derivatives.
+  !> Smallest length of a unit vector after its projection; a shorter one is a rounding error of the
+  !> derivatives.
   real(wp), parameter :: rounding = 1.0e-4_wp
   !> Ripples have from one to `most_periods` periods over the travel, and at least `fewest_samples`
   !> samples in a period. Number of trials for each of these, number of sections that refine the
   !> best one, and number of samples for the search.
   integer, parameter :: most_periods = 64, fewest_samples = 5, oversampling = 4, sections = 16, &
     enough = 40
-  !> Change of the phase of a ripple over the travel that does not matter.
+  !> Largest change of the phase of a ripple over the travel that is neglected.
   real(wp), parameter :: same_phase = 0.01_wp
 
 contains
 
-  !> Tests a fit. residuals: of the fit, with the values of the unknowns.
+  !> Tests whether the baseline of a fit lacks a part. residuals, value: the residuals of the fit
+  !> and the values of its unknowns.
   subroutine test_baseline(residuals, value, lacking)
     type(curve_residuals_t), intent(inout) :: residuals
     real(wp), intent(in) :: value(:)
@@ -92,8 +95,8 @@ contains
 
   end subroutine test_baseline
 
-  !> Tests for a ripple. It may have been taken for correlated noise, so the noise is found again
-  !> without the ripple.
+  !> Tests whether the baseline lacks a ripple. A ripple may have been taken for correlated noise;
+  !> therefore the noise is estimated again without the ripple.
   subroutine test_ripple(residuals, value, lacking)
     type(curve_residuals_t), intent(in) :: residuals
     real(wp), intent(in) :: value(:)
@@ -136,7 +139,8 @@ contains
     end associate
   end subroutine test_ripple
 
-  !> Finds the period of the ripple of a fit's baseline again. done: it has hardly changed.
+  !> Estimates the period of the ripple of a fit's baseline again. done: becomes .false. if the
+  !> period has changed.
   subroutine settle_ripple(residuals, value, done)
     type(curve_residuals_t), intent(inout) :: residuals
     real(wp), intent(in) :: value(:)
@@ -171,8 +175,8 @@ contains
     end associate
   end subroutine settle_ripple
 
-  !> The period whose ripple lowers chi squared most; 0 if there are too few samples. amplitude: of
-  !> its waves.
+  !> The period whose ripple lowers chi squared most; 0 if there are too few samples. amplitude: the
+  !> amplitudes of the cosines and sines of this ripple.
   subroutine find_period(data, tangent, period, gain, amplitude)
     type(fit_samples_t), intent(in) :: data
     type(model_tangent_t), intent(in) :: tangent
@@ -222,8 +226,9 @@ contains
 
   contains
 
-    !> The gain of `explained`, from inner products of the waves: b.G^-1.b, b those with what is
-    !> left, G those of the waves without the known directions.
+    !> The `gain` that `explained` would find, b.G^-1.b. The vector b has the inner products of the
+    !> waves with the remaining residuals; the matrix G has the inner products of the waves with
+    !> each other, after projection onto the complement of the known directions.
     real(wp) function gain_at(periods)
       real(wp), intent(in) :: periods
       real(wp), allocatable :: all_waves(:, :), wave(:, :), part(:), of_known(:, :), &
@@ -242,7 +247,8 @@ contains
       gain_at = 0
       whole = [(square(k, k), k=1, size(part))]
       square = square - matmul(transpose(of_known), of_known)
-      ! Elimination, column by column; a column without a rest counts for nothing.
+      ! Gaussian elimination, column by column. A wave that the known directions explain completely
+      ! adds nothing.
       do k = 1, size(part)
         if (.not. square(k, k) > rounding**2*whole(k)) cycle
         gain_at = gain_at + part(k)**2/square(k, k)
@@ -270,7 +276,7 @@ contains
     if (found) call orthonormalise(tangent%basis, tangent%triangle)
   end subroutine find_tangent
 
-  !> Chi squared per degree of freedom, with a further part of the baseline.
+  !> Chi squared per degree of freedom if the baseline had this further part.
   pure real(wp) function left_of(tangent, lacking)
     type(model_tangent_t), intent(in) :: tangent
     type(lacking_t), intent(in) :: lacking
@@ -279,8 +285,8 @@ contains
       max(1, size(tangent%residual) - size(tangent%basis, 2))
   end function left_of
 
-  !> The effect of further columns of the baseline, given at all samples, on a fit. amplitude: of
-  !> these columns.
+  !> The effect on a fit of further columns of the baseline, which are given at all samples.
+  !> amplitude: the best amplitudes of these columns.
   type(lacking_t) function explained(data, tangent, column, amplitude) result(new)
     type(fit_samples_t), intent(in) :: data
     type(model_tangent_t), intent(in) :: tangent

@@ -14,15 +14,16 @@ module classical_model
   character(len=*), parameter :: theories(*) = [character(len=14) :: 'jkr', 'dmt', &
     'maugis_dugdale'], hertz = 'hertz'
 
-  !> Panels of the branch in contact; relative step of the differences.
+  !> Number of panels of the branch in contact; relative step of the finite differences.
   integer, parameter :: panels = 200
   real(wp), parameter :: step = 1.0e-4_wp
-  !> Number of contact radii that are tried to find the largest position, the first over the largest
-  !> radius, and number of sections that refine it.
+  !> Number of contact radii at which the position is computed to find its maximum; ratio of the
+  !> smallest of these radii to the largest; number of sections that refine the maximum.
   integer, parameter :: tried = 400, sections = 60
 
-  !> The unknowns are the work of adhesion [J/m^2] and the stiffness [Pa]; one that is not fitted
-  !> has the value here. radius [m]; range [m]: of the tension in Maugis-Dugdale theory.
+  !> The unknowns are the work of adhesion w [J/m^2] and the plane-strain modulus (`stiffness`)
+  !> [Pa]. If one of them is not fitted, its value is `work` or `stiffness`. radius [m]: the radius
+  !> of the bodies; range [m]: the range of the tension in Maugis-Dugdale theory.
   type, extends(force_model_t) :: classical_model_t
     character(len=14) :: theory = 'jkr'
     real(wp) :: radius = 1, work = 1, stiffness = 1, range = 1
@@ -45,7 +46,7 @@ contains
     number = [self%work, self%stiffness]
     number(pack([1, 2], [self%finds_work, self%finds_stiffness])) = value
     if (self%theory == hertz) number(1) = 0
-    ! Hertz's contact radius at the largest load and a hundred times the adhesion.
+    ! The Hertzian contact radius under the largest load plus a hundred times the adhesion.
     widest = (1.5_wp*self%radius*(2*max(largest, 0.0_wp) + 100*number(1)*self%radius)/ &
       number(2))**(1.0_wp/3)
     weights = [0, -1]
@@ -56,7 +57,8 @@ contains
     allocate (response%branch(2))
     unknowns = merge(size(value), 0, with_rates)
     associate (apart => response%branch(1))
-      ! Separate bodies have no load. h0 falls linearly from beyond all distances.
+      ! Separated bodies have no load. The panel lets h0 fall linearly from farther than any
+      ! position.
       allocate (apart%panel(1))
       associate (panel => apart%panel(1))
         panel%x = panel%ends
@@ -80,8 +82,8 @@ contains
     response%way(outward) = way_t([2], [huge(1.0_wp)])
   end subroutine respond
 
-  !> The branch in contact, from the turn of the position inward. Panels become longer as the
-  !> contact grows.
+  !> The branch in contact, from the turn of the position towards the other body. Panels become
+  !> longer as the contact grows.
   subroutine set_in_contact(model, number, turn, widest, unknowns, branch)
     class(classical_model_t), intent(in) :: model
     real(wp), intent(in) :: number(2), turn, widest

@@ -9,14 +9,15 @@ module contact_check
   private
   public :: check_contact
 
-  !> Limits: a signal in standard deviations of the noise; standard errors of a certain statement;
-  !> the slope of samples in contact, over that of the spring.
+  !> Limits: a signal in standard deviations of the noise; the number of standard errors that makes
+  !> a statement certain; the slope of samples in contact, in units of that of the spring.
   real(wp), parameter :: stands_out = 8, surely = 5, steep = 0.2_wp
 
 contains
 
-  !> Sets `trouble` if straight lines describe approach and retract: single samples, means over
-  !> neighbours, and the samples nearest to the other body. left: the signal less the baseline.
+  !> Sets `trouble` if straight lines describe approach and retract. Compares single samples, means
+  !> over neighbours, and the samples nearest to the other body with these lines. left: the signal
+  !> minus the baseline.
   subroutine check_contact(measured, left, noise, stiffness, trouble)
     type(measured_curve_t), intent(in) :: measured
     real(wp), intent(in) :: left(:), stiffness
@@ -30,7 +31,7 @@ contains
     integer :: k
 
     if (maxval(abs(left), measured%usable) > stands_out*noise%deviation) return
-    ! Otherwise the bend of a long-range contact would count as noise.
+    ! With the larger deviation, the bend of a long-range contact would count as noise.
     white = white_noise(min(noise%deviation, rough_deviation(pack(measured%signal, &
       measured%usable))))
     off_line = measured%signal
@@ -65,8 +66,8 @@ contains
   end subroutine check_contact
 
   !> By how many standard errors the mean of the nearest samples of a segment exceeds a straight
-  !> line through the others: the maximum over 2, 4, 8 and more samples. This finds a short, weak
-  !> contact best.
+  !> line through the others: the maximum over the means of 2, 4, 8 and more samples. This test is
+  !> the most sensitive one for a short, weak contact.
   pure real(wp) function end_off_line(measured, inward, deviation) result(off)
     type(measured_curve_t), intent(in) :: measured
     logical, intent(in) :: inward
@@ -78,7 +79,7 @@ contains
 
     off = 0
     at = pack([(i, i=1, size(measured%z))], measured%usable .and. (measured%inward .eqv. inward))
-    ! From the nearest sample on.
+    ! Order the samples from the nearest one to the farthest.
     if (inward) at = at(size(at):1:-1)
     n = size(at)
     x = measured%facing*measured%z(at)

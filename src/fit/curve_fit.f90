@@ -16,24 +16,27 @@ module curve_fit
   private
   public :: fit_curve
 
-  !> Number of contact points tried for which the nearest sample is in contact, and for which it is
-  !> not; number of samples used for each, and of sections that refine the best ones to a hundredth
-  !> of the distance between two: the search goes on from there.
+  !> Number of contact points for which the model is compared with the data: `tried` with the
+  !> nearest sample in contact, `tried_apart` with it out of contact. Number of samples used for
+  !> each comparison. Number of sections that locate a minimum to a hundredth of the distance
+  !> between two contact points; the search continues from there.
   integer, parameter :: tried = 160, tried_apart = 40, samples = 250, sections = 11
-  !> Largest numbers of contact points kept for each candidate, of searches from the best
-  !> candidates, of their results that are followed up, and of rounds in which the data are examined
-  !> again.
+  !> Largest numbers: of contact points kept for each candidate; of searches, which start from the
+  !> best candidates; of restarts from smaller residuals that the examination of the errors has
+  !> found; of rounds in which noise, outliers and jumps are determined again.
   integer, parameter :: most_points = 2, most_fits = 8, most_looks = 3, most_rounds = 8
-  !> Number of searches with the same result that ends the search. Relative differences between sums
-  !> of squares: below `same` they are equal, above `apart` they belong to different minima.
+  !> The search ends when this number of searches has led to the same minimum. Relative differences
+  !> between sums of squares: below `same` they are equal, above `apart` they belong to different
+  !> minima.
   integer, parameter :: enough = 3
   real(wp), parameter :: same = 1.0e-4_wp, apart = 0.02_wp
 
 contains
 
   !> Fits the model, starting from several candidates, start(unknown, candidate), and from several
-  !> contact points if that is unknown. The search ends when a fit describes the data; the best fit
-  !> is kept. renew: noise (unless it is given), outliers and jumps are found again by the model.
+  !> contact points if the contact point is unknown. The search ends when a fit describes the data;
+  !> the best fit is kept. renew: noise (unless the deck gives it), outliers and jumps are
+  !> determined again from the residuals of the model.
   subroutine fit_curve(curve, model, start, renew, fitted)
     type(modelled_curve_t), intent(inout) :: curve
     class(force_model_t), intent(inout), target :: model
@@ -64,9 +67,9 @@ contains
         fitted = other
         curve = trial%curve
       end if
-      ! A correlation of the residuals may be a misfit.
+      ! The correlation that residuals show may be caused by a misfit.
       if (fitted%lack%is_noise() .and. .not. curve%data%noise%of_residuals) exit
-      ! Other searches with the same minimum are left out.
+      ! Skip the other searches that led to the same minimum.
       where (left < (1 + apart)*left(k)) left = huge(left)
     end do
     ! If the model does not describe the data, residuals give neither errors nor better values.
@@ -99,8 +102,9 @@ contains
       call widen(residuals, fitted)
     end subroutine examine
 
-    !> Searches from the candidates with the smallest sums of squares, `cost`, and replaces them by
-    !> the minima found. left: the sums of squares there; huge without a search.
+    !> Searches from the candidates with the smallest sums of squares, `cost`, and replaces these
+    !> candidates by the minima found. left: the sums of squares at the minima; huge for candidates
+    !> without a search.
     subroutine search_from()
       integer :: i, k, freedom
 
@@ -111,13 +115,14 @@ contains
         k = minloc(cost, 1)
         cost(k) = huge(cost)
         call search(residuals, value(:, k), left(k), found(k))
-        ! Residuals far below the noise only show that the noise is too large.
+        ! Residuals far below the noise show only that the noise is overestimated.
         if (found(k) .and. abs(left(k) - freedom) < 3*sqrt(2.0_wp*freedom)) return
         if (count(left < (1 + same)*minval(left)) == enough) return
       end do
     end subroutine search_from
 
-    !> Finds noise, outliers and jumps by the model and fits again, until nothing changes.
+    !> Determines noise, outliers and jumps from the residuals of the model and fits again, until
+    !> nothing changes.
     subroutine settle(residuals, fitted)
       type(curve_residuals_t), intent(inout) :: residuals
       type(fitted_t), intent(inout) :: fitted
@@ -186,10 +191,11 @@ contains
 
   end subroutine find_candidates
 
-  !> The contact points with the lowest sums of squares, and these sums. ends: as of `reach`; points
-  !> are evenly spaced between the first two, and at growing distances from there to the last. role:
-  !> the index of the contact point among the unknowns. Many points are tried, since the model is
-  !> not solved again if only the contact point changes.
+  !> The contact points with the lowest sums of squares, and these sums. ends: the three contact
+  !> points of `reach`. Trial points are evenly spaced between the first two, and at growing
+  !> distances from the second to the third. role: the index of the contact point among the
+  !> unknowns. Many points can be tried, since a new contact point alone needs no new solution of
+  !> the model.
   subroutine lowest_points(residuals, value, role, ends, points, costs)
     type(curve_residuals_t), intent(inout) :: residuals
     real(wp), intent(in) :: value(:), ends(3)
@@ -242,7 +248,7 @@ contains
     if (found) cost = sum(residual**2)
   end function cost_of
 
-  !> Moves the values to the nearest minimum of the sum of squares, `left`.
+  !> Moves the values to the nearest minimum of the sum of squares. left: the sum of squares there.
   subroutine search(residuals, value, left, found)
     type(curve_residuals_t), intent(inout) :: residuals
     real(wp), intent(inout) :: value(:)

@@ -1,5 +1,6 @@
-!> A file with several measured curves, which a column numbers: where the rows of each curve are.
-!> Only these positions and the lines before the rows are kept, however large the file is.
+!> The index of a file with several measured curves, which a column numbers: the position of the
+!> rows of each curve. Only these positions and the lines before the rows are kept in memory,
+!> however large the file is.
 module curve_index
   use, intrinsic :: iso_c_binding, only: c_int, c_long
   use kinds, only: wp, long
@@ -17,18 +18,18 @@ module curve_index
   private
   public :: curve_index_t
 
-  !> Number of bytes that are read at once. The lines before the rows are within the first ones.
+  !> Number of bytes that are read at once. The lines before the rows must fit into the first piece.
   integer, parameter :: piece = 2**20
   character(len=*), parameter :: newline = new_line('a')
 
-  !> number: of each curve, in the order of the file. digest: checksum of the file.
+  !> number: the number of each curve, in the order of the file. digest: checksum of the file.
   type :: curve_index_t
     integer, allocatable :: number(:)
     integer(long) :: digest = 0
     character(len=:), allocatable, private :: file, column, heading
     integer, private :: skip = 0, heading_lines = 0
-    !> The first byte of each curve, counted from 0, the one after its last byte, and the number of
-    !> lines before it.
+    !> For each curve: the position of its first byte, counted from 0; the position after its last
+    !> byte; the number of lines before it.
     integer(long), allocatable, private :: first(:), behind(:)
     integer, allocatable, private :: lines(:)
   contains
@@ -38,8 +39,9 @@ module curve_index
 
 contains
 
-  !> Finds the curves of a file, unless they are known. column: the name or number of the column
-  !> that numbers them; skip: number of lines at the begin of the file that do not count.
+  !> Finds the curves of a file, unless they have been found before. column: the name or number of
+  !> the column that numbers the curves; skip: number of lines at the beginning of the file to be
+  !> ignored.
   subroutine find_curves(self, file, column, skip, error)
     class(curve_index_t), intent(inout) :: self
     character(len=*), intent(in) :: file, column
@@ -67,7 +69,8 @@ contains
     self%skip = skip
   end subroutine find_curves
 
-  !> Reads bytes from a place in the file; `held` of them, fewer at its end.
+  !> Reads bytes from a position in the file. held: the number of bytes read, smaller than the
+  !> buffer at the end of the file.
   subroutine read_bytes(file, descriptor, place, bytes, held, error)
     character(len=*), intent(in) :: file
     integer(c_int), intent(in) :: descriptor
@@ -85,7 +88,7 @@ contains
     call fail(error, file_trouble, printable(file) // ': cannot be read: ' // reason)
   end subroutine read_bytes
 
-  !> Finds the lines before the rows, and the place of the column, at(1).
+  !> Finds the lines before the rows. at(1): the position of the column among the columns.
   subroutine find_heading(self, file, column, skip, descriptor, buffer, layout, at, error)
     class(curve_index_t), intent(inout) :: self
     character(len=*), intent(in) :: file, column
@@ -101,7 +104,7 @@ contains
 
     call read_bytes(file, descriptor, 0_long, buffer, held, error)
     if (allocated(error)) return
-    ! Up to the end of a line.
+    ! Keep only whole lines.
     whole = held
     if (held == len(buffer)) whole = index(buffer, newline, back=.true.)
     call take_source(file, buffer(:whole), source, error, largest_table)
@@ -120,7 +123,7 @@ contains
     self%heading = buffer(:n)
   end subroutine find_heading
 
-  !> Finds where the number of the curve changes.
+  !> Finds the positions in the file at which the number of the curve changes.
   subroutine find_rows(self, file, descriptor, separator, column, buffer, error)
     class(curve_index_t), intent(inout) :: self
     character(len=*), intent(in) :: file
@@ -149,7 +152,7 @@ contains
       used = 0
       do
         length = index(buffer(used + 1:held), newline)
-        ! The rest is the begin of a line, or the last line.
+        ! What remains is the beginning of a line, or the last line.
         if (length == 0 .and. (held == len(buffer) .and. used > 0)) exit
         if (length == 0) length = held - used
         if (length == 0) exit
@@ -167,7 +170,7 @@ contains
 
   contains
 
-    !> Takes a row that begins at a place of the file.
+    !> Takes a row that begins at position `at` of the file.
     subroutine take_line(line, at)
       character(len=*), intent(in) :: line
       integer(long), intent(in) :: at
@@ -218,7 +221,8 @@ contains
   end subroutine find_rows
 
   !> Finds the cell of a column in a line, without blanks and double quotes at its ends; last <
-  !> first if there is none. A line is not divided as a whole, since there are many.
+  !> first if the line has no such cell. Only this cell is looked up, since splitting each of many
+  !> lines would take too long.
   pure subroutine find_cell(line, separator, column, first, last)
     character(len=*), intent(in) :: line
     character, intent(in) :: separator
@@ -252,7 +256,7 @@ contains
     first = first + i - 1
   end subroutine find_cell
 
-  !> The text of one curve, below the lines before all rows.
+  !> The text of one curve: the lines before all rows, then the rows of the curve.
   subroutine load(self, number, source, error)
     class(curve_index_t), intent(in) :: self
     integer, intent(in) :: number

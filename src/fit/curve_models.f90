@@ -1,5 +1,5 @@
-!> The model of a deck's bodies for measured curves: along the path if they attract each other, else
-!> stepped in h0.
+!> The model of a deck's bodies for measured curves: the equilibrium path if the bodies attract each
+!> other, otherwise a curve stepped in h0.
 module curve_models
   use variation, only: problem_family_t
   use experiment_request, only: numerics_t
@@ -10,7 +10,7 @@ module curve_models
   private
   public :: curve_models_t
 
-  !> Both kinds, of which one is used.
+  !> The two kinds of model, of which one is used.
   type :: curve_models_t
     type(path_model_t) :: path
     type(stepped_model_t) :: stepped
@@ -21,8 +21,8 @@ module curve_models
 
 contains
 
-  !> Sets the model of a family of problems, which attract each other or do not. `self` must exist
-  !> as long as the model is used. with_radius: whether the contact radius is wanted.
+  !> Sets the model of a family of problems. attracts: whether the bodies attract each other. `self`
+  !> must exist as long as the model is used. with_radius: whether the contact radius is wanted.
   subroutine set(self, family, numerics, attracts, with_radius, model)
     class(curve_models_t), intent(inout), target :: self
     class(problem_family_t), intent(in) :: family
@@ -43,7 +43,7 @@ contains
   end subroutine set
 
   !> Sets the model of a wider family, whose first parameters are those of `like`, another model of
-  !> the same bodies, and takes over what that one has solved.
+  !> the same bodies, and takes over the solutions of `like`.
   subroutine set_wider(self, family, like, model)
     class(curve_models_t), intent(inout), target :: self
     class(problem_family_t), intent(in) :: family

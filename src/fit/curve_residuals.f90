@@ -1,7 +1,7 @@
-!> The residuals of a measured curve under a model (`modelled_curve`), in standard deviations.
-!> Baselines and slope enter linearly, and are removed by projection (variable projection; Golub and
-!> Pereyra, 1973; `fit_samples`), after the samples are whitened. The position of a jump is one more
-!> datum, and so is a prior of an unknown. Samples within a jump do not count.
+!> The residuals of a measured curve under a model (`modelled_curve`), in standard deviations. The
+!> samples are whitened. Baselines and slope enter linearly and are then removed by projection
+!> (variable projection; Golub and Pereyra, 1973; `fit_samples`). The position of a jump gives one
+!> more residual, and so does a prior of an unknown. Samples taken during a jump do not count.
 module curve_residuals
   use kinds, only: wp
   use fit_request, only: unknown_t, value_by_fitted, fitted_of, is_beyond
@@ -11,7 +11,7 @@ module curve_residuals
   private
   public :: curve_residuals_t
 
-  !> Residual of a jump that the model does not have, in standard deviations.
+  !> Residual of a measured jump that the model does not have, in standard deviations.
   real(wp), parameter :: missed = 10
 
   type, extends(fit_residuals_t) :: curve_residuals_t
@@ -114,14 +114,14 @@ contains
     end associate
   end subroutine jacobian_of
 
-  !> The prior standard deviation of an unknown, as one of its fitted number.
+  !> The prior standard deviation of the fitted number of an unknown.
   pure real(wp) function prior_of(unknown) result(deviation)
     type(unknown_t), intent(in) :: unknown
 
     deviation = unknown%prior/value_by_fitted(unknown, unknown%value)
   end function prior_of
 
-  !> Start of the model's jump minus start of the measured one, over its uncertainty.
+  !> The start of the model's jump minus the start of the measured jump, divided by the uncertainty.
   real(wp) function jump_residual(self, value, way) result(residual)
     class(curve_residuals_t), intent(in) :: self
     real(wp), intent(in) :: value(:)

@@ -1,4 +1,5 @@
-!> The rows of the file of a measured curve: position and signal in SI, and the segment's label.
+!> The rows of the file of a measured curve: position and signal in SI units, and the label of the
+!> segment.
 module curve_rows
   use kinds, only: wp
   use failure, only: failure_t, fail, bad_input
@@ -17,15 +18,16 @@ module curve_rows
   !> Names of the quantities that are lengths.
   character(len=*), parameter :: lengths(of_position:of_radius) = [character(len=14) :: &
     'position', 'separation', '', '', 'contact radius']
-  !> Smallest number of samples of a curve, and of an approach or a retract.
+  !> Smallest number of samples of a curve, and of its approach or retract.
   integer, parameter :: fewest = 20
 
-  !> z [m] and signal [N, or V] of the complete rows, in the order of the file, or the approach
-  !> first. radius [m]: contact radius if the file has it beside these; 0 where it was not seen.
-  !> Without positions z is the load and `signal` the radius. code: the index of each row's label in
-  !> `label`, if the file has a column of segments. kind: of each row's segment, once it is known.
-  !> unit: of the columns in the file. signal_in: as in `measurement_t`. incomplete: number of rows
-  !> left out. columns_read: a description for the user.
+  !> z [m] and signal [N, or V] of the complete rows, in the order of the file or with the approach
+  !> first. radius [m]: the contact radius, if the file has it in addition; 0 in rows without a
+  !> value. Without positions, z is the load and `signal` the contact radius. code: the index of
+  !> each row's label in `label`, if the file has a column of segments. kind: the kind of each row's
+  !> segment, once it is known. unit: the units of the columns in the file. signal_in: as in
+  !> `measurement_t`. incomplete: number of rows left out. columns_read: a description of the
+  !> columns for the user.
   type :: curve_rows_t
     character(len=:), allocatable :: file, columns_read
     real(wp), allocatable :: z(:), signal(:), radius(:)
@@ -79,7 +81,7 @@ contains
       return
     end if
     if (radius > 0) then
-      ! A contact without a radius has other quantities.
+      ! A row of the contact whose radius was not measured still has the other quantities.
       where (table%missing(:, radius)) table%value(:, radius) = 0
       table%missing(:, radius) = .false.
     end if
@@ -97,7 +99,7 @@ contains
       rows%kind = [spread(of_approach, 1, count(whole)), spread(of_retreat, 1, count(more))]
       rows%z = [rows%z, pack(table%value(:, 3), more)]
       rows%signal = [rows%signal, pack(table%value(:, 4), more)]
-      ! Of two segments side by side the shorter one ends before the file.
+      ! If two segments stand side by side, the shorter one ends before the file does.
       rows%incomplete = gaps_in(whole) + gaps_in(more)
       call put_in_order(count(whole), rows)
     end if
@@ -144,7 +146,7 @@ contains
 
   end subroutine read_curve_rows
 
-  !> Number of rows without a value before the last row that has one.
+  !> Number of incomplete rows before the last complete row.
   pure integer function gaps_in(whole) result(gaps)
     logical, intent(in) :: whole(:)
 
@@ -152,8 +154,8 @@ contains
     if (.not. any(whole)) gaps = size(whole)
   end function gaps_in
 
-  !> A retract beside the approach may be sorted by position instead of time. n: number of rows of
-  !> the approach.
+  !> Reverses a retract beside the approach that is sorted by position instead of time. n: number of
+  !> rows of the approach.
   pure subroutine put_in_order(n, rows)
     integer, intent(in) :: n
     type(curve_rows_t), intent(inout) :: rows
@@ -166,8 +168,8 @@ contains
     end associate
   end subroutine put_in_order
 
-  !> Scales the columns to SI by the deck's units, by those in the file, or not at all. unit: the
-  !> factors. signal_in: as in `measurement_t`. what: why a unit cannot be right.
+  !> Scales the columns to SI units by the deck's units, by those in the file, or not at all. unit:
+  !> the factors. signal_in: as in `measurement_t`. what: the reason why a unit cannot be right.
   subroutine scale_columns(measurement, table, unit, signal_in, what)
     type(measurement_t), intent(in) :: measurement
     type(data_table_t), intent(inout) :: table

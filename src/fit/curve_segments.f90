@@ -1,6 +1,6 @@
 !> The segments of a measured curve: which of its rows belong to the approach and which to the
-!> retract. This follows from labels in the file, or from the direction in which the base moves; in
-!> a pause it rests.
+!> retract. The segments follow from labels in the file, or from the direction in which the base
+!> moves. During a pause the base rests.
 module curve_segments
   use kinds, only: wp
   use failure, only: failure_t, fail, bad_input
@@ -11,8 +11,8 @@ module curve_segments
   private
   public :: find_segments
 
-  !> Words that instruments write for the segments of a curve, between blanks; 0 and 1 are the
-  !> numbers of afmformats.
+  !> Words that instruments write for the segments of a curve, separated by blanks; 0 and 1 are the
+  !> numbers that afmformats writes.
   character(len=*), parameter :: words(of_pause:of_retreat) = [character(len=110) :: &
     ' pause hold dwell wait ', &
     ' 0 false approach extend extending ext advance advancing forward load loading ', &
@@ -24,7 +24,7 @@ module curve_segments
 
 contains
 
-  !> Finds the kind of each row's segment. error: why it cannot be found.
+  !> Finds the kind of each row's segment. error: the reason why it cannot be found.
   subroutine find_segments(rows, measurement, error)
     type(curve_rows_t), intent(inout) :: rows
     type(measurement_t), intent(in) :: measurement
@@ -33,7 +33,7 @@ contains
     integer, allocatable :: of_label(:)
     logical :: chosen
 
-    ! Columns side by side are an approach and a retract.
+    ! If the columns stand side by side, approach and retract are known already.
     if (allocated(rows%kind)) return
     chosen = allocated(measurement%approach) .or. allocated(measurement%retreat)
     allocate (of_label(0))
@@ -41,7 +41,7 @@ contains
     if (allocated(what)) then
       continue
     else if (size(of_label) <= 1 .and. .not. chosen) then
-      ! One label for all rows is useless if the base turns.
+      ! If all rows have one label, the label is useless when the base turns.
       rows%kind = merge(of_approach, of_retreat, before_turn(rows%z, measurement%segment))
       if (size(of_label) == 1 .and. all(rows%kind == rows%kind(1))) then
         if (of_label(1) >= of_approach) rows%kind = of_label(1)
@@ -55,7 +55,8 @@ contains
 
   contains
 
-    !> The kind of segment that each label means by the deck or as a known word; -1: not known.
+    !> The kind of segment that each label means, by the deck or as a known word; -1 for an unknown
+    !> label.
     subroutine know_labels()
       integer :: k
 
@@ -86,8 +87,8 @@ contains
 
   end subroutine find_segments
 
-  !> The segments by what the base does: each run of equal labels is an approach, a retract or a
-  !> pause. The first run that moves is an approach.
+  !> Finds the segments from the motion of the base: each sequence of rows with one label is an
+  !> approach, a retract or a pause. The first sequence in which the base moves is the approach.
   subroutine segments_by_travel(z, code, kind, what)
     real(wp), intent(in) :: z(:)
     integer, intent(in) :: code(:)
@@ -123,7 +124,7 @@ contains
       'one approach and one retract are expected; approach and retract choose them by their labels'
   end subroutine segments_by_travel
 
-  !> Marks the samples before the turn of z; without a turn `segment` decides.
+  !> Marks the samples before the turn of z. If z does not turn, `segment` decides.
   pure function before_turn(z, segment) result(inward)
     real(wp), intent(in) :: z(:)
     character(len=*), intent(in) :: segment

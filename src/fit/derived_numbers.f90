@@ -11,8 +11,8 @@ module derived_numbers
   private
   public :: derived_t, derive_numbers
 
-  !> A number with its standard error and unit; poisson: the Poisson's ratio that it assumes, where
-  !> it assumes one, and whether the deck gives it.
+  !> A number with its standard error and unit. poisson: the Poisson's ratio that is assumed, if the
+  !> number depends on it. of_deck: whether the deck gives this ratio.
   type :: derived_t
     character(len=:), allocatable :: name, unit
     real(wp) :: value = 0, error = 0
@@ -22,14 +22,15 @@ module derived_numbers
 
   !> The largest Poisson's ratio, of incompressible bodies such as gels.
   real(wp), parameter :: incompressible = 0.5_wp
-  !> Change of a fitted number for derivatives.
+  !> Change of a fitted number for finite differences.
   real(wp), parameter :: change = 1.0e-4_wp
 
 contains
 
-  !> The numbers of a fit. family: the problems, whose parameters are the unknowns of the model.
-  !> 1/E* = (1-nu1^2)/E1 + (1-nu2^2)/E2. Of identical bodies E* is half of the stiffness E/(1-nu^2);
-  !> of a sample under a rigid tip it is E/(1-nu^2) itself.
+  !> Derives the numbers of a fit. family: the problems, whose parameters are the unknowns of the
+  !> model. The reduced modulus is 1/E* = (1-nu1^2)/E1 + (1-nu2^2)/E2. For identical bodies E* is
+  !> half of the plane-strain modulus E/(1-nu^2); for a sample under a rigid tip E* is E/(1-nu^2)
+  !> itself.
   subroutine derive_numbers(family, fit, unknown, fitted, problem, derived)
     class(problem_family_t), intent(in) :: family
     type(fit_t), intent(in) :: fit
@@ -104,7 +105,7 @@ contains
       associate (part => by*fitted%fitted_deviation)
         new%error = sqrt(max(0.0_wp, dot_product(part, matmul(fitted%correlation, part))))
       end associate
-      ! A number that does not depend on the unknowns is not reported.
+      ! A number that does not depend on the unknowns has no error and is not reported.
       if (new%error > 0) derived = [derived, new]
     end subroutine add
 

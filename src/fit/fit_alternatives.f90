@@ -1,5 +1,6 @@
-!> Other fits of data that the model does not describe: with another spring constant, of the retract
-!> alone, of the approach alone. If one of them describes its data, it shows what is wrong.
+!> Other fits to data that the model does not describe: with another spring constant, to the retract
+!> alone, to the approach alone. If one of them describes its data, it shows which assumption is
+!> wrong.
 module fit_alternatives
   use kinds, only: wp
   use dimensionless_problem, only: problem_t
@@ -19,8 +20,8 @@ module fit_alternatives
   private
   public :: alternative_t, find_alternative, contact_slope
 
-  !> An alternative that describes the data. name: retract, approach, or spring_constant, whose
-  !> value and error it then has [N/m].
+  !> An alternative that describes the data. name: 'retract', 'approach', or 'spring_constant'; for
+  !> the latter, value and error of the spring constant [N/m].
   type :: alternative_t
     character(len=:), allocatable :: name
     real(wp) :: value = 0, error = 0, chi_squared = 0
@@ -29,13 +30,14 @@ module fit_alternatives
 
   !> A spring constant that differs by less than this factor is no mistake.
   real(wp), parameter :: other_spring = 1.1_wp
-  !> The softest spring that is tried, over the deck's.
+  !> The softest spring that is tried, relative to the deck's.
   real(wp), parameter :: softest = 1.0e-4_wp
 
 contains
 
-  !> Looks for an alternative; not allocated if there is none. family, problem: as of `run_fit`.
-  !> curve: the fit. spring_first: whether the data ask for another spring constant.
+  !> Looks for an alternative; `alternative` is not allocated if there is none. family, problem: as
+  !> in `run_fit`. curve: the curve of the fit. spring_first: whether the data suggest another
+  !> spring constant.
   subroutine find_alternative(family, problem, curve, model, spring_first, fitted, alternative)
     class(problem_family_t), intent(in) :: family
     type(problem_t), intent(in) :: problem
@@ -52,7 +54,7 @@ contains
 
   contains
 
-    !> Fits one segment alone, from the values of the fit of both.
+    !> Fits one segment alone, starting from the values of the fit to both.
     subroutine try_way(inward, name)
       logical, intent(in) :: inward
       character(len=*), intent(in) :: name
@@ -66,9 +68,9 @@ contains
       call accept(name, other)
     end subroutine try_way
 
-    !> Fits the spring constant too, if the signal is the force (a deflection does not depend on
-    !> it). In contact with a much stiffer body the signal changes by the spring constant times the
-    !> travel.
+    !> Fits the spring constant too, if the signal is the force (a deflection does not depend on the
+    !> spring constant). In contact with a much stiffer body the signal changes by the spring
+    !> constant times the travel.
     subroutine try_spring()
       type(modelled_curve_t) :: trial
       type(fitted_t) :: other
@@ -79,9 +81,10 @@ contains
 
       n = size(curve%unknown)
       if (.not. curve%is_force .or. any(curve%unknown%role == of_spring)) return
-      ! Separations and loads do not show the spring.
+      ! Data of separations and loads do not depend on the spring.
       if (.not. curve%data%measured%has(of_position)) return
-      ! Jumps and starting values are those of a spring as stiff as the contact.
+      ! Jumps and starting values are determined as if the spring were as stiff as the steepest part
+      ! of the contact.
       trial = curve
       trial%spring = max(contact_slope(curve), softest*curve%spring)
       trial%sensitivity = curve%data%measured%load_of_unit()/trial%spring
@@ -126,7 +129,7 @@ contains
 
   end subroutine find_alternative
 
-  !> The steepest slope of the load [N/m] against the travel of the base in contact.
+  !> The steepest slope in contact of the load against the travel of the base [N/m].
   pure real(wp) function contact_slope(curve) result(slope)
     type(modelled_curve_t), intent(in) :: curve
 

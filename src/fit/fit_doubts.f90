@@ -16,20 +16,22 @@ module fit_doubts
   private
   public :: doubts_of
 
-  !> Limits: correlation of two unknowns; smallest singular value; standard deviation of a
-  !> logarithm; distance of a jump in standard deviations.
+  !> Limits: the correlation of two unknowns; the smallest singular value; the standard deviation of
+  !> a logarithm; the distance between jumps of data and model in standard deviations.
   real(wp), parameter :: alike = 0.98_wp, lost = 1.0e-3_wp, vague = 0.7_wp, far = 4
-  !> A part of the baseline with a smaller chance than this, over all parts, is reported if it would
-  !> move an unknown far: at most one false alarm in a hundred good fits.
+  !> A missing part of the baseline is reported if it would move an unknown far and if noise
+  !> explains it with a smaller probability than this, counted over all parts. At most one good fit
+  !> in a hundred then has a false alarm.
   real(wp), parameter :: unlikely = 0.01_wp
-  !> A part of the baseline is the main cause if it explains this part of the excess of chi squared.
+  !> A missing part of the baseline is the main cause if it explains this fraction of the excess of
+  !> chi squared.
   real(wp), parameter :: most_of = 0.5_wp
   character(len=*), parameter :: not_described = ': the model does not describe these data, ' // &
     'and the true errors are larger than the standard errors'
 
 contains
 
-  !> One line for each doubt.
+  !> The warnings of a fit, one line each.
   function doubts_of(outcome) result(lines)
     type(fit_outcome_t), intent(in) :: outcome
     type(line_t), allocatable :: lines(:)
@@ -40,7 +42,7 @@ contains
     associate (fitted => outcome%fitted, unknown => outcome%curve%unknown)
       do i = 1, size(fitted%value)
         if (.not. is_at_end(unknown(i), fitted%value(i))) cycle
-        ! If the data hardly depend on it, a nearer start does not help.
+        ! If the data hardly depend on the unknown, a nearer start does not help.
         if (fitted%lack%is_noise() .and. fitted%fitted_deviation(i) > vague) cycle
         call add(unknown(i)%name // ' ends at ' // rounded(fitted%value(i)) // ', the ' // &
           trim(merge('largest ', 'smallest', fitted_of(unknown(i), fitted%value(i)) > 0)) // &
@@ -49,7 +51,7 @@ contains
           ' from the value in the deck: other values may fit better, and standard errors mean ' // &
           'nothing; start nearer')
       end do
-      ! Then the model may describe the data with other values.
+      ! The search has stopped at its limits; beyond them the model may describe the data.
       stopped = size(lines) > 0
       if (allocated(outcome%of_all)) call add(outcome%of_all)
       explained = .false.
@@ -59,7 +61,7 @@ contains
       if (.not. fitted%lack%is_noise()) call add(what_is_left(fitted%lack) // &
         ' times what noise leaves (' // rounded(fitted%lack%excess) // ' standard ' // &
         'deviations more)' // not_described(:merge(0, len(not_described), stopped)))
-      ! The noise of rounding is a bound.
+      ! Noise at its lower bound, which rounding sets, may exceed the residuals without a warning.
       if (fitted%lack%excess < -hardly_ever .and. (outcome%curve%data%noise_is_given .or. &
         outcome%curve%data%noise%deviation > outcome%curve%data%least_noise)) &
         call add(what_is_left(fitted%lack) // ' times what the noise ' // &
@@ -86,8 +88,8 @@ contains
 
   contains
 
-    !> Doubt about a spring constant that is fitted to forces: forces that an instrument computed
-    !> from deflections would change with it.
+    !> Warns about a spring constant that is fitted to forces. If an instrument computed the forces
+    !> from deflections, they would change with the spring constant.
     subroutine doubt_spring()
       if (.not. outcome%curve%is_force) return
       if (.not. any(outcome%curve%unknown%role == of_spring)) return
@@ -96,7 +98,7 @@ contains
         ', so that it counts as a deflection')
     end subroutine doubt_spring
 
-    !> Another fit that describes the data.
+    !> Reports another fit that describes the data.
     subroutine doubt_alternative()
       character(len=:), allocatable :: words
 
@@ -118,8 +120,8 @@ contains
       end associate
     end subroutine doubt_alternative
 
-    !> What the baseline lacks. If the model does not describe the data, only a part that is the
-    !> main cause.
+    !> Warns about a part that the baseline lacks. If the model does not describe the data, only a
+    !> part that is the main cause of the misfit is reported.
     subroutine doubt_baseline()
       character(len=:), allocatable :: words
       integer :: i, k
@@ -154,7 +156,7 @@ contains
       end associate
     end subroutine doubt_baseline
 
-    !> Doubts about numbers that the deck holds fixed: the one that the data contradict most.
+    !> Warns about the number held fixed by the deck that the data contradict most.
     subroutine doubt_held(held)
       type(held_t), intent(in) :: held(:)
       integer :: i
@@ -167,7 +169,7 @@ contains
         ' standard deviations)' // not_described)
     end subroutine doubt_held
 
-    !> The quantity that was compared with the noise, in words: samples or means over neighbours.
+    !> Describes the quantity that was compared with the noise: samples, or means over neighbours.
     function what_is_left(lack) result(words)
       type(lack_t), intent(in) :: lack
       character(len=:), allocatable :: words
@@ -178,7 +180,7 @@ contains
       words = words // rounded(lack%times)
     end function what_is_left
 
-    !> Doubts about unknown i alone: a large error, a bound within the error.
+    !> Warns about unknown i alone: a large error, or a bound within the error.
     subroutine doubt_unknown(fitted, unknown, i)
       type(fitted_t), intent(in) :: fitted
       type(unknown_t), intent(in) :: unknown
@@ -209,8 +211,8 @@ contains
       end associate
     end subroutine doubt_unknown
 
-    !> Doubt about a retract that ends before the bodies separate: the model treats its end as
-    !> baseline.
+    !> Warns about a retract that ends before the bodies separate: the model treats the end of this
+    !> retract as baseline.
     subroutine doubt_end()
       real(wp) :: below
 
@@ -224,7 +226,8 @@ contains
       end associate
     end subroutine doubt_end
 
-    !> Doubt about a signal that stays at its end, as that of a detector at the end of its range.
+    !> Warns about a signal that stays at its largest or smallest value, as a detector at the end of
+    !> its range does.
     subroutine doubt_signal()
       type(measured_curve_t) :: measured
       integer :: first, last
@@ -244,7 +247,7 @@ contains
       end associate
     end subroutine doubt_signal
 
-    !> Doubts about jumps of the data that the model does not have there.
+    !> Warns about jumps of the data that the model has elsewhere or not at all.
     subroutine doubt_jumps()
       character(len=8), parameter :: ways(2) = ['approach', 'retract ']
       real(wp) :: off

@@ -1,4 +1,4 @@
-!> The result of a fit, and the errors of its values by the derivatives of the residuals.
+!> The result of a fit, and the errors of the fitted values from the derivatives of the residuals.
 module fit_errors
   use kinds, only: wp
   use linear_algebra, only: singular_values
@@ -14,18 +14,19 @@ module fit_errors
   !> Half-width of a 95 % interval in standard deviations.
   real(wp), parameter :: within_95 = 1.959964_wp
 
-  !> An unknown has no effect if a change of its fitted number (`fit_request`) by 1 changes the data
-  !> by less than this, in standard deviations.
+  !> An unknown has no effect if a change of its fitted number (`fit_request`) by 1 changes the
+  !> curve by less than this number of standard deviations.
   real(wp), parameter :: least_effect = 0.1_wp
 
   !> The result of a fit. value, deviation: each unknown and its standard deviation, in the unit of
-  !> its key. fitted_deviation, correlation: the same for the fitted numbers (`fit_request`), whose
-  !> errors are symmetric. identifiable: the smallest singular value of their Jacobian with columns
-  !> of length 1; 1 if the data determine all unknowns, 0 if they do not. effect: the change of the
-  !> curve, in standard deviations of all data together, if the fitted number changes by 1. side(:,
-  !> i): standard deviations of fitted number i downward and upward; fitted_deviation(i) is the
-  !> larger one. has_path: the model has a path for some start. has_curve: for some start it
-  !> describes the samples better with a contact among them than without.
+  !> its key. fitted_deviation, correlation: standard deviations and correlations of the fitted
+  !> numbers (`fit_request`), whose errors are symmetric. identifiable: the smallest singular value
+  !> of the Jacobian of the fitted numbers with columns of length 1; it is 1 if the columns are
+  !> orthogonal, and 0 if the data do not determine all unknowns. effect: the change of the curve,
+  !> in standard deviations of all data together, if the fitted number changes by 1. side(:, i):
+  !> standard deviations of fitted number i downward and upward, of which fitted_deviation(i) is the
+  !> larger one. has_path: the model has a path for some start. has_curve: for some start the model
+  !> describes the samples better if the curve includes the contact than if it does not.
   type :: fitted_t
     logical :: found = .false., has_curve = .false., has_path = .false.
     real(wp), allocatable :: value(:), deviation(:), fitted_deviation(:), correlation(:, :), &
@@ -51,8 +52,8 @@ module fit_errors
 
 contains
 
-  !> Whether a fit has errors, each of its unknowns has an effect, and it is more likely than
-  !> another fit, each with its own noise.
+  !> Whether a fit has errors, all its unknowns have an effect, and it is more likely than another
+  !> fit. The likelihood of each fit uses the noise found by this fit.
   pure logical function is_better_than(self, other)
     class(fitted_t), intent(in) :: self
     type(fitted_t), intent(in) :: other
@@ -73,7 +74,7 @@ contains
 
   end function is_better_than
 
-  !> Finds errors and correlations of the values, and what is left of the curve.
+  !> Finds errors and correlations of the values, and the residuals of the curve.
   subroutine judge(residuals, fitted)
     type(curve_residuals_t), intent(inout) :: residuals
     type(fitted_t), intent(inout) :: fitted
@@ -84,7 +85,7 @@ contains
     if (found) call examine_curve(residuals, residual, fitted)
   end subroutine judge
 
-  !> Finds errors and correlations of the values, and the residuals.
+  !> Finds errors and correlations of the values. residual: the residuals at the values.
   subroutine find_errors(residuals, fitted, residual, found)
     class(fit_residuals_t), intent(inout) :: residuals
     type(fitted_t), intent(inout) :: fitted
@@ -131,7 +132,7 @@ contains
     fitted%covariance = covariance/spread(length, 1, n)/spread(length, 2, n)
   end subroutine find_errors
 
-  !> Finds what a fit leaves of its curve, from the residuals at its values.
+  !> Finds the misfit of a curve from the residuals at the values of the fit.
   subroutine examine_curve(residuals, residual, fitted)
     type(curve_residuals_t), intent(in) :: residuals
     real(wp), intent(in) :: residual(:)
@@ -148,10 +149,11 @@ contains
     fitted%jump_z = [(residuals%curve%jump_of(fitted%value, i), i=1, 2)]
   end subroutine examine_curve
 
-  !> The part of a fit of several curves that belongs to one: its unknowns at `place`. residual: its
-  !> residuals, which begin after `before` others, with `removed` numbers of its baseline. The
-  !> degrees of freedom are the expected sum of its squared residuals, so that those of all curves
-  !> add up to those of the fit but for rounding.
+  !> The part of a fit of several curves that belongs to one curve. place: the positions of its
+  !> unknowns among all. residual: its residuals, which follow `before` residuals of other curves;
+  !> removed: the number of amplitudes of its baseline. The degrees of freedom are the expected sum
+  !> of its squared residuals. Their sum over all curves equals that of the whole fit, except for
+  !> rounding to integers.
   pure type(fitted_t) function part_of(self, place, residual, before, removed) result(part)
     class(fitted_t), intent(in) :: self
     integer, intent(in) :: place(:), before, removed
@@ -174,7 +176,7 @@ contains
       nint(sum(part%by_fitted*matmul(part%by_fitted, part%covariance)))
   end function part_of
 
-  !> Sets the standard errors from those of each side.
+  !> Sets the standard errors from those of the two sides.
   pure subroutine set_deviations(fitted, unknown)
     type(fitted_t), intent(inout) :: fitted
     type(unknown_t), intent(in) :: unknown(:)
@@ -185,7 +187,7 @@ contains
       abs([(value_by_fitted(unknown(j), fitted%value(j)), j=1, size(unknown))])
   end subroutine set_deviations
 
-  !> A value within the bounds of its unknown.
+  !> A value, moved to the nearest bound of its unknown if it is beyond the bounds.
   elemental real(wp) function bounded(unknown, value)
     type(unknown_t), intent(in) :: unknown
     real(wp), intent(in) :: value

@@ -1,4 +1,4 @@
-!> Why a search led to no fit, in words and with the numbers that decide.
+!> Messages that say why a search led to no fit, with the numbers that decide.
 module fit_refusals
   use kinds, only: wp
   use text, only: rounded
@@ -13,13 +13,14 @@ module fit_refusals
   private
   public :: check_fit
 
-  !> Chi squared per degree of freedom of data without contact, at most.
+  !> Largest chi squared per degree of freedom with which the baseline alone describes data without
+  !> contact.
   real(wp), parameter :: bare = 2
 
 contains
 
-  !> Sets `trouble` if the search did not end in a fit. suggestion: what the data suggest, to be
-  !> added to it; may be empty.
+  !> Sets `trouble` if the search did not end in a fit. suggestion: a text about what the data
+  !> suggest, which is appended; it may be empty.
   subroutine check_fit(curve, model, fitted, suggestion, trouble)
     type(modelled_curve_t), intent(in) :: curve
     class(force_model_t), pointer, intent(in) :: model
@@ -53,7 +54,7 @@ contains
       deallocate (trouble)
     end if
     do i = 1, size(fitted%effect)
-      ! Another curve may show a shared unknown.
+      ! A shared unknown may have an effect on another curve.
       if (fitted%effect(i) > least_effect .or. curve%unknown(i)%shared) cycle
       trouble = curve%unknown(i)%name // &
         ' has no effect on this curve near the best value found, ' // &

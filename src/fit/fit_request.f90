@@ -1,7 +1,7 @@
 !> The input of a fit: the measured curve and the unknowns.
 !>
-!> The search uses free numbers without bounds. A positive unknown is represented by its logarithm;
-!> two bounds are mapped by a sine, a single one by a hyperbola.
+!> The search uses free numbers, which have no bounds. A positive unknown is represented by its
+!> logarithm. Two bounds are enforced by the map of a sine, a single bound by that of a hyperbola.
 module fit_request
   use kinds, only: wp
   use baseline, only: baseline_t
@@ -12,37 +12,40 @@ module fit_request
     is_at_end, is_beyond
   public :: of_position, of_separation, of_load, of_segment, of_radius
 
-  !> What a column of the file is: the position of the base of the spring; the separation of the
-  !> bodies (h0 plus a constant); the load, or the signal that measures it; the segment; the contact
-  !> radius.
+  !> The quantity of a column of the file: the position of the base of the spring; the separation of
+  !> the bodies (h0 plus a constant); the load, or the signal that measures the load; the segment;
+  !> the contact radius.
   integer, parameter :: of_position = 1, of_separation = 2, of_load = 3, of_segment = 4, &
     of_radius = 5
 
-  !> &measurement [SI]. sensitivity: of a signal in volts; not allocated: the signal is the force,
-  !> or the force over the radius. spring_constant: 0 without a spring.
+  !> The group &measurement in SI units. sensitivity: the sensitivity of a detector, for a signal in
+  !> volts; if it is not allocated, the signal is the force, or the force over the radius.
+  !> spring_constant: 0 without a spring.
   type :: measurement_t
     character(len=:), allocatable :: file, segment
     character(len=64), allocatable :: columns(:)
-    !> What each column is. Two loads: of approach and retract, side by side.
+    !> The quantity of each column. Two columns of loads belong to approach and retract, side by
+    !> side.
     integer, allocatable :: quantity(:)
-    !> The column that numbers the curves of a file with several, and the number of the curve.
+    !> The column that numbers the curves of a file with several curves, and the number of the
+    !> curve.
     character(len=:), allocatable :: curves
     integer, allocatable :: curve
-    !> Labels of approach and retract in the column of segments, in lower case; not allocated: known
-    !> labels, or the motion of the position.
+    !> Labels of approach and retract in the column of segments, in lower case. If they are not
+    !> allocated, known labels are used, or the motion of the position.
     character(len=64), allocatable :: approach(:), retreat(:)
-    !> Number of lines at the begin of the file that do not count.
+    !> Number of lines at the beginning of the file to be ignored.
     integer :: skip_lines = 0
     real(wp) :: spring_constant = 0
     real(wp), allocatable :: sensitivity, contact_point
-    !> Pairs of positions; the samples between them do not count.
+    !> Pairs of positions; samples between the positions of a pair are ignored.
     real(wp), allocatable :: skip(:)
-    !> Units of the columns in the file; 0: those in the names of the columns, or SI. signal_in:
-    !> what the signal is, 'N', 'V', 'm', or 'R' for the force over the radius; blank if neither
-    !> deck nor file says it.
+    !> Units of the columns in the file; 0: the units in the names of the columns, or SI. signal_in:
+    !> the unit of the signal, 'N', 'V', 'm', or 'R' for the force over the radius; blank if neither
+    !> deck nor file gives the unit.
     real(wp), allocatable :: unit(:)
     character :: signal_in = ' '
-    !> The radius of the deck; 0 if it has none.
+    !> The radius given in the deck; 0 if it gives none.
     real(wp) :: radius = 0
     type(baseline_t) :: baseline
   contains
@@ -55,14 +58,15 @@ module fit_request
   !> The role of an unknown: a number of the problem, contact point, detector, spring.
   integer, parameter :: of_model = 0, of_contact_point = 1, of_sensitivity = 2, of_spring = 3
 
-  !> Largest logarithm of a trial over the deck's value, or over a value that the data suggest: the
-  !> path of a very different problem may take too long.
+  !> Largest logarithm of the ratio of a trial to the deck's value, or to a value that the data
+  !> suggest. A limit is needed because the path of a very different problem may take too long.
   real(wp), parameter :: farthest_off = 5
 
-  !> An unknown, in the unit of its key. in_log: it is positive and its logarithm is fitted;
-  !> otherwise the fitted number is its difference from `origin`, over `scale`. prior: prior
-  !> standard deviation about the deck's value; 0: none. farthest: the largest logarithms of a trial
-  !> below and above the deck's value. shared: it has one value for curves that are fitted together.
+  !> An unknown, in the unit of its key. in_log: the unknown is positive and its logarithm is
+  !> fitted; otherwise the fitted number is (value - origin)/scale. prior: prior standard deviation
+  !> about the deck's value; 0 without a prior. farthest: the largest logarithms of the ratio of a
+  !> trial to the deck's value, downward and upward. shared: the unknown has one value for all
+  !> curves that are fitted together.
   type :: unknown_t
     character(len=:), allocatable :: name, unit
     integer :: role = of_model
@@ -72,9 +76,10 @@ module fit_request
     real(wp), allocatable :: lower, upper
   end type unknown_t
 
-  !> &fit. noise: standard deviation of the signal; not allocated: that of the baseline.
-  !> noise_radius: that of contact radii; not allocated: as the radii show it. poisson: Poisson's
-  !> ratios of the bodies, if the deck gives them.
+  !> The group &fit. noise: standard deviation of the signal; if it is not allocated, the baseline
+  !> shows it. noise_radius: standard deviation of contact radii; if it is not allocated, the
+  !> residuals of the radii show it. poisson: Poisson's ratios of the bodies, if the deck gives
+  !> them.
   type :: fit_t
     type(unknown_t), allocatable :: unknown(:)
     real(wp), allocatable :: noise, noise_radius, poisson(:)
@@ -91,7 +96,7 @@ contains
     is_joint = any(self%unknown%shared)
   end function is_joint
 
-  !> Whether a column is of this quantity.
+  !> Whether one of the columns has this quantity.
   pure logical function has(self, quantity)
     class(measurement_t), intent(in) :: self
     integer, intent(in) :: quantity
@@ -106,14 +111,15 @@ contains
     under_loads = .not. (self%has(of_position) .or. self%has(of_separation))
   end function under_loads
 
-  !> The load of a unit of a signal that is the force [N], or the force over the radius [N/m].
+  !> The load that one unit of the signal means, if the signal is the force [N] or the force over
+  !> the radius [N/m].
   pure real(wp) function load_of_unit(self) result(load)
     class(measurement_t), intent(in) :: self
 
     load = merge(self%radius, 1.0_wp, self%signal_in == 'R')
   end function load_of_unit
 
-  !> The unit of the signal in words; blank if it is not known.
+  !> The name of the signal's unit; blank if it is not known.
   pure function signal_unit(self) result(unit)
     class(measurement_t), intent(in) :: self
     character(len=:), allocatable :: unit
@@ -131,7 +137,7 @@ contains
     if (unknown%in_log) u = log(value/unknown%scale)
   end function fitted_of
 
-  !> Whether a value is as far from the deck's as the search may go.
+  !> Whether a value is at the limit of the search, as far from the deck's value as allowed.
   elemental logical function is_at_end(unknown, value)
     type(unknown_t), intent(in) :: unknown
     real(wp), intent(in) :: value
@@ -140,7 +146,7 @@ contains
     is_at_end = is_beyond(unknown, value, -within)
   end function is_at_end
 
-  !> Whether a value is beyond the ends of the search by more than `excess`, in its logarithm.
+  !> Whether the logarithm of a value is beyond the limits of the search by more than `excess`.
   elemental logical function is_beyond(unknown, value, excess)
     type(unknown_t), intent(in) :: unknown
     real(wp), intent(in) :: value, excess
@@ -183,7 +189,7 @@ contains
     if (unknown%in_log) value = unknown%scale*exp(u)
   end function value_of
 
-  !> Derivative of the value by its free number.
+  !> Derivative of the value with respect to its free number.
   elemental real(wp) function value_by_free(unknown, x) result(by)
     type(unknown_t), intent(in) :: unknown
     real(wp), intent(in) :: x
@@ -193,7 +199,7 @@ contains
     by = slope*value_by_fitted(unknown, value_of(unknown, x))
   end function value_by_free
 
-  !> The fitted number of a free one, within the bounds, and its derivative.
+  !> The fitted number u of a free number x, within the bounds, and the derivative du/dx.
   pure subroutine bound(unknown, x, u, slope)
     type(unknown_t), intent(in) :: unknown
     real(wp), intent(in) :: x
@@ -217,7 +223,7 @@ contains
     end if
   end subroutine bound
 
-  !> Derivative of a value by its fitted number.
+  !> Derivative of a value with respect to its fitted number.
   elemental real(wp) function value_by_fitted(unknown, value) result(slope)
     type(unknown_t), intent(in) :: unknown
     real(wp), intent(in) :: value

@@ -11,10 +11,10 @@ module fit_residuals
   type, abstract, extends(residuals_t) :: fit_residuals_t
   contains
     procedure(list_unknowns), deferred :: unknowns
-    !> Number of residuals, and of the numbers that were removed from them by projection.
+    !> Number of residuals; number of amplitudes removed from the residuals by projection.
     procedure(count_numbers), deferred :: rows
     procedure(count_numbers), deferred :: removed
-    !> The residuals at values of the unknowns; found = .false.: there are none.
+    !> The residuals at values of the unknowns; found = .false. if there are none.
     procedure(find_residuals), deferred :: residuals_of
     !> Derivatives of the residuals by the values, (residual, unknown).
     procedure(find_derivatives), deferred :: jacobian_of
@@ -88,7 +88,7 @@ contains
     end do
   end subroutine differentiate
 
-  !> Moves the values to the nearest minimum of the sum of squares, `left`.
+  !> Moves the values to the nearest minimum of the sum of squares. left: the sum of squares there.
   subroutine descend(self, value, left, found)
     class(fit_residuals_t), intent(inout) :: self
     real(wp), intent(inout) :: value(:)

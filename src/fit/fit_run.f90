@@ -35,7 +35,7 @@ module fit_run
   private
   public :: fit_outcome_t, run_fit, examine_fit
 
-  !> The result. trouble: the reason why there is no fit, with advice.
+  !> The result of a fit. trouble: the reason why there is no fit, with advice.
   type :: fit_outcome_t
     character(len=:), allocatable :: trouble
     type(modelled_curve_t) :: curve
@@ -45,22 +45,23 @@ module fit_run
     type(theory_fit_t), allocatable :: theory(:)
     !> The test of each number that the deck holds fixed.
     type(held_t), allocatable :: held(:)
-    !> What the baseline may lack; and another fit that describes the data if this one does not.
+    !> Parts that the baseline may lack; and another fit that describes the data if this fit does
+    !> not.
     type(lacking_t), allocatable :: lacking(:)
     type(alternative_t), allocatable :: alternative
     !> Numbers that follow from the fitted values.
     type(derived_t), allocatable :: derived(:)
-    !> The problem with the fitted values, if it could be posed.
+    !> The problem with the fitted values, if these values define a valid problem.
     type(problem_t), allocatable :: problem
-    !> Of a curve that is fitted together with others: what is said of them all.
+    !> For a curve that is fitted together with others: the message about all of them.
     character(len=:), allocatable :: of_all
   end type fit_outcome_t
 
-  !> Smallest noise over the largest signal, for computed signals.
+  !> Smallest ratio of the noise to the largest signal; computed signals have less noise.
   real(wp), parameter :: least_noise = 1.0e-9_wp
-  !> Stiffness of a device without a spring [N/m], which no load deflects.
+  !> Spring constant of a device without a spring [N/m]: so large that no load deflects it.
   real(wp), parameter :: no_spring = 1.0e20_wp
-  !> Works of adhesion of further starts, over the deck's.
+  !> Works of adhesion of further starts, relative to the deck's.
   real(wp), parameter :: works(*) = [0.2_wp, 5.0_wp]
 
 contains
@@ -68,7 +69,8 @@ contains
   !> Runs the fit. family: the problems, whose parameters are the unknowns of the model. wider: the
   !> same family with the fixed numbers of the deck as further parameters. problem: the problem with
   !> the deck's values. theories: whether the classical theories are fitted too. like: values of the
-  !> unknowns for a similar curve; if a search from them describes the data, there is no other.
+  !> unknowns for a similar curve; if a search from these values describes the data, no other search
+  !> follows.
   subroutine run_fit(measured, fit, numerics, family, wider, problem, theories, listener, outcome, &
     like)
     type(measured_curve_t), intent(in) :: measured
@@ -114,7 +116,7 @@ contains
 
   contains
 
-    !> Makes the curve to fit: the samples, their noise and jumps, and the unknowns.
+    !> Prepares the curve for the fit: the samples, their noise and jumps, and the unknowns.
     subroutine take_curve(trouble)
       character(len=:), allocatable, intent(out) :: trouble
       real(wp) :: slope
@@ -128,11 +130,12 @@ contains
       curve%data%measured = measured
       curve%unknown = fit%unknown
       do i = 1, size(fit%unknown)
-        ! A signal that is a force or a deflection is not in volts.
+        ! If the signal is a force or a deflection, the unit of the sensitivity is not m/V.
         if (fit%unknown(i)%role == of_sensitivity .and. scan(measured%signal_in, 'Nm') > 0) &
           curve%unknown(i)%unit = 'm/' // measured%signal_in
       end do
-      ! A shift by the range of the force, or by a step of the base, is large.
+      ! A shift of the contact point by the range of the force, or by a step of the base, counts as
+      ! large.
       where (curve%unknown%role == of_contact_point) curve%unknown%scale = max(problem%length, &
         (maxval(measured%z) - minval(measured%z))/size(measured%z))
       curve%spring = measured%spring_constant
@@ -182,8 +185,8 @@ contains
       call finish_curve()
     end subroutine take_curve
 
-    !> Takes a curve of contact radii under loads: no baseline, no jump; the model must reach the
-    !> largest load.
+    !> Prepares a curve of contact radii under loads. Such a curve has no baseline and no jump; the
+    !> model must reach the largest load.
     subroutine take_radii()
       associate (data => curve%data%measured)
         data%far = spread(.false., 1, size(data%z))
@@ -208,7 +211,7 @@ contains
     end subroutine finish_curve
 
     !> Whether a search from the values of a similar curve describes the data. The limits of the
-    !> search include a range about these values.
+    !> search are extended by a range about these values.
     logical function is_like() result(found)
       type(modelled_curve_t) :: trial
       integer :: i
@@ -228,8 +231,8 @@ contains
       if (found) curve = trial
     end function is_like
 
-    !> Extends the limits of a search, a range about the deck's value, by the same range about
-    !> another value.
+    !> Extends the limits of a search, which are a range about the deck's value, by the same range
+    !> about another value.
     subroutine reach_for(unknown, value)
       type(unknown_t), intent(inout) :: unknown
       real(wp), intent(in) :: value
@@ -240,8 +243,8 @@ contains
       unknown%farthest = max(unknown%farthest, farthest_off + [-off, off])
     end subroutine reach_for
 
-    !> Sets the starting values, and the limits of the search: ranges about the deck's values and
-    !> about those that the data suggest.
+    !> Sets the starting values and the limits of the search: ranges about the deck's values, and
+    !> about the values that the data suggest.
     subroutine find_starts()
       type(character_t), allocatable :: likely(:)
       type(character_t) :: new
@@ -265,7 +268,7 @@ contains
       call starts_like(likely, family, curve%unknown, start)
     end subroutine find_starts
 
-    !> The values of the model's unknowns in words.
+    !> A text with the values of the model's unknowns.
     function values_of(value) result(words)
       real(wp), intent(in) :: value(:)
       character(len=:), allocatable :: words
@@ -279,7 +282,7 @@ contains
       end do
     end function values_of
 
-    !> The fixed number that the data contradict most; '' without any.
+    !> The name of the fixed number that the data contradict most; '' without such a number.
     function asked_most(held) result(name)
       type(held_t), intent(in) :: held(:)
       character(len=:), allocatable :: name
@@ -290,8 +293,8 @@ contains
 
   end subroutine run_fit
 
-  !> Tests a fit, outcome%fitted, and finds the numbers that follow from it. residuals: of its
-  !> curve, with a model. Others: as of `run_fit`.
+  !> Tests a fit, outcome%fitted, and derives further numbers from it. residuals: those of its curve
+  !> under the model. Other arguments: as in `run_fit`.
   subroutine examine_fit(residuals, fit, family, wider, outcome)
     type(curve_residuals_t), intent(inout) :: residuals
     type(fit_t), intent(in) :: fit

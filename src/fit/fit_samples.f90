@@ -1,5 +1,5 @@
-!> The samples of a measured curve that count in a fit, and the side of a jump on which each one is.
-!> Residuals are whitened and freed of the baseline.
+!> The samples of a measured curve that count in a fit, and the side of the jump on which each one
+!> is. Procedures whiten residuals and remove the baseline.
 !>
 !> The baseline is a sum of given columns (`baseline`). It does not depend on the unknowns of a
 !> model, so one projection removes it from residuals and from their derivatives.
@@ -17,7 +17,7 @@ module fit_samples
   type :: fit_samples_t
     type(measured_curve_t) :: measured
     type(noise_t) :: noise
-    !> The least deviation of the noise: that of rounding, in a signal of few digits.
+    !> The smallest standard deviation of the noise, set by rounding in a signal of few digits.
     real(wp) :: least_noise = 0
     !> Whether the deck gives the noise.
     logical :: noise_is_given = .false.
@@ -25,14 +25,15 @@ module fit_samples
     real(wp) :: noise_radius = 0
     logical :: noise_radius_is_given = .false.
     type(measured_jump_t) :: jump(2)
-    !> The samples that count. For all samples: the segment, the side of its jump (`load_on`), and
-    !> the number of the run.
+    !> The samples that count. For all samples: the segment, the side of the jump of this segment
+    !> (`load_on`), and the number of the run.
     integer, allocatable :: sample(:), way(:), side(:), run(:)
-    !> The columns of the baseline at all samples; an orthonormal basis of the whitened columns at
-    !> the samples that count, and the triangle that maps these to the basis.
+    !> The columns of the baseline at all samples. The whitened columns at the samples that count
+    !> are the product of an orthonormal basis and a triangular matrix.
     real(wp), allocatable, private :: column(:, :), triangle(:, :)
     real(wp), allocatable :: basis(:, :)
-    !> For each sample that counts, the factor that gives its residual the noise of the signal.
+    !> For each sample that counts: the factor by which the residual is multiplied so that its noise
+    !> is that of the signal.
     real(wp), allocatable, private :: weight(:)
   contains
     procedure :: take
@@ -63,7 +64,7 @@ contains
         associate (jump => self%jump(self%way(i)))
           if (jump%before == 0) cycle
           if (self%is_beside(i)) then
-            ! A radius is seen in contact: after the jump in, before the jump out.
+            ! A contact radius is measured in contact: after the snap-in, before the snap-off.
             self%side(i) = merge(2, 1, data%inward(i))
             cycle
           end if
@@ -75,8 +76,8 @@ contains
         end associate
       end do
       counts = self%side >= 0 .and. data%usable
-      ! A run is a sequence of neighbours of one segment and one side of its jump.
-      ! Contact radii beside a signal have white noise: each is a run.
+      ! A run is a sequence of neighbours of one segment and one side of the jump. Contact radii
+      ! beside a signal have white noise; therefore each of them is a run of its own.
       self%run = [(1, i=1, n)]
       do i = 2, n
         self%run(i) = self%run(i - 1)
@@ -89,7 +90,7 @@ contains
     end associate
   end subroutine take
 
-  !> Whether a sample is a contact radius beside a signal.
+  !> Whether a sample is a contact radius that was measured beside a signal.
   pure logical function is_beside(self, i)
     class(fit_samples_t), intent(in) :: self
     integer, intent(in) :: i
@@ -124,7 +125,7 @@ contains
 
     associate (data => self%measured)
       column = data%baseline%columns(data%z, data%inward)
-      ! Radii have no baseline.
+      ! Contact radii have no baseline.
       if (data%observed(1) == of_radius) column = column(:, :0)
       do i = 1, size(column, 2)
         column(:, i) = merge(column(:, i), 0.0_wp, data%observed /= of_radius)
@@ -139,7 +140,8 @@ contains
     call orthonormalise(self%basis, self%triangle)
   end subroutine set_baseline
 
-  !> a = q r by Gram-Schmidt, applied twice against rounding.
+  !> Factorises a = q r by the Gram-Schmidt procedure, which is applied twice to reduce rounding
+  !> errors.
   pure subroutine orthonormalise(q, r)
     real(wp), intent(inout) :: q(:, :)
     real(wp), allocatable, intent(out) :: r(:, :)
@@ -167,7 +169,8 @@ contains
     baseline_numbers = size(self%column, 2)
   end function baseline_numbers
 
-  !> Whitens columns of numbers, one number for each sample that counts, and removes their baseline.
+  !> Whitens columns of numbers, one number for each sample that counts, and removes the baseline
+  !> from them.
   pure subroutine clean(self, column)
     class(fit_samples_t), intent(in) :: self
     real(wp), intent(inout) :: column(:, :)
@@ -192,7 +195,7 @@ contains
     call whiten(self%noise, self%run(self%sample), column)
   end subroutine whiten_columns
 
-  !> The best baseline, at all samples, of a signal without force.
+  !> The best baseline, at all samples, for a signal from which the force has been subtracted.
   pure function baseline_under(self, signal) result(line)
     class(fit_samples_t), intent(in) :: self
     real(wp), intent(in) :: signal(:)
@@ -201,7 +204,7 @@ contains
     line = matmul(self%column, self%amplitudes_under(signal))
   end function baseline_under
 
-  !> The amplitudes of the columns in this baseline.
+  !> The amplitudes of the columns in the best baseline.
   pure function amplitudes_under(self, signal) result(part)
     class(fit_samples_t), intent(in) :: self
     real(wp), intent(in) :: signal(:)

@@ -1,6 +1,6 @@
-!> Starting values of a model's unknowns: the deck's, and values with the work of adhesion,
-!> stiffness and range of force that the data and the classical theories suggest. If bodies do not
-!> attract each other, only the stiffness counts.
+!> Starting values of a model's unknowns: the deck's values, and values with the work of adhesion,
+!> the plane-strain modulus and the range of the force that the data and the classical theories
+!> suggest. If bodies do not attract each other, only the modulus is adapted.
 module fit_starts
   use kinds, only: wp
   use failure, only: failure_t
@@ -12,23 +12,23 @@ module fit_starts
   private
   public :: character_t, character_of, starts_like
 
-  !> Work of adhesion [J/m^2], stiffness [Pa], and range [m], which is the work over the largest
-  !> tension.
+  !> Work of adhesion [J/m^2], plane-strain modulus (`stiffness`) [Pa], and range of the force [m],
+  !> defined as the work over the largest tensile stress.
   type :: character_t
     real(wp) :: work = 0, stiffness = 0, range = 0
   end type character_t
 
-  !> Secant method: largest number of steps, size of the last step, and size of the first
-  !> differences. The largest logarithm of a start over the deck's value; starts that differ by less
-  !> than `alike` are the same.
+  !> Secant method: largest number of steps; size of a step at which the iteration ends; size of the
+  !> first finite differences. The largest logarithm of the ratio of a start to the deck's value.
+  !> Starts whose logarithms differ by less than `alike` are the same.
   integer, parameter :: steps = 6
   real(wp), parameter :: near = 0.01_wp, change = 1.0e-3_wp, farthest = 4.5_wp, alike = 0.05_wp
-  !> Damping, which keeps unknowns with hardly any effect from moving far.
+  !> Damping of the steps; without it, unknowns with hardly any effect would move far.
   real(wp), parameter :: damping = 1.0e-4_wp
 
 contains
 
-  !> The character of a problem. The range is 0 for a law without a largest tension.
+  !> The character of a problem. The range is 0 for a force law without a largest tension.
   pure type(character_t) function character_of(problem) result(character)
     type(problem_t), intent(in) :: problem
     real(wp) :: tension
@@ -39,8 +39,8 @@ contains
     if (tension > 0) character%range = character%work/tension
   end function character_of
 
-  !> Starting values, (unknown, start). The first are the deck's. Each other start has the character
-  !> `wanted(i)` with the smallest change of the deck's values.
+  !> Starting values, (unknown, start). The first start has the deck's values. Each other start has
+  !> the character `wanted(i)`, with the smallest change from the deck's values.
   subroutine starts_like(wanted, family, unknown, start)
     type(character_t), intent(in) :: wanted(:)
     class(problem_family_t), intent(in) :: family
@@ -75,9 +75,9 @@ contains
 
   contains
 
-    !> Finds the values nearest to the deck's, in their logarithms, whose problem has the wanted
-    !> character. own: the traits of the deck's problem. by: their derivatives, which each step
-    !> updates (Broyden, 1965).
+    !> Finds the values whose problem has the wanted character and whose logarithms are nearest to
+    !> those of the deck's values. own: the traits of the deck's problem. by: the derivatives of the
+    !> traits, which each step updates (Broyden, 1965).
     subroutine move_to(wanted)
       type(character_t), intent(in) :: wanted
       type(factorisation_t) :: square
@@ -119,7 +119,8 @@ contains
       end do
     end subroutine move_to
 
-    !> The traits, logarithms of the character, for values of the unknowns.
+    !> The traits of a problem, which are the logarithms of its character, for values of the
+    !> unknowns.
     subroutine traits(value, trait)
       real(wp), intent(in) :: value(:)
       real(wp), intent(out) :: trait(3)

@@ -1,10 +1,10 @@
-!> The prediction of a model for bodies that a spring drives towards each other and back: load and
-!> contact radius along each stable piece as functions of the drive's position, with derivatives by
-!> the unknowns of the model. SI units.
+!> The prediction of a model for bodies that a spring moves towards each other and back: load and
+!> contact radius along each stable branch as functions of the position of the spring's base, with
+!> derivatives by the unknowns of the model. All quantities are in SI units.
 !>
-!> On each panel of a branch, h0, load and the square of the contact radius are Hermite's
-!> polynomials of a coordinate x through nodes. For the path the nodes are its points. Newton's
-!> method finds the x of a given position h0 - load/stiffness, or of a given -load.
+!> On each panel of a branch, h0, load and the square of the contact radius are Hermite polynomials
+!> of a coordinate x through nodes. The nodes of a computed path are its points. Newton's method
+!> finds the x of a given position h0 - load/stiffness, or of a given -load.
 module force_model
   use kinds, only: wp
   use interpolation, only: interval_of, hermite_t, hermite_through, polynomial_weights, &
@@ -14,14 +14,14 @@ module force_model
   private
   public :: force_model_t, response_t, way_t, force_branch_t, panel_t, load_at_t, inward, outward
 
-  !> Error of a position at which the search ends, over the length of its panel.
+  !> The search for a position ends at this error, relative to the length of the panel.
   real(wp), parameter :: found_at = 1.0e-13_wp
   integer, parameter :: most_steps = 60
 
-  !> A panel of a branch. ends: its coordinates x at begin and end. At the nodes, which may lie
-  !> beyond the ends: their coordinates, h0 and load with derivatives by x, (value and slope, node),
-  !> and derivatives by the unknowns at fixed x, (unknown, node). square: of the contact radius, if
-  !> it is wanted.
+  !> A panel of a branch. ends: the coordinates x of its beginning and end. x: the coordinates of
+  !> the nodes, which may lie beyond the ends. h0, load: values and derivatives by x, (value and
+  !> slope, node). h0_rate, load_rate: derivatives by the unknowns at fixed x, (unknown, node).
+  !> square, square_rate: the same for the square of the contact radius, if it is wanted.
   type :: panel_t
     real(wp) :: ends(2) = [0.0_wp, 1.0_wp]
     real(wp), allocatable :: x(:), h0(:, :), load(:, :), h0_rate(:, :), load_rate(:, :)
@@ -29,15 +29,15 @@ module force_model
     type(hermite_t), private :: position_curve, load_curve, square_curve
   end type panel_t
 
-  !> Panels, ordered from large to small h0. turns: the piece ends at a turn of the position, not at
-  !> an end of the path.
+  !> The panels of a branch, ordered from large to small h0. turns_first, turns_last: the branch
+  !> ends at a turn of the position, not at an end of the path.
   type :: force_branch_t
     type(panel_t), allocatable :: panel(:)
     logical :: turns_first = .false., turns_last = .false.
-    !> The weights of h0 and load in the position.
+    !> The position is the sum of h0 and load with these weights.
     real(wp) :: weights(2) = [1.0_wp, 0.0_wp]
-    !> Positions at the begins of the panels, and at the end of the last; and their negatives, which
-    !> ascend.
+    !> Positions at the beginnings of the panels, and at the end of the last one; and the negatives
+    !> of these positions, which ascend.
     real(wp), allocatable :: position(:)
     real(wp), allocatable, private :: ascending(:)
   contains
@@ -55,12 +55,12 @@ module force_model
     real(wp), allocatable :: rate(:), radius_rate(:)
   end type load_at_t
 
-  !> The two segments.
+  !> The two segments: approach and retract.
   integer, parameter :: inward = 1, outward = 2
 
-  !> The branches of a segment in order, and the position of the drive at the end of each. The main
-  !> jump, that with the largest change of load, starts from the end of branch number `main` of
-  !> these; 0: there is none. predicted = .false.: the theory does not predict the jump.
+  !> The branches of a segment in order, and the position of the base at the end of each. The main
+  !> jump, the one with the largest change of load, starts from the end of branch number `main` of
+  !> these; 0 without a jump. predicted = .false.: the theory does not predict the jump.
   type :: way_t
     integer, allocatable :: branch(:)
     real(wp), allocatable :: leaves_at(:)
@@ -84,10 +84,10 @@ module force_model
     !> Whether the contact radius is wanted.
     logical :: with_radius = .false.
   contains
-    !> The response for values of the unknowns, behind a spring of `stiffness`, from the position
-    !> `farthest` [m] to a contact under a load of at least `largest` [N]. stiffness = 0: in contact
-    !> under dead loads, with -load as position. with_rates: with derivatives by the unknowns. found
-    !> = .false.: there is no response.
+    !> The response for values of the unknowns. A spring of `stiffness` moves the bodies from the
+    !> position `farthest` [m] to a contact under a load of at least `largest` [N]. stiffness = 0
+    !> means bodies in contact under dead loads, with -load as position. with_rates: derivatives by
+    !> the unknowns are wanted. found = .false.: there is no response.
     procedure(respond_to), deferred :: respond
   end type force_model_t
 
@@ -104,8 +104,8 @@ module force_model
 
 contains
 
-  !> The load at a position on a segment. side: 1 before the main jump, 2 after it, at any position;
-  !> 0: with the jumps of the model.
+  !> The load at a position on a segment. side = 1: on the branch before the main jump, at any
+  !> position; side = 2: on the branch after it; side = 0: with the jumps of the model.
   pure type(load_at_t) function load_on(self, way, side, position) result(found)
     class(response_t), intent(in) :: self
     integer, intent(in) :: way, side
@@ -114,7 +114,7 @@ contains
     found = self%branch(self%branch_on(way, side, position))%at(position)
   end function load_on
 
-  !> The same load without derivatives, for trials of many contact points.
+  !> The same load without derivatives, which trials of many contact points need.
   pure real(wp) function value_on(self, way, side, position) result(load)
     class(response_t), intent(in) :: self
     integer, intent(in) :: way, side
@@ -123,7 +123,7 @@ contains
     load = self%branch(self%branch_on(way, side, position))%value_at(position)
   end function value_on
 
-  !> The branch of a position on a segment, as for `load_on`.
+  !> The branch on which a position of a segment lies; side as in `load_on`.
   pure integer function branch_on(self, way, side, position) result(branch)
     class(response_t), intent(in) :: self
     integer, intent(in) :: way, side
@@ -143,7 +143,7 @@ contains
     end associate
   end function branch_on
 
-  !> The start of the main jump of a segment: position of the drive, its derivatives by the
+  !> The start of the main jump of a segment: the position of the base, its derivatives by the
   !> unknowns, and the load there.
   pure subroutine jump_from(self, way, position, rate, load)
     class(response_t), intent(in) :: self
@@ -164,7 +164,7 @@ contains
     end associate
   end subroutine jump_from
 
-  !> The largest tension at an end of a panel.
+  !> The largest tension at the ends of the panels.
   pure real(wp) function largest_tension(self) result(tension)
     class(response_t), intent(in) :: self
     integer :: i, k, side
@@ -181,7 +181,7 @@ contains
     end do
   end function largest_tension
 
-  !> Sets the spring, once the panels are set.
+  !> Completes a branch for a spring, once the panels are set.
   pure subroutine close(self, stiffness)
     class(force_branch_t), intent(inout) :: self
     real(wp), intent(in) :: stiffness
@@ -237,7 +237,7 @@ contains
     end if
   end function at
 
-  !> The load at a position, as `at`, without derivatives.
+  !> The load at a position, as by `at`, but without derivatives.
   pure real(wp) function value_at(self, position) result(load)
     class(force_branch_t), intent(in) :: self
     real(wp), intent(in) :: position
@@ -301,8 +301,8 @@ contains
     end associate
   end function on_panel
 
-  !> Sets the contact radius from its square with derivatives by the position and by the unknowns;
-  !> without contact it is 0.
+  !> Sets the contact radius from its square, with derivatives by the position and by the unknowns.
+  !> Without contact the radius is 0.
   pure subroutine set_radius(found, square, slope, rate)
     type(load_at_t), intent(inout) :: found
     real(wp), intent(in) :: square, slope, rate(:)
@@ -314,8 +314,8 @@ contains
     found%radius_rate = rate/(2*found%radius)
   end subroutine set_radius
 
-  !> Load and derivatives at an end. A turn is where the derivative of the position by x vanishes,
-  !> and moves with the unknowns.
+  !> Load and derivatives at an end of the panel. At a turn the derivative of the position by x
+  !> vanishes; the turn moves with the unknowns.
   pure type(load_at_t) function end_of(self, inner) result(found)
     class(force_branch_t), intent(in) :: self
     logical, intent(in) :: inner

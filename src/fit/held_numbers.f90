@@ -1,8 +1,8 @@
 !> A test whether the data contradict a number that a fit holds fixed. A change of the number
 !> changes the residuals r in some direction. The unknowns can compensate a part of this change; g
-!> is the unit vector of the rest. If the value is right, g.r is a standard normal number (the score
-!> test; Rao, 1948). The test needs no further fit, and detects a small deviation common to all
-!> samples.
+!> is the unit vector of the remaining part. If the value held fixed is right, g.r is a standard
+!> normal number (the score test; Rao, 1948). The test needs no further fit, and detects a small
+!> deviation that is common to all samples.
 module held_numbers
   use kinds, only: wp
   use fit_request, only: unknown_t, of_model, of_contact_point, of_sensitivity, of_spring, &
@@ -17,21 +17,22 @@ module held_numbers
   private
   public :: held_t, test_held
 
-  !> A number that is held, and the change that the data ask for, in standard deviations; positive
-  !> for a larger value.
+  !> A number that is held fixed, and the change that the data suggest, in standard deviations;
+  !> positive if they suggest a larger value.
   type :: held_t
     character(len=:), allocatable :: name
     real(wp) :: asked = 0
   end type held_t
 
-  !> Smallest part of a direction that must remain: smaller ones are rounding of the derivatives.
+  !> Smallest length of a unit vector after its projection; a shorter one is a rounding error of the
+  !> derivatives.
   real(wp), parameter :: rounding = 1.0e-4_wp
 
 contains
 
-  !> Tests all numbers that are held. curve, value: the fit. wider: the family of the fit with the
-  !> deck's other positive numbers as further parameters. Numbers that the unknowns compensate
-  !> completely, or that cannot be varied, are left out.
+  !> Tests all numbers that are held fixed. curve, value: the fit. wider: the family of the fit with
+  !> the deck's other positive numbers as further parameters. Numbers whose effect the unknowns
+  !> compensate completely, or that cannot be varied, are left out.
   subroutine test_held(curve, value, wider, held)
     type(modelled_curve_t), intent(in) :: curve
     real(wp), intent(in) :: value(:)
@@ -62,7 +63,8 @@ contains
     if (.not. found) return
     do i = 1, size(all_values)
       whole = norm2(jacobian(:, i))
-      ! The columns of the unknowns are orthonormal already; two passes against rounding.
+      ! The columns of the unknowns are orthonormal already. The projection is applied twice to
+      ! reduce rounding errors.
       associate (basis => jacobian(:, :min(i - 1, n)), vector => jacobian(:, i))
         do pass = 1, 2
           vector = vector - matmul(basis, matmul(vector, basis))
@@ -80,7 +82,8 @@ contains
     end do
   end subroutine test_held
 
-  !> Removes the further parameters that cannot be varied. value: those of the fit's own parameters.
+  !> Removes the further parameters that cannot be varied. value: the values of the fit's own
+  !> parameters.
   subroutine keep_variable(value, family)
     real(wp), intent(in) :: value(:)
     class(problem_family_t), intent(inout) :: family
@@ -98,7 +101,7 @@ contains
     family%parameter = pack(family%parameter, keep)
   end subroutine keep_variable
 
-  !> Appends the numbers that are held to the unknowns: of the model and of the measurement.
+  !> Appends the numbers held fixed, of the model and of the measurement, to the unknowns.
   subroutine add_held(family, curve, unknown)
     class(problem_family_t), intent(in) :: family
     type(modelled_curve_t), intent(in) :: curve

@@ -1,6 +1,6 @@
-!> The fit of several curves together: shared unknowns have one value for all curves, the others one
-!> for each. Each curve is fitted alone before, which finds its noise, outliers and jumps; curves
-!> that the model does not describe alone take no part.
+!> The fit of several curves together: shared unknowns have one value for all curves, the others
+!> have one value for each curve. Each curve is first fitted alone, which determines its noise,
+!> outliers and jumps. Curves that the model does not describe alone are left out of the joint fit.
 module joint_fit
   use kinds, only: wp
   use text, only: counted, rounded
@@ -21,9 +21,10 @@ module joint_fit
   private
   public :: joint_curve_t, joint_fit_t, fit_jointly
 
-  !> A curve: its problems and request as of `run_fit`, whether its bodies attract each other, and
-  !> the fit of the curve alone. It takes part if the model describes it alone, so that its noise is
-  !> known; then its part of the joint fit replaces the fit alone.
+  !> A curve: its problems and request as in `run_fit`, whether its bodies attract each other, and
+  !> the fit of this curve alone. The curve takes part in the joint fit if the model describes it
+  !> alone, since only then its noise is known. Its part of the joint fit then replaces the fit
+  !> alone.
   type :: joint_curve_t
     class(problem_family_t), allocatable :: family, wider
     type(fit_t) :: fit
@@ -33,11 +34,11 @@ module joint_fit
     type(curve_models_t) :: models
   end type joint_curve_t
 
-  !> The result. trouble: why there is none. unknown, fitted: the shared unknowns, and the part of
-  !> the fit that is theirs, with chi squared and freedom of all curves. curves: the number of those
-  !> that take part; alone: the sum of their chi squared in the fits of each alone, each with its
-  !> own values of the shared unknowns, of which there are `spared` more. doubt: what is wrong with
-  !> the fit of all.
+  !> The result. trouble: the reason why there is no joint fit. unknown, fitted: the shared unknowns
+  !> and their part of the fit, with chi squared and degrees of freedom of all curves. curves: the
+  !> number of curves that take part. alone: the sum of chi squared over the fits of each curve
+  !> alone, in which each curve has its own values of the shared unknowns. spared: by how many fewer
+  !> values the joint fit has. doubt: a warning about the joint fit.
   type :: joint_fit_t
     character(len=:), allocatable :: trouble, doubt
     type(unknown_t), allocatable :: unknown(:)
@@ -46,7 +47,7 @@ module joint_fit
     real(wp) :: alone = 0
   end type joint_fit_t
 
-  !> Searches after the errors were examined.
+  !> Largest number of searches that continue from smaller residuals found with the errors.
   integer, parameter :: most_looks = 3
 
 contains
@@ -116,7 +117,7 @@ contains
 
   end subroutine fit_jointly
 
-  !> Chooses the curves that the model describes alone.
+  !> Chooses the curves that the model describes when they are fitted alone.
   pure subroutine choose_curves(curves)
     type(joint_curve_t), intent(inout) :: curves(:)
     integer :: i
@@ -130,7 +131,7 @@ contains
   end subroutine choose_curves
 
   !> Makes the residuals of the curves with the indices `taking`, each with a model of its own.
-  !> alone: the sum of their chi squared.
+  !> alone: the sum of chi squared over the fits of these curves alone.
   subroutine gather(curves, taking, residuals, alone)
     type(joint_curve_t), intent(inout), target :: curves(:)
     integer, intent(in) :: taking(:)
@@ -155,8 +156,8 @@ contains
     call join(part, start, residuals)
   end subroutine gather
 
-  !> Finds the errors of the values and the residuals there. If smaller residuals are found some
-  !> standard errors away, the search goes on from them.
+  !> Finds the errors of the values and the residuals at the values. If smaller residuals are found
+  !> some standard errors away, the search continues from there.
   subroutine finish(residuals, fitted, residual)
     type(joint_residuals_t), intent(inout) :: residuals
     type(fitted_t), intent(inout) :: fitted
@@ -181,7 +182,7 @@ contains
     end do
   end subroutine finish
 
-  !> Doubt about values that are shared by curves which disagree about them.
+  !> Warns if the curves contradict each other about the values that they share.
   subroutine doubt_agreement(chi_squared, freedom, joint)
     real(wp), intent(in) :: chi_squared
     integer, intent(in) :: freedom

@@ -1,5 +1,5 @@
 !> The residuals of several curves under one model: shared unknowns have one value for all curves,
-!> the others one for each.
+!> the others have one value for each curve.
 module joint_residuals
   use kinds, only: wp
   use fit_request, only: unknown_t
@@ -9,9 +9,10 @@ module joint_residuals
   private
   public :: joint_residuals_t, join
 
-  !> unknown: all unknowns, the shared ones first, then those of each curve. place: where those of a
-  !> curve are among them, (unknown of the curve, curve). before: number of residuals of the curves
-  !> before each. start: the values of each curve alone, (unknown of the curve, curve).
+  !> unknown: all unknowns, the shared ones first, then those of each curve. place: the positions of
+  !> a curve's unknowns among all, (unknown of the curve, curve). before: for each curve, the number
+  !> of residuals of the curves before it. start: the values of each curve fitted alone, (unknown of
+  !> the curve, curve).
   type, extends(fit_residuals_t) :: joint_residuals_t
     type(curve_residuals_t), allocatable :: part(:)
     type(unknown_t), allocatable :: unknown(:)
@@ -27,9 +28,9 @@ module joint_residuals
 
 contains
 
-  !> Joins the residuals of curves, whose unknowns have the same names. A shared unknown may go as
-  !> far as it may for any curve, and its prior counts once.
-  !> start: the values of the unknowns of each curve in a fit of it alone, (unknown, curve).
+  !> Joins the residuals of curves, whose unknowns have the same names. The limits of a shared
+  !> unknown include those of every curve, and its prior counts once. start: the values of the
+  !> unknowns of each curve fitted alone, (unknown, curve).
   subroutine join(part, start, joint)
     type(curve_residuals_t), intent(in) :: part(:)
     real(wp), intent(in) :: start(:, :)

@@ -1,4 +1,5 @@
-!> The smallest sum of squares of several curves that share unknowns, from fits of each alone.
+!> The smallest sum of squares of several curves that share unknowns, starting from the fits of each
+!> curve alone.
 module joint_search
   use kinds, only: wp
   use linear_algebra, only: factorisation_t, factorise, solve
@@ -10,19 +11,21 @@ module joint_search
   private
   public :: search_all, agree
 
-  !> Curves whose values of the shared unknowns are starting values, if a combination of all fits
-  !> does not lead to agreement.
+  !> Largest number of curves whose shared values are tried as starting values, if the combination
+  !> of all fits does not lead to agreement.
   integer, parameter :: most_starts = 5
-  !> A part added to the diagonal of normal equations, against rounding.
+  !> A number added to the diagonal of the normal equations, which keeps rounding from making them
+  !> singular.
   real(wp), parameter :: damping = 1.0e-10_wp
-  !> Largest change of a logarithm by the combination.
+  !> Largest change of a logarithm when the fits are combined.
   real(wp), parameter :: farthest = 1
 
 contains
 
-  !> Searches for the smallest sum of squares of all curves: from a combination of the fits of each
-  !> alone, and if the curves do not agree there, from the shared values of single fits.
-  !> squares: the sum of those of the curves alone; the others as of `agree`.
+  !> Searches for the smallest sum of squares of all curves. The first start is a combination of the
+  !> fits of each curve alone; if the curves do not agree there, further starts have the shared
+  !> values of single fits. squares: the sums of squares of the curves alone; other arguments as in
+  !> `agree`.
   subroutine search_all(residuals, squares, spared, value, found)
     type(joint_residuals_t), intent(inout) :: residuals
     real(wp), intent(in) :: squares
@@ -54,7 +57,7 @@ contains
 
   contains
 
-    !> Starts from the fits of each curve alone, with the shared values of curve i.
+    !> Searches from the fits of each curve alone, with the shared values of curve i.
     subroutine start_from(i)
       integer, intent(in) :: i
       integer :: k
@@ -82,8 +85,8 @@ contains
     end do
   end subroutine find_alone
 
-  !> The values with the smallest sum of squares of all curves if residuals were linear about the
-  !> fit of each curve alone.
+  !> The values that would give the smallest sum of squares of all curves if the residuals were
+  !> linear about the fit of each curve alone.
   subroutine combine(residuals, alone, value)
     type(joint_residuals_t), intent(in) :: residuals
     type(fitted_t), intent(in) :: alone(:)
@@ -124,8 +127,8 @@ contains
     end do
   end subroutine combine
 
-  !> Whether chance explains by how much the sum of squares of all curves exceeds that of the curves
-  !> alone. rows: number of the residuals; spared: number of values fewer than alone.
+  !> Whether chance explains the excess of the joint sum of squares over the sum for the curves
+  !> fitted alone. rows: number of residuals; spared: by how many fewer values the joint fit has.
   pure logical function agree(left, alone, rows, spared)
     real(wp), intent(in) :: left, alone
     integer, intent(in) :: rows, spared

@@ -1,4 +1,4 @@
-!> The smallest sum of squares, by MINPACK's lmder (J. J. More, 1978).
+!> Minimisation of a sum of squares by MINPACK's lmder (J. J. More, 1978).
 module least_squares
   use, intrinsic :: iso_c_binding, only: c_ptr, c_loc, c_f_pointer
   use kinds, only: wp
@@ -6,10 +6,10 @@ module least_squares
   private
   public :: residuals_t, minimise
 
-  !> Residuals to be minimised; an extension has the data for them.
+  !> Residuals to be minimised; an extended type holds the data for them.
   type, abstract :: residuals_t
   contains
-    !> The residuals at x; found = .false.: there are none.
+    !> The residuals at x; found = .false. if there are none.
     procedure(evaluate_residuals), deferred :: evaluate
     !> Their derivatives, (residual, unknown), at the x of the last evaluation.
     procedure(evaluate_derivatives), deferred :: differentiate
@@ -32,7 +32,8 @@ module least_squares
     end subroutine evaluate_derivatives
   end interface
 
-  !> lmder passes on a C pointer to this, since a polymorphic object cannot be passed on.
+  !> lmder passes a C pointer to this type to its callback, since it cannot pass a polymorphic
+  !> object.
   type :: carrier_t
     class(residuals_t), pointer :: residuals => null()
   end type carrier_t
@@ -51,22 +52,22 @@ module least_squares
     end subroutine lmder
   end interface
 
-  !> The search ends if a step changes the sum of squares by less than a change of x by this part of
-  !> a standard error, which changes the sum by its mean square. Along a badly determined
-  !> combination of x later steps could still go farther.
+  !> The search ends if a step lowers the sum of squares by less than a change of x by this fraction
+  !> of a standard error would (a change by one standard error changes the sum by its mean square).
+  !> Along a badly determined combination of x further steps could still go farther.
   real(wp), parameter :: of_error = 1.0e-3_wp
-  !> Relative change of x at which the search ends too; length of the first step.
+  !> The search also ends at this relative change of x; length of the first step.
   real(wp), parameter :: nearer = 1.0e-10_wp, first_step = 0.3_wp
   !> Largest number of evaluations.
   integer, parameter :: most_evaluations = 80
-  !> Replaces residuals that do not exist; lmder then shortens its step.
+  !> Value of residuals where they do not exist; lmder then shortens its step.
   real(wp), parameter :: nowhere = 1.0e8_wp
 
 contains
 
-  !> Moves x to the smallest sum of squares. x should be scaled such that a change by 1 is large:
-  !> the first step is shorter. found = .false.: there are no residuals at the first x, or the
-  !> evaluations did not suffice.
+  !> Moves x to the minimum of the sum of squares. x should be scaled such that a change by 1 is
+  !> large: the first step is shorter. found = .false.: there are no residuals at the first x, or
+  !> the number of evaluations did not suffice.
   subroutine minimise(residuals, x, residual, found)
     class(residuals_t), intent(inout), target :: residuals
     real(wp), intent(inout) :: x(:)
@@ -82,7 +83,7 @@ contains
     call lmder(evaluate_for_lmder, c_loc(carrier), size(residual), size(x), x, residual, jacobian, &
       size(residual), of_error**2/size(residual), nearer, 0.0_wp, most_evaluations, diag, 2, &
       first_step, 0, info, evaluations, jacobians, pivot, qtf, wa1, wa2, wa3, wa4)
-    ! 6 to 8: rounding allows no further gain.
+    ! The values 6 to 8 mean that rounding allows no further decrease.
     found = any(info == [1, 2, 3, 4, 6, 7, 8])
   end subroutine minimise
 

@@ -1,4 +1,4 @@
-!> Checks whether a measured curve can be fitted; if not, with the reason and advice.
+!> Checks whether a measured curve can be fitted, and otherwise gives the reason with advice.
 module measured_checks
   use kinds, only: wp
   use text, only: rounded
@@ -11,17 +11,17 @@ module measured_checks
   private
   public :: check_measured, open_end, find_saturated
 
-  !> Limits: a signal in standard deviations of the noise; the part of the travel that counts as an
-  !> end; the slope of an end in contact, over that of the spring; standard errors that make a
-  !> statement certain; the main part of a sum.
+  !> Limits: a signal in standard deviations of the noise; the fraction of the travel that counts as
+  !> an end; the slope of an end in contact, in units of that of the spring; the number of standard
+  !> errors that makes a statement certain; the fraction that counts as the main part of a sum.
   real(wp), parameter :: stands_out = 8, nearest_part = 0.05_wp, steep = 0.2_wp, surely = 5, &
     most_part = 0.5_wp
   integer, parameter :: parts = nint(1/nearest_part)
 
 contains
 
-  !> Checks a curve. trouble: allocated if it cannot be fitted. stiffness: of the spring, units of
-  !> signal over z.
+  !> Checks a curve. trouble: the reason why the curve cannot be fitted, otherwise not allocated.
+  !> stiffness: the slope of the spring, in units of signal over z.
   subroutine check_measured(measured, noise, stiffness, trouble)
     type(measured_curve_t), intent(in) :: measured
     type(noise_t), intent(in) :: noise
@@ -35,14 +35,14 @@ contains
 
     left = off_baseline(measured)
     call check_contact(measured, left, noise, stiffness, trouble)
-    ! Under a ripple, means and lines through the far samples do not show small contacts.
+    ! Under a ripple, neither means nor lines through the far samples show small contacts.
     if (allocated(trouble) .or. measured%baseline%ripple) return
     call check_ways()
     if (allocated(trouble)) return
     call nearest()
     if (near >= 0 .or. near >= before .or. .not. falls) then
-      ! In a curve that is backwards in time, the contact is at the far end and appears repulsive
-      ! relative to its line.
+      ! If the rows are in reverse order of time, the contact is at the far end and appears
+      ! repulsive relative to the line through the other samples.
       jump = jumps_in(left)
       back = jumps_in(-left)
       if (.not. maxval(abs(back%change)) > maxval(abs(jump%change))) return
@@ -63,7 +63,7 @@ contains
 
   contains
 
-    !> The jumps in and out in another signal.
+    !> The snap-in and snap-off of this curve if it had another signal.
     function jumps_in(signal) result(found)
       real(wp), intent(in) :: signal(:)
       type(measured_jump_t) :: found(2)
@@ -81,8 +81,8 @@ contains
     end function jumps_in
 
     !> Sets `trouble` if approach and retract are exchanged. A cycle dissipates energy: between its
-    !> ends, where both segments meet, the approach lies above the retract, for any baseline. If the
-    !> difference is within the noise, a contact at the far end decides.
+    !> ends, where the two segments meet, the approach lies above the retract, for any baseline. If
+    !> the difference is within the noise, a contact at the far end decides.
     subroutine check_ways()
       real(wp) :: position(size(measured%z)), slope(2), slope_error(2), taken(2), sure
       real(wp), allocatable :: above(:), error(:), between(:)
@@ -93,11 +93,11 @@ contains
       if (size(above) == 0) return
       call slope_at(position, slope(1), slope_error(1))
       call slope_at(-position, slope(2), slope_error(2))
-      ! The signal has the opposite sign: both ends bend down.
+      ! If the signal has the opposite sign, both ends bend down.
       if (sum(slope) < 0) return
       taken = sum(above)/size(above) - above([1, size(above)])
       sure = surely*maxval(error([1, size(error)]))
-      ! A ripple or a drift makes differences of either sign.
+      ! A ripple or a drift makes differences of both signs.
       between = above - 0.5_wp*(above(1) + above(size(above)))
       if (all(taken < -sure) .and. sum(between) < -most_part*sum(abs(between))) then
         trouble = 'a cycle would gain energy, as the adhesion is stronger on the way in than ' // &
@@ -128,9 +128,9 @@ contains
       error = noise%long_deviation()/sqrt(squares)
     end subroutine slope_at
 
-    !> The mean residual of the samples nearest to the other body, that of as many before them, the
-    !> distance between the two groups, and whether the signal falls among the nearest ones too.
-    !> (After a contact that first attracts and then repels it rises there.)
+    !> The mean residual of the samples nearest to the other body, that of as many samples before
+    !> them, the distance between the two groups, and whether the signal also falls within the
+    !> nearest group. (If the contact first attracts and then repels, the signal rises there.)
     subroutine nearest()
       real(wp) :: position(size(left)), low, width
       logical :: mask(size(left))
@@ -149,13 +149,14 @@ contains
 
   end subroutine check_measured
 
-  !> Whether an apparent jump is no evidence for the order of rows. Either the base hardly moves
-  !> there, as at the turn, where a load relaxes; or the neighbours scatter as much, as in contacts
-  !> that slip.
+  !> Whether an apparent jump is no evidence for the order of the rows. Such a jump is one where the
+  !> base hardly moves, as at the turn, where a load relaxes; or one no larger than the scatter of
+  !> its neighbours, as in contacts that slip.
   pure logical function no_jump(measured, jump)
     type(measured_curve_t), intent(in) :: measured
     type(measured_jump_t), intent(in) :: jump
-    !> Samples that are at the turn; neighbours on each side; the jump over their largest step.
+    !> Number of samples that count as the turn; number of neighbours on each side; limit of the
+    !> jump over the largest step between these neighbours.
     integer, parameter :: at_turn = 10, neighbours = 20
     real(wp), parameter :: larger = 2
     integer :: i, turn
@@ -179,8 +180,9 @@ contains
     end associate
   end function no_jump
 
-  !> Height of the approach above the retract, without their common slope, and its error, in each
-  !> part of the travel in which both have samples, nearest first.
+  !> The height of the approach above the retract after removing their common slope, and the error
+  !> of this height. Both are given for each part of the travel in which both segments have samples,
+  !> nearest first.
   pure subroutine compare_ways(measured, noise, above, error)
     type(measured_curve_t), intent(in) :: measured
     type(noise_t), intent(in) :: noise
@@ -215,8 +217,9 @@ contains
     end do
   end subroutine compare_ways
 
-  !> How far the retract ends below the approach, as it does if the bodies have not separated; 0 if
-  !> this is within the noise, or less than half of the largest distance between them.
+  !> By how much the retract ends below the approach, as it does if the bodies have not separated.
+  !> The result is 0 if this is within the noise, or less than half of the largest distance between
+  !> the segments.
   pure real(wp) function open_end(measured, noise) result(below)
     type(measured_curve_t), intent(in) :: measured
     type(noise_t), intent(in) :: noise
@@ -232,9 +235,9 @@ contains
       above(last) > 0.5_wp*maxval(above)) below = above(last)
   end function open_end
 
-  !> The first and last sample of the longest row with the smallest or the largest signal, far from
-  !> the baseline; 0 if the row is short, or if a signal of few digits has equally long rows
-  !> elsewhere.
+  !> The first and last sample of the longest sequence with the smallest or the largest signal, far
+  !> from the baseline. They are 0 if this sequence is short, or if a signal of few digits has
+  !> equally long sequences elsewhere.
   pure subroutine find_saturated(measured, noise, first, last)
     type(measured_curve_t), intent(in) :: measured
     type(noise_t), intent(in) :: noise

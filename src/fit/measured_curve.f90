@@ -14,23 +14,24 @@ module measured_curve
   public :: measured_curve_t, read_measured
 
   !> Samples in the order of the file, the approach first. The contact point is the z at which
-  !> undeformed bodies under a relaxed spring would touch. The position of the drive (`drive_t`) is
-  !> facing*(z - contact point); facing is 1 if z falls towards the other body, else -1.
+  !> undeformed bodies under a relaxed spring would touch. The position of the base (`drive_t`) is
+  !> facing*(z - contact point); facing is 1 if z falls towards the other body, otherwise -1.
   type, extends(measurement_t) :: measured_curve_t
     real(wp), allocatable :: z(:), signal(:)
     logical, allocatable :: inward(:)
-    !> What each sample observes: the signal, or the contact radius. Without positions z is the
-    !> load, over that of a unit of the signal.
+    !> The quantity that each sample observes: the signal, or the contact radius. In data without
+    !> positions, z is the load divided by the load of one unit of the signal.
     integer, allocatable :: observed(:)
-    !> The contact radii [m] of the same rows, 0 where there is none, until `add_radii`.
+    !> The contact radii [m] of the same rows, 0 in rows without one, until `add_radii` is called.
     real(wp), allocatable :: contact_radius(:)
     real(wp) :: facing = 1
     !> Samples far from contact, which show the baseline, once they are known.
     logical, allocatable :: far(:)
-    !> Samples in use: neither outliers nor skipped, by the deck or since the base rested.
+    !> usable: samples in use. skipped: samples left out by the deck, or because the base rested
+    !> there (rested). The samples that are neither usable nor skipped are outliers.
     logical, allocatable :: usable(:), skipped(:), rested(:)
-    !> How the file was understood, for the user: columns, units, rows of each segment and rows that
-    !> are left out.
+    !> A description of how the file was understood, for the user: columns, units, rows of each
+    !> segment, and rows left out.
     character(len=:), allocatable :: understood
   contains
     procedure :: outlier
@@ -39,12 +40,12 @@ module measured_curve
     procedure :: retain
   end type measured_curve_t
 
-  !> Limit of the median over the mean of the changes from part to part of a curve, and the number
-  !> of parts: a base moves evenly, while a signal changes mostly near contact. Shortest and longest
-  !> travel of a base [m].
+  !> A base moves evenly, while a signal changes mostly near contact. Limits of the ratio of the
+  !> median to the mean of the changes from part to part of a curve, for an even and an uneven
+  !> column, and the number of parts. Shortest and longest travel of a base [m].
   real(wp), parameter :: even = 0.5_wp, uneven = 0.25_wp, shortest = 1.0e-12_wp, longest = 1.0e-3_wp
   integer, parameter :: parts = 20
-  !> The part of a segment's samples at either end over which the ends are averaged.
+  !> Fraction of a segment's samples at either end over which the ends are averaged.
   real(wp), parameter :: end_part = 0.1_wp
 
 contains
@@ -57,8 +58,8 @@ contains
     outlier = .not. (self%usable .or. self%skipped)
   end function outlier
 
-  !> Makes samples of their own of the contact radii that were read beside the signal. Each row of
-  !> the file then has as many samples as observed quantities.
+  !> Turns the contact radii that were read beside the signal into separate samples. Each row of the
+  !> file then has as many samples as observed quantities.
   pure subroutine add_radii(self)
     class(measured_curve_t), intent(inout) :: self
     logical, allocatable :: seen(:)
@@ -76,7 +77,7 @@ contains
     deallocate (self%contact_radius)
   end subroutine add_radii
 
-  !> The samples of the signal alone; of contact radii, if there is no signal but these.
+  !> The samples of the signal alone, or of the contact radii if there is no signal.
   pure type(measured_curve_t) function of_signal(self) result(other)
     class(measured_curve_t), intent(in) :: self
     logical :: keep(size(self%z))
@@ -86,7 +87,7 @@ contains
     if (.not. all(keep)) call other%retain(keep)
   end function of_signal
 
-  !> Drops the samples that are not to be kept.
+  !> Keeps the samples marked by `keep` and drops the others.
   pure subroutine retain(self, keep)
     class(measured_curve_t), intent(inout) :: self
     logical, intent(in) :: keep(:)
@@ -101,8 +102,9 @@ contains
     self%observed = pack(self%observed, keep)
   end subroutine retain
 
-  !> Reads the samples of a curve from the text of its file. For separations behind a spring,
-  !> positions of the base are computed once the direction towards the other body is known.
+  !> Reads the samples of a curve from the text of its file. If the file has separations and the
+  !> device a spring, the positions of the base are computed once the direction towards the other
+  !> body is known.
   subroutine read_measured(measured, source, error)
     type(measured_curve_t), intent(inout) :: measured
     type(source_t), intent(in) :: source
@@ -147,7 +149,7 @@ contains
 
   end subroutine read_measured
 
-  !> 1 if positions, beginning far away, fall towards the other body, else -1.
+  !> 1 if positions that begin far away fall towards the other body, otherwise -1.
   pure real(wp) function likely_facing(z) result(facing)
     real(wp), intent(in) :: z(:)
     real(wp) :: begin
@@ -183,7 +185,7 @@ contains
       rows%kind = spread(of_retreat, 1, size(rows%z))
     end if
     associate (z => rows%z, signal => rows%signal, kind => rows%kind)
-      ! A row that repeats the one before it tells nothing new.
+      ! A row that repeats the row before it has no new information.
       repeated = [.false., (.not. (abs(z(i) - z(i - 1)) > 0 .or. abs(signal(i) - signal(i - 1)) > &
         0 .or. kind(i) /= kind(i - 1)), i=2, size(z))]
       wanted = .not. repeated .and. kind /= of_pause
@@ -206,7 +208,7 @@ contains
       measured%z(i) <= measured%skip(2::2)), i=1, size(measured%z))]
     measured%usable = .not. measured%skipped
     if (measured%under_loads()) then
-      ! There is one contact at each load, and the position of a dead load is minus the load.
+      ! Under dead loads there is one contact at each load, and the position is minus the load.
       measured%inward = spread(.false., 1, size(measured%z))
       measured%facing = -1
     else
@@ -216,7 +218,7 @@ contains
 
   contains
 
-    !> Says how the file was understood.
+    !> Describes how the file was understood.
     subroutine describe()
       measured%understood = rows%file // ': ' // rows%columns_read // '; '
       if (measured%under_loads()) then
@@ -249,7 +251,7 @@ contains
 
   end subroutine take_rows
 
-  !> Refuses columns that are exchanged, and positions that are not in metres.
+  !> Refuses columns that are exchanged, and positions that cannot be in metres.
   subroutine check_columns(file, z, signal, error)
     character(len=*), intent(in) :: file
     real(wp), intent(in) :: z(:), signal(:)
@@ -268,7 +270,8 @@ contains
 
   contains
 
-    !> Median over mean of the changes of a column between the means of its parts.
+    !> The ratio of the median to the mean of the changes of a column between the means of its
+    !> parts.
     pure real(wp) function evenness_of(number) result(evenness)
       real(wp), intent(in) :: number(:)
       real(wp) :: mean(parts)
@@ -310,8 +313,8 @@ contains
     measured%facing = merge(1.0_wp, -1.0_wp, sum(travel) < 0)
   end subroutine find_facing
 
-  !> Whether z moves back and forth by much more than the distance between the ends of a segment:
-  !> rows are not in order, or belong to several curves.
+  !> Whether z moves back and forth by much more than the distance between the ends of a segment. If
+  !> so, the rows are not in order, or belong to several curves.
   pure logical function goes_back(z)
     real(wp), intent(in) :: z(:)
     real(wp), parameter :: much = 1.5_wp
@@ -332,7 +335,7 @@ contains
     mean = [(sum(number(1 + (i - 1)*n/parts:i*n/parts))/(i*n/parts - (i - 1)*n/parts), i=1, parts)]
   end function means_of
 
-  !> The change of z from the begin to the end of a segment.
+  !> The change of z from the beginning to the end of a segment.
   pure real(wp) function travel_of(z) result(travel)
     real(wp), intent(in) :: z(:)
     integer :: part

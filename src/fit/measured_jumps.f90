@@ -1,9 +1,9 @@
-!> Jumps of a measured curve between branches, and the samples far from contact with their noise.
-!> The force falls in a jump inward and rises in a jump outward, over less travel of the base than
-!> the spring alone would need.
+!> Jumps of a measured curve between branches, and the samples far from contact with their noise. In
+!> a snap-in the force falls, and in a snap-off it rises, over less travel of the base than the
+!> spring alone would need.
 !>
-!> Before a model is known, means of equally many samples before and after a place are compared: of
-!> few samples if the difference exceeds the noise, otherwise of more.
+!> Before a model is known, the mean of some samples before a place is compared with the mean of as
+!> many samples after it. Few samples are used if the difference exceeds the noise, otherwise more.
 !>
 !> Once both branches are known, each place between two samples has a likelihood that the samples
 !> before it lie on one branch and those after it on the other. Samples taken during the jump lie on
@@ -18,8 +18,8 @@ module measured_jumps
   public :: measured_jump_t, find_jump, likely_jump, find_far, off_baseline, &
     fewest_far
 
-  !> A jump between the samples `before` and `after`; 0 if there is none. Position of the base with
-  !> its uncertainty, and the change of the signal.
+  !> A jump between the samples `before` and `after`; both are 0 without a jump. z, uncertainty: the
+  !> position of the base and its uncertainty. change: the change of the signal.
   type :: measured_jump_t
     integer :: before = 0, after = 0
     real(wp) :: z = 0, uncertainty = 0, change = 0
@@ -36,24 +36,24 @@ module measured_jumps
   !> jump by `together`, in squares of standard deviations.
   integer, parameter :: most_within = 6
   real(wp), parameter :: off_part = 0.2_wp, off = 4, together = 4
-  !> The side of a sample is known if the other side has less than this probability (a normal number
-  !> exceeds `normal_end` standard deviations with it). The jump is known if less than this part of
-  !> the samples is doubtful.
+  !> The side of a sample is known if the other side has a smaller probability than `doubtful` (a
+  !> normal number exceeds `normal_end` standard deviations with this probability). The position of
+  !> the jump is known if the fraction of doubtful samples is smaller than `known_part`.
   real(wp), parameter :: doubtful = 1.0e-3_wp, known_part = 0.2_wp, normal_end = 3.09_wp
 
-  !> With fewer far samples the noise is found from their differences, and no slope. The part of the
-  !> travel that may be far from contact, which is halved while the farther half varies by less than
-  !> a given part of the whole.
+  !> With fewer far samples the noise is found from their differences, and no slope is fitted.
+  !> far_part: the fraction of the travel that may be far from contact; it is halved as long as the
+  !> noise of the farther half is less than `less` times that of the whole.
   integer, parameter :: fewest_far = 12
   real(wp), parameter :: far_part = 1.0_wp/3, less = 0.6_wp
-  !> A spike differs from its neighbours by this many deviations, plus this many times the change of
-  !> signal over a step of z at the spring's own slope.
+  !> A spike differs from its neighbours by more than `apart` deviations plus `bent` times the
+  !> change of the signal that the spring alone causes over a step of z.
   real(wp), parameter :: apart = 5, bent = 3
 
 contains
 
-  !> The largest jump on approach or retract. deviation: of the noise. stiffness: of the spring,
-  !> units of signal over z.
+  !> The largest jump on approach or retract. deviation: standard deviation of the noise. stiffness:
+  !> the slope of the spring, in units of signal over z.
   pure type(measured_jump_t) function find_jump(measured, deviation, stiffness, inward) result(jump)
     type(measured_curve_t), intent(in) :: measured
     real(wp), intent(in) :: deviation, stiffness
@@ -86,7 +86,7 @@ contains
       width = 2*width
     end do
     if (k == 0) return
-    ! The jump is near the middle of the samples that were compared.
+    ! The jump is searched near the middle of the samples that were compared.
     first = k - width/2
     last = k + 1 + width/2
     do while (width == 1 .and. first > 1 .and. last - first < most_steps)
@@ -104,15 +104,15 @@ contains
     associate (z => measured%z)
       k = merge(first + 1, last, width == 1)
       jump%z = 0.5_wp*(z(at(first)) + z(at(k)))
-      ! The deviation of an even distribution between the two samples, or that of an average step if
-      ! it is larger.
+      ! The standard deviation of a uniform distribution between the two samples, or over an average
+      ! step if that is larger.
       jump%uncertainty = max(abs(z(at(k)) - z(at(first))), (maxval(z) - minval(z))/n)/sqrt(12.0_wp)
     end associate
 
   contains
 
-    !> Whether the signal changes from sample i to the next as in a jump, by more than spring and
-    !> noise explain.
+    !> Whether the signal between sample i and the next changes in the direction of the jump by more
+    !> than spring and noise explain.
     pure logical function goes_on(i)
       integer, intent(in) :: i
 
@@ -122,10 +122,11 @@ contains
 
   end function find_jump
 
-  !> The jump by likelihood. before(i), after(i): squared distances of sample i from either branch
-  !> in standard deviations; 0 for samples that do not count. change: of the signal in the jump.
-  !> noise: its standard deviation. first: number of the first sample. No jump if its position is
-  !> not known, or if all samples are on one branch.
+  !> The most likely jump. before(i), after(i): squared distances of sample i from the branch before
+  !> and after the jump, in standard deviations; 0 for samples that do not count. change: the change
+  !> of the signal in the jump. noise: the standard deviation of the signal. first: number of the
+  !> first sample. There is no jump if its position is not determined, or if all samples are on one
+  !> branch.
   pure type(measured_jump_t) function likely_jump(z, before, after, change, noise, first) &
     result(jump)
     real(wp), intent(in) :: z(:), before(:), after(:), change, noise
@@ -174,8 +175,8 @@ contains
     jump%z = sum(leaves*middle)
     jump%uncertainty = sqrt(sum(leaves*((middle - jump%z)**2 + typical**2/12)))
     jump%before = first_beyond(leaves)
-    ! Because of one sample with much noise a distant place may have a small probability, outside a
-    ! normal distribution of this width.
+    ! One sample with much noise may give a distant place a small probability, which lies outside a
+    ! normal distribution of this width. The uncertainty must include this place.
     i = n + 1 - first_beyond(leaves(n:1:-1))
     jump%uncertainty = max(jump%uncertainty, &
       maxval(abs(z([jump%before, min(n, i + 1)]) - jump%z))/normal_end)
@@ -189,7 +190,7 @@ contains
     jump%change = change
   end function likely_jump
 
-  !> The first index at which the sum of the chances is no longer small.
+  !> The first index at which the cumulative probability is no longer small.
   pure integer function first_beyond(chance) result(i)
     real(wp), intent(in) :: chance(:)
     real(wp) :: total
@@ -201,7 +202,8 @@ contains
     end do
   end function first_beyond
 
-  !> Marks the far samples and finds their noise. stiffness: of the spring, units of signal over z.
+  !> Marks the far samples and finds their noise. stiffness: the slope of the spring, in units of
+  !> signal over z.
   subroutine find_far(measured, stiffness, noise)
     type(measured_curve_t), intent(inout) :: measured
     real(wp), intent(in) :: stiffness
@@ -233,7 +235,7 @@ contains
       outer = position > limit
       if (count(outer .and. measured%usable) < 2*fewest_far) exit
       outer_noise = noise_at(outer)
-      ! Residuals that are no noise reach into the contact.
+      ! If the residuals of the whole are no noise, the samples reach into the contact.
       if (.not. noise%of_differences .and. outer_noise%deviation > less*noise%deviation) exit
       measured%far = outer
       noise = outer_noise
@@ -252,7 +254,7 @@ contains
 
   end subroutine find_far
 
-  !> The step of z about each sample: the mean over its segment, or half the distance to the second
+  !> The step of z at each sample: the mean step of its segment, or half the distance to the second
   !> sample on either side if that is larger.
   pure function steps_about(measured) result(step)
     type(measured_curve_t), intent(in) :: measured

@@ -1,5 +1,5 @@
-!> Compares the loads of a measured curve with those that its spring permits, and with those of the
-!> model: loads in a wrong unit differ from them by orders of magnitude.
+!> Compares the loads of a measured curve with the loads that its spring permits, and with those of
+!> the model. Loads in a wrong unit differ from both by orders of magnitude.
 module measured_loads
   use kinds, only: wp
   use text, only: rounded
@@ -11,17 +11,17 @@ module measured_loads
   private
   public :: check_loads, other_order, largest_tension_of
 
-  !> Limits: a signal in standard deviations of the noise; standard errors of a certain statement.
+  !> Limits: a signal in standard deviations of the noise; the number of standard errors that makes
+  !> a statement certain.
   real(wp), parameter :: stands_out = 8, surely = 5
-  !> Factor by which a sensitivity that is not fitted may be wrong; factor between loads of another
-  !> order; part of the change of a signal that is most of it.
+  !> Factor by which a sensitivity that is not fitted may be wrong; factor between loads of
+  !> different orders of magnitude; fraction of the change of a signal that counts as most of it.
   real(wp), parameter :: wrong = 3, order = 10, most_part = 0.5_wp
 
 contains
 
-  !> Sets `trouble` if the load falls more than the spring permits. As h0 grows with the position of
-  !> the base, the load falls by the stiffness of the spring times the travel at most, for any
-  !> bodies.
+  !> Sets `trouble` if the load falls more than the spring permits. For any bodies h0 grows with the
+  !> position of the base, so that the load falls by at most the spring constant times the travel.
   subroutine check_loads(curve, trouble)
     type(modelled_curve_t), intent(in) :: curve
     character(len=:), allocatable, intent(inout) :: trouble
@@ -66,9 +66,9 @@ contains
     end associate
   end function largest_tension_of
 
-  !> Says that the tension of the data is of another order than that of the model with the deck's
-  !> values; otherwise ''. The bodies part under the largest tension on the retract: an approach
-  !> alone does not show it, and noise hides a small one.
+  !> A message if the pull-off force of the data has another order of magnitude than that of the
+  !> model with the deck's values; otherwise ''. The bodies separate at the pull-off force on the
+  !> retract. An approach alone does not show this force, and noise hides a small one.
   function other_order(curve, model) result(words)
     type(modelled_curve_t), intent(in) :: curve
     class(force_model_t), intent(inout), target :: model

@@ -2,8 +2,8 @@
 !>
 !>     signal = F(Z)/(k s) + baseline of the segment + slope z ,   Z = facing (z - contact point) ,
 !>
-!> k: stiffness of the spring; s: sensitivity of the detector. The last response of the model is
-!> kept, since another contact point or detector needs no new solution.
+!> k: spring constant; s: sensitivity of the detector. The last response of the model is kept, since
+!> a change of the contact point or of the sensitivity needs no new solution.
 module modelled_curve
   use kinds, only: wp, nan
   use fit_request, only: unknown_t, of_model, of_contact_point, of_sensitivity, of_spring, of_radius
@@ -13,25 +13,26 @@ module modelled_curve
   private
   public :: modelled_curve_t, beyond, level_of
 
-  !> Least distance between the ends of contact, over the travel of the base: the contact of a model
-  !> with a single branch may end outside Z = 0.
+  !> Smallest distance between the ends of contact, relative to the travel of the base. It is needed
+  !> because a model with a single branch may have its innermost position at Z > 0.
   real(wp), parameter :: least_reach = 0.01_wp
-  !> Slope over the stiffness of the spring above which a sample is at the turn of its branch, where
-  !> derivatives are unbounded and useless.
+  !> Limit of the ratio of the slope of the load to the spring constant. A sample with a larger
+  !> slope is at the turn of its branch, where derivatives are unbounded and useless.
   real(wp), parameter :: steep = 10
-  !> The model is solved up to this many times the largest signal, since a trial may be too soft.
+  !> The model is solved up to this many times the largest signal, since the bodies of a trial may
+  !> be too soft.
   real(wp), parameter :: beyond = 1.2_wp
 
   type :: modelled_curve_t
-    !> The target must exist as long as this object is used.
+    !> The model must exist as long as this object is used.
     class(force_model_t), pointer :: model => null()
     type(fit_samples_t) :: data
     type(unknown_t), allocatable :: unknown(:)
-    !> Spring, detector and contact point if they are not unknown.
+    !> Values of spring constant, sensitivity and contact point, for those that are not unknowns.
     real(wp) :: spring = 1, sensitivity = 1, contact_point = 0
-    !> Whether the signal is the force, with the sensitivity 1/k for any k.
+    !> Whether the signal is the force. The sensitivity then is 1/k for any k.
     logical :: is_force = .false.
-    !> The largest slope of the signal over z outside jumps: of the spring, or of the contact.
+    !> The largest slope of the signal over z outside jumps, set by the spring or by the contact.
     real(wp) :: largest_slope = huge(1.0_wp)
     !> The largest signal, without baseline, that the model must reach.
     real(wp) :: largest = 0
@@ -55,7 +56,7 @@ module modelled_curve
 
 contains
 
-  !> Sets another model, without a response yet.
+  !> Sets another model; its response is computed later.
   subroutine use_model(self, model)
     class(modelled_curve_t), intent(inout) :: self
     class(force_model_t), intent(in), target :: model
@@ -64,8 +65,8 @@ contains
     if (allocated(self%asked)) deallocate (self%asked)
   end subroutine use_model
 
-  !> Whether the model must reach a larger signal than so far, which it then will. The spring cannot
-  !> be bent by more than the travel.
+  !> Whether the model must reach a larger signal than so far; if so, the range of the model is
+  !> extended. The spring cannot be deflected by more than the travel.
   logical function needs_more(self, signal)
     class(modelled_curve_t), intent(inout) :: self
     real(wp), intent(in) :: signal
@@ -78,7 +79,7 @@ contains
     if (needs_more) self%largest = min(beyond*signal, most)
   end function needs_more
 
-  !> Makes the model respond for these values, unless the last response is sufficient.
+  !> Computes the response of the model for these values, unless the last response can be used.
   subroutine ask(self, value, with_rates, found)
     class(modelled_curve_t), intent(inout) :: self
     real(wp), intent(in) :: value(:)
@@ -106,8 +107,9 @@ contains
     self%has_rates = with_rates
   end subroutine ask
 
-  !> The model's signal at samples, without baseline, by the last response. side: of the jump, for
-  !> all samples; absent: the side on which each was measured.
+  !> The model's signal at samples, without baseline, from the last response. side: the side of the
+  !> jump, one for all samples; if it is absent, each sample is on the side on which it was
+  !> measured.
   function signal_of(self, value, sample, side) result(signal)
     class(modelled_curve_t), intent(in) :: self
     real(wp), intent(in) :: value(:)
@@ -144,11 +146,11 @@ contains
 
     position = self%positions_of(value, self%data%sample)
     k = self%number_of(value, of_spring, self%spring)
-    ! Under loads there is no spring.
+    ! Under dead loads there is no spring.
     compliance = 0
     if (k > 0) compliance = 1/k
     newtons = self%newtons(value)
-    ! A signal that is the force does not depend on the spring otherwise.
+    ! If the signal is the force, it depends on the spring only through the position.
     by_force = merge(0.0_wp, compliance, self%is_force)
     do n = 1, size(self%data%sample)
       i = self%data%sample(n)
@@ -198,8 +200,8 @@ contains
       0.0_wp, load/self%number_of(value, of_spring, self%spring)**2)
   end function jump_rates
 
-  !> Derivatives by the unknowns in their order, from those by the model's unknowns and by the other
-  !> unknowns.
+  !> Collects the derivatives by the unknowns in their order, from those by the model's unknowns and
+  !> those by contact point, sensitivity and spring.
   pure function unfolded(role, by_model, by_contact_point, by_sensitivity, by_spring) result(by)
     integer, intent(in) :: role(:)
     real(wp), intent(in) :: by_model(:), by_contact_point, by_sensitivity, by_spring
@@ -211,7 +213,7 @@ contains
     where (role == of_spring) by = by_spring
   end function unfolded
 
-  !> The model with its baseline at all samples, and the baseline alone.
+  !> The modelled signal with its baseline at all samples, and the baseline alone.
   subroutine split(self, value, model, baseline)
     class(modelled_curve_t), intent(in) :: self
     real(wp), intent(in) :: value(:)
@@ -224,7 +226,8 @@ contains
   end subroutine split
 
   !> The contact points for which the nearest sample lies at the inner end of the model's contact,
-  !> at the outermost state in contact, and beyond this state by the travel of the samples.
+  !> at the outermost state in contact, and farther out than this state by the travel of the
+  !> samples.
   subroutine reach(self, value, ends, found)
     class(modelled_curve_t), intent(inout) :: self
     real(wp), intent(in) :: value(:)
@@ -251,7 +254,7 @@ contains
     ends = self%data%measured%facing*(nearest - [inner, outer, outer + travel])
   end subroutine reach
 
-  !> The contact point, whether it is fitted or given; NaN for radii under loads.
+  !> The contact point, whether it is fitted or given; NaN for contact radii under dead loads.
   pure real(wp) function contact_height(self, value)
     class(modelled_curve_t), intent(in) :: self
     real(wp), intent(in) :: value(:)
@@ -261,7 +264,7 @@ contains
       contact_height = self%number_of(value, of_contact_point, self%contact_point)
   end function contact_height
 
-  !> Positions of the drive at samples.
+  !> Positions of the base at samples.
   pure function positions_of(self, value, sample) result(position)
     class(modelled_curve_t), intent(in) :: self
     real(wp), intent(in) :: value(:)
@@ -273,7 +276,7 @@ contains
     if (self%data%measured%under_loads()) position = position*self%newtons(value)
   end function positions_of
 
-  !> The load of a unit of the signal, k s.
+  !> The load of one unit of the signal, k s.
   pure real(wp) function newtons(self, value)
     class(modelled_curve_t), intent(in) :: self
     real(wp), intent(in) :: value(:)
@@ -283,7 +286,7 @@ contains
       self%number_of(value, of_sensitivity, self%sensitivity)
   end function newtons
 
-  !> The value of the unknown with a role; `otherwise` if there is none.
+  !> The value of the unknown with this role; `otherwise` if there is no such unknown.
   pure real(wp) function number_of(self, value, role, otherwise) result(number)
     class(modelled_curve_t), intent(in) :: self
     real(wp), intent(in) :: value(:), otherwise
@@ -295,7 +298,7 @@ contains
     if (i > 0) number = value(i)
   end function number_of
 
-  !> The mean of the far samples.
+  !> The mean signal of the far samples.
   pure real(wp) function level_of(curve) result(level)
     type(modelled_curve_t), intent(in) :: curve
 

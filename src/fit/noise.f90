@@ -1,8 +1,8 @@
-!> The noise of a signal, from samples that would lie on a straight line without it. An instrument's
-!> filter correlates neighbours: a linear prediction from some previous samples then leaves white
-!> noise (autoregression; Levinson, 1947, and Durbin, 1960).
-!> Residuals of a fit show the correlation too: with it the next fit is one by generalised least
-!> squares (Aitken, 1935; Cochrane and Orcutt, 1949).
+!> The noise of a signal, from samples that would lie on a straight line without noise. An
+!> instrument's filter correlates neighbouring samples; subtracting a linear prediction from some
+!> previous samples then leaves white noise (autoregression; Levinson, 1947, and Durbin, 1960).
+!> Residuals of a fit show this correlation too. The next fit uses it as generalised least squares
+!> (Aitken, 1935; Cochrane and Orcutt, 1949).
 module noise
   use kinds, only: wp
   use order_statistics, only: median_of
@@ -11,28 +11,29 @@ module noise
   public :: noise_t, white_noise, noise_of, noise_of_steps, noise_of_residuals, contradicts, &
     rough_deviation, rounding_of, normal_median, whiten
 
-  !> If the standard deviation exceeds that from second differences by this factor, residuals are no
-  !> noise: a filter would have to average over 60 samples.
+  !> If the standard deviation of residuals exceeds that from second differences by this factor, the
+  !> residuals are not noise: a filter would have to average over 60 samples.
   real(wp), parameter :: smooth = 10
-  !> Number of samples that are many for a parabola: ten for each of its unknowns.
+  !> Smallest number of samples for which a parabola is used: ten for each of its unknowns.
   integer, parameter :: many = 30
   !> Largest number of samples that a prediction uses.
   integer, parameter :: longest = 8
 
-  !> Gain n ln(left^2), for any order, that is hardly due to chance.
+  !> Gain n ln(left^2), for any order, that chance hardly ever produces.
   real(wp), parameter :: by_chance = 10
   !> The median of the magnitude of a standard normal number.
   real(wp), parameter :: normal_median = 0.6745_wp
 
-  !> deviation: standard deviation. correlation(k): of samples k apart. order: previous samples that
-  !> predict one. weight(:k, k): weights of the prediction from k samples, the nearest first.
-  !> left(k): standard deviation that this prediction leaves.
+  !> deviation: standard deviation. correlation(k): correlation of samples that are k steps apart.
+  !> order: number of previous samples that predict the next one. weight(:k, k): weights of the
+  !> prediction from k samples, the nearest first. left(k): standard deviation after subtraction of
+  !> this prediction.
   type :: noise_t
     real(wp) :: deviation = 0, correlation(0:longest) = 0
     integer :: order = 0
-    !> Number of independent samples behind the deviation. Its source: the steps between samples;
-    !> second differences, if residuals were no noise; or a model's residuals, with their
-    !> correlation.
+    !> Number of independent samples from which the deviation was estimated. The source of the
+    !> estimate: of_steps: the steps between samples; of_differences: second differences, if the
+    !> residuals were no noise; of_residuals: a model's residuals, with their correlation.
     real(wp) :: known_by = huge(1.0_wp)
     logical :: of_steps = .false., of_differences = .false., of_residuals = .false.
     real(wp) :: weight(longest, longest) = 0, left(0:longest) = 1
@@ -42,7 +43,8 @@ module noise
 
 contains
 
-  !> The deviation of white noise with the same scatter of means over many samples.
+  !> The deviation of the white noise whose means over many samples scatter as much as those of this
+  !> noise.
   pure real(wp) function long_deviation(self) result(deviation)
     class(noise_t), intent(in) :: self
 
@@ -58,10 +60,11 @@ contains
     noise%left = deviation
   end function white_noise
 
-  !> The noise of a signal at equal steps, which is a straight line in z over each run or, with many
-  !> samples, a parabola: a bow is no noise. Ripples, drifts and the bend of a contact are no noise
-  !> either: they differ so little from sample to sample that no filter explains it. Then the noise
-  !> is white, from second differences. run(i): number of the run of sample i.
+  !> The noise of a signal at equal steps. The signal is assumed to be a straight line in z over
+  !> each run or, with many samples, a parabola, since a bow is no noise. Ripples, drifts and the
+  !> bend of a contact are no noise either: they change so little from sample to sample that no
+  !> filter explains them. If the signal has them, the result is white noise from second
+  !> differences. run(i): number of the run of sample i.
   pure type(noise_t) function noise_of(z, signal, run) result(noise)
     real(wp), intent(in) :: z(:), signal(:)
     integer, intent(in) :: run(:)
@@ -72,7 +75,7 @@ contains
     noise = noise_in(r, run, unknowns, rounding_of(signal))
   end function noise_of
 
-  !> The noise of the residuals of a model with so many unknowns.
+  !> The noise of the residuals of a model with this number of unknowns.
   pure type(noise_t) function noise_of_residuals(left, run, unknowns) result(noise)
     real(wp), intent(in) :: left(:)
     integer, intent(in) :: run(:), unknowns
@@ -81,8 +84,8 @@ contains
     noise%of_residuals = .true.
   end function noise_of_residuals
 
-  !> The noise of residuals r with so many unknowns, if they are noise. least: smallest deviation of
-  !> second differences.
+  !> The noise of residuals r with this number of unknowns, if they are noise. least: the smallest
+  !> deviation that second differences may give.
   pure type(noise_t) function noise_in(r, run, unknowns, least) result(noise)
     real(wp), intent(in) :: r(:), least
     integer, intent(in) :: run(:), unknowns
@@ -107,7 +110,8 @@ contains
     call find_weights(noise, n)
   end function noise_in
 
-  !> The samples minus the line, or parabola, of their run. unknowns: of all these.
+  !> The samples minus the straight line, or parabola, of their run. unknowns: number of
+  !> coefficients of all these lines.
   pure subroutine remove_lines(z, signal, run, r, unknowns)
     real(wp), intent(in) :: z(:), signal(:)
     integer, intent(in) :: run(:)
@@ -123,9 +127,9 @@ contains
     end do
   end subroutine remove_lines
 
-  !> Whether samples, which would lie on straight lines or parabolas without noise, contradict a
-  !> given noise: white noise of their own deviation is much more likely (likelihood-ratio test;
-  !> Neyman and Pearson, 1933).
+  !> Whether samples that would lie on straight lines or parabolas without noise contradict a given
+  !> noise. They do if white noise with their own deviation is much more likely (likelihood-ratio
+  !> test; Neyman and Pearson, 1933).
   pure logical function contradicts(z, signal, run, noise)
     real(wp), intent(in) :: z(:), signal(:)
     integer, intent(in) :: run(:)
@@ -152,8 +156,8 @@ contains
 
   end function contradicts
 
-  !> White noise from the steps between neighbours of a run in a smooth signal. steps: their number
-  !> (von Neumann, 1941).
+  !> White noise of a smooth signal, estimated from the steps between neighbours of a run. steps:
+  !> the number of these steps (von Neumann, 1941).
   pure subroutine noise_of_steps(smooth, run, noise, steps)
     real(wp), intent(in) :: smooth(:)
     integer, intent(in) :: run(:)
@@ -171,10 +175,10 @@ contains
   end subroutine noise_of_steps
 
   !> The deviation of white noise in a smooth signal with outliers, from the median of its second
-  !> differences; at least that of rounding.
+  !> differences; it is at least that of rounding.
   pure real(wp) function rough_deviation(signal) result(deviation)
     real(wp), intent(in) :: signal(:)
-    !> The sum of the squares of 1, -2, 1.
+    !> The sum of the squares of the weights 1, -2, 1.
     real(wp), parameter :: squares = 6
     integer :: n
 
@@ -183,11 +187,11 @@ contains
       2*signal(2:n - 1) + signal(:n - 2)))/(normal_median*sqrt(squares)))
   end function rough_deviation
 
-  !> The deviation that rounding makes in a signal of few digits, from the smallest step between
-  !> neighbours.
+  !> The standard deviation due to rounding in a signal of few digits, from the smallest step
+  !> between neighbours.
   pure real(wp) function rounding_of(signal) result(deviation)
     real(wp), intent(in) :: signal(:)
-    !> A step, over the largest signal, that differs from none.
+    !> Smallest step, relative to the largest signal, that differs from zero.
     real(wp), parameter :: none = 1.0e-12_wp
     real(wp) :: step(size(signal) - 1)
 
@@ -197,7 +201,7 @@ contains
       deviation = minval(step, step > none*maxval(abs(signal)))/sqrt(12.0_wp)
   end function rounding_of
 
-  !> The samples in `mask` minus their straight line, or minus their parabola.
+  !> The samples in `mask` minus a polynomial of this degree through them.
   pure function off_line(z, signal, mask, degree) result(r)
     real(wp), intent(in) :: z(:), signal(:)
     logical, intent(in) :: mask(:)
@@ -214,8 +218,9 @@ contains
     r = r - power*sum(power*r, mask)/max(sum(power**2, mask), tiny(1.0_wp))
   end function off_line
 
-  !> The weights of all orders from the correlations, and the order with the smallest n ln(left^2) +
-  !> order ln(n) (Schwarz, 1978), if chance does not explain the gain over order 0.
+  !> Finds the weights of all orders from the correlations, and the order with the smallest n
+  !> ln(left^2) + order ln(n) (Schwarz, 1978). The order is 0 if chance explains the gain over order
+  !> 0.
   pure subroutine find_weights(noise, n)
     type(noise_t), intent(inout) :: noise
     integer, intent(in) :: n
@@ -261,7 +266,8 @@ contains
     end if
     known = predicting(noise, run)
     do j = 1, size(column, 2)
-      ! From the last sample, so that those that predict a sample are still the given ones.
+      ! Start with the last sample, so that the samples which predict another one still have their
+      ! given values.
       do i = size(run), 1, -1
         associate (k => known(i))
           column(i, j) = (column(i, j) - &
@@ -271,7 +277,7 @@ contains
     end do
   end subroutine whiten
 
-  !> The number of previous samples of its run that predict each sample.
+  !> For each sample, the number of previous samples of its run that predict it.
   pure function predicting(noise, run) result(known)
     type(noise_t), intent(in) :: noise
     integer, intent(in) :: run(:)

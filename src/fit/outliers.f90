@@ -1,19 +1,20 @@
 !> Outliers: samples that differ from their neighbours on both sides. A jump, a bend or a lasting
-!> change is not an outlier.
+!> change does not count as an outlier.
 module outliers
   use kinds, only: wp
   implicit none
   private
   public :: stand_apart
 
-  !> Number of neighbours on each side whose median is compared, so that one of three may be an
-  !> outlier.
+  !> Number of neighbours on each side whose median is compared with a sample; with three, one of
+  !> them may be an outlier.
   integer, parameter :: neighbours = 3
 
 contains
 
-  !> Marks samples that are outside the range between the medians of their neighbours in the run by
-  !> more than their `tolerance`. Samples that are not `usable` are ignored.
+  !> Marks samples that lie outside the range between the medians of their neighbours on the two
+  !> sides, within the run, by more than their `tolerance`. Samples that are not `usable` are
+  !> ignored.
   pure function stand_apart(signal, run, usable, tolerance) result(apart)
     real(wp), intent(in) :: signal(:), tolerance(:)
     integer, intent(in) :: run(:)
@@ -38,7 +39,7 @@ contains
     end do
   end function stand_apart
 
-  !> The median of the nearest good samples of the run on one side of sample i.
+  !> The median of the nearest good samples of the run, on one side of sample i.
   pure subroutine beside(signal, run, good, i, step, middle, known)
     real(wp), intent(in) :: signal(:)
     integer, intent(in) :: run(:), i, step

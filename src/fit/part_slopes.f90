@@ -1,5 +1,5 @@
-!> Slopes of a measured curve: of straight lines through the samples of a segment over parts of the
-!> travel.
+!> Slopes of a measured curve: the slopes of straight lines through the samples of a segment, each
+!> over a part of the travel.
 module part_slopes
   use kinds, only: wp
   use measured_curve, only: measured_curve_t
@@ -7,13 +7,14 @@ module part_slopes
   private
   public :: slopes_of_parts, steepest_slope
 
-  !> Parts of the travel, of which each overlaps the next by half, and the fewest samples of one.
+  !> Number of parts of the travel, each of which overlaps the next by half; smallest number of
+  !> samples in a part.
   integer, parameter :: parts = 10, fewest = 5
 
 contains
 
-  !> The slopes of the parts with enough samples, units of signal over z; positive where the signal
-  !> rises towards the other body, as in contact. In jumps it changes the opposite way.
+  !> The slopes of the parts with enough samples, in units of signal over z. They are positive where
+  !> the signal rises towards the other body, as in contact, and negative in a snap-in.
   pure function slopes_of_parts(measured) result(slope)
     type(measured_curve_t), intent(in) :: measured
     real(wp), allocatable :: slope(:)
@@ -39,7 +40,7 @@ contains
     end associate
   end function slopes_of_parts
 
-  !> The steepest slope of any part, or of the whole curve.
+  !> The steepest slope of any part, or that of the whole curve.
   pure real(wp) function steepest_slope(measured) result(slope)
     type(measured_curve_t), intent(in) :: measured
 

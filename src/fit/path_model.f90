@@ -1,5 +1,6 @@
-!> The model whose loads are those of the equilibrium path, solved for each trial of the unknowns:
-!> the branches are the path's stable pieces behind the spring, and the segments those of `device`.
+!> The model whose loads are those of the equilibrium path, which is computed for each trial of the
+!> unknowns. The branches are the stable branches of the path with the spring, and the segments are
+!> those of `device`.
 module path_model
   use kinds, only: wp
   use failure, only: failure_t
@@ -26,33 +27,33 @@ module path_model
   private
   public :: path_model_t
 
-  !> The edge of the contact at a point of the path, where the gap is that of `contact_level_of`.
-  !> The square of its radius, with derivatives by the path's coordinate, by that separation [m] at
-  !> a fixed state, and by the unknowns at a fixed coordinate; and its radius over the scale of the
-  !> mesh.
+  !> The edge of the contact at a point of the path, where the gap is that of `contact_level_of`. It
+  !> has the square of the contact radius, with derivatives by the path's coordinate, by that gap
+  !> [m] at a fixed state, and by the unknowns at a fixed coordinate; and the contact radius over
+  !> the scale of the mesh.
   type :: edge_t
     real(wp) :: square(2) = 0, by_level = 0, place = 0
     real(wp), allocatable :: rate(:)
   end type edge_t
 
-  !> The part of its value by which the level of the contact is varied for a difference.
+  !> Relative change of the gap at the edge of the contact for a finite difference.
   real(wp), parameter :: change = 1.0e-3_wp
 
-  !> The accuracy for which the points of a path are at their closest; for a coarser one they are
-  !> farther apart (`demand_t`). And the part of the derivatives of the equations that may remain in
-  !> those of a curve.
+  !> The points of a path are densest for the accuracy `closest_for`; for a larger one they are
+  !> farther apart (`demand_t`). enough: the relative residual at which the equations for the
+  !> derivatives of a curve count as solved.
   real(wp), parameter :: closest_for = 1.0e-6_wp, enough = 1.0e-5_wp
 
-  !> A trial: its path at these values of the unknowns. solved: there is one.
+  !> A trial: its values of the unknowns and its path. solved: the path exists.
   type :: trial_t
     real(wp), allocatable :: value(:)
     type(path_stepper_t) :: steps
     type(driven_t) :: driven
     real(wp) :: stiffness = 0, farthest = 0, largest = 0
     logical :: solved = .false.
-    !> Derivatives of its curve, once they were asked for.
+    !> Derivatives of the curve, once they were requested.
     type(rate_t), allocatable :: rate(:, :)
-    !> The edges at its points, if the contact radius is wanted.
+    !> The edges of the contact at the points of the path, if the contact radius is wanted.
     type(edge_t), allocatable :: edge(:)
   contains
     procedure :: serves
@@ -62,14 +63,14 @@ module path_model
     !> The problems; the unknowns are its parameters.
     class(problem_family_t), allocatable :: family
     type(numerics_t) :: numerics
-    !> Trials share their meshes.
+    !> All trials share their meshes.
     type(mesh_store_t), private :: store
-    !> The trial that was asked for last, at `last`, and another one. The best values of a fit are
-    !> asked for again after trials elsewhere without derivatives, so a trial with derivatives stays
-    !> until there are some of another one.
+    !> Two trials; `last` is the index of the one requested last. A fit requests its best values
+    !> again after trials elsewhere that need no derivatives. Therefore a trial with derivatives is
+    !> kept until another one has derivatives.
     type(trial_t), private :: trial(2)
     integer, private :: last = 1
-    !> The part of the load that the meshes of the trial solved last leave out (`mending`).
+    !> The fraction of the load that is missing on the meshes of the trial solved last (`mending`).
     real(wp) :: left_out = 0
   contains
     procedure :: respond
@@ -115,14 +116,14 @@ contains
       if (stiffness > 0) then
         call find_ways(trial%steps%problem, trial%driven, response)
       else
-        ! Under dead loads the last piece is that in contact.
+        ! Under dead loads the last branch is the one in contact.
         response%way(inward) = way_t([i - 1], [-huge(1.0_wp)])
         response%way(outward) = way_t([i - 1], [huge(1.0_wp)])
       end if
     end associate
   end subroutine respond
 
-  !> Whether a trial is that at some values of the unknowns, and its path long enough.
+  !> Whether a trial has these values of the unknowns, and a path that is long enough.
   pure logical function serves(self, value, stiffness, farthest, largest)
     class(trial_t), intent(in) :: self
     real(wp), intent(in) :: value(:), stiffness, farthest, largest
@@ -132,8 +133,9 @@ contains
       abs(stiffness - self%stiffness) <= 0
   end function serves
 
-  !> Takes another family, whose first parameters are those of the present one and whose others, at
-  !> their own values, pose the same problems. The trials need not be solved again.
+  !> Takes another family. Its first parameters are those of the present family; with its further
+  !> parameters at their own values it describes the same problems. The trials need not be solved
+  !> again.
   subroutine widen_to(self, family)
     class(path_model_t), intent(inout) :: self
     class(problem_family_t), intent(in) :: family
@@ -150,7 +152,7 @@ contains
     allocate (self%family, source=family)
   end subroutine widen_to
 
-  !> Traces the path of a trial and drives the bodies along it.
+  !> Computes the path of a trial and the cycle of the spring along this path.
   subroutine solve_trial(self, value, stiffness, farthest, largest, trial)
     class(path_model_t), intent(inout) :: self
     real(wp), intent(in) :: value(:), stiffness, farthest, largest
@@ -280,7 +282,8 @@ contains
 
   end subroutine find_edges
 
-  !> A stable piece of the path as panels, SI units; rate(unknown, point) at its points.
+  !> A stable branch of the path as panels, in SI units. rate(unknown, point): derivatives at its
+  !> points.
   subroutine make_branch(problem, path, piece, rate, edge, branch)
     type(problem_t), intent(in) :: problem
     type(traced_path_t), intent(in) :: path
@@ -343,7 +346,7 @@ contains
           problem%law%separation_of(driven%drive%position(driven%leg(i)%to))]
       end associate
     end do
-    ! The jumps of a segment start from its legs, in order, except the last leg.
+    ! The jumps of a segment start from the ends of its legs, in order, except from the last leg.
     largest = 0
     do i = 1, size(driven%jumped)
       k = merge(inward, outward, driven%jumped(i)%inward)

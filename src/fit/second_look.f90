@@ -13,8 +13,9 @@ module second_look
   private
   public :: lack_t, lack_in, chance_of, rarely, hardly_ever, renew_noise, look_again
 
-  !> The largest lack of fit. excess: by how many standard deviations the means of blocks of `width`
-  !> samples exceed those of noise. times: their ratio to those of noise.
+  !> The largest lack of fit. excess: by how many standard deviations the squared means of blocks of
+  !> `width` samples exceed their expectation for noise. times: the ratio of the root mean square of
+  !> these means to that of noise.
   type :: lack_t
     integer :: width = 1
     real(wp) :: excess = 0, times = 1
@@ -22,8 +23,8 @@ module second_look
     procedure :: is_noise
   end type lack_t
 
-  !> Smallest number of blocks that is tested. The excess that noise reaches in one fit of two
-  !> hundred, with about seven widths.
+  !> Smallest number of blocks that is tested. The excess that noise alone reaches in one fit of two
+  !> hundred, if about seven widths are tested.
   integer, parameter :: fewest_blocks = 8
   real(wp), parameter :: hardly_ever = 3.2_wp
 
@@ -74,8 +75,8 @@ contains
       if (width == 1) blocks = max(1, freedom)
       if (width > 1 .and. blocks < fewest_blocks) return
       ! The ratio of the variance of all samples to that of their steps has the variance 1/n (von
-      ! Neumann, 1941). This is half that of the variance of all samples, as if n were twice as
-      ! large.
+      ! Neumann, 1941). This is half the variance that the variance of all samples alone has, as if
+      ! n were twice as large.
       excess = normal_of(total, blocks, noise%known_by)
       if (width == 1 .and. noise%of_steps) excess = normal_of(2*total, 2*blocks, huge(1.0_wp))
       if (excess > worst%excess) worst = lack_t(width, excess, sqrt(total/blocks))
@@ -83,8 +84,8 @@ contains
     end do
   end function lack_in
 
-  !> A sum of n squares of normal numbers as a normal number (Wilson and Hilferty, 1931), if their
-  !> variance is known from `known_by` others.
+  !> Transforms a sum of n squares of normal numbers to a standard normal number (Wilson and
+  !> Hilferty, 1931), if the variance of these numbers was estimated from `known_by` other numbers.
   pure real(wp) function normal_of(total, n, known_by)
     real(wp), intent(in) :: total, known_by
     integer, intent(in) :: n
@@ -92,9 +93,10 @@ contains
     normal_of = ((total/n)**(1.0_wp/3) - 1 + 2.0_wp/(9*n))/sqrt(2.0_wp/(9*n) + 2/9.0_wp/known_by)
   end function normal_of
 
-  !> The logarithm of the probability that noise alone lowers chi squared so much by further columns
-  !> (one or an even number), the best of `trials` choices of them. left: chi squared per degree of
-  !> freedom with them, which is the scale if it exceeds that of noise.
+  !> The logarithm of the probability that noise alone lowers chi squared by `gain` if further
+  !> columns (one or an even number) are fitted, where these columns are the best of `trials`
+  !> choices. left: chi squared per degree of freedom with these columns; if it exceeds 1, it scales
+  !> the noise.
   pure real(wp) function chance_of(gain, left, columns, trials) result(chance)
     real(wp), intent(in) :: gain, left
     integer, intent(in) :: columns, trials
@@ -117,16 +119,16 @@ contains
     chance = chance - half + log(real(trials, wp))
   end function chance_of
 
-  !> Whether a logarithm of a probability is smaller than that of an excess of the residuals that is
-  !> reported.
+  !> Whether the logarithm of a probability is below the level at which an excess of the residuals
+  !> is reported.
   elemental logical function rarely(chance)
     real(wp), intent(in) :: chance
 
     rarely = chance < log(erfc(hardly_ever/sqrt(2.0_wp)))
   end function rarely
 
-  !> Finds outliers, jumps and, unless it is given, noise again. value: the best fit so far.
-  !> settled: there was no significant change.
+  !> Estimates outliers, jumps and, unless the deck gives it, the noise again. value: the best fit
+  !> so far. settled: becomes .false. after a significant change.
   subroutine look_again(curve, value, settled)
     type(modelled_curve_t), intent(inout) :: curve
     real(wp), intent(in) :: value(:)
@@ -140,17 +142,18 @@ contains
     call curve%split(value, model, baseline)
     left = curve%data%measured%signal - model
     associate (data => curve%data)
-      ! The model must reach all loads; beyond, it continues on a straight line.
+      ! The model must reach all loads; beyond its range it is continued linearly.
       signal = [(.not. data%is_beside(way), way=1, size(left))]
       settled = .not. curve%needs_more(maxval(data%measured%signal - baseline, &
         data%measured%usable .and. signal))
       usable = data%measured%usable
       deviation = data%noise%deviation
-      ! A wrong model leaves large residuals nearly everywhere.
+      ! If the model is wrong, residuals are large nearly everywhere.
       spread = max(deviation, median_of(abs(pack(left(data%sample), signal(data%sample))))/ &
         normal_median)
       if (any(.not. signal)) call renew_radii(curve, left, signal)
-      ! Near a jump outliers are kept, since the model may be on the wrong side.
+      ! Near a jump no samples are marked as outliers, since the model may be on the wrong side
+      ! there.
       data%measured%usable = merge(usable, .not. (data%measured%skipped .or. &
         stand_apart(left, 3*data%way + data%side + merge(0, 100, signal), &
         .not. data%measured%skipped, apart*merge(spread, 2*data%noise_radius, signal))), &
@@ -169,8 +172,8 @@ contains
     call curve%data%take(1)
   end subroutine look_again
 
-  !> Finds the noise of contact radii beside a signal, unless it is given: that of the differences
-  !> between neighbouring residuals.
+  !> Estimates the noise of contact radii beside a signal, unless the deck gives it, from the
+  !> differences between neighbouring residuals.
   subroutine renew_radii(curve, left, signal)
     type(modelled_curve_t), intent(inout) :: curve
     real(wp), intent(in) :: left(:)
@@ -188,9 +191,10 @@ contains
     end associate
   end subroutine renew_radii
 
-  !> Finds the noise of the residuals. The samples far from contact show the noise without a model;
-  !> larger residuals there are misfit. If they are too few to show a correlation, that of all
-  !> residuals is used, if it explains them and the far samples do not contradict it.
+  !> Estimates the noise of the residuals. The samples far from contact show the noise without a
+  !> model; residuals there that exceed this noise are misfit. The far samples may be too few to
+  !> show a correlation. Therefore the correlation of all residuals is used if it explains them all
+  !> and the far samples do not contradict it.
   subroutine renew_noise(curve, left)
     type(modelled_curve_t), intent(inout) :: curve
     real(wp), intent(in) :: left(:)
@@ -225,7 +229,7 @@ contains
 
   contains
 
-    !> Whether a correlated noise explains all residuals, and the far samples alone.
+    !> Whether a correlated noise explains all residuals, and also those of the far samples alone.
     logical function explains(noise)
       type(noise_t), intent(in) :: noise
       real(wp) :: white(size(of_signal), 1)
@@ -245,8 +249,8 @@ contains
     end function explains
 
     !> Whether residuals have the same variance in each part of the travel (a misfit is largest in
-    !> contact). For m samples of correlated noise the relative variance of the variance is 2/m
-    !> times the sum of the squared correlations (Bartlett, 1946).
+    !> contact). For m samples of correlated noise, the relative variance of their estimated
+    !> variance is 2/m times the sum of the squared correlations (Bartlett, 1946).
     pure logical function is_even(z, residual, noise)
       real(wp), intent(in) :: z(:), residual(:)
       type(noise_t), intent(in) :: noise
@@ -271,7 +275,7 @@ contains
 
   end subroutine renew_noise
 
-  !> The jump of the curve from one branch of the model to the other.
+  !> The jump of the curve from one branch of the model to the other, by likelihood.
   type(measured_jump_t) function jump_by_model(curve, value, baseline, left, way) result(jump)
     type(modelled_curve_t), intent(in) :: curve
     real(wp), intent(in) :: value(:), baseline(:), left(:)

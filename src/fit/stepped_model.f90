@@ -1,6 +1,7 @@
-!> The model for bodies that only repel each other: there is one state for every h0, so that h0 is
-!> stepped from large separations into contact, and the load along the steps is the one branch.
-!> Derivatives by the unknowns are differences of the loads of two other problems at the same h0.
+!> The model for bodies that only repel each other. There is one state for every h0; therefore h0 is
+!> stepped from large separations into contact, and the loads at these steps form the only branch.
+!> Derivatives by the unknowns are finite differences between the loads of two other problems at the
+!> same h0.
 module stepped_model
   use kinds, only: wp
   use failure, only: failure_t
@@ -22,14 +23,15 @@ module stepped_model
   private
   public :: stepped_model_t
 
-  !> Numbers of panels where bodies do not deform, from there to the beginning of contact, and in
-  !> contact. Number of neighbours of a load on each side that determine its slope.
+  !> Numbers of panels: where bodies do not deform, from there to the beginning of contact, and in
+  !> contact. Number of neighbours on each side of a load that determine its slope.
   integer, parameter :: afar = 24, near = 32, within = 48, neighbours = 2
-  !> Distance from contact, in the law's lengths, beyond which bodies do not deform, since an
-  !> exponential is below rounding. Natural logarithm of the widest contact in the search.
+  !> Distance from contact, in lengths L of the force law, beyond which the bodies do not deform,
+  !> since the exponential is smaller than rounding errors. Natural logarithm of the largest contact
+  !> radius in the search.
   real(wp), parameter :: no_deformation = 36, widest_power = 60
-  !> Relative step of the differences; the depth over that of Hertz' contact under the largest load;
-  !> how often it is doubled at most if this is not enough.
+  !> Relative step of the finite differences; ratio of the depth to that of a Hertzian contact under
+  !> the largest load; how often the depth is doubled at most if this is not enough.
   real(wp), parameter :: change = 1.0e-3_wp, deeper = 1.3_wp
   integer, parameter :: most_doublings = 12
 
@@ -90,9 +92,10 @@ contains
     end do
   end subroutine respond
 
-  !> Values of h0 [m], from large to small: evenly spaced in the logarithm where bodies do not
-  !> deform, denser towards the beginning of contact, and spaced as squares in contact, where Hertz'
-  !> load is a power of the depth. The depth is that of Hertz' theory for a half-space.
+  !> Values of h0 [m], from large to small. They are evenly spaced in the logarithm where bodies do
+  !> not deform, and denser towards the beginning of contact. In contact they are spaced as squares,
+  !> since the Hertzian load is a power of the depth. The depth is that of Hertz theory for a
+  !> half-space.
   subroutine lay_out_h0(problem, farthest, largest, h0)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: farthest, largest
@@ -113,8 +116,8 @@ contains
       [(begins - depth*(i/real(within, wp))**2, i=0, within)]]
   end subroutine lay_out_h0
 
-  !> The loads [N] at values of h0 [m]; from large separations to where bodies deform they are those
-  !> of bodies that do not.
+  !> The loads [N] at values of h0 [m]. Where the bodies do not deform, the loads are those of
+  !> undeformed bodies.
   subroutine find_loads(self, value, h0, load, found)
     class(stepped_model_t), intent(inout) :: self
     real(wp), intent(in) :: value(:), h0(:)
@@ -162,8 +165,8 @@ contains
     end do
   end subroutine find_loads
 
-  !> The branch through loads at values of h0. Slopes are those of the polynomial through a load and
-  !> its neighbours.
+  !> The branch through the loads at values of h0. The slope at a load is that of the polynomial
+  !> through this load and its neighbours.
   subroutine make_branch(h0, load, rate, branch)
     real(wp), intent(in) :: h0(:), load(:), rate(:, :)
     type(force_branch_t), intent(out) :: branch
@@ -181,7 +184,7 @@ contains
     allocate (branch%panel(n))
     do i = 1, n
       associate (panel => branch%panel(i))
-        ! The coordinate is -h0, which rises.
+        ! The coordinate is -h0, which increases along the branch.
         panel%ends = -h0(i:i + 1)
         panel%x = panel%ends
         panel%h0 = reshape([h0(i), -1.0_wp, h0(i + 1), -1.0_wp], [2, 2])

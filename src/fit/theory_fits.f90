@@ -1,5 +1,5 @@
-!> Fits of the classical theories to a measured curve: before the fit of the model, for starting
-!> values, and after it, for comparison.
+!> Fits of the classical theories to a measured curve. Before the fit of the model they give
+!> starting values, and after it a comparison.
 module theory_fits
   use kinds, only: wp, pi
   use dimensionless_problem, only: problem_t
@@ -23,19 +23,19 @@ module theory_fits
     type(fitted_t) :: fitted
   end type theory_fit_t
 
-  !> Starting stiffnesses of the theories over the deck's; starting ranges of the force over the
-  !> deck's; samples to which the theories are fitted to find starting values.
+  !> Starting moduli of the theories relative to the deck's; starting ranges of the force relative
+  !> to the deck's; number of samples to which the theories are fitted for starting values.
   real(wp), parameter :: factors(*) = [1.0_wp, 0.1_wp, 10.0_wp, 0.01_wp, 100.0_wp], &
     ranges(*) = [0.25_wp, 4.0_wp]
   integer, parameter :: few_samples = 1000
 
 contains
 
-  !> Works of adhesion, stiffnesses and ranges of force that the data suggest. They come from the
-  !> pull-off, below a constant and below a sloping baseline, and from JKR and DMT fits, each with
-  !> the range of the deck's force and with others. Without attraction they are stiffnesses from
-  !> Hertz fits. The last ones are multiples of the deck's stiffness. of_data: the number of those
-  !> before.
+  !> Works of adhesion, plane-strain moduli and ranges of force that the data suggest. They come
+  !> from the pull-off force, below a constant and below a sloping baseline, and from JKR and DMT
+  !> fits, each combined with the range of the deck's force and with others. Without attraction only
+  !> moduli from Hertz fits are suggested. The last suggestions are multiples of the deck's modulus.
+  !> of_data: the number of suggestions before these.
   function suggested_characters(curve, problem, of_data) result(likely)
     type(modelled_curve_t), intent(in) :: curve
     type(problem_t), intent(in) :: problem
@@ -105,8 +105,9 @@ contains
   end function suggested_characters
 
   !> Fits JKR, DMT and Maugis-Dugdale theory to the same curve, or Hertz theory if the bodies do not
-  !> attract each other, if they are parabolas. The work of adhesion is unknown if the deck fits a
-  !> number of a force, the stiffness if it fits one of the bodies. final: the fitted problem.
+  !> attract each other. The bodies must be parabolas; otherwise there are no fits. The work of
+  !> adhesion is an unknown if the deck fits a number of a force, and the modulus is an unknown if
+  !> the deck fits one of the bodies. final: the fitted problem.
   subroutine fit_theories(fitted_curve, fitted, family, final, theory)
     type(modelled_curve_t), intent(in) :: fitted_curve
     type(fitted_t), intent(in) :: fitted
@@ -167,7 +168,8 @@ contains
 
   contains
 
-    !> One by one: an array made of arrays would not free the texts of its elements.
+    !> Unknowns are appended one by one, since an array constructor of arrays would not free the
+    !> texts of its elements.
     subroutine add(unknown)
       type(unknown_t), intent(in) :: unknown
 

@@ -1,6 +1,6 @@
-!> Samples taken at the turn while the base rests: a contact that is held there relaxes, or creeps,
-!> so that the load changes by more than the travel of the base explains. They depend on time, are
-!> no equilibria, and do not count.
+!> Samples taken at the turn while the base rests. A contact that is held there relaxes or creeps,
+!> so that the load changes by more than the travel of the base explains. Such samples depend on
+!> time, are no equilibria, and do not count in a fit.
 module turn_rest
   use kinds, only: wp
   use noise, only: noise_t
@@ -9,13 +9,15 @@ module turn_rest
   private
   public :: leave_out_rest
 
-  !> Smallest number of samples of a rest; standard errors of a certain change.
+  !> Smallest number of samples of a rest; the number of standard errors that makes a change
+  !> certain.
   integer, parameter :: fewest = 4
   real(wp), parameter :: surely = 5
 
 contains
 
-  !> Marks the rests of both segments as skipped. stiffness: of the spring, units of signal over z.
+  !> Marks the samples of rests on both segments as skipped. stiffness: the slope of the spring, in
+  !> units of signal over z.
   pure subroutine leave_out_rest(measured, noise, stiffness)
     type(measured_curve_t), intent(inout) :: measured
     type(noise_t), intent(in) :: noise
@@ -25,7 +27,7 @@ contains
 
     measured%rested = [(.false., i=1, size(measured%z))]
     do way = 1, 2
-      ! The samples of a segment, beginning at the turn.
+      ! The samples of a segment, ordered from the turn on.
       at = pack([(i, i=1, size(measured%z))], measured%usable .and. &
         (measured%inward .eqv. way == 1))
       if (size(at) < 2) cycle
@@ -38,9 +40,10 @@ contains
     measured%usable = measured%usable .and. .not. measured%rested
   end subroutine leave_out_rest
 
-  !> The number of the first samples that are a rest: all those within a mean step of the first one,
-  !> if the means of two parts of them differ by more than spring and noise explain; otherwise 0. A
-  !> load that relaxes fast changes only in the first few samples.
+  !> The number of first samples that are a rest. These are all samples within a mean step of the
+  !> first one, if the means of two parts of them differ by more than spring and noise explain;
+  !> otherwise the number is 0. Every division into two parts is tried, since a load that relaxes
+  !> fast changes only in the first few samples.
   pure integer function resting(travel, signal, deviation, stiffness) result(n)
     real(wp), intent(in) :: travel(:), signal(:), deviation, stiffness
     real(wp) :: change, most

@@ -9,19 +9,21 @@ module wider_errors
   private
   public :: widen
 
-  !> Standard errors to which the residuals are examined; the part of its expected rise that the sum
-  !> of squares may lack; steps of one examination, and corrections of the other unknowns in a step.
+  !> Number of standard errors out to which the residuals are examined; relative deficit of the rise
+  !> of the sum of squares that is tolerated; largest number of steps of one examination; number of
+  !> corrections of the other unknowns in a step.
   real(wp), parameter :: out_to = 3, lacking = 0.2_wp
   integer, parameter :: most_steps = 6, corrections = 3
 
 contains
 
-  !> Widens the errors where the sum of squares rises less than its derivatives promise: a modulus
-  !> to which a curve is hardly sensitive has no upper end, whatever the derivatives at the best
-  !> value. The deviation of a side then is that with which three of it have the rise of nine; if
-  !> bounds are nearer, or values of which there is no model, that by the rise of the farthest ones.
-  !> better: allocated if a smaller sum of squares was found on the way, with its values; if it is
-  !> absent, a smaller sum counts as one that does not rise.
+  !> Widens the errors where the sum of squares rises less than the derivatives at the best value
+  !> predict. For example, a modulus to which a curve is hardly sensitive has no upper limit,
+  !> whatever these derivatives are. The standard deviation of a side is then the one at three times
+  !> which the sum of squares has risen by 9. If bounds are nearer, or values for which the model
+  !> has no curve, it follows from the rise at the farthest possible value. better: the values of a
+  !> smaller sum of squares if one was found on the way, otherwise not allocated. If `better` is
+  !> absent, a smaller sum counts as a sum that does not rise.
   subroutine widen(residuals, fitted, better)
     class(fit_residuals_t), intent(inout) :: residuals
     type(fitted_t), intent(inout) :: fitted
@@ -38,7 +40,7 @@ contains
         room = room_for(unknown(j), fitted%value(j), way == 2)
         do step = 1, most_steps
           far = min(out_to*fitted%side(way, j), room)
-          ! The bound decides, and not the data.
+          ! If the bound is nearer than one standard error, the bound decides and not the data.
           if (far < fitted%side(way, j)) exit
           call go_to(j, merge(far, -far, way == 2))
           if (.not. found) then
@@ -52,7 +54,7 @@ contains
           end if
           call widen_others(j)
           if (rise > (1 - lacking)*(far/fitted%side(way, j))**2) exit
-          ! A rise that has ended would make this step endless.
+          ! If the sum of squares no longer rises, the quotient would be unbounded.
           fitted%side(way, j) = min(2*fitted%side(way, j), far/sqrt(max(rise, tiny(rise))))
         end do
       end do
@@ -61,8 +63,9 @@ contains
 
   contains
 
-    !> Widens the errors of numbers other than j at values with a known rise. On a curved valley a
-    !> number may move far with number j, where it finds no way by its own derivatives.
+    !> Widens the errors of numbers other than j at values with a known rise. Along a curved valley
+    !> of the sum of squares another number may move far together with number j, although its own
+    !> derivatives do not show this.
     subroutine widen_others(j)
       integer, intent(in) :: j
       real(wp) :: moved
@@ -78,8 +81,9 @@ contains
       end do
     end subroutine widen_others
 
-    !> Moves fitted number j by `far` from its best value, and the others to the smallest sum of
-    !> squares there, which is `rise` above the best. value: on entry where the last step ended.
+    !> Moves fitted number j by `far` from its best value, and the other numbers to the smallest sum
+    !> of squares under this condition. rise: this sum minus the best one. value: on entry the
+    !> values at which the last step ended.
     subroutine go_to(j, far)
       integer, intent(in) :: j
       real(wp), intent(in) :: far
@@ -101,7 +105,7 @@ contains
           if (.not. next < rise) exit
           rise = next
           value = trial
-          ! The step of Gauss and Newton with number j fixed, by the derivatives at the best values.
+          ! A Gauss-Newton step with number j fixed, with the derivatives at the best values.
           gradient = matmul(residual, fitted%by_fitted)
           move = matmul(c, gradient)
           move = move - c(:, j)*move(j)/c(j, j)
