@@ -1,7 +1,7 @@
-!> The baseline of a measured curve, the signal without a force: a polynomial of the position, with
-!> one constant for the approach and one for the retract, and a ripple, as interference of light
-!> makes it in a detector. A drift in time gives the two segments (approach and retract) different
-!> slopes.
+!> The baseline of a measured curve is the signal without a force. It is a polynomial of the
+!> position, with one constant for the approach and one for the retract. It may have a ripple, such
+!> as interference of light makes in a detector. A drift in time gives the two segments (approach
+!> and retract) different slopes.
 module baseline
   use kinds, only: wp, pi
   implicit none

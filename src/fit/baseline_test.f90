@@ -227,7 +227,7 @@ contains
   contains
 
     !> The `gain` that `explained` would find, b.G^-1.b. The vector b has the inner products of the
-    !> waves with the remaining residuals; the matrix G has the inner products of the waves with
+    !> waves with the remaining residuals. The matrix G has the inner products of the waves with
     !> each other, after projection onto the complement of the known directions.
     real(wp) function gain_at(periods)
       real(wp), intent(in) :: periods

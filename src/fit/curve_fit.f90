@@ -21,9 +21,9 @@ module curve_fit
   !> each comparison. Number of sections that locate a minimum to a hundredth of the distance
   !> between two contact points; the search continues from there.
   integer, parameter :: tried = 160, tried_apart = 40, samples = 250, sections = 11
-  !> Largest numbers: of contact points kept for each candidate; of searches, which start from the
-  !> best candidates; of restarts from smaller residuals that the examination of the errors has
-  !> found; of rounds in which noise, outliers and jumps are determined again.
+  !> Largest numbers of contact points kept for each candidate, of searches from the best
+  !> candidates, of restarts from smaller residuals found with the errors, and of rounds in which
+  !> noise, outliers and jumps are determined again.
   integer, parameter :: most_points = 2, most_fits = 8, most_looks = 3, most_rounds = 8
   !> The search ends when this number of searches has led to the same minimum. Relative differences
   !> between sums of squares: below `same` they are equal, above `apart` they belong to different

@@ -27,10 +27,10 @@ module path_model
   private
   public :: path_model_t
 
-  !> The edge of the contact at a point of the path, where the gap is that of `contact_level_of`. It
-  !> has the square of the contact radius, with derivatives by the path's coordinate, by that gap
-  !> [m] at a fixed state, and by the unknowns at a fixed coordinate; and the contact radius over
-  !> the scale of the mesh.
+  !> The edge of the contact at a point of the path, where the gap is that of `contact_level_of`.
+  !> square: the squared contact radius and its derivative by the path's coordinate. by_level: its
+  !> derivative by that gap [m] at a fixed state. rate: its derivatives by the unknowns at a fixed
+  !> coordinate. place: the contact radius over the scale of the mesh.
   type :: edge_t
     real(wp) :: square(2) = 0, by_level = 0, place = 0
     real(wp), allocatable :: rate(:)

@@ -16,7 +16,8 @@ module approximation_tables
   private
   public :: write_approximations, summarise_approximations
 
-  !> A state [m], [m], [m], [N]; `theory` is the name of its row in the table, '' for no state.
+  !> A state: gap, h0 and displacement [m], load [N]. theory: the name of its row in the table, ''
+  !> if there is no state.
   type :: slow_state_t
     character(len=24) :: theory = ''
     real(wp) :: gap = 0, h0 = 0, displacement = 0, load = 0
@@ -24,24 +25,24 @@ module approximation_tables
 
   !> The jumps of approaching bodies, in the order of the rows: by the stability criterion (29); by
   !> (37), which is (29) for the attraction of Lennard-Jones alone; at the fold of h0 by (35b); and
-  !> at its fold by (35a), or by (22) for a law without closed form.
+  !> at the fold of h0 by (35a), or by (22) for a law without closed form.
   integer, parameter :: of_criterion = 1, of_equation_37 = 2, of_attraction = 3, of_fold = 4
 
   !> Names of the curves, in the order of the forms.
   character(len=*), parameter :: names(3) = [character(len=16) :: 'slow_deformation', &
     'closed_form', 'attractive_only']
 
-  !> Number of points of the curve along which its rows are spaced.
+  !> Number of points along the curve from which the spacing of its rows is computed.
   integer, parameter :: samples = 2000
 
 contains
 
   !> Writes the curve of each form that the law has, in range%count rows from the start of the range
-  !> to smaller gaps, and one row for each jump, within the range or not. Along a curve the steps
-  !> have equal |change of gap on the axis| + |change of displacement|. Curves of a law that
-  !> attracts end at the jump by (29) or (37) if that is within the range; there is no curve if it
-  !> is before the start. `from` [m] is the start if the range has none. For rigid bodies the
-  !> displacement is zero and the load exact.
+  !> to smaller gaps. One row for each jump follows, whether the jump is within the range or not.
+  !> Along a curve the steps have equal |change of gap on the axis| + |change of displacement|. The
+  !> curve of an attractive law ends at the jump by (29) or (37) if this jump is within the range;
+  !> there is no curve if the jump comes before the start. from [m]: the start of the curve if the
+  !> range has no start. For rigid bodies the displacement is zero and the load exact.
   subroutine write_approximations(problem, range, from, results)
     type(problem_t), intent(in) :: problem
     type(range_t), intent(in) :: range
@@ -67,7 +68,7 @@ contains
 
   contains
 
-    !> The rows of a form, for gaps not below `nearest`.
+    !> Writes the rows of a form, for gaps not smaller than `nearest`.
     subroutine add_curve(form)
       integer, intent(in) :: form
       real(wp), allocatable :: gap(:)
@@ -81,16 +82,16 @@ contains
       end do
     end subroutine add_curve
 
-    !> Writes the row of a state; these theories give no contact radius.
+    !> Writes the row of a state. These theories give no contact radius.
     subroutine write_row(state)
       type(slow_state_t), intent(in) :: state
 
       call results%row(trim(state%theory), [state%h0, state%displacement, state%load, nan])
     end subroutine write_row
 
-    !> Gaps on the axis, descending, from the gap at h0 = start to the gap at h0 = finish or to
-    !> `nearest`, whichever is larger (in lengths of the law). None if h0 = start is reached only
-    !> below `nearest`.
+    !> Gaps on the axis (in lengths L of the law), descending. The first one is the gap at h0 =
+    !> start; the last one is the gap at h0 = finish or `nearest`, whichever is larger. There are
+    !> none if the gap at h0 = start is smaller than `nearest`.
     pure function gaps_between(form, start, finish, count) result(gap)
       integer, intent(in) :: form, count
       real(wp), intent(in) :: start, finish
@@ -102,7 +103,7 @@ contains
       if (.not. start > finish) return
       if (.not. problem%coupling > 0) then
         gap = [(start + (finish - start)*(i - 1)/(count - 1), i=1, count)]
-        ! At smaller gaps rigid bodies would touch.
+        ! At gaps smaller than this one rigid bodies would touch.
         gap = pack(gap, gap >= problem%law%smallest_gap)
         return
       end if
@@ -113,15 +114,15 @@ contains
       if (high > low) gap = spaced(form, high, low, count)
     end function gaps_between
 
-    !> `count` gaps from high to low, equally spaced along the curve of gap and displacement. If the
-    !> displacement grows as the gap falls these are equal steps of h0.
+    !> `count` gaps from high to low, equally spaced along the curve of displacement against gap. If
+    !> the displacement grows as the gap falls, these steps are equal steps of h0.
     pure function spaced(form, high, low, count) result(gap)
       integer, intent(in) :: form, count
       real(wp), intent(in) :: high, low
       real(wp) :: gap(count), at(0:samples), delta(0:samples), length(0:samples), wanted
       integer :: i, j
 
-      ! The displacement varies most at small gaps, over the law's own length.
+      ! The displacement varies most at small gaps, over the length of the repulsion.
       associate (scale => problem%law%repulsion_length)
         at = [(low + scale*((1 + (high - low)/scale)**(real(samples - j, wp)/samples) - 1), &
           j=0, samples)]
@@ -173,8 +174,8 @@ contains
 
   end function jumps_of
 
-  !> Adds the jumps of approaching bodies to the summary. The fold of a law without a closed form is
-  !> in approximations.csv only.
+  !> Adds the jumps of approaching bodies to the summary. For a law without a closed form, the fold
+  !> of h0 stands in approximations.csv only.
   subroutine summarise_approximations(problem, summary)
     type(problem_t), intent(in) :: problem
     type(summary_t), intent(inout) :: summary
@@ -193,7 +194,8 @@ contains
       call summary%set('jump_equation_37_gap', jumps(of_equation_37)%gap)
   end subroutine summarise_approximations
 
-  !> The state of a form at a gap on the axis (in lengths of the law).
+  !> The state of a form at a gap on the axis (in lengths L of the law). theory: the name of its
+  !> row.
   pure type(slow_state_t) function state_at(problem, form, gap, theory) result(state)
     type(problem_t), intent(in) :: problem
     integer, intent(in) :: form

@@ -1,6 +1,6 @@
-!> The columns and numbers of a case in sweep.csv: the values of its keys, and those rows of
-!> `result_rows` that are columns for this deck, each with one number from the case's summary. A row
-!> that is a list has a column for each turning point, spring or load of the deck.
+!> The columns and numbers of a case in sweep.csv. These are the values of the case's keys, and one
+!> number from its summary for each row of `result_rows` that is a column for this deck. A row that
+!> is a list has a column for each turning point, spring or load of the deck.
 module case_columns
   use kinds, only: wp
   use failure, only: failure_t
@@ -22,17 +22,18 @@ module case_columns
   !> The last column.
   character(len=*), parameter :: failure_column = &
     'failure [] why results of the case are missing; blank if none is'
-  !> The rows of a sweep of fits alone.
+  !> The columns of a sweep that only fits curves.
   character(len=*), parameter :: of_problem(*) = [character(len=15) :: 'converged', 'sigma', &
     'tabor', 'reduced_modulus', 'surface_energy', 'jkr_pull_off', 'dmt_pull_off']
-  !> The groups with a list, each element of which has its columns.
+  !> The groups with a list; each element of the list has columns of its own.
   character(len=*), parameter :: with_list(*) = [character(len=10) :: turning, spring, given_load]
-  !> Groups with numbers in sweep.csv and tables, and these tables, which a sweep does not write.
+  !> Groups that give numbers in sweep.csv and tables of their own, and these tables, which a sweep
+  !> does not write.
   character(len=*), parameter :: with_tables(2, 4) = reshape([character(len=27) :: &
     'approximations', 'approximations.csv', 'classical', 'classical.csv', &
     'device', 'device.csv device_jumps.csv', 'fixed_load', 'fixed_load.csv'], [2, 4])
 
-  !> A number of the summary: row of `result_rows`, and element if this is a list.
+  !> A number of the summary: its row in `result_rows`, and the element if the row is a list.
   type :: chosen_number_t
     integer :: row = 0, element = 1
   contains
@@ -41,8 +42,8 @@ module case_columns
 
 contains
 
-  !> The columns of this scene's sweep, each described as 'name [unit] meaning': the keys, numbers,
-  !> those of a fit, and `failure`.
+  !> The columns of this scene's sweep, each described as 'name [unit] meaning': first the keys,
+  !> then numbers, the numbers of a fit, and `failure`.
   function columns_of(scene) result(columns)
     type(scene_t), intent(in) :: scene
     character(len=column_width), allocatable :: columns(:)
@@ -100,8 +101,8 @@ contains
       text_columns
   end function column_count
 
-  !> The tables that a sweep of the scene does not write, for a message; empty if only the curves
-  !> are missing.
+  !> The tables that a sweep of the scene does not write, as text for a message; empty if only
+  !> curves are omitted.
   function left_out(scene) result(text)
     type(scene_t), intent(in) :: scene
     character(len=:), allocatable :: text
@@ -117,8 +118,8 @@ contains
       listing(text(2:), '', '') // '; run a case alone for these'
   end function left_out
 
-  !> The numbers of a case's summary, one for each of the columns between keys and fit or failure;
-  !> NaN for a number that does not exist.
+  !> The numbers of a case's summary, one for each of the columns between the keys and those of the
+  !> fit or `failure`; NaN for a number that does not exist.
   pure function numbers_of(summary, scene) result(values)
     type(summary_t), intent(in) :: summary
     type(scene_t), intent(in) :: scene
@@ -134,7 +135,7 @@ contains
   end function numbers_of
 
   !> The numbers of a sweep of the scene: first those of every sweep, then those that a group adds,
-  !> at last those of lists, element by element.
+  !> finally those of lists, element by element.
   pure function chosen_numbers(scene) result(numbers)
     type(scene_t), intent(in) :: scene
     type(chosen_number_t), allocatable :: numbers(:)
@@ -156,7 +157,8 @@ contains
 
   contains
 
-    !> A sweep of fits alone has no numbers of curves and their places.
+    !> Whether a row is a column in every sweep. A sweep that only fits curves has no solution
+    !> points, and no numbers of such points.
     pure logical function comes_always(row)
       type(row_t), intent(in) :: row
 
@@ -165,7 +167,8 @@ contains
         comes_always = any(row%key == of_problem)
     end function comes_always
 
-    !> The deck is consulted only if the row names a group, since each case calls this for all rows.
+    !> Whether a group of the deck makes a row a column. The deck is searched only if the row names
+    !> a group, since each case calls this function for all rows.
     pure logical function comes_with_group(row)
       type(row_t), intent(in) :: row
 
@@ -193,8 +196,8 @@ contains
 
   end function chosen_numbers
 
-  !> Number of elements in the results of a group with a list: as in the deck's list, or one if the
-  !> sweep replaces the whole list by one value.
+  !> Number of elements in the results of a group with a list: that of the deck's list, or one if
+  !> the sweep replaces the whole list by one value.
   pure integer function elements(scene, group)
     type(scene_t), intent(in) :: scene
     character(len=*), intent(in) :: group
@@ -204,7 +207,7 @@ contains
     case (turning)
       if (allocated(scene%unloading)) elements = count_of('from', size(scene%unloading%from))
     case (spring)
-      ! Without a stiffness h0 is prescribed, which is one way to drive.
+      ! Without a spring constant h0 is prescribed, which counts as one element.
       if (allocated(scene%device)) &
         elements = count_of('spring_constant', max(1, size(scene%device%stiffness)))
     case (given_load)

@@ -20,19 +20,20 @@ module classical_rows
   private
   public :: write_classical, summarise_classical
 
-  !> Relative difference of two radii that count as equal.
+  !> Relative difference of two radii below which they count as equal.
   real(wp), parameter :: small = 1e-6_wp
 
 contains
 
-  !> Writes the wanted theories at range%count values of h0 [m]: Hertz; for a law that attracts, JKR
-  !> and DMT; for a law with a largest tension, Maugis-Dugdale with this strength and the law's work
-  !> of adhesion, and the formulas fitted to it. In the theories the separation of touching bodies
-  !> is zero, so the displacement is -h0. Rows are states that are stable at their h0. Carpick's
-  !> formula gives no displacement: its contact radius is that at the load of Maugis-Dugdale theory.
-  !> `from` [m] is the start if the range has none. Rigid bodies have no rows. Other shapes than the
-  !> parabola have Hertz and JKR theory of convex bodies, layered bodies those of layers. The
-  !> summary has a note if there is no row, and a warning if contacts are too wide for the theories.
+  !> Writes the wanted theories at range%count values of h0 [m]. Hertz theory needs no attraction,
+  !> JKR and DMT need a law that attracts. Maugis-Dugdale theory needs a law with a largest tension;
+  !> it is given this strength and the law's work of adhesion w. The formulas fitted to it need the
+  !> same. In the theories the separation of touching bodies is zero, so the displacement is -h0.
+  !> The rows are states that are stable at their h0. Carpick's formula gives no displacement: its
+  !> contact radius is that at the load of Maugis-Dugdale theory. from [m]: the start if the range
+  !> has none. Rigid bodies have no rows. For shapes other than the parabola, Hertz and JKR theory
+  !> are those of convex bodies; for layered bodies they are those of layers. The summary gets a
+  !> note if there is no row, and a warning if contacts are too wide for the theories.
   subroutine write_classical(problem, range, from, results, summary)
     type(problem_t), intent(in) :: problem
     type(range_t), intent(in) :: range
@@ -96,7 +97,8 @@ contains
           if (.not. ieee_is_nan(a)) then
             load = theory%load(a)
             call add(maugis_dugdale, load, a)
-            ! Below the pull-off at fixed load Maugis' state is stable only at fixed displacement.
+            ! A state of Maugis-Dugdale theory beyond the pull-off at fixed load is stable only at
+            ! fixed displacement.
             if (a >= theory%radius_at_load(load)*(1 - small)) then
               fit = carpick_fit(theory)
               call add(carpick, load, fit%radius_at_load(load))
@@ -145,8 +147,8 @@ contains
 
   end subroutine write_classical
 
-  !> Adds numbers of layered bodies: the pull-off of JKR, and the E* of half-spaces with the same
-  !> Hertz load at the displacement of the deepest contact.
+  !> Adds numbers of layered bodies: the pull-off force of JKR theory, and the reduced modulus E* of
+  !> half-spaces that have the same Hertzian load at the displacement of the deepest contact.
   subroutine summarise_layered(problem, range, summary)
     type(problem_t), intent(in) :: problem
     type(range_t), intent(in) :: range
@@ -160,7 +162,7 @@ contains
       call summary%set('jkr_pull_off', -a*problem%load)
     delta = (problem%law%origin - range%h0_end)/problem%length
     if (.not. delta > 0) return
-    ! At a contact radius the displacement is smaller with adhesion.
+    ! At a given contact radius the displacement is smaller with adhesion than without.
     if (contact%value_of(of_displacement, merge(jkr, hertz, problem%law%work > 0), contact%last) &
       < delta) call summary%note('classical: theories of layers are computed up to a contact ' // &
       'radius of ' // rounded(contact%last*problem%lateral) // ' m, which these bodies reach ' // &
@@ -172,8 +174,8 @@ contains
       0.5_wp*problem%stiffness*contact%value_of(of_load, hertz, a)/homogeneous)
   end subroutine summarise_layered
 
-  !> Adds numbers of Maugis-Dugdale theory with the law's surface energy and largest tension, and of
-  !> the formulas fitted to it, if they are wanted.
+  !> Adds numbers of Maugis-Dugdale theory with the law's work of adhesion and largest tension, and
+  !> of the formulas fitted to this theory, if they are wanted.
   subroutine summarise_classical(problem, range, summary)
     type(problem_t), intent(in) :: problem
     type(range_t), intent(in) :: range

@@ -1,5 +1,5 @@
 !> The columns and numbers of a case in costs.csv: the values of its keys, the time and the work of
-!> the case, and the estimated errors of its numbers in sweep.csv that have one.
+!> the case, and the estimated errors of those numbers in sweep.csv that have an error.
 module cost_columns
   use kinds, only: wp
   use result_rows, only: rows
@@ -37,8 +37,8 @@ contains
     end do
   end function cost_columns_of
 
-  !> The numbers of a case's row after its keys: its seconds, then from the summary the other
-  !> columns of `table`, and errors; NaN for a number that does not exist.
+  !> The numbers of a case's row after its keys: the time [s], then the other columns of `table` and
+  !> the errors, both from the summary; NaN for a number that does not exist.
   pure function costs_of(summary, scene, seconds) result(values)
     type(summary_t), intent(in) :: summary
     type(scene_t), intent(in) :: scene

@@ -54,8 +54,8 @@ contains
       lines = [lines, line]
     end subroutine add
 
-    !> The first value of a key with its error, if that is known. Points of a tabulated force add an
-    !> error to the tension.
+    !> The first value of a key as text, with its error if the error is known. Interpolation of a
+    !> tabulated force adds an error to the tension.
     function of(key, unit) result(words)
       character(len=*), intent(in) :: key, unit
       character(len=:), allocatable :: words
@@ -67,14 +67,15 @@ contains
       words = with_unit(summary%number(key), error, unit)
     end function of
 
-    !> How far the nearest theory is off; each of them, if not all are known.
+    !> Compares the pull-off force with the nearest theory, or with each known one if some are not
+    !> known.
     subroutine compare()
       real(wp) :: off(size(keys))
       character(len=:), allocatable :: each
       integer :: i
 
       off = [(summary%number(trim(keys(i)))/summary%number('max_tension') - 1, i=1, size(keys))]
-      ! The theories are for elastic bodies without a fluid, and for equilibria.
+      ! The theories hold for elastic bodies without a fluid, and for equilibria.
       if (summary%has('time_steps') .or. .not. summary%is_true('converged')) return
       if (.not. any(ieee_is_nan(off))) then
         i = minloc(abs(off), 1)
@@ -91,7 +92,7 @@ contains
       if (each /= '') call add('pull-off force ' // each)
     end subroutine compare
 
-    !> A relative difference in words.
+    !> A relative difference as text.
     function difference(off) result(words)
       real(wp), intent(in) :: off
       character(len=:), allocatable :: words

@@ -1,5 +1,5 @@
-!> The results of a fit: fit.csv, sample by sample; fit.nml, the unknowns; and of a fit of several
-!> curves together fit.nml and lines of the summary.
+!> Writes the results of a fit: fit.csv with the samples; fit.nml with the unknowns. For a fit of
+!> several curves together, fit.nml and lines of the summary are written.
 module fit_rows
   use kinds, only: wp
   use dimensionless_problem, only: adhesion_strength, tabor_parameter
@@ -45,7 +45,7 @@ contains
     end associate
   end subroutine write_fit_rows
 
-  !> The text of fit.nml: a group for the fit of the path, and one for the fit of each theory.
+  !> The text of fit.nml: a group for the fit of the path, and a group for the fit of each theory.
   function fit_text(outcome, title) result(text)
     type(fit_outcome_t), intent(in) :: outcome
     character(len=:), allocatable, intent(in) :: title
@@ -97,7 +97,7 @@ contains
     end do
   end function fit_text
 
-  !> The entries of each fit.
+  !> The entries that the fits of the path and of theories have in common.
   function of_fitted(unknown, fitted) result(text)
     type(unknown_t), intent(in) :: unknown(:)
     type(fitted_t), intent(in) :: fitted
@@ -146,7 +146,8 @@ contains
     text = assignment_of('held', names) // numbers('held_asked', held%asked)
   end function of_held
 
-  !> What the baseline may lack. deviation: of the unknowns.
+  !> The entries about parts that the baseline may lack. deviation: the standard deviations of the
+  !> unknowns.
   function of_lacking(lacking, deviation) result(text)
     type(lacking_t), intent(in) :: lacking(:)
     real(wp), intent(in) :: deviation(:)
@@ -167,7 +168,7 @@ contains
     end do
   end function of_lacking
 
-  !> Another fit that describes the data where this one does not.
+  !> The entries about another fit that describes the data where this one does not.
   function of_alternative(alternative) result(text)
     type(alternative_t), intent(in) :: alternative
     character(len=:), allocatable :: text
@@ -181,8 +182,8 @@ contains
       numbers('described_value', [alternative%value, alternative%error])
   end function of_alternative
 
-  !> Positions of the base at a jump, measured and modelled; without a measured jump only the
-  !> model's.
+  !> Positions of the base at a jump, as measured and as modelled. If no jump was measured, only
+  !> that of the model is given.
   function of_jump(name, jump, model) result(text)
     character(len=*), intent(in) :: name
     type(measured_jump_t), intent(in) :: jump
@@ -196,7 +197,7 @@ contains
     text = text // numbers(name // '_change', [jump%change])
   end function of_jump
 
-  !> Numbers as the entry of a key.
+  !> Numbers as text after the name of a key.
   function numbers(key, values) result(text)
     character(len=*), intent(in) :: key
     real(wp), intent(in) :: values(:)
@@ -207,7 +208,7 @@ contains
     text = assignment_of(key, written)
   end function numbers
 
-  !> The text of fit.nml: the shared parameters.
+  !> The text of fit.nml for several curves: the shared parameters.
   function joint_text(joint, title) result(text)
     type(joint_fit_t), intent(in) :: joint
     character(len=:), allocatable, intent(in) :: title
@@ -225,7 +226,7 @@ contains
       assignment_of('warnings', doubts) // '/' // nl
   end function joint_text
 
-  !> Writes fit.nml, and tells in the summary how well the fit describes the curves, and the shared
+  !> Writes fit.nml, and adds to the summary how well the fit describes the curves, and the shared
   !> parameters.
   subroutine report_joint(joint, title, results, summary)
     type(joint_fit_t), intent(in) :: joint
@@ -238,7 +239,7 @@ contains
       call summary%fail_with('no fit of all curves: ' // joint%trouble)
       return
     end if
-    ! Results that could not be written ended the fits.
+    ! An error in writing results has ended the fits.
     if (.not. allocated(joint%unknown)) return
     call results%write_text('fit.nml', joint_text(joint, title))
     if (allocated(joint%doubt)) call summary%warn('fit: ' // joint%doubt)

@@ -1,4 +1,4 @@
-!> A fit in words, for the terminal.
+!> A description of a fit in words, for the terminal.
 module fit_words
   use kinds, only: wp, nan
   use units, only: with_unit
@@ -11,15 +11,16 @@ module fit_words
   private
   public :: words_of_fit
 
-  !> Difference of chi squared up to which two fits are equally good. A part of the baseline that
-  !> the data do not show is reported if it would move an unknown by so many standard errors.
+  !> Two fits are equally good if their values of chi squared differ by no more than `as_well`. A
+  !> part of the baseline that noise can hide is reported if it would move an unknown by more than
+  !> `far` standard errors.
   real(wp), parameter :: as_well = 4, far = 4
-  !> Largest relative difference of a fitted value and a derived number that is the same.
+  !> Largest relative difference between a fitted value and a derived number that count as the same.
   real(wp), parameter :: same = 1.0e-9_wp
 
 contains
 
-  !> The fit in words, for the terminal. doubts: the warnings about it.
+  !> The description of a fit. doubts: the warnings about it.
   function words_of_fit(outcome, doubts) result(lines)
     type(fit_outcome_t), intent(in) :: outcome
     type(line_t), intent(in) :: doubts(:)
@@ -79,7 +80,7 @@ contains
 
   contains
 
-    !> Whether a fitted value is one of the derived numbers, which have a line each.
+    !> Whether a fitted value is one of the derived numbers, each of which has a line of its own.
     logical function is_derived(unit, value)
       character(len=*), intent(in) :: unit
       real(wp), intent(in) :: value
@@ -92,8 +93,8 @@ contains
       end do
     end function is_derived
 
-    !> Reports the part of the baseline, hidden in the noise, that would move an unknown farthest,
-    !> unless a warning names a part that the data show.
+    !> Reports the part of the baseline, hidden in the noise, that would move an unknown farthest.
+    !> Nothing is reported if a warning names a part that the data show.
     subroutine tell_hidden()
       real(wp) :: moves, most
       integer :: i, k, part, unknown
@@ -124,7 +125,7 @@ contains
 
   end function words_of_fit
 
-  !> A derived number with what it assumes.
+  !> A derived number as text, with the assumption about Poisson's ratio.
   function words_of(derived) result(words)
     type(derived_t), intent(in) :: derived
     character(len=:), allocatable :: words
@@ -145,7 +146,7 @@ contains
     end select
   end function words_of
 
-  !> Standard deviation of the residuals of a fit, over the noise.
+  !> Ratio of the standard deviation of the residuals of a fit to that of the noise.
   pure real(wp) function left_of(fitted)
     type(fitted_t), intent(in) :: fitted
 

@@ -1,5 +1,5 @@
-!> Warnings about the model: small slopes and strains, states within the points of tables and
-!> profiles, and layers thick enough for bulk elasticity.
+!> Warnings about the validity of the model: slopes and strains must be small, states must be within
+!> the points of tables and profiles, and layers must be thick enough for bulk elasticity.
 module model_warnings
   use kinds, only: wp, pi
   use force_law, only: of_pressure, of_energy
@@ -13,16 +13,18 @@ module model_warnings
   private
   public :: judge_law, judge_model, judge_theories
 
-  !> Lengths over the radius that give a note and a warning (a parabola differs from a circle by a
-  !> quarter of the square); pressure over stiffness, about the strain, that gives a warning.
+  !> Ratios of lengths to the radius that give a note (noted) and a warning (warned); a parabola
+  !> differs from a circle by a quarter of the squared ratio. Ratio of pressure to modulus,
+  !> approximately the strain, that gives a warning (strained).
   real(wp), parameter :: noted = 0.1_wp, warned = 1.0_wp/3, strained = 0.1_wp
-  !> Radius [m] above which, and range of a force [m] below which, the deck probably has a slip of
-  !> units: lenses are smaller, and dimensionless decks have longer ranges.
+  !> A radius [m] larger than `huge_radius`, together with a range of the force [m] shorter than
+  !> `short_range`, probably has a wrong unit: lenses are smaller, and dimensionless decks have
+  !> longer ranges.
   real(wp), parameter :: huge_radius = 0.1_wp, short_range = 1.0e-6_wp
 
 contains
 
-  !> Checks law and shape.
+  !> Checks the force law and the shape.
   subroutine judge_law(problem, summary)
     type(problem_t), intent(in) :: problem
     type(summary_t), intent(inout) :: summary
@@ -33,7 +35,7 @@ contains
       if (.not. surface_energy(problem) > 0) call summary%warn('contact is only metastable: ' // &
         'the bodies have less energy apart, and no classical theory applies')
     end if
-    ! Other shapes than parabolas, circles and ellipses have no radius on the axis.
+    ! Shapes other than parabolas, circles and ellipses have no radius of curvature on the axis.
     if (abs(problem%shape%exponent - 2) > 0) return
     call judge(summary, 'range_over_radius', range_of(problem)/problem%radius, &
       'the range of the force over the radius of the bodies', &
@@ -43,14 +45,14 @@ contains
       rounded(range_of(problem)) // ' m; lengths of a deck are in m: 5 um are 5e-6')
   end subroutine judge_law
 
-  !> Sets and checks the error of the well's depth and of the largest tension due to the points of a
-  !> table. The pull-off of hard and of soft bodies is proportional to the depth; in between it
-  !> depends on both.
+  !> Sets and checks the error of the well's depth and of the largest tension that interpolation of
+  !> a table causes. The pull-off force of rigid and of very soft bodies is proportional to the
+  !> depth; for other bodies it depends on depth and largest tension.
   subroutine take_table_error(problem, summary)
     type(problem_t), intent(in) :: problem
     type(summary_t), intent(inout) :: summary
     real(wp) :: of_well(2, 1), of_edge(2, 1), error
-    !> Error above which the table, not the mesh, decides the accuracy.
+    !> Error above which the table, and not the mesh, limits the accuracy.
     real(wp), parameter :: coarse = 1.0e-3_wp
 
     associate (law => problem%law)
@@ -98,7 +100,8 @@ contains
         ' Pa; strains are no longer small')
     end subroutine judge_extent
 
-    !> Warns of states beyond the points of a profile or before those of a table.
+    !> Warns of states outside a profile's last point, or at separations smaller than a table's
+    !> first point.
     subroutine judge_files()
       call judge_reach(problem, quality%contact_radius, 'the contact reaches ', summary)
       associate (law => problem%law)
@@ -109,8 +112,8 @@ contains
       end associate
     end subroutine judge_files
 
-    !> Warns of layers thinner than the range of the force, of soft layers compressed by a part of
-    !> their thickness that is not small, and of strains below the top layer that are not small.
+    !> Warns of layers thinner than the range of the force, of soft layers whose compression is not
+    !> small compared with their thickness, and of strains below the top layer that are not small.
     subroutine judge_layers(body)
       type(layered_body_t), intent(in) :: body
       real(wp) :: reach, thinnest, total, strain
@@ -140,8 +143,8 @@ contains
         'top layer is about ' // rounded(strain) // ', which is not small')
     end subroutine judge_layers
 
-    !> Estimate of the largest strain below the top layer at a load [N] on a contact radius [m]:
-    !> stress over Young's modulus, if the load spreads at 45 degrees.
+    !> Estimate of the largest strain below the top layer for a load [N] on a contact of a radius
+    !> [m]: the stress over Young's modulus, if the load spreads at 45 degrees.
     pure real(wp) function strain_below(surface, thickness, load, radius) result(strain)
       type(layered_surface_t), intent(in) :: surface
       real(wp), intent(in) :: thickness(:), load, radius
@@ -159,7 +162,7 @@ contains
 
   end subroutine judge_model
 
-  !> Checks the rows of theories, whose widest contact has this radius [m].
+  !> Checks the rows of theories. contact_radius [m]: that of their widest contact.
   subroutine judge_theories(problem, contact_radius, summary)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: contact_radius
@@ -173,7 +176,8 @@ contains
     call judge_reach(problem, contact_radius, 'contacts in classical.csv reach ', summary)
   end subroutine judge_theories
 
-  !> Warns of contacts with a radius [m] beyond the points of a profile; `what` names them.
+  !> Warns of contacts whose radius [m] is beyond the points of a profile. what: the name of the
+  !> contacts in the message.
   subroutine judge_reach(problem, contact_radius, what, summary)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: contact_radius
@@ -187,7 +191,8 @@ contains
     end associate
   end subroutine judge_reach
 
-  !> Sets a length over the radius, or a slope, and warns if it is not small.
+  !> Sets the ratio of a length to the radius, or a slope, in the summary, and warns if it is not
+  !> small.
   subroutine judge(summary, key, part, what, why)
     type(summary_t), intent(inout) :: summary
     character(len=*), intent(in) :: key, what, why
@@ -201,8 +206,8 @@ contains
     end if
   end subroutine judge
 
-  !> Range of the force [m]: the depth of its well over its largest tension, or the law's length
-  !> without attraction.
+  !> Range of the force [m]: the depth of its well over its largest tension; without attraction, the
+  !> length L of the law.
   pure real(wp) function range_of(problem)
     type(problem_t), intent(in) :: problem
 

@@ -1,5 +1,5 @@
-!> Numbers that follow from the problem alone: of the force law, of theories, of layers. Their
-!> derivatives by parameters of &sensitivity are differences between varied problems.
+!> Numbers that follow from the problem alone: those of the force law, of theories, of layers. Their
+!> derivatives by parameters of &sensitivity are finite differences between varied problems.
 module problem_numbers
   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
   use kinds, only: wp, nan
@@ -18,7 +18,7 @@ module problem_numbers
 
 contains
 
-  !> Adds the numbers of a problem, with derivatives by what `varied` varies.
+  !> Adds the numbers of a problem, with derivatives by the parameters of `varied`.
   subroutine describe_problem(problem, summary, varied)
     type(problem_t), intent(in) :: problem
     type(summary_t), intent(inout) :: summary
@@ -35,7 +35,8 @@ contains
     do j = 1, size(rate, 1)
       do k = 1, size(varied(j)%problem)
         other = numbers_of(varied(j)%problem(k))
-        ! Differences, so that a number that does not depend on a parameter has a derivative of 0.
+        ! Differences to the unvaried problem are summed, so that a number that does not depend on a
+        ! parameter has the derivative 0 exactly.
         rate(j, :) = rate(j, :) + varied(j)%weight(k)*(other - own)
         error(j, :) = error(j, :) + (varied(j)%weight(k) - varied(j)%coarser(k))*(other - own)
       end do
@@ -47,7 +48,7 @@ contains
     end do
   end subroutine describe_problem
 
-  !> A number for each row; NaN if there is none.
+  !> The number of each row; NaN if it does not exist.
   function numbers_of(problem) result(number)
     type(problem_t), intent(in) :: problem
     real(wp) :: number(size(rows))
@@ -58,8 +59,8 @@ contains
         call set('surface_energy', surface_energy(problem))
         call take_pull_offs()
       end if
-      ! Without a work of adhesion or an equilibrium separation, the adhesion is only a scale of the
-      ! law.
+      ! If the law has neither a work of adhesion nor an equilibrium separation, its adhesion is
+      ! only a scale factor and gives no sigma.
       if (.not. problem%rigid .and. (problem%law%work > 0 .or. problem%law%rest_gap > 0)) then
         call set('sigma', adhesion_strength(problem))
         if (problem%shape%exponent > 0) call set('tabor', tabor_parameter(problem))
@@ -73,7 +74,8 @@ contains
     end if
     select type (body => problem%body)
     type is (layered_body_t)
-      ! The top layer has the modulus for short waves, the base that for long waves.
+      ! The bodies respond with the modulus of the top layer to short wavelengths, and with that of
+      ! the base to long ones.
       call set('top_modulus', 0.5_wp*problem%stiffness)
       if (body%bottom > 0) call set('bottom_modulus', 0.5_wp*problem%stiffness/body%bottom)
     end select
@@ -91,12 +93,12 @@ contains
       number(row_of(key)) = value
     end subroutine set
 
-    !> Pull-offs of the theories. For other shapes than the parabola the pull-off of JKR theory
-    !> depends on the stiffness, and that of rigid bodies on the whole law.
+    !> Pull-off forces of the theories. For shapes other than the parabola, the pull-off force of
+    !> JKR theory depends on the modulus, and that of rigid bodies on the whole law.
     subroutine take_pull_offs()
       if (problem%shape%parabolic) call set('dmt_pull_off', &
         -dmt_pull_off(problem%radius, surface_energy(problem)))
-      ! JKR of layered bodies needs &classical.
+      ! The JKR pull-off force of layered bodies is computed only for &classical.
       if (.not. problem%body%is_homogeneous()) return
       if (problem%shape%parabolic) then
         call set('jkr_pull_off', -jkr_pull_off(problem%radius, surface_energy(problem)))
@@ -105,8 +107,8 @@ contains
       end if
     end subroutine take_pull_offs
 
-    !> Numbers of the well of contact and of barrier and well outside it, as far as the law has
-    !> them.
+    !> The primary minimum of the force law, and the barrier and the secondary minimum, if the law
+    !> has them.
     subroutine take_forces()
       type(surroundings_t) :: outside
       real(wp) :: energy

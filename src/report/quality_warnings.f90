@@ -17,16 +17,17 @@ module quality_warnings
   private
   public :: judge_run
 
-  !> Largest spacing of nodes at the contact edge, in widths of the cohesive zone: with a wider
-  !> spacing the edge is pinned between the nodes. A mesh that moves with the edge needs two nodes
-  !> in the zone, for a polynomial.
+  !> Largest spacing of nodes at the contact edge, in widths of the cohesive zone. With a wider
+  !> spacing the edge is pinned between the nodes. A mesh that moves with the edge needs only two
+  !> nodes in the zone, which determine a polynomial.
   real(wp), parameter :: resolved_spacing = 0.2_wp, resolved_locked = 0.4_wp
 
-  !> Ratio of estimated error and accuracy above which there is a warning; an estimate has a safety
-  !> factor.
+  !> Ratio of the estimated error to the accuracy above which there is a warning; the estimate
+  !> includes a safety factor.
   real(wp), parameter :: clearly = 3
-  !> Largest power of the position with which a force falls slowly far away: up to here, derivatives
-  !> by the power differed from those of whole runs by 1e-5 to 4e-3 at an accuracy of 1e-6.
+  !> Largest power of the radius with which a force is said to fall slowly far away. Up to this
+  !> power, derivatives by the power differed from those of whole runs by 1e-5 to 4e-3 at an
+  !> accuracy of 1e-6.
   real(wp), parameter :: slow = 4
 
 contains
@@ -49,7 +50,8 @@ contains
 
   contains
 
-    !> Under the rule of small changes, states that do not solve the equations are a failure.
+    !> If the iteration stopped on small changes, states that do not solve the equations are a
+    !> failure.
     subroutine judge_change()
       character(len=:), allocatable :: text
 
@@ -63,8 +65,8 @@ contains
       end if
     end subroutine judge_change
 
-    !> Warns of parameters that change the power with which a force falls slowly far away: the
-    !> mesh's tail integrates only the power of its own problem accurately.
+    !> Warns of parameters that change the power with which a force falls slowly far away. The
+    !> quadrature beyond the mesh is accurate only for the power of its own problem.
     subroutine judge_derivatives()
       integer :: i
 
@@ -79,7 +81,7 @@ contains
       end do
     end subroutine judge_derivatives
 
-    !> The power of the position with which the pressure falls far away.
+    !> The power of the radius with which the pressure falls far away.
     elemental real(wp) function decay(of)
       type(problem_t), intent(in) :: of
 
@@ -108,8 +110,9 @@ contains
       end associate
     end subroutine judge_resolution
 
-    !> Warns if the numbers do not have the accuracy that the deck asks for, and of residuals that
-    !> rounding keeps above the tolerance, if they matter for displacements of the law's length.
+    !> Warns if the numbers do not have the accuracy that the deck asks for. Also warns of residuals
+    !> that rounding errors keep above the tolerance, if they matter for displacements as small as
+    !> L.
     subroutine judge_accuracy()
       associate (tolerance => outcome%chosen%options%tolerance)
         if (summary%is_true('converged') .and. .not. outcome%chosen%options%stop_on_change .and. &

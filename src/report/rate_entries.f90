@@ -1,4 +1,4 @@
-!> The numbers of a drive in time in the summary.
+!> The numbers of a drive in time that are reported in the summary.
 module rate_entries
   ! The module with most dependencies is first: compiler note 12.
   use scene_groups, only: scene_t
@@ -13,19 +13,19 @@ module rate_entries
   private
   public :: summarise_timed
 
-  !> The part of the internal variables that the mesh may fail to resolve without a warning. Their
-  !> effect on the gap is much smoother: in 100 random cycles below this limit no number was off by
-  !> more than its error.
+  !> The fraction of the internal variables that the mesh may fail to resolve without a warning. The
+  !> gap changes much more smoothly than these variables: in 100 random cycles below this limit no
+  !> number was off by more than its error.
   real(wp), parameter :: unresolved = 0.7_wp
-  !> Effect of the start on the largest tension, over its error and over the accuracy, above which
-  !> there is a warning.
+  !> Ratio of the effect of the start on the largest tension, both to the error of this tension and
+  !> to the accuracy, above which there is a warning.
   real(wp), parameter :: clearly = 3
   !> Atmospheric pressure [Pa].
   real(wp), parameter :: atmosphere = 101325
 
 contains
 
-  !> Adds the numbers that belong to no place, and warnings of a drive.
+  !> Adds the numbers of a drive that belong to no solution point, and warnings.
   subroutine summarise_timed(scene, problem, outcome, summary)
     type(scene_t), intent(in) :: scene
     type(problem_t), intent(in) :: problem
@@ -65,7 +65,7 @@ contains
           'keep of this may change max_tension by a part of ' // rounded(timed%of_start) // &
           ', which its error does not include; raise z_start')
       end if
-      ! Without a spring h0 is that of the drive, without an error.
+      ! Without a spring h0 is the prescribed position, which has no error.
       end = read_numbers(places, problem, 'end', of_h0)
       if (allocated(scene%drive%stiffness)) call summary%set('end_h0', end%value, end%error, &
         end%rate, end%rate_error)

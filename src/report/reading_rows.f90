@@ -1,5 +1,5 @@
-!> Tables that are read from the path, and their numbers in the summary: bodies driven through
-!> springs, or at prescribed h0, with their jumps; equilibria at given loads.
+!> Tables that are derived from the path, and their numbers in the summary. They describe cycles
+!> with springs or at prescribed h0, with their jumps, and equilibria at given loads.
 module reading_rows
   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
   use kinds, only: wp, nan
@@ -23,7 +23,7 @@ module reading_rows
 
 contains
 
-  !> Writes the tables that are read from the path.
+  !> Writes the tables that are derived from the path.
   subroutine write_path_tables(problem, readings, places, results)
     type(problem_t), intent(in) :: problem
     type(path_readings_t), intent(in) :: readings
@@ -39,7 +39,8 @@ contains
 
   contains
 
-    !> For each drive the whole path, then its legs; the state in which a jump starts is not stable.
+    !> For each spring, writes the whole path, then the branches of approach and retract. The state
+    !> from which a jump starts is marked as not stable.
     subroutine write_device()
       type(path_point_t), allocatable :: states(:)
       integer :: i, j, k
@@ -49,7 +50,8 @@ contains
         associate (driven => readings%device(i))
           do j = 1, size(readings%node)
             associate (node => readings%node(j))
-              ! A point without a next one is also on the next mesh, except the last.
+              ! A point from which no segment of the path leads on is repeated on the next mesh,
+              ! unless it is the last one.
               if (node%leads_on .or. j == size(readings%node)) call add_driven(driven, 'path', &
                 node, node%modes == 0 .and. node%tangent%of(driven%drive%weights) < 0)
             end associate
@@ -103,7 +105,7 @@ contains
       end do
     end subroutine write_jumps
 
-    !> Load by load, in the order of the path.
+    !> Writes the equilibria load by load, each in the order of the path.
     subroutine write_fixed_loads()
       type(readings_t) :: h0, displacement, radius
       integer :: i
@@ -120,8 +122,8 @@ contains
       end do
     end subroutine write_fixed_loads
 
-    !> The table of stable states of approach and retract at prescribed h0, as discrete-element and
-    !> finite-element programs need them.
+    !> Writes the table of stable states of approach and retract at prescribed h0, in a form that
+    !> discrete-element and finite-element programs can use.
     subroutine write_contact_table()
       type(path_point_t), allocatable :: states(:)
       type(maugis_units_t) :: unit
@@ -129,7 +131,8 @@ contains
       integer :: i, j
 
       call results%begin_table('table.csv')
-      ! Other shapes have no radius on the axis, and laws without an energy no theory of adhesion.
+      ! Shapes other than these have no radius on the axis, and laws without a work of adhesion have
+      ! no theory of adhesion.
       unit = maugis_units_t(nan, nan, nan)
       if (problem%shape%parabolic .and. problem%law%work > 0) &
         unit = maugis_units(problem%radius, problem%stiffness, surface_energy(problem))
@@ -152,7 +155,8 @@ contains
 
   end subroutine write_path_tables
 
-  !> Adds numbers of the drives that are not read at places, with one element for each stiffness.
+  !> Adds the numbers of springs that belong to no solution point, with one element for each spring
+  !> constant.
   subroutine summarise_device(problem, readings, places, summary)
     type(problem_t), intent(in) :: problem
     type(path_readings_t), intent(in) :: readings
@@ -174,15 +178,16 @@ contains
     end associate
   end subroutine summarise_device
 
-  !> Uncertainty of the energy lost: the difference of two ways to find it, from the energies before
-  !> and after jumps, and from the load between them.
+  !> Uncertainty of the energy lost. It is the difference between two ways to compute this energy:
+  !> from the energies before and after jumps, and from the load between the jumps.
   elemental real(wp) function uncertainty(driven)
     type(driven_t), intent(in) :: driven
 
     uncertainty = abs(driven%energy_lost - driven%cycle_energy) + driven%uncertainty
   end function uncertainty
 
-  !> Whether the two ways differ. Under a dead load bodies may part for good, with no energy at all.
+  !> Whether the two ways give different energies. Under a dead load bodies may separate for good;
+  !> then neither energy exists.
   elemental logical function is_doubtful(driven)
     type(driven_t), intent(in) :: driven
 
@@ -191,7 +196,7 @@ contains
     is_doubtful = uncertainty(driven) > known_energy*abs(driven%energy_lost)
   end function is_doubtful
 
-  !> The larger of two numbers; NaN if one of them is.
+  !> The larger of two numbers, without regard to `other` if this is NaN; NaN if `one` is NaN.
   elemental real(wp) function larger(one, other)
     real(wp), intent(in) :: one, other
 
@@ -201,8 +206,8 @@ contains
     if (.not. ieee_is_nan(other)) larger = max(one, other)
   end function larger
 
-  !> Adds, for each load, the number of equilibria and of stable ones, and the stable one with the
-  !> smallest h0: the contact, if there is one.
+  !> Adds, for each load, the number of equilibria and of stable equilibria, and the stable one with
+  !> the smallest h0. The latter is the contact, if there is a contact.
   subroutine summarise_fixed_loads(problem, loads, readings, places, summary)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: loads(:)
@@ -216,7 +221,7 @@ contains
         associate (same => readings%load_of == i)
           held(i) = count(same)
           stable(i) = count(same .and. is_stable)
-          ! On the path the stable one with the smallest h0 is the last.
+          ! On the path the last stable equilibrium of a load has the smallest h0.
           nearest(i) = findloc(same .and. is_stable, .true., 1, back=.true.)
         end associate
       end do

@@ -1,5 +1,5 @@
 !> Which theory of contact describes a scene: the parameters for this choice, and the errors of the
-!> theories in pull-off, contact radius and indentation against the solved path.
+!> theories in pull-off force, contact radius and indentation relative to the computed path.
 module regime_rows
   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
   use kinds, only: wp, pi, nan
@@ -18,15 +18,16 @@ module regime_rows
   private
   public :: summarise_regime
 
-  !> Theories: of half-spaces (for layers, of the top layers' half-spaces), of layers, and formulas
-  !> fitted to one of them. closed: those that are closed forms of the load.
+  !> The theories: those of half-spaces (for layers, of half-spaces of the top layers' materials),
+  !> those of layers, and formulas fitted to one of them. closed: the theories that are closed forms
+  !> of the load.
   character(len=*), parameter :: theories(*) = [character(len=13) :: 'hertz', 'jkr', 'dmt', &
     'maugis', 'hertz_layered', 'jkr_layered', 'carpick', 'pietrement']
   integer, parameter :: by_hertz = 1, by_jkr = 2, by_dmt = 3, by_maugis = 4, &
     by_hertz_layered = 5, by_jkr_layered = 6, by_carpick = 7, by_pietrement = 8
   integer, parameter :: closed(*) = [by_jkr, by_dmt, by_carpick, by_pietrement]
-  !> The numbers that theories are compared in: pull-off [N], negative; contact radius and
-  !> indentation [m] at the largest load.
+  !> The numbers in which the theories are compared: pull-off force [N], negative; contact radius
+  !> and indentation [m] at the largest load.
   integer, parameter :: pull_off = 1, radius = 2, indentation = 3
   character(len=*), parameter :: numbers(3) = [character(len=14) :: 'pull-off', 'contact radius', &
     'indentation']
@@ -37,10 +38,11 @@ module regime_rows
 
 contains
 
-  !> Adds the regime to the summary. The contact radius of the theories, at which tension begins, is
-  !> compared with the radius of largest tension or, under a step of the force, with that of
-  !> contact. Touching bodies have no separation in the theories, and the equilibrium separation
-  !> here; indentations count from there. Their errors are relative to a^2/R.
+  !> Adds the regime to the summary. The theories' contact radius, where the tension begins, is
+  !> compared with the computed radius of largest tension; if the force has a step, it is compared
+  !> with the computed contact radius. Touching bodies have zero separation in the theories, and the
+  !> equilibrium separation here; indentations are measured from these separations. Their errors are
+  !> relative to a^2/R.
   subroutine summarise_regime(problem, places, summary)
     type(problem_t), intent(in) :: problem
     type(places_t), intent(in) :: places
@@ -62,16 +64,17 @@ contains
         'compared with')
       return
     end if
-    ! Deep enough also for theories whose load at an indentation is smaller than that of the path.
+    ! This range is also deep enough for theories whose load at an indentation is smaller than that
+    ! of the path.
     layered = new_layered_contact(problem, 2*solved(indentation))
     associate (r => problem%radius, y => problem%stiffness)
-      ! Tabor's parameter with E* = y/2 and the range gamma/strength.
+      ! Tabor's parameter with the reduced modulus E* = y/2 and the range w/strength of the force.
       call summary%set('regime_tabor_range', (4*r*strength**3/(y**2*gamma))**(1.0_wp/3))
       cohesive = new_maugis(r, y, gamma, strength)
       call summary%set('regime_maugis_lambda', cohesive%lambda)
       call summary%set('regime_load_number', load/(pi*gamma*r), load_error/(pi*gamma*r))
       errors = all_errors(load, solved)
-      ! The effect of errors of the solved numbers on the errors of the theories.
+      ! By how much the errors of the computed numbers change the errors of the theories.
       spread = abs(all_errors(load + load_error, solved) - errors) + &
         abs(all_errors(load, solved + [uncertain(pull_off), 0.0_wp, 0.0_wp]) - errors) + &
         abs(all_errors(load, solved + [0.0_wp, uncertain(radius), 0.0_wp]) - errors)
@@ -98,8 +101,8 @@ contains
       end do
     end function all_errors
 
-    !> The numbers of the path, with errors. there = .false. if it has no pull-off, or no contact at
-    !> its end.
+    !> Takes the numbers of the path, with errors. there = .false.: the path has no pull-off, or no
+    !> contact at its end.
     subroutine measure()
       type(place_t) :: lowest, finish
       integer :: edge
@@ -126,7 +129,7 @@ contains
       if (size(found%error) > 0) error = found%error(1)
     end function error_of
 
-    !> The numbers of all theories at a load [N]; NaN if a theory has none.
+    !> The numbers that all theories predict at a load [N]; NaN if a theory has none.
     function of_theories(load) result(says)
       real(wp), intent(in) :: load
       real(wp) :: says(3, size(theories)), a
@@ -163,8 +166,9 @@ contains
       end do
     end function of_theories
 
-    !> Recommends the theory whose largest error is the smallest, and says why. A formula fitted to
-    !> a theory can be nearer than the theory only by chance, and is not recommended here.
+    !> Recommends the theory whose largest error is the smallest, and gives the reason. A formula
+    !> fitted to a theory can be nearer to the path than the theory only by chance, and is not
+    !> recommended here.
     subroutine recommend()
       real(wp) :: worst(size(errors, 2))
       character(len=*), parameter :: none_is_near = 'no theory is within 10 %; '
@@ -192,7 +196,8 @@ contains
       end if
     end subroutine recommend
 
-    !> Recommends the closed form whose pull-off and contact radius are nearest.
+    !> Recommends the closed form whose pull-off force and contact radius are nearest to those of
+    !> the path.
     subroutine recommend_formula()
       real(wp) :: worst(size(closed))
       integer :: best

@@ -1,4 +1,5 @@
-!> The numbers at the places of an experiment in SI units, with their errors and derivatives.
+!> The numbers at the solution points of an experiment in SI units, with their errors and
+!> derivatives.
 module reported_values
   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
   use kinds, only: wp, nan
@@ -9,8 +10,9 @@ module reported_values
   private
   public :: readings_t, read_numbers
 
-  !> The values of a number, element by element, SI units; NaN if it does not exist. rate,
-  !> rate_error: derivatives by the parameters of &sensitivity, (parameters, elements).
+  !> The values of a number, element by element, in SI units; NaN for an element that does not
+  !> exist. rate, rate_error: derivatives by the parameters of &sensitivity and their errors,
+  !> (parameters, elements).
   type :: readings_t
     real(wp), allocatable :: value(:), error(:), rate(:, :), rate_error(:, :)
   end type readings_t
@@ -18,7 +20,8 @@ module reported_values
 contains
 
   !> The elements of a number, with errors and derivatives; empty if the number does not exist. An
-  !> error is NaN if no other run was made, and the magnitude of the number if it is not known.
+  !> error is NaN if no second run was made to estimate it; it is the magnitude of the number if the
+  !> second run did not determine it.
   type(readings_t) function read_numbers(places, problem, name, quantity) result(found)
     type(places_t), intent(in) :: places
     type(problem_t), intent(in) :: problem

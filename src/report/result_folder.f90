@@ -1,8 +1,8 @@
-!> The folder with the results of a run. All files are first written in the folder `unfinished`
-!> within it; `close` puts the whole set in place (`publication`). Until then the results of an
-!> earlier run stay unchanged. One run at a time has the folder. A journal keeps the states found,
-!> from which another run can continue. Results may also go to standard output, alone or when they
-!> are in place.
+!> The folder with the results of a run. All files are first written to the folder `unfinished`
+!> within it; `close` then puts the whole set in place (`publication`). Until then the results of an
+!> earlier run stay unchanged. Only one run at a time can use the folder. A journal stores the
+!> states found, from which another run can continue. Results may also be written to standard
+!> output: while they are computed, without a folder, or when they are in place.
 module result_folder
   use, intrinsic :: iso_c_binding, only: c_int, c_long
   use failure, only: failure_t, fail, file_trouble
@@ -18,24 +18,25 @@ module result_folder
   private
   public :: result_folder_t, journal_of, to_stream
 
-  !> Replaces a folder if results go to standard output, file by file in pieces (`text_file`).
+  !> The name given instead of a folder if results go to standard output; each file is written there
+  !> in pieces (`text_file`).
   character(len=*), parameter :: to_stream = '-'
   integer(c_int), parameter :: standard_output = 1
-  !> The piece without bytes that ends a complete stream.
+  !> The name of the piece without bytes that ends a complete stream.
   character(len=*), parameter :: stream_end = 'complete'
 
   type :: result_folder_t
-    !> The states found by this run, and by an interrupted one.
+    !> The states found by this run, and those found by an interrupted run.
     type(journal_t) :: journal
-    !> Excludes other runs from the folder.
+    !> Prevents other runs from using the folder.
     type(folder_lock_t) :: lock
-    !> The descriptor, if results go to a stream as they are made. Then there is no folder and no
-    !> journal.
+    !> The descriptor of the stream, if results are written to a stream while they are computed.
+    !> Then there is no folder and no journal.
     integer(c_int), allocatable :: stream
-    !> Whether results in the folder go to standard output too.
+    !> Whether results in the folder are also written to standard output.
     logical :: handed_over = .false.
     character(len=:), allocatable, private :: path
-    !> Whether this run has made each of `result_files`.
+    !> For each of `result_files`, whether this run has made it.
     logical, private :: made(size(result_files)) = .false.
   contains
     procedure :: open => open_folder
@@ -89,7 +90,7 @@ contains
     path = folder // '/' // journal_name
   end function journal_of
 
-  !> Path of a file that this run makes, while it is written, or its name in a stream.
+  !> Path of a file of this run while it is written, or the name of the file in a stream.
   function new_file(self, name) result(path)
     class(result_folder_t), intent(inout) :: self
     character(len=*), intent(in) :: name
@@ -126,7 +127,8 @@ contains
 
   end subroutine check_presence
 
-  !> Writes the results in the locked folder to standard output: each file, then the end.
+  !> Writes the results in the locked folder to standard output: each file, then the end of the
+  !> stream.
   subroutine hand_over(self, error)
     class(result_folder_t), intent(in) :: self
     type(failure_t), allocatable, intent(inout) :: error
@@ -164,9 +166,9 @@ contains
     if (.not. allocated(error)) call file%piece(text, error)
   end subroutine send
 
-  !> Unless there is an error, puts the files of this run in place, then removes the journal and
-  !> files of an earlier run. After an error the unfinished files and the journal stay. The folder
-  !> is unlocked.
+  !> Puts the files of this run in place, then removes the journal and the files of an earlier run.
+  !> After an error nothing is moved, and the unfinished files and the journal stay. In any case the
+  !> folder is unlocked.
   subroutine close_folder(self, error)
     class(result_folder_t), intent(inout) :: self
     type(failure_t), allocatable, intent(inout) :: error

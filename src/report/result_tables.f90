@@ -1,5 +1,5 @@
 !> The files of results: when they are written, their contents, and the columns of the tables. The
-!> output of `snapin --results` has these, and all entries of summary.nml.
+!> program's option --results lists these, and all entries of summary.nml.
 module result_tables
   use result_rows, only: row_t, rows, in_summary, in_cost, turning, spring, given_load, carpick, &
     pietrement_troyon, layered_regime
@@ -9,12 +9,13 @@ module result_tables
 
   character(len=1), parameter :: nl = new_line('a')
 
-  !> The radius of contact; the separation is 1.1 z0 for Lennard-Jones.
+  !> The definition of the contact radius. For Lennard-Jones the separation there is 1.1 z0.
   character(len=*), parameter :: in_contact = &
     'where the separation is that of zero force plus a tenth of the law''s length; 0: no contact'
 
-  !> A file, after '= ', with the groups that ask for it and its content; then its columns, each
-  !> described as 'name [unit] meaning'. After '+ ' follow columns that exist only in some cases.
+  !> For each file a line beginning with '= ': its name, the groups that ask for it, and its
+  !> content. The lines of its columns follow, each with 'name [unit] meaning'. After a line
+  !> beginning with '+ ' stand columns that exist only in some cases.
   character(len=*), parameter :: tables(*) = [character(len=200) :: &
     '= curve.csv | with &loading, &equilibrium_path or &drive | One row for each equilibrium.', &
     'branch [] loading, unloading_1, unloading_2, ..., path; of a drive approach, dwell, retreat', &
@@ -168,7 +169,8 @@ module result_tables
 
 contains
 
-  !> The columns of a file, or with `set` those that it has in this case.
+  !> The columns that a file always has. With `set`, the columns that it has in addition in this
+  !> case.
   pure function columns_of(file, set) result(columns)
     character(len=*), intent(in) :: file
     character(len=*), intent(in), optional :: set
@@ -244,7 +246,7 @@ contains
     end do
   end function listed_rows
 
-  !> Says when a row is a column of sweep.csv; empty for never.
+  !> A note that says when a row is a column of sweep.csv; empty if it never is.
   pure function sweep_note(row) result(note)
     type(row_t), intent(in) :: row
     character(len=:), allocatable :: note

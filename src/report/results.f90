@@ -22,12 +22,13 @@ module results
   public :: results_t
 
   !> Takes the results of a run, between `open` and `finish`. The first error is kept in `trouble`;
-  !> after it nothing more is written. Must not be copied while files are open.
+  !> after an error nothing more is written. An object of this type must not be copied while its
+  !> files are open.
   type, extends(observer_t) :: results_t
     !> Not allocated if there was no error.
     type(failure_t), allocatable :: trouble
-    !> Once started, it counts a step for each record of a cycle. The states of a path come all at
-    !> once, after the work, and are not counted.
+    !> After its start, the progress counts a step for each record of a cycle. The states of a path
+    !> all come at the end of the computation and are not counted.
     type(progress_t) :: progress
     type(result_folder_t) :: folder
     character(len=:), allocatable, private :: title, version
@@ -50,8 +51,8 @@ module results
 
 contains
 
-  !> Opens the folder and begins the curve and the profiles if the scene has them, so that a folder
-  !> that cannot be written is reported before anything is computed. owner, resume: see
+  !> Opens the folder, and begins the curve and the profiles if the scene has them. A folder that
+  !> cannot be written is thus reported before the computation. owner, resume: as in
   !> `result_folder`.
   subroutine open_results(self, folder, scene, version, problem, owner, resume, error)
     class(results_t), intent(inout) :: self
@@ -86,7 +87,7 @@ contains
       self%folder%stream)
   end subroutine begin
 
-  !> Shows the present activity.
+  !> Shows what the program does at present.
   subroutine hear(self, what)
     class(results_t), intent(inout) :: self
     character(len=*), intent(in) :: what
@@ -116,9 +117,9 @@ contains
       record, self%states, problem, grid, state, self%trouble)
   end subroutine take
 
-  !> Adds a case of a sweep to `sweep.csv`: the values of its keys, of which one may be the text
-  !> `of_case`, its numbers, and texts. The last text is the reason of a failure, blank if there is
-  !> none. `columns` describes the columns.
+  !> Adds a case of a sweep to `sweep.csv`: the values of its keys, its numbers, and texts. The
+  !> value of one key may be the text `of_case`. The last text is the reason of a failure, blank if
+  !> there is none. `columns` describes the columns.
   subroutine take_case(self, columns, sweep, values, of_case, numbers, texts)
     class(results_t), intent(inout) :: self
     character(len=*), intent(in) :: columns(:), of_case, texts(:)
@@ -137,7 +138,7 @@ contains
     if (.not. allocated(self%trouble)) call self%cases%flush(self%trouble)
   end subroutine take_case
 
-  !> Adds the cost of a case of a sweep to `costs.csv`; the arguments are like those of `take_case`.
+  !> Adds the cost of a case of a sweep to `costs.csv`; the arguments are those of `take_case`.
   subroutine take_costs(self, columns, sweep, values, of_case, numbers)
     class(results_t), intent(inout) :: self
     character(len=*), intent(in) :: columns(:), of_case
@@ -193,7 +194,7 @@ contains
     end do
   end function without_commas
 
-  !> Begins one of `result_tables`, for rows to follow, and ends the one before.
+  !> Begins one of `result_tables`, whose rows follow, and ends the table before it.
   subroutine begin_table(self, name)
     class(results_t), intent(inout) :: self
     character(len=*), intent(in) :: name
@@ -203,7 +204,7 @@ contains
     call self%begin(self%beside, name, columns_of(name), self%trouble)
   end subroutine begin_table
 
-  !> Adds a row: text first, if given, then numbers, then 1 or 0 for each of `truths`.
+  !> Adds a row: the text, if there is one, then the numbers, then 1 or 0 for each of `truths`.
   subroutine row(self, text, numbers, truths)
     class(results_t), intent(inout) :: self
     character(len=*), intent(in), optional :: text
@@ -245,7 +246,8 @@ contains
     type(failure_t), allocatable :: missing
 
     if (allocated(self%trouble)) return
-    ! Another folder of the same name may hold the summary of another run.
+    ! The folder may have been replaced by another one of the same name, with the summary of another
+    ! run.
     call self%folder%check_presence(missing)
     if (allocated(missing)) then
       call move_alloc(missing, self%trouble)
@@ -254,8 +256,8 @@ contains
     call self%write_text(summary_name, summary_text(summary) // deck%resolved())
   end subroutine write_summary
 
-  !> Ends the progress and closes the folder, which gives the files their names. After an error,
-  !> also in the journal, the partial files stay and `error` gives the reason.
+  !> Ends the progress and closes the folder, which puts the files in place. After an error, also
+  !> one in writing the journal, the partial files stay and `error` gives the reason.
   subroutine finish(self, error)
     class(results_t), intent(inout) :: self
     type(failure_t), allocatable, intent(out) :: error

@@ -20,13 +20,14 @@ module sensitivity_rows
   private
   public :: write_sensitivities
 
-  !> z has a turn where its change along the path is below this part of its terms, or of the law's
-  !> units: folds are located to a millionth of a unit of the coordinate.
+  !> The position z has a turn where its derivative along the path is smaller than this fraction of
+  !> the terms of this derivative, or of the law's units. Folds are located to a millionth of a unit
+  !> of the coordinate.
   real(wp), parameter :: turning = 1.0e-6_wp
 
 contains
 
-  !> Writes the derivatives by what `varied` varies, if the scene has results that are
+  !> Writes the derivatives by the parameters of `varied`, if the scene has results that can be
   !> differentiated.
   subroutine write_sensitivities(varied, problem, outcome, summary, results)
     type(variation_t), intent(in) :: varied(:)
@@ -42,7 +43,8 @@ contains
 
   contains
 
-    !> The numbers of the summary in its order, then those of the rows of fixed_load.csv.
+    !> Writes the derivatives of the numbers of the summary in its order, then those of the rows of
+    !> fixed_load.csv.
     subroutine write_numbers()
       type(readings_t) :: number, h0, displacement, radius
       integer :: i, k
@@ -88,7 +90,8 @@ contains
       end do
     end subroutine write_lines
 
-    !> For each parameter: the curve at prescribed h0, then behind each spring.
+    !> Writes, for each parameter, the derivatives of the curve at prescribed h0, then those with
+    !> each spring.
     subroutine write_curve(readings)
       type(path_readings_t), intent(in) :: readings
       real(wp), allocatable :: stiffness(:)

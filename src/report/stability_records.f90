@@ -1,6 +1,6 @@
 !> An observer that adds the stability of each state to its record and passes the record on, for
-!> scenes with &stability. A stability that the record already has is kept: the path counts unstable
-!> modes, and the eigenvalue has to agree with this count.
+!> scenes with &stability. If a record already has a stability, it is kept: the path counts unstable
+!> modes, and the sign of the eigenvalue has to agree with this count.
 module stability_records
   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
   use kinds, only: wp
@@ -21,14 +21,15 @@ module stability_records
   type, extends(observer_t) :: stability_recorder_t
     !> The observer that gets the completed records.
     class(observer_t), pointer :: next => null()
-    !> Cost of the eigenvalues.
+    !> Cost of computing the eigenvalues.
     type(cost_t) :: cost
-    !> Number of states with an uncertain eigenvalue, and with one that contradicts the record.
+    !> Number of states with an uncertain eigenvalue; number of states with an eigenvalue that
+    !> contradicts the record.
     integer :: uncertain = 0, contradicted = 0
-    !> The largest error of the criterion (28) by interpolation; negative: there is none. Its
-    !> largest derivative by the gap, and by h0.
+    !> The largest interpolation error of the criterion (28); negative if there is none. The largest
+    !> derivatives of the criterion by the gap, and by h0.
     real(wp) :: criterion_error = -1, by_gap = 0, by_h0 = 0
-    !> Relative accuracy that the scene asks for.
+    !> Relative accuracy that the deck asks for.
     real(wp) :: accuracy = 0
   contains
     procedure :: take
@@ -36,10 +37,11 @@ module stability_records
     procedure :: warn
   end type stability_recorder_t
 
-  !> An eigenvalue of smaller magnitude, over the accuracy, does not contradict the count: at a fold
-  !> it is zero up to the error of the mesh, at most 7e-6 for an accuracy of 1e-4.
+  !> An eigenvalue whose magnitude is smaller than this number times the accuracy does not
+  !> contradict the count. At a fold the eigenvalue is zero except for the error of the mesh, which
+  !> is at most 7e-6 for an accuracy of 1e-4.
   real(wp), parameter :: zero = 100
-  !> Eigenvalue below which a state is at a fold.
+  !> Eigenvalue below which a state counts as a fold.
   real(wp), parameter :: least = 1.0e-12_wp
 
 contains
@@ -96,7 +98,8 @@ contains
 
   !> Adds the error of the criterion (28), and warnings about states with doubtful eigenvalues. An
   !> error of h0 changes gaps in proportion to the inverse eigenvalue, but near a fold at most by
-  !> its square root. off: the error of h0 in the law's lengths; absent for rigid bodies.
+  !> the square root of the error. off: the error of h0 in lengths L of the law; absent for rigid
+  !> bodies.
   subroutine warn(self, summary, off)
     class(stability_recorder_t), intent(in) :: self
     type(summary_t), intent(inout) :: summary

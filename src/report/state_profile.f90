@@ -11,16 +11,16 @@ module state_profile
   private
   public :: state_profile_t, profile_of, alike
 
-  !> r [m], from 0 on, and there the separation [m], the mean outward displacement of the two
-  !> surfaces [m], pressure [Pa] and energy per area [J/m^2]; `each`: the displacements of the two
-  !> [m], (size(r), 2).
+  !> r: radii [m], beginning with 0. At these radii: the separation [m], the mean outward
+  !> displacement of the two surfaces [m], pressure [Pa] and energy per area [J/m^2]. each: the
+  !> displacements of the two surfaces [m], (size(r), 2).
   type :: state_profile_t
     real(wp), allocatable :: r(:), gap(:), deformation(:), pressure(:), energy(:), each(:, :)
   end type state_profile_t
 
 contains
 
-  !> Whether the two bodies deform alike.
+  !> Whether the two bodies deform equally.
   pure logical function alike(problem)
     type(problem_t), intent(in) :: problem
 
@@ -40,7 +40,7 @@ contains
     associate (n => size(state%gap), law => problem%law)
       r = [0.0_wp, state%scale*grid%x(:n)]
       gap = [state%axis_gap, state%gap]
-      ! A mesh may have a node on the axis.
+      ! A mesh may have a node on the axis; the axis must not appear twice.
       kept = [1, pack([(j, j=2, n + 1)], [(j > 2 .or. r(j) > 0, j=2, n + 1)])]
       ! h = h0 + f - 2u.
       deformation = -0.5_wp*(gap - state%h0 - problem%shape%height(r))
@@ -60,7 +60,7 @@ contains
   end function profile_of
 
   !> Outward displacement of the first body's surface, on the axis and at the nodes, for bodies that
-  !> deform differently.
+  !> deform by different amounts.
   function deformation_of_first(problem, grid, state) result(deformation)
     type(problem_t), intent(in) :: problem
     type(discretisation_t), intent(in) :: grid

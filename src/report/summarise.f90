@@ -1,4 +1,4 @@
-!> Makes the summary of the results of experiments: SI units, and warnings.
+!> Makes the summary of the results of experiments: numbers in SI units, and warnings.
 module summarise
   use kinds, only: long
   use dimensionless_problem, only: problem_t
@@ -32,7 +32,7 @@ module summarise
 
 contains
 
-  !> The summary of a run, with one statement for each experiment and table.
+  !> The summary of a run. It is made in one statement for each experiment and table.
   type(summary_t) function summary_of(scene, problem, outcome) result(summary)
     type(scene_t), intent(in) :: scene
     type(problem_t), intent(in) :: problem
@@ -63,7 +63,7 @@ contains
 
   contains
 
-    !> Adds the chosen numerics, and the largest residual and error.
+    !> Adds the numerical methods that were chosen, and the largest residual and error.
     subroutine describe_numerics()
       call summary%set('grid', trim(grid_names(outcome%chosen%grid)))
       call summary%set('method', outcome%chosen%method)
@@ -85,8 +85,8 @@ contains
       end associate
     end subroutine describe_numerics
 
-    !> Adds all numbers that are read at places, with their errors and derivatives. The h0 of the
-    !> end is given, without an error.
+    !> Adds all numbers that belong to solution points, with their errors and derivatives. The h0 of
+    !> the end is prescribed and has no error.
     subroutine take_places(places)
       type(places_t), intent(in) :: places
       type(readings_t) :: found
@@ -127,8 +127,8 @@ contains
       end do
     end subroutine tell_branches
 
-    !> Adds the uncertainty of a jump that does not start from a known fold. The error of h0 has two
-    !> parts: its bracket between two states, and the error of the grid.
+    !> Adds the uncertainty of a jump that does not start from a computed fold. The error of its h0
+    !> has two parts: the bracket between two states, and the error of the grid.
     subroutine tell_uncertainty(name)
       character(len=*), intent(in) :: name
       type(place_t) :: place

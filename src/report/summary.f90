@@ -14,7 +14,8 @@ module summary
   !> Largest number of warnings.
   integer, parameter :: most_warnings = 20
 
-  !> The value of a row, in SI units: one component is allocated, with one or several values.
+  !> The value of a row, in SI units. One of the first four components is allocated, with one or
+  !> several values.
   type :: summary_value_t
     real(wp), allocatable :: number(:)
     integer(long), allocatable :: count(:)
@@ -25,11 +26,11 @@ module summary
     real(wp), allocatable :: error(:), rate(:, :), rate_error(:, :)
   end type summary_value_t
 
-  !> A row without a value is absent from the file. An element of an array that does not exist, such
-  !> as the snap-off of an unloading without one, is NaN.
+  !> The summary. A row without a value is absent from the file. An element of an array that does
+  !> not exist, such as the snap-off of an unloading without one, is NaN.
   type :: summary_t
-    !> One element for each row. Allocated when the first value is set, since several summaries at
-    !> once would need a larger stack, which a limit of memory may not permit.
+    !> One element for each row. The array is allocated when the first value is set: several
+    !> summaries on the stack would need a larger stack than a limit of memory may permit.
     type(summary_value_t), allocatable, private :: value(:)
     type(line_t), allocatable :: warnings(:), notes(:)
     !> The first reason why the run did not converge; not allocated if there is none.
@@ -64,7 +65,7 @@ contains
     i = row_of(key)
   end subroutine find
 
-  !> The numbers of row i with their derivatives, if there are any.
+  !> The numbers of row i with their derivatives, if they exist.
   pure type(readings_t) function numbers_of_row(self, i) result(found)
     class(summary_t), intent(in) :: self
     integer, intent(in) :: i
@@ -89,8 +90,9 @@ contains
     end if
   end subroutine set_number
 
-  !> Sets numbers with their errors and derivatives. Numbers of which none exists are left out, and
-  !> so are errors of which none is known; without parameters there are no derivatives.
+  !> Sets numbers with their errors and derivatives. If none of the numbers exists, they are left
+  !> out; if no error is known, the errors are left out. Without parameters there are no
+  !> derivatives.
   subroutine set_numbers(self, key, values, error, rate, rate_error)
     class(summary_t), intent(inout) :: self
     character(len=*), intent(in) :: key
@@ -169,7 +171,7 @@ contains
     number = self%element(row_of(key), 1)
   end function number
 
-  !> Element k of row i as a number, or 1 or 0 for a truth; NaN if there is none.
+  !> Element k of row i as a number, or 1 or 0 for a logical value; NaN if it does not exist.
   pure real(wp) function element(self, i, k)
     class(summary_t), intent(in) :: self
     integer, intent(in) :: i, k
@@ -186,7 +188,7 @@ contains
     end associate
   end function element
 
-  !> The estimated error of element k of row i; NaN if there is none.
+  !> The estimated error of element k of row i; NaN if it is not known.
   pure real(wp) function error_of(self, i, k)
     class(summary_t), intent(in) :: self
     integer, intent(in) :: i, k
@@ -209,7 +211,7 @@ contains
     end associate
   end function is_true
 
-  !> The text of a key; empty if there is none.
+  !> The text of a key; empty if the key has none.
   pure function text(self, key)
     class(summary_t), intent(in) :: self
     character(len=*), intent(in) :: key
@@ -221,7 +223,7 @@ contains
     end associate
   end function text
 
-  !> Adds a warning, one line; repeated ones and those beyond the twentieth are dropped.
+  !> Adds a warning of one line. Repeated warnings and those after the twentieth are dropped.
   pure subroutine warn(self, text)
     class(summary_t), intent(inout) :: self
     character(len=*), intent(in) :: text
@@ -239,7 +241,7 @@ contains
       self%warnings(most_warnings)%text = 'further warnings are not shown'
   end subroutine warn
 
-  !> Adds a note, one line: information that is not a warning.
+  !> Adds a note of one line, which is information and not a warning.
   pure subroutine note(self, text)
     class(summary_t), intent(inout) :: self
     character(len=*), intent(in) :: text
@@ -259,7 +261,7 @@ contains
     call self%warn(text)
   end subroutine fail_with
 
-  !> Adds the cost as rows of &cost.
+  !> Adds the cost of the run as rows of &cost.
   subroutine take_cost(self, cost)
     class(summary_t), intent(inout) :: self
     type(cost_t), intent(in) :: cost

@@ -1,5 +1,5 @@
-!> Tables as comma-separated values, written row by row, and their rows of states: the curve has one
-!> for each equilibrium; profiles have separation, deformation, pressure and energy of a state
+!> Tables as comma-separated values, written row by row, and the rows of states. The curve has one
+!> row for each equilibrium. Profiles have separation, deformation, pressure and energy of a state
 !> against r.
 module tables
   use, intrinsic :: iso_c_binding, only: c_int
@@ -19,7 +19,7 @@ module tables
   public :: table_t, cells, direction_of, columns_of_curve, curve_row, columns_of_profiles, &
     write_profile
 
-  !> A table that is being written, one row a line, made with `cells`.
+  !> A table that is being written, one line for each row; `cells` makes the text of a row.
   type, extends(output_t) :: table_t
   contains
     procedure :: begin
@@ -27,9 +27,9 @@ module tables
 
 contains
 
-  !> Begins the table `path`: lines that begin with '#' (title, version, and the description of each
-  !> column as 'name [unit] meaning'), then the names of the columns. stream: the stream that the
-  !> table becomes part of (`text_file`).
+  !> Begins the table `path`. The lines that begin with '#' contain the title, the version, and the
+  !> description of each column as 'name [unit] meaning'; the line with the names of the columns
+  !> follows. stream: the stream that the table becomes part of (`text_file`).
   subroutine begin(self, path, title, version, columns, error, stream)
     class(table_t), intent(inout) :: self
     character(len=*), intent(in) :: path, title, version, columns(:)
@@ -60,7 +60,8 @@ contains
     if (inward) direction = 'approach'
   end function direction_of
 
-  !> Numbers as cells that read back as the same numbers; NaN is `NaN`.
+  !> Numbers as cells with enough digits to give the same numbers when they are read; NaN is written
+  !> as `NaN`.
   pure function cells(values) result(text)
     real(wp), intent(in) :: values(:)
     character(len=:), allocatable :: text
@@ -72,8 +73,8 @@ contains
     text = row(2:held)
   end function cells
 
-  !> Adds numbers to row(:held), a comma before each; `row` has `longest_real` + 1 characters for
-  !> each.
+  !> Adds numbers to row(:held), with a comma before each. `row` must have `longest_real` + 1
+  !> characters for each number.
   pure subroutine put_cells(values, row, held)
     real(wp), intent(in) :: values(:)
     character(len=*), intent(inout) :: row
@@ -87,8 +88,8 @@ contains
     end do
   end subroutine put_cells
 
-  !> The columns of the table: with those of stability if there are eigenvalues, and with the first
-  !> `of_drive` of those of a drive in time.
+  !> The columns of the curve, including those of stability if there are eigenvalues, and the first
+  !> `of_drive` of the columns of a drive in time.
   pure function columns_of_curve(eigenvalues, of_drive) result(columns)
     logical, intent(in) :: eigenvalues
     integer, intent(in) :: of_drive
@@ -135,7 +136,7 @@ contains
     held = held + 1 + length
   end subroutine put_count
 
-  !> The columns of the table.
+  !> The columns of the profiles.
   pure function columns_of_profiles(problem) result(columns)
     type(problem_t), intent(in) :: problem
     character(len=96), allocatable :: columns(:), more(:)
@@ -145,8 +146,8 @@ contains
     if (.not. alike(problem)) columns = [columns, more]
   end function columns_of_profiles
 
-  !> Adds a state to a table of profiles: the axis, then the nodes. `number` is that of the row of
-  !> its record in the curve.
+  !> Adds a state to a table of profiles: a row for the axis, then one for each node. number: the
+  !> number of the state's row in the curve.
   subroutine write_profile(table, record, number, problem, grid, state, error)
     type(table_t), intent(inout) :: table
     type(record_t), intent(in) :: record

@@ -1,6 +1,6 @@
-!> Whether the largest tension is a pull-off. If it is in the first or last row of a branch, the
-!> tension may grow beyond this row, and the number depends on where the branch ends. Beside states
-!> that did not converge, the tension may be larger among these.
+!> Whether the largest tension is a pull-off force. If it is in the first or last row of a branch,
+!> the tension may grow beyond this row, and the number depends on where the branch ends. If it is
+!> next to states that did not converge, the tension of these states may be larger.
 module tension_at_end
   use kinds, only: wp, nan
   use text, only: brief, rounded
@@ -16,7 +16,7 @@ module tension_at_end
 
 contains
 
-  !> Sets the entries about the ends, and warns if the largest tension of all branches is at one.
+  !> Sets the entries about the ends, and warns if the largest tension of all branches is at an end.
   subroutine judge_tension(problem, outcome, summary)
     type(problem_t), intent(in) :: problem
     type(experiment_result_t), intent(in) :: outcome
@@ -45,7 +45,7 @@ contains
 
   contains
 
-    !> A path that ends in a collapse has its own warning.
+    !> A path that ends in a collapse of the bodies has a warning of its own.
     subroutine judge_path(path)
       type(path_t), intent(in) :: path
       logical :: first
@@ -77,7 +77,7 @@ contains
       end if
     end subroutine judge_branch
 
-    !> told: another message gives the reason, and one warning is enough.
+    !> told: whether another message gives the reason, so that no further warning is needed.
     subroutine tell(name, first, advice, told)
       character(len=*), intent(in) :: name, advice
       logical, intent(in) :: first, told
@@ -91,7 +91,7 @@ contains
 
   end subroutine judge_tension
 
-  !> Whether the largest tension of a branch is at one of its ends, or beside states that did not
+  !> Whether the largest tension of a branch is at one of its ends, or next to states that did not
   !> converge.
   pure logical function at_one(branch)
     type(branch_t), intent(in) :: branch
@@ -99,7 +99,8 @@ contains
     at_one = branch%lowest_first .or. branch%lowest_last .or. branch%lowest_beside_lost
   end function at_one
 
-  !> 1 or 0; NaN for an unloading without tension.
+  !> 1 if the largest tension of an unloading is at an end, otherwise 0; NaN for an unloading
+  !> without tension.
   pure real(wp) function of_unloading(branch) result(at_end)
     type(branch_t), intent(in) :: branch
 
