@@ -1,24 +1,25 @@
 !> The response of viscoelastic bodies to a changing pressure. A time t after a step of the
 !> pressure, the compliance of the bodies is
 !>
-!>     theta_0 [1 + Sum_k share_k (1 - exp(-t/time_k))] ,
+!>     theta_0 [1 + Sum_k share_k (1 - exp(-t/time_k))] .
 !>
-!> the compliance of springs and dashpots. The delayed deformation of the k-th spring and dashpot is
-!> theta_0 share_k W Z_k. The internal variable (memory) Z_k is a field in the material that follows
-!> the pressure:
+!> This is the compliance of a spring in series with Kelvin-Voigt elements (each a spring and a
+!> dashpot in parallel). The delayed deformation of the k-th element is theta_0 share_k W Z_k. The
+!> internal variable (memory) Z_k is a field in the material that follows the pressure:
 !>
 !>     time_k dZ_k/dt = P - Z_k .
 !>
 !> If P changes linearly over a step, Z_k becomes kept Z_k + past P + present P_new. The step is
-!> therefore an elastic problem: the present pressure acts on a softer half-space that is deformed
-!> by earlier pressures.
+!> therefore an elastic problem: the present pressure acts on a half-space that is softer than the
+!> instantaneous one and is deformed by earlier pressures.
 module creep
   use kinds, only: wp
   implicit none
   private
   public :: creep_t
 
-  !> Compliances over the instantaneous compliance, and times of retardation [s].
+  !> share: the compliance of each element relative to the instantaneous compliance. time:
+  !> retardation times [s].
   type :: creep_t
     real(wp), allocatable :: share(:), time(:)
   contains
@@ -27,27 +28,27 @@ module creep
     procedure :: shortest
   end type creep_t
 
-  !> Ratio of a step to a time of retardation below which exponentials are summed as series.
+  !> Ratio of a step to a retardation time below which exponentials are summed as series.
   real(wp), parameter :: short = 0.02_wp
 
 contains
 
-  !> The compliance of relaxed bodies over the instantaneous compliance.
+  !> Ratio of the compliance of relaxed bodies to the instantaneous compliance.
   pure real(wp) function relaxed(self)
     class(creep_t), intent(in) :: self
 
     relaxed = 1 + sum(self%share)
   end function relaxed
 
-  !> The shortest time of retardation; huge if there is none.
+  !> The shortest retardation time; huge if there is none.
   pure real(wp) function shortest(self)
     class(creep_t), intent(in) :: self
 
     shortest = minval(self%time)
   end function shortest
 
-  !> Coefficients of the memory at the end of a step of `seconds`: `kept` of the memory at the
-  !> beginning, `past` of the pressure at the beginning, `present` of the pressure at the end.
+  !> Coefficients of the memory Z_k at the end of a step of `seconds`: `kept` multiplies the memory
+  !> at the beginning, `past` the pressure at the beginning, and `present` the pressure at the end.
   pure subroutine over_step(self, seconds, kept, past, present)
     class(creep_t), intent(in) :: self
     real(wp), intent(in) :: seconds

@@ -1,7 +1,8 @@
-!> A mesh fixed in the material, for the bodies' internal variables. Pressures are interpolated from
-!> meshes that move with the contact, and the rise of the gap due to these pressures is computed on
-!> the fixed mesh. Fine panels resolve the contact edge wherever it may pass. Away from the edge a
-!> pressure is smooth, and long panels, each in place of several fine panels, represent it.
+!> A mesh fixed in the material, for the internal variables of the bodies. Pressures are
+!> interpolated to it from meshes that move with the contact, and the rise of the gap due to these
+!> pressures is computed on it. Fine panels resolve the contact edge wherever it may pass. Away from
+!> the edge a pressure is smooth; there it is represented on long panels, each of which replaces
+!> several fine panels.
 module material
   use kinds, only: wp
   use discretisation, only: discretisation_t
@@ -14,31 +15,33 @@ module material
   !> The nodes of the fine mesh are first those inside long panels, in order, then those of the
   !> panels farther out.
   type, extends(discretisation_t) :: material_t
-    !> Long panels: their number, the number of fine nodes in each, their length, their own nodes.
+    !> Long panels: their number, the number of fine nodes in each, their length, and the nodes of a
+    !> long panel (`own`).
     integer :: long = 0, inside = 0
     real(wp) :: length = 0
     type(local_nodes_t) :: own
-    !> Matrix from values at the own nodes of a long panel to values at its fine nodes,
+    !> Matrix that maps values at the own nodes of a long panel to values at its fine nodes,
     !> (inside, own nodes).
     real(wp), allocatable :: spread(:, :)
-    !> The kernel's columns for the own nodes of all long panels.
+    !> The columns of the kernel for the own nodes of all long panels.
     real(wp), allocatable :: smooth_kernel(:, :)
-    !> Largest tail of a pressure on a long panel, over the largest pressure.
+    !> Largest high-order part (`tail`) of a pressure that a long panel may represent, relative to
+    !> the largest pressure.
     real(wp) :: lacking = 0
   contains
     procedure :: take
   end type material_t
 
-  !> Number of fine panels in a long panel, and number of nodes that a long panel has in excess of
+  !> Number of fine panels that a long panel replaces; number of nodes by which a long panel exceeds
   !> a fine panel.
   integer, parameter :: together = 8, more_nodes = 2
-  !> Ratio of a pressure to the largest pressure below which its deformation is neglected.
+  !> A pressure smaller than this fraction of the largest pressure is neglected in the deformation.
   real(wp), parameter :: nothing = 1.0e-12_wp
 
 contains
 
-  !> The mesh `grid`, whose first `equal` panels from the axis have the same length, with long
-  !> panels. lacking: largest tail of a pressure on a long panel, over the largest pressure.
+  !> Makes the mesh from `grid`, whose first `equal` panels from the axis have the same length, and
+  !> adds long panels. lacking: as in `material_t`.
   function new_material(grid, equal, lacking) result(material)
     type(discretisation_t), intent(in) :: grid
     integer, intent(in) :: equal
@@ -63,8 +66,9 @@ contains
     end do
   end function new_material
 
-  !> Interpolates the pressure of another mesh at a scale to the nodes (`values`), and computes the
-  !> rise of the gap due to this pressure for the rows of the kernel (`rise`).
+  !> Interpolates the pressure of another mesh, with its scale, to the nodes of this mesh
+  !> (`values`), and computes the rise of the gap due to this pressure for the rows of the kernel
+  !> (`rise`).
   subroutine take(self, grid, scale, pressure, values, rise)
     class(material_t), intent(in) :: self
     type(discretisation_t), intent(in) :: grid
@@ -91,7 +95,8 @@ contains
       end associate
     end do
     values(self%long*self%inside + 1:) = at(self%x(self%long*self%inside + 1:))
-    ! One product for adjacent panels of one kind, and one for the panels farther out.
+    ! One matrix product for each sequence of panels that are all long or all fine, and one for the
+    ! panels farther out.
     rise = 0
     first = 1
     do while (first <= self%long)
@@ -113,7 +118,7 @@ contains
 
   contains
 
-    !> The pressure at given radii.
+    !> The pressure at these radii; 0 beyond the end of its mesh.
     pure function at(radii) result(found)
       real(wp), intent(in) :: radii(:)
       real(wp) :: found(size(radii))
@@ -127,7 +132,8 @@ contains
       end do
     end function at
 
-    !> Adds the rise due to columns of the kernel, up to the last weight that is not negligible.
+    !> Adds the rise due to columns of the kernel. Columns after the last weight that is not
+    !> negligible are left out.
     subroutine add(columns, weights)
       real(wp), intent(in), contiguous :: columns(:, :)
       real(wp), intent(in) :: weights(:)

@@ -1,5 +1,5 @@
-!> The motion of a drive: an approach at constant velocity, a dwell, and a retract; these are its
-!> segments.
+!> The motion of a drive has three segments: an approach at constant velocity, a dwell, and a
+!> retract.
 module motion
   use kinds, only: wp
   implicit none
@@ -10,9 +10,9 @@ module motion
   character(len=*), parameter :: names_of_ways(3) = [character(len=8) :: 'approach', 'dwell', &
     'retreat']
 
-  !> Times [s] at which the segments begin, their durations [s], and the positions between which
-  !> they lead (law's lengths). Time is counted from the beginning of a segment, so that a long
-  !> dwell does not round the steps after it. least: the time [s] in which the drive moves by
+  !> Times [s] at which the segments begin, their durations [s], and the positions at their ends (in
+  !> lengths L of the law). Time is counted from the beginning of each segment, so that a long dwell
+  !> causes no rounding errors in later steps. least: the time [s] in which the drive moves by
   !> `negligible`.
   type :: motion_t
     real(wp) :: began(3) = 0, lasts(3) = 0, position(0:3) = 0, least = 0
@@ -21,14 +21,14 @@ module motion
     procedure :: length_of
   end type motion_t
 
-  !> A motion (law's lengths) within the errors of positions: over it, rates of gaps would be
-  !> rounding. A segment that is shorter, in length or time, is left out.
+  !> A distance (in lengths L) within the errors of positions. Rates of gaps over a shorter distance
+  !> would be rounding errors. A segment that is shorter, in distance or in time, is left out.
   real(wp), parameter :: negligible = 1.0e-9_wp
 
 contains
 
-  !> The motion from `start` to `turn`, a dwell [s], and the motion to `finish`. velocity: the law's
-  !> lengths per second.
+  !> The motion from `start` to `turn`, a dwell [s], and the motion to `finish`. velocity: lengths L
+  !> per second.
   pure type(motion_t) function new_motion(velocity, start, turn, dwell, finish) result(motion)
     real(wp), intent(in) :: velocity, start, turn, dwell, finish
 
@@ -40,7 +40,7 @@ contains
     motion%began(3) = sum(motion%lasts(:2))
   end function new_motion
 
-  !> The position of the drive on a segment at a time since its beginning.
+  !> The position of the drive on a segment, at a time counted from its beginning.
   pure real(wp) function at(self, way, time) result(position)
     class(motion_t), intent(in) :: self
     integer, intent(in) :: way

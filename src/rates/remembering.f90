@@ -1,4 +1,4 @@
-!> What the equations of a step in time take from earlier instants: the internal variables (memory)
+!> The quantities that a step in time takes from earlier instants: the internal variables (memory)
 !> of viscoelastic bodies, and the rate of the gaps for the fluid between the bodies (`drainage`).
 !>
 !> A step in time is an elastic problem (`creep`): pressures change linearly during the step, the
@@ -20,20 +20,20 @@ module remembering
   private
   public :: remembering_t
 
-  !> instant: coupling of the bodies without delayed deformation. compliance: that of the spring of
-  !> the drive, 0 without a spring.
+  !> instant: the coupling of the bodies without delayed deformation. compliance: the compliance of
+  !> the spring of the drive; 0 without a spring.
   type, extends(solver_t) :: remembering_t
     type(creep_t) :: creep
     real(wp) :: instant = 0, compliance = 0
-    !> The mesh fixed in space, of scale 1; it is not set for bodies without memory.
+    !> The mesh fixed in space, of scale 1; it is not set for elastic bodies.
     type(material_t) :: material
-    !> Of a step: the memories without the term of the present pressure, and the rise of the gap due
-    !> to each; the coefficients of the present pressure in the memories; the rise of the gap due to
-    !> `left`.
+    !> Quantities of a step. left: the memories without the contribution of the present pressure.
+    !> left_rise: the rise of the gap due to each of these memories. present: the coefficients of
+    !> the present pressure in the memories. risen: the rise of the gap due to `left`.
     real(wp), allocatable :: left(:, :), left_rise(:, :), present(:), risen(:)
-    !> The instant before the present instant.
+    !> The instant before the one from which the step starts.
     type(instant_t) :: before
-    !> The weight of the present gaps in the rate, 1/s, for which the Jacobian was computed.
+    !> The weight of the present gaps in their rate [1/s], for which the Jacobian was computed.
     real(wp) :: made_for = 1
   contains
     procedure :: prepare
@@ -46,14 +46,14 @@ module remembering
     procedure, private :: note_pressure
   end type remembering_t
 
-  !> Number of steps after a turn in which gaps change linearly with time.
+  !> Number of steps after a turn over which gaps are taken to change linearly with time.
   integer, parameter :: calming = 4
-  !> Logarithm of the ratio of two steps above which they need different Jacobians.
+  !> Logarithm of the ratio of two time steps above which they need different Jacobians.
   real(wp), parameter :: other_length = 0.5_wp
 
 contains
 
-  !> Makes the equations of a step from an instant to a time.
+  !> Makes the equations of a step from an instant to a later time.
   subroutine prepare(self, from, time)
     class(remembering_t), intent(inout) :: self
     type(instant_t), intent(in) :: from
@@ -77,8 +77,8 @@ contains
     self%risen = 2*self%instant*matmul(self%left_rise, self%creep%share)
   end subroutine prepare
 
-  !> Computes the memories, and the data of the fluid, of the instant at the end of a step, and the
-  !> energy dissipated in it.
+  !> Computes the memories and the data of the fluid at the end of a step, and the energy dissipated
+  !> in the step.
   subroutine remember(self, from, to)
     class(remembering_t), intent(inout) :: self
     type(instant_t), intent(in) :: from
@@ -100,7 +100,7 @@ contains
     if (allocated(self%drainage)) call self%remember_fluid(from, to)
   end subroutine remember
 
-  !> Interpolates the rise of the gap due to the memory, and the earlier gaps of the fluid, at the
+  !> Interpolates the rise of the gap due to the memory, and the earlier gaps for the fluid, to the
   !> nodes of a mesh whose scale is about `scale`.
   subroutine place_rise(self, mesh, scale)
     class(remembering_t), intent(inout) :: self
@@ -112,9 +112,9 @@ contains
       self%risen, self%meshes%grid(mesh), scale)
   end subroutine place_rise
 
-  !> The weights of present and earlier gaps in the rate of the gaps: the slope of a parabola in
-  !> time through the gaps of the last two instants and the present gaps, or of a line if there is
-  !> one earlier instant.
+  !> The weights of present and earlier gaps in the rate of the gaps. The rate is the slope of a
+  !> parabola in time through the present gaps and those of the last two instants; it is the slope
+  !> of a line if only one earlier instant exists.
   subroutine prepare_fluid(self, from, time)
     class(remembering_t), intent(inout) :: self
     type(instant_t), intent(in) :: from
@@ -122,7 +122,7 @@ contains
     real(wp) :: weights(3)
 
     ! The rate jumps where the drive turns. The response of stiff bodies to this jump may decay
-    ! within a step, so a parabola would overshoot.
+    ! within one step; a parabola would then overshoot.
     weights = rate_weights(time - from%time, merge(from%time - self%before%time, 0.0_wp, &
       from%since_turn >= calming))
     ! A Jacobian computed for a different length of the step is not accurate for this step.
@@ -148,7 +148,8 @@ contains
 
   end subroutine prepare_fluid
 
-  !> The suction and power of the fluid at the end of a step, and the energy dissipated in the step.
+  !> Computes the suction and the power of the fluid at the end of a step, and the energy dissipated
+  !> in the step.
   subroutine remember_fluid(self, from, to)
     class(remembering_t), intent(in) :: self
     type(instant_t), intent(in) :: from
@@ -168,7 +169,7 @@ contains
       merge(0.5_wp*(from%power + to%power), to%power, from%since_turn > 0)
   end subroutine remember_fluid
 
-  !> Sets the internal variables of an instant to those of relaxed bodies under its pressure.
+  !> Sets the internal variables of an instant to the values in relaxed bodies under its pressure.
   subroutine set_memory(self, at)
     class(remembering_t), intent(in) :: self
     type(instant_t), intent(inout) :: at
@@ -179,7 +180,7 @@ contains
   end subroutine set_memory
 
   !> Stores the pressure of an instant at the nodes of the material's mesh, and the rise due to this
-  !> pressure; both are empty for bodies without memory.
+  !> pressure. For elastic bodies both are empty.
   subroutine note_pressure(self, at)
     class(remembering_t), intent(in) :: self
     type(instant_t), intent(inout) :: at
@@ -202,7 +203,7 @@ contains
 
     associate (grid => self%meshes%grid(at%mesh), p => at%state%pressure, c => at%state%scale)
       allocate (rise(size(grid%kernel, 1)))
-      ! Without the memory, at the coupling of the present step.
+      ! The deformation without delayed parts; the operator uses the coupling of the present step.
       call self%operator%deform(self%problem, grid, c, size(p), p, rise)
       energy = energy_of_surface(self%equations_t, at%mesh, at%state) + &
         0.5_wp*self%compliance*at%state%load**2 + &

@@ -13,15 +13,15 @@ module rest
   private
   public :: begin_at_rest, load_at_rest, longest_step
 
-  !> Step of the approach to the initial state, over the gap; the shortest step over the longest;
-  !> ratio of a step to the one before, with and without a solution.
+  !> Step of the approach to the initial state, relative to the gap; ratio of the shortest step to
+  !> the longest. Factors by which a step is longer after a solution, and shorter after a failure.
   real(wp), parameter :: part_of_gap = 0.1_wp, least_part = 1.0e-4_wp, longer = 1.5_wp, &
     shorter = 0.3_wp
 
 contains
 
-  !> The equilibrium of relaxed bodies at a position, reached by an approach from a large distance.
-  !> found = .false.: the bodies jump before they reach the position.
+  !> The equilibrium of relaxed bodies at a position, reached by a slow approach from a large
+  !> distance. found = .false.: the bodies snap in before they reach the position.
   subroutine begin_at_rest(steps, position, at, found)
     type(time_stepper_t), intent(inout) :: steps
     real(wp), intent(in) :: position
@@ -57,8 +57,8 @@ contains
     if (found) then
       call steps%set_memory(at)
       if (allocated(fluid) .and. size(steps%creep%time) > 0) then
-        ! The same state as a step of zero duration, with the delayed deformation from the
-        ! material's mesh. The deformations computed on the two meshes differ slightly; this
+        ! Solve for the same state as a step of zero duration, with the delayed deformation from the
+        ! material's mesh. The deformations computed on the two meshes differ slightly. This
         ! difference is not a motion, and the fluid must not resist it.
         call steps%prepare(at, at%time)
         call steps%place_rise(at%mesh, at%state%scale)
@@ -71,9 +71,9 @@ contains
     if (found) steps%before = at
   end subroutine begin_at_rest
 
-  !> The longest step of the position (law's lengths) over which states are similar: a part of the
-  !> gap. Without adhesion deep contacts are similar too, and it is a part of the distance from the
-  !> first noticeable deformation.
+  !> The longest step of the position (in lengths L) over which states are similar: a fraction of
+  !> the gap. Without adhesion deep contacts are similar too; the step is then a fraction of the
+  !> distance from the first noticeable deformation.
   pure real(wp) function longest_step(steps, at) result(longest)
     type(time_stepper_t), intent(in) :: steps
     type(instant_t), intent(in) :: at
@@ -84,7 +84,7 @@ contains
   end function longest_step
 
   !> The load of relaxed bodies at a position after a slow approach. If a state on the way is not
-  !> found, it is the load at the last position before it.
+  !> found, the result is the load at the last position before this state.
   real(wp) function load_at_rest(steps, position) result(load)
     type(time_stepper_t), intent(inout) :: steps
     real(wp), intent(in) :: position
@@ -97,8 +97,8 @@ contains
     call steps%frozen%forget()
   end function load_at_rest
 
-  !> Solves for relaxed bodies at a position, from the guess `state`. found: there is a solution
-  !> near the state of `at`, on the path; this solution then replaces the state of `at`.
+  !> Solves for relaxed bodies at a position, starting from the guess `state`. found: a solution
+  !> exists near the state of `at`, on the path; this solution then replaces the state of `at`.
   subroutine solve_relaxed(steps, position, state, at, found)
     type(time_stepper_t), intent(inout) :: steps
     real(wp), intent(in) :: position

@@ -1,4 +1,4 @@
-!> The bodies at a time.
+!> The bodies at one instant of time.
 module time_instant
   use kinds, only: wp
   use shape, only: shape_t
@@ -8,30 +8,33 @@ module time_instant
   private
   public :: instant_t, extrapolate
 
-  !> Bodies at a time [s] since the beginning of a segment. The position of the drive, Q = H0 -
-  !> compliance*load, and the state; on the material's mesh the memories (nodes, terms of `creep`)
-  !> and the pressure. dissipated: by dashpots and the fluid in the step that ends at this time. Of
-  !> the fluid: the dissipated power [1/s], the largest suction and its radius (lateral units).
+  !> The bodies at a time [s], counted from the beginning of a segment. position: that of the drive,
+  !> Q = H0 - compliance*load. memory, pressure: the memories (nodes, terms of `creep`) and the
+  !> pressure on the material's mesh. dissipated: the energy dissipated by dashpots and fluid in the
+  !> step that ends at this time. power, suction, suction_at: the power dissipated in the fluid
+  !> [1/s], the largest suction, and the radius of the latter (lateral units).
   type :: instant_t
     real(wp) :: time = 0, position = 0
     integer :: mesh = 1
     type(state_t) :: state
     real(wp), allocatable :: memory(:, :), pressure(:)
-    !> Products of the kernel with memories and pressure, so that a step computes one product only.
+    !> Products of the kernel with memories and pressure. They are kept so that a step computes one
+    !> product only.
     real(wp), allocatable :: memory_rise(:, :), pressure_rise(:)
     real(wp) :: dissipated = 0, power = 0, suction = 0, suction_at = 0
     !> Number of steps since the last turn of the drive.
     integer :: since_turn = 0
   end type instant_t
 
-  !> Smallest scale and smallest gap of an extrapolated state, over those of the later state.
+  !> Smallest scale and smallest gap of an extrapolated state, relative to those of the later state.
   real(wp), parameter :: least_scale = 0.5_wp, least_gap = 0.7_wp
 
 contains
 
-  !> Linear extrapolation of a state from two states on one mesh. ahead: distance beyond the later
-  !> state over the distance between the two. The deformations are extrapolated; the undeformed
-  !> shape is known. If the scale or a gap becomes much smaller, the result is the later state.
+  !> Linear extrapolation of a state from two states on one mesh. ahead: the distance beyond the
+  !> later state, relative to the distance between the two. The deformations are extrapolated, since
+  !> the undeformed shape is known. If the scale or a gap would become much smaller, the result is
+  !> the later state.
   pure subroutine extrapolate(shape, grid, before, now, ahead, state)
     class(shape_t), intent(in) :: shape
     type(discretisation_t), intent(in) :: grid

@@ -1,7 +1,7 @@
 !> Steps in time near folds and across folds, where h0 does not determine the state. The step
-!> follows the path of the equilibria with the present memory, in the coordinate of the path, until
-!> the drive has the given position. A jump is such a step of any length; it ends in a stable state,
-!> where h0 increases with the position of the drive.
+!> follows the path of the equilibria with the present memory, along the coordinate of the path,
+!> until the drive has the given position. A jump is such a step of any length; it ends in a stable
+!> state, where h0 increases with the position of the drive.
 module time_jump
   use kinds, only: wp
   use contact_state, only: state_t, regrid
@@ -15,26 +15,27 @@ module time_jump
   private
   public :: step_along
 
-  !> First, longest and shortest step of the coordinate; the ratio to the one before, with and
-  !> without a solution; largest number of steps along a path.
+  !> First, longest and shortest step of the coordinate; ratios of a step to the step before it, if
+  !> that step had a solution and if it had none; largest number of steps along a path.
   real(wp), parameter :: first = 0.01_wp, longest = 0.15_wp, shortest = 1.0e-6_wp, &
     longer = 1.5_wp, shorter = 0.4_wp
   integer, parameter :: most_steps = 1000
-  !> Beyond this distance from the position of the drive (law's lengths), plus the largest
+  !> If the drive is farther from its position than this distance (in lengths L) plus the largest
   !> elongation of the spring so far, the path is assumed to go to infinity.
   real(wp), parameter :: too_far = 1.0e4_wp
-  !> Tolerated error of the position of the drive (law's lengths) if it exceeds the residuals of the
-  !> states; additional error of the load due to rounding, behind a soft spring; largest number of
-  !> states solved in the search for this position.
+  !> Tolerated error of the position of the drive (in lengths L), unless the residuals of the states
+  !> are larger. Additional tolerance of the position for each unit of the spring's compliance,
+  !> since the load has rounding errors. Largest number of states solved in the search for this
+  !> position.
   real(wp), parameter :: left_over = 1.0e-9_wp, left_over_load = 1.0e-13_wp
   integer, parameter :: most_rounds = 30
 
 contains
 
-  !> A step from an instant to a time and the position at this time, along the path inward or
-  !> outward (`inwards`). If the path in this direction does not reach the position, the step goes
-  !> in the other direction. The coordinate of the path changes by `farthest` at most; if `farthest`
-  !> is huge, the step is a jump.
+  !> A step from an instant to a later time, and to the position of the drive at this time, along
+  !> the path inward or outward (`inwards`). If the path in this direction does not reach the
+  !> position, the step goes in the other direction. The coordinate of the path changes by at most
+  !> `farthest`; if `farthest` is huge, the step is a jump.
   subroutine step_along(steps, from, time, position, inwards, farthest, to, done)
     class(time_stepper_t), intent(inout) :: steps
     type(instant_t), intent(in) :: from
@@ -102,7 +103,7 @@ contains
       missing_last = missing
       missing = off(steps, to, position)
       if (.not. passed()) cycle
-      ! The position lies between the drives of one state on the two meshes.
+      ! The position lies between the two positions that one state has on the two meshes.
       call steps%frozen%forget()
       call steps%solve(steps%control_at(position, mesh, to%state), to%state, done)
       return
@@ -111,14 +112,13 @@ contains
 
   contains
 
-    !> Whether the position of the drive was passed. A jump passes the position only where the
-    !> bodies are stable.
+    !> Whether the drive has passed its position. A jump ends only where the bodies are stable.
     pure logical function passed()
       passed = (missing < 0) .neqv. (missing_last < 0)
       if (jumps) passed = passed .and. (inwards .eqv. missing < 0)
     end function passed
 
-    !> The distance of the drive beyond a position.
+    !> The distance of the drive in the state of an instant from a given position.
     pure real(wp) function off(steps, at, position)
       class(time_stepper_t), intent(in) :: steps
       type(instant_t), intent(in) :: at
@@ -162,8 +162,8 @@ contains
       s = to
     end subroutine advance
 
-    !> The state at which the drive has a position, between two states. at: at entry the second
-    !> state, at return the result.
+    !> Finds the state at which the drive has a given position, between two states. at: on entry the
+    !> second state, on return the result.
     subroutine find_between(at)
       type(instant_t), intent(inout) :: at
       type(root_search_t) :: search
@@ -187,7 +187,7 @@ contains
       end do
     end subroutine find_between
 
-    !> Moves a state of the path to another mesh, at the same coordinate.
+    !> Moves a state of the path to another mesh, with the same coordinate.
     subroutine change_mesh(at, done)
       type(instant_t), intent(inout) :: at
       logical, intent(out) :: done

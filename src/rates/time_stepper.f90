@@ -16,10 +16,10 @@ module time_stepper
   private
   public :: time_stepper_t, expected_scale
 
-  !> Computes one instant after the other.
+  !> Computes the instants of a drive one after the other.
   type, extends(remembering_t) :: time_stepper_t
-    !> The largest change of the path's coordinate in a step. A state that changes by more has
-    !> jumped, or needs shorter steps.
+    !> The largest change of the path's coordinate in a step. A larger change means a jump, or that
+    !> shorter steps are needed.
     real(wp) :: farthest = 0.3_wp
   contains
     procedure :: step
@@ -30,22 +30,26 @@ module time_stepper
     procedure, private :: guess
   end type time_stepper_t
 
-  !> Ratio of the radius to the radius of a passage below which the state returns to the mesh before
-  !> the passage; longest extrapolation over the previous step.
+  !> If the contact radius falls below this fraction of the radius at which the mesh was changed,
+  !> the state returns to the mesh before the change. Longest extrapolation relative to the previous
+  !> step.
   real(wp), parameter :: back = 0.97_wp, longest_guess = 3
-  !> If scale and expected scale differ by less than this, over `finest`, the memory, or the earlier
-  !> gaps under a fluid, are linear in the scale; largest number of rounds.
+  !> If scale and expected scale differ by less than this fraction of `finest`, the memory is linear
+  !> in the scale; the second limit is that for the earlier gaps under a fluid. Largest number of
+  !> rounds.
   real(wp), parameter :: far_off = 0.1_wp, far_off_fluid = 0.02_wp
   integer, parameter :: most_rounds = 3
-  !> Largest relative difference of radius and gap between two meshes for one state.
+  !> Largest relative difference of radius and gap with which a state counts as the same on two
+  !> meshes.
   real(wp), parameter :: same_state = 0.05_wp
-  !> Largest value of `finest` over the radius of the contact.
+  !> Largest value of `finest` relative to the contact radius.
   real(wp), parameter :: part_of_contact = 0.3_wp
 
 contains
 
-  !> A step from an instant to a later time and the position at this time. done = .false.: there is
-  !> no solution near the earlier state; the step is too long, or the bodies jump.
+  !> A step from an instant to a later time and the position of the drive at this time. done =
+  !> .false.: there is no solution near the earlier state, because the step is too long or the
+  !> bodies jump.
   subroutine step(self, from, time, position, to, done)
     class(time_stepper_t), intent(inout) :: self
     type(instant_t), intent(in) :: from
@@ -87,8 +91,8 @@ contains
     call self%remember(from, to)
   end subroutine step
 
-  !> The expected state at a time, extrapolated from the last two instants if they are on one mesh,
-  !> and the control for this state.
+  !> The state expected at a time, and the control for this state. The state is extrapolated from
+  !> the last two instants if they are on one mesh.
   subroutine guess(self, from, time, position, control, state)
     class(time_stepper_t), intent(in) :: self
     type(instant_t), intent(in) :: from
@@ -110,14 +114,15 @@ contains
       self%meshes%grid(from%mesh), self%meshes%grid(from%mesh), control%scale)
   end subroutine guess
 
-  !> The control that prescribes the position of the drive on a mesh. state: a guess of the state.
+  !> The control that prescribes the position of the drive, for states on a mesh. state: a guess of
+  !> the state.
   type(control_t) function control_at(self, position, mesh, state) result(control)
     class(time_stepper_t), intent(in) :: self
     real(wp), intent(in) :: position
     integer, intent(in) :: mesh
     type(state_t), intent(in) :: state
 
-    ! With a spring, the position may change considerably at an almost constant h0.
+    ! With a spring, the position may change considerably while h0 hardly changes.
     control = h0_control(self%problem%shape, self%meshes, mesh, &
       merge(state%h0, position, self%compliance > 0))
     control%value = position
@@ -125,7 +130,7 @@ contains
   end function control_at
 
   !> The shortest length over which the memory changes near the edge: the width of the cohesive zone
-  !> of relaxed bodies, or a part of the contact radius.
+  !> of relaxed bodies, at most a fraction of the contact radius.
   pure real(wp) function finest(self, radius)
     class(time_stepper_t), intent(in) :: self
     real(wp), intent(in) :: radius
@@ -134,7 +139,7 @@ contains
       (self%instant*self%creep%relaxed()), part_of_contact*radius)
   end function finest
 
-  !> The scale that a state is expected to have under a control.
+  !> The scale that the state is expected to have with a control.
   pure real(wp) function expected_scale(control, state) result(scale)
     type(control_t), intent(in) :: control
     type(state_t), intent(in) :: state
@@ -144,7 +149,7 @@ contains
     if (control%kind == at_h0_with_edge) scale = state%scale
   end function expected_scale
 
-  !> The mesh on which a state of the mesh `mesh` is to be solved; it may be the same mesh.
+  !> The mesh on which a state of the mesh `mesh` is to be solved, which may be `mesh` itself.
   integer function mesh_for(self, mesh, state)
     class(time_stepper_t), intent(in) :: self
     integer, intent(in) :: mesh
@@ -166,7 +171,7 @@ contains
   end function mesh_for
 
   !> Moves an instant to another mesh, at the same position of the drive. If this fails, the instant
-  !> remains on its mesh.
+  !> stays on its mesh.
   subroutine move_to_mesh(self, mesh, position, at)
     class(time_stepper_t), intent(inout) :: self
     integer, intent(in) :: mesh
@@ -182,7 +187,7 @@ contains
       self%meshes%grid(mesh), scale)
     call self%place_rise(mesh, scale)
     call self%solve(self%control_at(position, mesh, at%state), state, done)
-    ! Near a fold, a second state has the same h0.
+    ! Near a fold there is a second state with the same h0, which must not be taken.
     if (done) done = abs(state%axis_gap - at%state%axis_gap) < &
       same_state*(1 + abs(at%state%axis_gap)) .and. abs(state%scale - scale) < same_state*scale
     if (.not. done) then
