@@ -1,5 +1,5 @@
-!> &loading and &unloading, the cycle in steps of h0; &equilibrium_path; and the groups that show
-!> states of these: &device, &fixed_load, &table, &regime, &profiles, &stability.
+!> Reads &loading and &unloading, the cycle in steps of h0; &equilibrium_path; and the groups that
+!> use states of these: &device, &fixed_load, &table, &regime, &profiles, &stability.
 module curve_groups
   use kinds, only: wp
   use text, only: brief
@@ -11,7 +11,7 @@ module curve_groups
   public :: cycle_keys, take_loading, take_unloading, path_keys, profiles_keys, take_path, &
     take_readings, take_regime, take_profiles, has_states, check_order
 
-  !> Largest number of steps. A deck with more probably has a number in a wrong unit.
+  !> Largest number of steps. A deck with more steps probably has a number in a wrong unit.
   integer, parameter :: most_steps = 10000000
 
   !> The rows of &loading and &unloading.
@@ -72,7 +72,7 @@ module curve_groups
 
 contains
 
-  !> Reads &loading; its range must run downwards.
+  !> Reads &loading, whose h0 must decrease.
   subroutine take_loading(scene)
     type(scene_t), intent(inout) :: scene
 
@@ -87,7 +87,7 @@ contains
     end associate
   end subroutine take_loading
 
-  !> Refuses a step so small that the run would not end.
+  !> Refuses a step so small that the run would take too long.
   subroutine check_steps(deck, group, range, step)
     type(deck_t), intent(inout) :: deck
     character(len=*), intent(in) :: group
@@ -99,8 +99,8 @@ contains
                         'range of ' // brief(range) // ' m; allowed: at most 10 million')
   end subroutine check_steps
 
-  !> Reads &unloading; turning points must be inside the range of &loading, and each retract must
-  !> run upwards.
+  !> Reads &unloading. Turning points must be inside the range of &loading, and h0 must increase on
+  !> each retract.
   subroutine take_unloading(scene)
     type(scene_t), intent(inout) :: scene
     integer :: i
@@ -189,7 +189,7 @@ contains
     call check_path(scene, 'regime')
   end subroutine take_regime
 
-  !> Reads &profiles; each h0 must be within the range of the loading or of the path.
+  !> Reads &profiles. Each h0 must be within the range of the loading or of the path.
   subroutine take_profiles(scene)
     type(scene_t), intent(inout) :: scene
     integer :: i
@@ -206,8 +206,8 @@ contains
 
   contains
 
-    !> Whether the loading or the path passes this h0. A path without a given start may start at any
-    !> h0.
+    !> Whether the loading or the path passes this h0. A path without a given start passes any h0
+    !> above its end.
     pure logical function reached(h0)
       real(wp), intent(in) :: h0
 
@@ -221,7 +221,8 @@ contains
 
   end subroutine take_profiles
 
-  !> Whether the deck has a group that shows states; refuses the group if there are no states.
+  !> Whether the deck has a group that uses states. The group is refused if the deck computes no
+  !> states.
   logical function has_states(scene, group)
     type(scene_t), intent(inout) :: scene
     character(len=*), intent(in) :: group
@@ -231,7 +232,7 @@ contains
       call scene%deck%mistake(group, '', 'needs &loading or &equilibrium_path')
   end function has_states
 
-  !> Refuses a group that needs the path if there is no path, or one without jumps.
+  !> Refuses a group that needs the path if the deck has no path, or if the path can have no jumps.
   subroutine check_path(scene, group)
     type(scene_t), intent(inout) :: scene
     character(len=*), intent(in) :: group
@@ -243,7 +244,8 @@ contains
     end if
   end subroutine check_path
 
-  !> Refuses a position [m] that is not `word`, above or below, that of another key.
+  !> Refuses a position [m] that is not above (`word`: 'above') or not below ('below') the position
+  !> of another key.
   subroutine check_order(deck, group, key, position, word, other, limit)
     type(deck_t), intent(inout) :: deck
     character(len=*), intent(in) :: group, key, word, other

@@ -1,6 +1,6 @@
-!> The problems of a deck in which some numbers are replaced. The deck is read again with each set
-!> of numbers, so that no law, shape or unit needs code of its own for this. &sensitivity names
-!> such numbers, by which results are differentiated.
+!> The problems of a deck in which some numbers are replaced. The deck is read again for each set of
+!> numbers, so that laws, shapes and units need no code for this purpose. &sensitivity names such
+!> numbers; the derivatives of results by them are computed.
 module deck_family
   use kinds, only: wp
   use failure, only: failure_t, fail, bad_input
@@ -17,7 +17,7 @@ module deck_family
   private
   public :: deck_family_t, new_deck_family, widened, sensitivity_keys, take_sensitivity
 
-  !> A deck, and the numbers of it that `pose` replaces.
+  !> A deck, and those of its numbers that `pose` replaces.
   type, extends(problem_family_t) :: deck_family_t
     type(deck_t) :: deck
   contains
@@ -34,9 +34,9 @@ module deck_family
 
 contains
 
-  !> The family of a deck with `keys` as parameters: blank-separated names as 'group.key', an
-  !> element of a list as 'group.key(2)'. Fails, with a message without a position in the file, if a
-  !> key is not a number of bodies, shape or forces, or has no value in the deck.
+  !> The family of a deck with `keys` as parameters: blank-separated names of the form 'group.key',
+  !> or 'group.key(2)' for an element of a list. It fails, with a message without a position in the
+  !> file, if a key is not a number of bodies, shape or forces, or has no value in the deck.
   subroutine new_deck_family(deck, keys, family, error)
     type(deck_t), intent(in) :: deck
     character(len=*), intent(in) :: keys
@@ -53,8 +53,8 @@ contains
     end do
   end subroutine new_deck_family
 
-  !> The family with the other positive numbers of its deck as further parameters. A number that the
-  !> deck leaves out is a factor of its default.
+  !> The family with the other positive numbers of its deck as further parameters. For a number that
+  !> the deck leaves out, the parameter is a factor of its default.
   type(deck_family_t) function widened(family) result(wider)
     type(deck_family_t), intent(in) :: family
     type(parameter_t) :: new, without_name
@@ -80,7 +80,7 @@ contains
     end do
   end function widened
 
-  !> The problem of the deck with these values of the parameters.
+  !> Makes the problem of the deck with these values of the parameters.
   subroutine pose(self, value, problem, error)
     class(deck_family_t), intent(in) :: self
     real(wp), intent(in) :: value(:)
@@ -113,7 +113,7 @@ contains
     if (.not. allocated(error)) problem = problem_of(scene)
   end subroutine pose
 
-  !> Value and scale of a parameter; the scale of a dimensionless number that is 0 is one.
+  !> Sets value and scale of a parameter. The scale of a dimensionless number that is 0 is 1.
   subroutine take_value(deck, parameter, error)
     type(deck_t), intent(in) :: deck
     type(parameter_t), intent(inout) :: parameter
@@ -139,7 +139,7 @@ contains
     end if
   end subroutine take_value
 
-  !> Blank-separated names of all numbers of bodies, shape and forces that a deck has.
+  !> Blank-separated names of all numbers that a deck has for bodies, shape and forces.
   function parameters_of(deck) result(names)
     type(deck_t), intent(in) :: deck
     character(len=:), allocatable :: names
@@ -188,7 +188,8 @@ contains
         if (driven) then
           call take_number(scene%deck, lower(word_of(keys, i)), varied%parameter, trouble)
         else
-          ! Each alone: where a default follows the number, it follows whatever else is named.
+          ! Each parameter is varied alone. A default that follows it then does so whatever other
+          ! parameters are named.
           call new_deck_family(scene%deck, word_of(keys, i), family, trouble)
           if (.not. allocated(trouble)) call vary(family, 1, to_report, varied, trouble)
         end if
@@ -199,8 +200,8 @@ contains
     end do
   end subroutine take_sensitivity
 
-  !> A parameter of a drive in time, which is differentiated by whole runs: any number of the deck
-  !> except those of &numerics.
+  !> Sets a parameter of a drive in time, whose derivatives are finite differences of whole runs. It
+  !> may be any number of the deck except those of &numerics.
   subroutine take_number(deck, name, parameter, error)
     type(deck_t), intent(in) :: deck
     character(len=*), intent(in) :: name

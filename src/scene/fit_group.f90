@@ -1,4 +1,4 @@
-!> &fit: the keys of the deck that are fitted to a measured force curve.
+!> Reads &fit: the keys of the deck that are fitted to a measured force curve.
 module fit_group
   use kinds, only: wp, long
   use checksums, only: checksum
@@ -20,7 +20,7 @@ module fit_group
   private
   public :: fit_keys, take_fit, check_sharing, load_curve, family_of_fit
 
-  !> Largest number of unknowns of a curve, and of curves that are fitted together.
+  !> Largest number of unknowns of a curve; largest number of curves that are fitted together.
   integer, parameter :: most_unknowns = 20, most_joint = 100
 
   !> The rows of &fit.
@@ -70,9 +70,9 @@ contains
     if (.not. allocated(scene%deck%error)) call take_unknowns(scene)
   end subroutine take_fit
 
-  !> Reads the curve of a scene with a fit, whose file becomes a part of the deck's checksums.
-  !> trouble: why the curve cannot be read. index: where the curves of a file with several are; it
-  !> is made unless it is of this file.
+  !> Reads the measured curve of a scene with a fit. Its file becomes a part of the deck's
+  !> checksums. trouble: the reason why the curve cannot be read. index: the positions of the curves
+  !> in a file with several curves; it is made here unless it already belongs to this file.
   subroutine load_curve(scene, trouble, index)
     type(scene_t), intent(inout) :: scene
     type(failure_t), allocatable, intent(out) :: trouble
@@ -101,9 +101,9 @@ contains
     end associate
   end subroutine load_curve
 
-  !> ', such as ...' with a stiffness above which it does not matter for rigid bodies: then the
-  !> strength of adhesion or, without attraction, the deformation under the law's own pressure
-  !> changes loads by less than a hundredth.
+  !> Advice with a modulus above which the bodies may be called rigid. Then the strength of adhesion
+  !> or, without attraction, the deformation under the law's pressure unit changes loads by less
+  !> than a hundredth.
   function stiff_enough(scene) result(words)
     type(scene_t), intent(in) :: scene
     character(len=:), allocatable :: words
@@ -208,7 +208,7 @@ contains
     call take_bounds(scene%deck, scene%fit%unknown)
   end subroutine take_unknowns
 
-  !> Reads how many unknowns are shared.
+  !> Reads the number of shared unknowns.
   subroutine take_sharing(deck, shared)
     type(deck_t), intent(inout) :: deck
     integer, intent(out) :: shared
@@ -227,8 +227,8 @@ contains
     end if
   end subroutine take_sharing
 
-  !> Checks that there are several curves if they are to be fitted together, and one value of each
-  !> shared unknown.
+  !> If curves are to be fitted together, checks that there are several curves and that each shared
+  !> unknown has one value.
   subroutine check_sharing(scene)
     type(scene_t), intent(inout) :: scene
     integer :: i, k
@@ -253,7 +253,7 @@ contains
     end associate
   end subroutine check_sharing
 
-  !> Sets role, value and scale of an unknown in &measurement.
+  !> Sets role, value and scale of an unknown that is a key of &measurement.
   subroutine take_measured(scene, unknown)
     type(scene_t), intent(inout) :: scene
     type(unknown_t), intent(inout) :: unknown

@@ -1,4 +1,4 @@
-!> &measurement: a measured force curve.
+!> Reads &measurement, which describes a measured force curve.
 module measurement_group
   use kinds, only: wp
   use text, only: listing, lower, quoted, spelled, word_count, word_of
@@ -15,10 +15,10 @@ module measurement_group
   public :: measurement_keys, take_measurement
 
   integer, parameter :: most_skipped = 40, most_labels = 8
-  !> The baselines by their degree, from 0.
+  !> The kinds of baseline by their degree, counted from 0.
   character(len=*), parameter :: kinds(*) = [character(len=9) :: 'constant', 'linear', 'quadratic']
 
-  !> The quantities of columns, by their numbers in `fit_request`.
+  !> The names of the quantities of columns, in the order of their numbers in `fit_request`.
   character(len=*), parameter :: quantities = 'position separation load segment contact_radius'
 
   !> The rows of &measurement.
@@ -80,7 +80,7 @@ module measurement_group
 
 contains
 
-  !> Reads &measurement, without the file.
+  !> Reads &measurement, but not the file of the curve.
   subroutine take_measurement(scene)
     type(scene_t), intent(inout) :: scene
     character(len=:), allocatable :: names
@@ -137,7 +137,7 @@ contains
     end associate
   end subroutine take_measurement
 
-  !> Reads what the columns are.
+  !> Reads the quantity of each column.
   subroutine take_quantities(deck, columns, quantity)
     type(deck_t), intent(inout) :: deck
     integer, intent(in) :: columns
@@ -179,7 +179,8 @@ contains
     end if
   end subroutine take_quantities
 
-  !> Reads the spring. A separation is that of the bodies, whatever holds them.
+  !> Reads the spring. A column of separations needs no spring, since a separation is that of the
+  !> bodies themselves.
   subroutine take_spring(scene)
     type(scene_t), intent(inout) :: scene
     real(wp), allocatable :: spring_constant
@@ -202,7 +203,8 @@ contains
     end associate
   end subroutine take_spring
 
-  !> Reads the noise: of the signal, and of the contact radius; of the only one of them.
+  !> Reads the standard deviation of the noise of the signal and of the contact radius, or of the
+  !> only one of them in the data.
   subroutine take_noise(scene)
     type(scene_t), intent(inout) :: scene
     real(wp), allocatable :: noise(:)
@@ -220,7 +222,7 @@ contains
       'one value, since the curve has a signal or a contact radius, and not both')
   end subroutine take_noise
 
-  !> Reads which curve of the file is meant.
+  !> Reads the number of the curve in its file.
   subroutine take_number(scene)
     type(scene_t), intent(inout) :: scene
     character(len=:), allocatable :: names
@@ -239,7 +241,7 @@ contains
     end associate
   end subroutine take_number
 
-  !> Reads labels of segments; numbers without superfluous digits.
+  !> Reads labels of segments. Numbers are written without superfluous digits.
   subroutine take_labels(deck, key, labels)
     type(deck_t), intent(inout) :: deck
     character(len=*), intent(in) :: key
@@ -263,7 +265,7 @@ contains
     integer :: i
 
     call deck%get('measurement', 'baseline', kind)
-    ! Not findloc, which finds no shorter string: compiler note 14.
+    ! findloc finds no string of another length (compiler note 14).
     do i = 1, size(kinds)
       if (kind == kinds(i)) baseline%degree = i - 1
     end do
@@ -273,8 +275,8 @@ contains
       'slope_each_way', 'baseline = ''constant'' has no slope')
   end subroutine take_baseline
 
-  !> Reads the units of the file's columns: metres, newtons, newtons over metres and volts, with SI
-  !> prefixes. The first is that of lengths, the second that of the signal.
+  !> Reads the units of the file's columns: metres, newtons, newtons per metre and volts, with SI
+  !> prefixes. The first unit is that of lengths, the second that of the signal.
   subroutine take_units(deck, quantity, unit, signal_in)
     type(deck_t), intent(inout) :: deck
     integer, intent(in) :: quantity(:)

@@ -1,4 +1,4 @@
-!> &numerics: how the equations are solved.
+!> Reads &numerics: how the equations are solved.
 module numerics_group
   use kinds, only: wp
   use deck_keys, only: key_spec, real_value, integer_value, word_value
@@ -7,8 +7,9 @@ module numerics_group
   private
   public :: numerics_keys, take_numerics, coarsest
 
-  !> A coarser accuracy makes a path or a cycle no cheaper: half the nodes would save a sixth of the
-  !> calculation at best, and folds might be lost. A drive in time has longer steps.
+  !> The coarsest accuracy. A coarser one would make a path or a cycle hardly cheaper: with half the
+  !> nodes, a sixth of the computing time would be saved at best, and folds might be missed. A drive
+  !> in time would take longer steps.
   real(wp), parameter :: coarsest = 1e-3_wp
 
   !> The rows of &numerics.

@@ -1,5 +1,5 @@
-!> &drive, &viscoelastic and &fluid: bodies driven in time, viscoelastic bodies, and a fluid that
-!> drains from between them.
+!> Reads &drive, &viscoelastic and &fluid: a drive in time, viscoelastic bodies, and a fluid that
+!> drains from the gap between the bodies.
 module rate_groups
   use kinds, only: wp
   use text, only: brief, counted
@@ -11,13 +11,13 @@ module rate_groups
   private
   public :: rate_keys, take_drive, take_creep, take_fluid
 
-  !> Largest number of terms of a creep.
+  !> Largest number of Kelvin-Voigt elements.
   integer, parameter :: most_terms = 20
-  !> Default accuracy of a drive; each further digit takes three times as many steps.
+  !> Default accuracy of a drive; each further digit needs three times as many steps.
   real(wp), parameter :: usual_accuracy = 1.0e-4_wp
-  !> Largest number of steps of a given length.
+  !> Largest number of steps if their length is given.
   real(wp), parameter :: most_steps = 4.0e4_wp
-  !> Groups that show bodies at rest.
+  !> Groups that need relaxed bodies in equilibrium.
   character(len=*), parameter :: at_rest(*) = [character(len=16) :: 'loading', 'unloading', &
     'equilibrium_path', 'profiles', 'stability', 'fit', 'regime']
 

@@ -1,6 +1,6 @@
 !> The content of a deck: this program's groups, with defaults, checked as a whole. The reader,
-!> `--keys` and the resolved deck use one table of all groups and keys; the rows of a group with
-!> keys are in the module that reads it.
+!> `--keys` and the resolved deck use one table of all groups and keys. The rows of a group are in
+!> the module that reads this group.
 module scene
   use kinds, only: wp
   use text, only: brief, quoted, listing, first_line, word_count, word_of
@@ -24,13 +24,14 @@ module scene
   private
   public :: scene_t, keys_of_scene, read_scene, swept_scene
 
-  !> The groups that compute something; a deck needs at least one of them.
+  !> The groups that start a computation; a deck needs at least one of them.
   character(len=*), parameter :: computing(*) = [character(len=17) :: 'loading', &
     'equilibrium_path', 'drive', 'approximations', 'classical', 'fit']
 
 contains
 
-  !> The table, one row for each group and key; the keys of a group follow the group.
+  !> The table, with one row for each group and key; the keys of a group follow the row of the
+  !> group.
   pure function keys_of_scene() result(specs)
     type(key_spec), allocatable :: specs(:)
 
@@ -61,8 +62,8 @@ contains
       key_spec('cost', meaning='As &summary.', kind=ignored_group)]
   end function keys_of_scene
 
-  !> Reads and checks a deck: the file, or `text`, whose name in messages is `file`. `error` lists
-  !> the mistakes, each with file, line, group and key.
+  !> Reads and checks a deck, from the file, or from `text` with the name `file` in messages. error:
+  !> lists the mistakes, each with file, line, group and key.
   subroutine read_scene(file, scene, error, text)
     character(len=*), intent(in) :: file
     type(scene_t), intent(out) :: scene
@@ -83,8 +84,8 @@ contains
     call move_alloc(scene%deck%error, error)
   end subroutine read_scene
 
-  !> The scene of a deck that has been read, group by group; it is a mistake if keys contradict each
-  !> other.
+  !> Makes the scene of a deck that has been read, group by group. Keys that contradict each other
+  !> are mistakes.
   subroutine make_scene(deck, scene)
     type(deck_t), intent(in) :: deck
     type(scene_t), intent(out) :: scene
@@ -121,9 +122,9 @@ contains
     if (.not. allocated(scene%deck%error)) call check_shape(scene)
   end subroutine make_scene
 
-  !> The scene with the keys `names`, blank-separated, set to `values`, and without &sweep and
-  !> &sensitivity. text: that of the key that holds one; without it this key stays as it is. The
-  !> measured curve of a fit is not read (`load_curve`).
+  !> The scene of one case of a sweep: the keys `names`, blank-separated, have the `values`, and
+  !> &sweep and &sensitivity are removed. text: the text of the key that holds a text; without it
+  !> this key keeps its value. The measured curve of a fit is not read here (`load_curve`).
   subroutine swept_scene(scene, names, values, variant, error, text)
     type(scene_t), intent(in) :: scene
     character(len=*), intent(in) :: names
@@ -152,7 +153,7 @@ contains
   end subroutine swept_scene
 
   !> Checks the sweep, so that a mistake is reported before hours of work. Every value is compared
-  !> with the bounds of its key; the whole scene is made with the smallest and with the largest
+  !> with the bounds of its key. The whole scene is made with the smallest and with the largest
   !> values of all keys, or with the first and the last case of a file.
   subroutine check_sweep(scene)
     type(scene_t), intent(inout) :: scene
@@ -189,7 +190,8 @@ contains
     call try_ends(scene)
   end subroutine check_sweep
 
-  !> Refuses values of key k outside its bounds.
+  !> Refuses a sweep if values of key k are outside the key's bounds. key: the key of &sweep that
+  !> the message names.
   subroutine try_values(scene, trial, k, values, key)
     type(scene_t), intent(inout) :: scene
     type(deck_t), intent(inout) :: trial
@@ -209,7 +211,8 @@ contains
     end do
   end subroutine try_values
 
-  !> Refuses a sweep if the scene is wrong at either end.
+  !> Refuses a sweep if the scene with the smallest or the largest values, or of the first or last
+  !> case, is wrong.
   subroutine try_ends(scene)
     type(scene_t), intent(inout) :: scene
     type(failure_t), allocatable :: trouble

@@ -1,6 +1,6 @@
-!> Checks of a scene as a whole: its numbers, and the units that follow from them, are within range;
-!> a body is large enough; its load is finite. The calculation is dimensionless, but the units are
-!> products of powers of the numbers in the deck.
+!> Checks of a scene as a whole: its numbers and units must be within range, a body must be large
+!> enough, and its load must be finite. The calculation is dimensionless, but the units are products
+!> of powers of the numbers in the deck and may overflow.
 module scene_checks
   use kinds, only: wp, pi
   use text, only: brief
@@ -15,20 +15,20 @@ module scene_checks
   private
   public :: check_derived, check_shape
 
-  !> Decimal order of the largest h0 in the law's lengths; beyond, rounding exceeds this length.
+  !> Decimal order of the largest h0 in lengths L of the law. Beyond it rounding errors exceed L.
   integer, parameter :: most_lengths = 15
-  !> Decimal order of the largest sigma of bodies whose states are searched for. Above 3e8 states in
-  !> contact are lost in rounding, which takes seconds to find here, and minutes at 1e45.
+  !> Decimal order of the largest sigma for which states are searched. Above 3e8, rounding hides the
+  !> states in contact; the search finds this in seconds here, and would take minutes at 1e45.
   integer, parameter :: most_adhesion = 39
-  !> The groups, and their keys, that have the h0 or the positions of a drive.
+  !> The groups with values of h0 or positions of a drive, and the keys of these values.
   character(len=*), parameter :: groups(*) = [character(len=16) :: 'loading', 'unloading', &
     'equilibrium_path', 'device', 'drive', 'classical', 'approximations'], &
     keys(*) = [character(len=8) :: 'h0_start', 'h0_end', 'z_start', 'z_turn', 'z_end']
 
 contains
 
-  !> Refuses a scene whose units, coupling or h0 are out of range. It adds logarithms, which cannot
-  !> overflow.
+  !> Refuses a scene whose units, coupling or h0 are out of range. Logarithms are added, since
+  !> products might overflow.
   subroutine check_derived(scene)
     type(scene_t), intent(inout) :: scene
     real(wp) :: length, pressure, radius, coupling, farthest, position
@@ -86,8 +86,9 @@ contains
   end subroutine check_shape
 
   !> Refuses a body that ends within the contact, or where the force still acts, since Derjaguin's
-  !> approximation does not hold at an end. The pressure at the end times an area of the body's size
-  !> must be below the accuracy, as a part of the load of bodies without an end.
+  !> approximation does not hold at an end. The load at the end is estimated as the pressure there
+  !> times the squared size of the body. Relative to the load of bodies without an end, it must be
+  !> below the accuracy.
   subroutine check_end(scene)
     type(scene_t), intent(inout) :: scene
     type(problem_t) :: problem

@@ -1,4 +1,4 @@
-!> This program's groups, one derived type each; those of the experiments are in
+!> This program's groups, one derived type for each. The types of the experiments are in
 !> `experiment_request`. Optional groups and keys are allocatable.
 module scene_groups
   use kinds, only: wp, long
@@ -17,16 +17,17 @@ module scene_groups
   private
   public :: scene_t, bodies_t, range_t, sweep_t, axis_t, case_file_t, compliance_of
 
-  !> &bodies
+  !> The group &bodies.
   type :: bodies_t
-    !> E/(1-nu^2) of two identical bodies with the same compliance [Pa]; undefined if `rigid`.
+    !> The plane-strain modulus E/(1-nu^2) of two identical bodies with the same compliance as these
+    !> bodies [Pa]; undefined if `rigid`.
     real(wp) :: stiffness = 0
-    !> Moduli [Pa] and Poisson's ratios of the bodies, if they are given.
+    !> Young's moduli [Pa] and Poisson's ratios of the bodies, if they are given.
     real(wp), allocatable :: young(:), poisson(:)
-    !> With &layer: the surfaces, in SI units. Stiffness and shares are then those of the top
-    !> layers.
+    !> With &layer: the surfaces, in SI units. The modulus `stiffness` and the shares are then those
+    !> of the top layers.
     type(layered_surface_t), allocatable :: surface(:)
-    !> Compliance of each body over their mean.
+    !> The compliance of each body, relative to the mean of both.
     real(wp) :: share(2) = 1
     logical :: rigid = .false.
   end type bodies_t
@@ -46,9 +47,9 @@ module scene_groups
     real(wp), allocatable :: values(:)
   end type axis_t
 
-  !> The cases of a file, which are not kept: their number, the checksum of all lines, the first and
-  !> the last case, and for each key three values (value, key) that show whether all its values are
-  !> allowed, with their cases.
+  !> The cases of a file, of which only some are kept. cases: their number; digest: the checksum of
+  !> all lines; first, last: the first and the last case. telling: for each key three values (value,
+  !> key) that show whether all its values are allowed; of_case: the cases with these values.
   type :: case_file_t
     character(len=:), allocatable :: path
     integer :: cases = 0
@@ -58,11 +59,12 @@ module scene_groups
     integer, allocatable :: of_case(:, :)
   end type case_file_t
 
-  !> &sweep: blank-separated keys as 'group.key', and either the values of each key, every
-  !> combination of which is a case (the last key varies fastest), or a file with one case a row.
-  !> words: the words that a key may hold; its value is the number of one of them. Blank for
-  !> numbers. text_key: the number of the key that holds a text, such as the name of a file; 0:
-  !> none. Its value is the number of one of `texts`, or, with a file, that of the row.
+  !> The group &sweep. names: blank-separated keys of the form 'group.key'. axis: the values of each
+  !> key, every combination of which is a case (the last key varies fastest). file: instead of
+  !> these, a file with one case per row. words: for each key the words that it may hold, blank for
+  !> numbers; the value of such a key is the number of one word. text_key: the number of the key
+  !> that holds a text, such as the name of a file; 0 if there is none. Its value is the number of
+  !> one of `texts` or, with a file of cases, that of the row.
   type :: sweep_t
     character(len=:), allocatable :: names
     character(len=80), allocatable :: words(:)
@@ -70,7 +72,7 @@ module scene_groups
     type(line_t), allocatable :: texts(:)
     type(axis_t), allocatable :: axis(:)
     type(case_file_t), allocatable :: file
-    !> The curves of a file with several, once they are known.
+    !> The positions of the curves in a file with several curves, once they are known.
     type(curve_index_t) :: index
     !> Whether the cost of each case is measured.
     logical :: costs = .false.
@@ -83,15 +85,15 @@ module scene_groups
     procedure :: shown
   end type sweep_t
 
-  !> The whole content of a deck: the experiments, and all else.
+  !> The whole content of a deck: the experiments, and everything else.
   type, extends(request_t) :: scene_t
-    !> The deck itself, with all defaults.
+    !> The deck itself, including all defaults.
     type(deck_t) :: deck
     character(len=:), allocatable :: title
     type(bodies_t) :: bodies
     !> The sum of the deck's forces.
     class(force_law_t), allocatable :: law
-    !> The shape, in the units of that law.
+    !> The shape, in the units of the force law.
     class(shape_t), allocatable :: shape
     type(range_t), allocatable :: approximations, classical
     !> Whether the deck has &stability, and &regime.
@@ -127,7 +129,7 @@ contains
     end if
   end function cases
 
-  !> The values of the keys in case i of ranges and lists.
+  !> The values of the keys in case i of a sweep with ranges and lists.
   pure function values(self, i)
     class(sweep_t), intent(in) :: self
     integer, intent(in) :: i
@@ -156,7 +158,8 @@ contains
     end if
   end function last
 
-  !> The text of a case with these values, if a key holds one and no file has it; else ''.
+  !> The text of a case with these values, if one of its keys holds a text and the cases are not
+  !> read from a file; otherwise ''.
   pure function text_of(self, values) result(text)
     class(sweep_t), intent(in) :: self
     real(wp), intent(in) :: values(:)
@@ -175,7 +178,7 @@ contains
     varies = index(' ' // lower(self%names) // ' ', ' ' // key // ' ') > 0
   end function varies
 
-  !> A value of key k as text for a message; `of_case` is the text of its case.
+  !> A value of key k as text for a message. of_case: the text of its case.
   pure function shown(self, k, value, of_case) result(text)
     class(sweep_t), intent(in) :: self
     integer, intent(in) :: k
@@ -201,7 +204,7 @@ contains
     if (sweeps) sweeps = self%sweep%varies(key)
   end function sweeps
 
-  !> Whether the states of a curve are written; a sweep writes only numbers of its curves.
+  !> Whether the states of a curve are written; a sweep writes only numbers derived from its curves.
   pure logical function has_curve(self)
     class(scene_t), intent(in) :: self
 
@@ -215,7 +218,7 @@ contains
     has_eigenvalues = self%has_curve() .and. self%stability
   end function has_eigenvalues
 
-  !> Number of columns that a drive in time adds to the curve.
+  !> Number of columns by which a drive in time extends the curve.
   pure integer function drive_columns(self)
     class(scene_t), intent(in) :: self
 

@@ -1,6 +1,6 @@
-!> &layer: layers bonded to a body, from the top down.
+!> Reads &layer: layers bonded to a body, from the top down.
 module scene_layers
-  ! The order of modules is one that compilers read: compiler note 12.
+  ! The order of the modules is one that all compilers accept: compiler note 12.
   use kinds, only: wp
   use deck_keys, only: key_spec, real_list, word_value
   use text, only: brief, counted
@@ -11,11 +11,11 @@ module scene_layers
   private
   public :: layer_keys, take_layer, layer_bears_all, check_thinness
 
-  !> Largest ratio of two thicknesses or moduli.
+  !> Largest ratio of two thicknesses, or of two moduli.
   real(wp), parameter :: most_unlike = 1.0e9_wp
-  !> Smallest thickness of the top layer over the lateral unit. Contacts are wider than that unit.
-  !> The number of waves that a thin layer affects grows as the contact radius over the thickness;
-  !> at this limit they take gigabytes of memory, and minutes of work.
+  !> Smallest thickness of the top layer, relative to the lateral unit. Contacts are wider than this
+  !> unit. The number of Hankel components that a thin layer affects is proportional to the ratio of
+  !> contact radius and thickness; at this limit they take gigabytes of memory and minutes of work.
   real(wp), parameter :: thinnest = 1.0e-3_wp
 
   !> Largest number of layers.
@@ -41,7 +41,7 @@ module scene_layers
 
 contains
 
-  !> Whether only layers deform, so that &bodies need not say how the bodies do.
+  !> Whether only layers deform. Then &bodies need not give the moduli of the bodies.
   logical function layer_bears_all(deck)
     type(deck_t), intent(in) :: deck
 
@@ -49,8 +49,8 @@ contains
       (word_is(deck, 'body', 'both') .or. word_is(deck, 'partner', 'rigid'))
   end function layer_bears_all
 
-  !> Reads &layer, after &bodies: the surfaces, and the stiffness of the two bodies as given by
-  !> their top layers.
+  !> Reads &layer, after &bodies: the surfaces, and the plane-strain modulus of the two bodies,
+  !> which is that of their top layers.
   subroutine take_layer(scene)
     type(scene_t), intent(inout) :: scene
     type(layered_surface_t) :: coat
@@ -100,7 +100,8 @@ contains
     end associate
   end subroutine take_layer
 
-  !> Refuses a top layer that is too thin to be computed; called after forces and shape are read.
+  !> Refuses a top layer that is too thin for the computation. It is called after forces and shape
+  !> have been read.
   subroutine check_thinness(scene)
     type(scene_t), intent(inout) :: scene
     real(wp), allocatable :: thickness(:)
@@ -113,7 +114,7 @@ contains
     end associate
   end subroutine check_thinness
 
-  !> Joins neighbouring layers of the same material to one.
+  !> Joins neighbouring layers of the same material into one.
   pure subroutine join_alike(thickness, young, poisson)
     real(wp), allocatable, intent(inout) :: thickness(:), young(:), poisson(:)
     integer :: i
@@ -126,7 +127,7 @@ contains
     end do
   end subroutine join_alike
 
-  !> Refuses keys that contradict each other or &bodies.
+  !> Refuses keys that contradict each other or contradict &bodies.
   subroutine check_layers(scene, thickness, young, poisson)
     type(scene_t), intent(inout) :: scene
     real(wp), intent(in) :: thickness(:), young(:), poisson(:)
@@ -162,7 +163,7 @@ contains
     end associate
   end subroutine check_layers
 
-  !> Refuses numbers so different that rounding would hide the smaller ones.
+  !> Refuses numbers that differ so much that rounding would hide the smaller ones.
   subroutine check_spread(scene, key, values)
     type(scene_t), intent(inout) :: scene
     character(len=*), intent(in) :: key

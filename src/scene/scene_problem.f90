@@ -1,7 +1,7 @@
-!> &bodies: the two bodies and how they deform. With layers, forces and shape of the deck they make
-!> the dimensionless problem of a scene.
+!> Reads &bodies: the two bodies and how they deform. With the layers, forces and shape of the deck
+!> they define the dimensionless problem of a scene.
 module scene_problem
-  ! The order of modules is one that compilers read: compiler note 12.
+  ! The order of the modules is one that all compilers accept: compiler note 12.
   use kinds, only: wp
   use deck_keys, only: key_spec, real_value, real_list, logical_value
   use layered_surface, only: layered_surface_t
@@ -38,7 +38,7 @@ module scene_problem
 
 contains
 
-  !> Reads &bodies, which must say in exactly one way how the bodies deform.
+  !> Reads &bodies, which must specify in exactly one way how the bodies deform.
   subroutine take_bodies(scene)
     type(scene_t), intent(inout) :: scene
     real(wp), allocatable :: young(:), poisson(:)
@@ -59,7 +59,7 @@ contains
       else if (ways == 0) then
         call deck%mistake('bodies', 'stiffness', 'missing; ' // one_way)
       else if (ways > 1) then
-        ! The message points at the last of the given ways in the order of the table.
+        ! The message refers to the last of the given ways in the order of the table.
         key = 'stiffness'
         if (size(poisson) > 0) key = 'poisson'
         if (size(young) > 0) key = 'young'
@@ -71,12 +71,12 @@ contains
       else if (size(poisson) > 0 .and. size(young) == 0) then
         call deck%mistake('bodies', 'young', 'missing; young and poisson go together')
       else if (pair) then
-        ! A single value holds for both.
+        ! A single value holds for both bodies.
         bodies%young = [young(1), young(size(young))]
         bodies%poisson = [poisson(1), poisson(size(poisson))]
-        ! The compliances (1-nu^2)/E add, and identical bodies that deform together as much have
-        ! their mean; each body's part of the deformation is its compliance over this mean. The two
-        ! may differ by any factor.
+        ! The compliances (1-nu^2)/E of the bodies add up. Two identical bodies that together deform
+        ! as much have the mean compliance. The share of a body in the deformation is its compliance
+        ! divided by this mean. The two compliances may differ by any factor.
         compliance = compliance_of(bodies%young, bodies%poisson)
         bodies%stiffness = 2/sum(compliance)
         bodies%share = bodies%stiffness*compliance

@@ -1,5 +1,5 @@
-!> &sweep: the values of keys, from ranges, a list or a file. Every combination of the values of
-!> several keys is a case.
+!> Reads &sweep: the values of keys, from ranges, a list or a file. If several keys have values,
+!> every combination of values is a case.
 module sweep_group
   use kinds, only: wp
   use failure, only: failure_t
@@ -14,12 +14,12 @@ module sweep_group
   private
   public :: sweep_keys, take_sweep
 
-  !> Largest number of keys of a sweep; of values of one key; of words in the deck; of cases.
+  !> Largest number of keys in a sweep; of values of one key; of words in the deck; of cases.
   integer, parameter :: most_keys = 8, most_values = 10000, most_words = 10000
   real(wp), parameter :: most_cases = 1.0e7_wp
   character(len=*), parameter :: of_range(4) = ['from ', 'to   ', 'count', 'scale']
 
-  !> Groups that ask for tables and states alone. A sweep has the numbers of its cases.
+  !> Groups that only ask for tables and states, which a sweep does not write.
   character(len=*), parameter :: of_tables(*) = [character(len=9) :: 'profiles', 'stability', &
     'table']
 
@@ -74,7 +74,7 @@ contains
       'costs', 'not of fits')
   end subroutine take_sweep
 
-  !> Reads the cases: a file, or keys with values or ranges.
+  !> Reads the cases from a file, or from keys with values or ranges.
   subroutine take_cases(scene)
     type(scene_t), intent(inout) :: scene
     integer :: i
@@ -103,7 +103,7 @@ contains
     end associate
   end subroutine take_cases
 
-  !> Finds for each key the words that it may hold, and the key that holds a text.
+  !> Finds the words that each key may hold, and the key that holds a text.
   subroutine find_words(deck, sweep)
     type(deck_t), intent(in) :: deck
     type(sweep_t), intent(inout) :: sweep
@@ -116,7 +116,7 @@ contains
     end do
   end subroutine find_words
 
-  !> Reads the words of the key that holds a word or a text.
+  !> Reads the values of the key that holds a word or a text.
   subroutine take_words(deck, sweep)
     type(deck_t), intent(inout) :: deck
     type(sweep_t), intent(inout) :: sweep
@@ -148,7 +148,7 @@ contains
     end if
   end subroutine take_words
 
-  !> Which keys hold a word or a text.
+  !> Marks the keys that hold a word or a text.
   pure function wordy_keys(sweep) result(wordy)
     type(sweep_t), intent(in) :: sweep
     logical :: wordy(size(sweep%words))
@@ -195,7 +195,7 @@ contains
     end do
   end function position_of
 
-  !> Refuses keys that contradict `other`.
+  !> Refuses keys of &sweep that contradict the key `other`.
   subroutine refuse(deck, keys, other)
     type(deck_t), intent(inout) :: deck
     character(len=*), intent(in) :: keys(:), other
@@ -207,7 +207,7 @@ contains
     end do
   end subroutine refuse
 
-  !> Reads the cases of a file once, to check that all rows are cases.
+  !> Reads the cases of a file once, to check that every row is a valid case.
   subroutine take_file(deck, sweep)
     type(deck_t), intent(inout) :: deck
     type(sweep_t), intent(inout) :: sweep
@@ -242,8 +242,8 @@ contains
     end if
   end subroutine take_file
 
-  !> Counts a case of a file, and keeps values that show whether all are allowed: the smallest, the
-  !> largest and the first that is not an integer.
+  !> Counts a case of a file, and keeps those values that show whether all values are allowed: the
+  !> smallest, the largest, and the first that is not an integer.
   subroutine note_case(file, values, text)
     type(case_file_t), intent(inout) :: file
     real(wp), intent(in) :: values(:)

@@ -1,6 +1,6 @@
-!> The values of a key of &sweep: from `from`, `to`, `count` and `scale`; the texts in `words`,
-!> among which a pattern stands for all files that it matches if the key names a file; or the
-!> numbers of all curves of a file.
+!> The values of a key of &sweep. They come from `from`, `to`, `count` and `scale`; or they are the
+!> texts in `words`; or the numbers of all curves of a file. If the key names a file, a pattern in
+!> `words` stands for all files that match it.
 module sweep_values
   use, intrinsic :: iso_c_binding, only: nul => c_null_char
   use kinds, only: wp, long
@@ -17,7 +17,7 @@ module sweep_values
 
 contains
 
-  !> The values of keys from their ranges; none after a mistake.
+  !> Takes the values of keys from their ranges; there are none after a mistake.
   subroutine take_ranges(deck, axis, keys)
     type(deck_t), intent(inout) :: deck
     type(axis_t), intent(inout) :: axis(:)
@@ -43,7 +43,7 @@ contains
 
   contains
 
-    !> Refuses a list without exactly one item for each key.
+    !> Refuses a list unless it has exactly one item for each key.
     subroutine check_size(key, items)
       character(len=*), intent(in) :: key
       integer, intent(in) :: items
@@ -59,7 +59,7 @@ contains
 
   end subroutine take_ranges
 
-  !> The values from `from` to `to`; none after a mistake.
+  !> Computes the values from `from` to `to`; there are none after a mistake.
   subroutine spread_values(deck, from, to, number, scale, values)
     type(deck_t), intent(inout) :: deck
     real(wp), intent(in) :: from, to, number
@@ -86,14 +86,14 @@ contains
       else
         values = [(from + (to - from)*(i - 1)/(n - 1), i=1, n)]
       end if
-      ! The ends without rounding.
+      ! The first and last value are set without rounding errors.
       values(1) = from
       values(n) = to
     end if
   end subroutine spread_values
 
-  !> Sets `texts`, and their numbers as the values of the key. What the files are becomes a part of
-  !> the deck's checksums: an interrupted sweep does not go on with other files.
+  !> Sets `texts`, and their numbers as the values of the key. Names and sizes of files become a
+  !> part of the deck's checksums, so that an interrupted sweep does not continue with other files.
   subroutine take_texts(deck, sweep)
     type(deck_t), intent(inout) :: deck
     type(sweep_t), intent(inout) :: sweep
@@ -127,7 +127,8 @@ contains
 
   contains
 
-    !> Adds names, each with `nul` behind it, without their first letters.
+    !> Adds names, each of which ends with `nul`. letters: number of letters to remove from the
+    !> beginning of a name in the deck's folder.
     subroutine add_names(names, letters)
       character(len=*), intent(in) :: names
       integer, intent(in) :: letters
@@ -148,7 +149,7 @@ contains
       call move_alloc(more, sweep%texts)
     end subroutine add_names
 
-    !> Notes the checksum of the names and sizes of the files.
+    !> Adds the checksum of the names and sizes of the files to those of the deck.
     subroutine note_files()
       integer(long) :: digest(size(sweep%texts), 2)
       integer :: i

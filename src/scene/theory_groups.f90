@@ -1,4 +1,5 @@
-!> &approximations and &classical: closed forms beside the curve, over a range of h0.
+!> Reads &approximations and &classical: closed forms, computed over a range of h0 for comparison
+!> with the curve.
 module theory_groups
   use text, only: clip, guess, listing, lower, quoted, word_count, word_of
   use deck_keys, only: key_spec, real_value, integer_value, names_value
@@ -28,7 +29,7 @@ contains
         '.', most=size(theories), otherwise='hertz, jkr, dmt and maugis_dugdale')]
   end function theory_keys
 
-  !> The rows of one of these groups.
+  !> The rows of &approximations or &classical.
   pure function range_keys(name, meaning, example) result(specs)
     character(len=*), intent(in) :: name, meaning, example
     type(key_spec) :: specs(4)
@@ -64,7 +65,7 @@ contains
     if (scene%deck%is_set('classical', 'theories')) call take_names(scene)
   end subroutine take_classical
 
-  !> Reads the theories to show.
+  !> Reads the names of the theories to show.
   subroutine take_names(scene)
     type(scene_t), intent(inout) :: scene
     character(len=:), allocatable :: names, name
@@ -102,7 +103,8 @@ contains
     end do
   end function all_names
 
-  !> Reads one of these groups; the default of its range is that of &loading or &equilibrium_path.
+  !> Reads the range of &approximations or &classical. Its default is the range of &loading or
+  !> &equilibrium_path.
   subroutine take_range(scene, group, range)
     type(scene_t), intent(inout) :: scene
     character(len=*), intent(in) :: group

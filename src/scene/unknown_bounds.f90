@@ -10,12 +10,12 @@ module unknown_bounds
 
 contains
 
-  !> Makes the ends of a key's range bounds of the unknown: a search that may not go beyond them
-  !> otherwise ends there before the others are found.
+  !> Makes the limits of a key's range bounds of the unknown. Without these bounds the search would
+  !> stop at a value that the key does not allow, before it has found the others.
   pure subroutine take_range(spec, unknown)
     type(key_spec), intent(in) :: spec
     type(unknown_t), intent(inout) :: unknown
-    !> Part of the value by which the search stays inside an end that is excluded.
+    !> The relative distance by which the search stays inside a limit that is itself excluded.
     real(wp), parameter :: inside = 1.0e-6_wp
 
     associate (value => unknown%value)
@@ -28,7 +28,7 @@ contains
     end associate
   end subroutine take_range
 
-  !> Reads bounds and prior standard deviations, one for each unknown.
+  !> Reads the bounds and prior standard deviations, one for each unknown.
   subroutine take_bounds(deck, unknown)
     type(deck_t), intent(inout) :: deck
     type(unknown_t), intent(inout) :: unknown(:)
