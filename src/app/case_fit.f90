@@ -1,4 +1,4 @@
-!> The cases of a sweep that fits measured curves: one, or all that are fitted together.
+!> The cases of a sweep that fits measured curves: each curve alone, or all curves together.
 module case_fit
   use kinds, only: wp, nan
   use text, only: first_line
@@ -30,8 +30,8 @@ module case_fit
   private
   public :: run_fit_case, fit_together
 
-  !> The fit of a case, whose scene is that of the sweep with the values of the case. readable:
-  !> whether the curve could be read.
+  !> The fit of a case. scene: the scene of the sweep with the values of the case. readable: whether
+  !> the curve could be read.
   type :: fitted_case_t
     type(scene_t) :: scene
     type(problem_t) :: problem
@@ -42,10 +42,10 @@ module case_fit
 
 contains
 
-  !> Fits the curve of the case with the given number, values and text of the scene's sweep. A curve
-  !> that cannot be read or fitted has a row with the reason. index: where the curves of a file with
-  !> several are, once they are known. Fits make strings: two must not be made at the same time in
-  !> one process (compiler note 4).
+  !> Fits the curve of the case with the given number, values and text of the scene's sweep. If a
+  !> curve cannot be read or fitted, the row has the reason. index: the positions of the curves in a
+  !> file with several curves, once they are known. Fits make strings, so that only one may be made
+  !> at a time in one process (compiler note 4).
   subroutine run_fit_case(scene, progress, index, case)
     type(scene_t), intent(in) :: scene
     type(progress_t), intent(in), target :: progress
@@ -89,7 +89,7 @@ contains
     end if
   end subroutine fit_case
 
-  !> Makes the row of a case from its fit.
+  !> Makes the row of a case from the result of its fit.
   subroutine finish_case(scene, fitted, case)
     type(scene_t), intent(in) :: scene
     type(fitted_case_t), intent(inout) :: fitted
@@ -116,7 +116,7 @@ contains
     case%costs = [real(wp) ::]
   end subroutine finish_case
 
-  !> The numbers of the columns; NaN without a fit.
+  !> The numbers of the columns of a fit; NaN without a fit.
   function numbers_of_fit(scene, outcome, doubts) result(numbers)
     type(scene_t), intent(in) :: scene
     type(fit_outcome_t), intent(in) :: outcome
@@ -148,7 +148,7 @@ contains
     end associate
   end function numbers_of_fit
 
-  !> The verdict on a fit that was made.
+  !> The verdict on a completed fit.
   pure integer function verdict_of(outcome, doubts) result(verdict)
     type(fit_outcome_t), intent(in) :: outcome
     type(line_t), intent(in) :: doubts(:)
@@ -163,8 +163,8 @@ contains
     end if
   end function verdict_of
 
-  !> Fits the curves of all cases together: each alone first, then all that the model describes. A
-  !> curve that takes no part has the row of its fit alone.
+  !> Fits the curves of all cases together: first each curve alone, then all curves that the model
+  !> describes. A curve that takes no part keeps the row of its fit alone.
   subroutine fit_together(scene, progress, case, joint)
     type(scene_t), intent(in) :: scene
     type(progress_t), intent(in), target :: progress
@@ -180,7 +180,7 @@ contains
     index = scene%sweep%index
     first = 0
     do i = 1, size(case)
-      ! All others start from the first that is described.
+      ! All later fits start from the values of the first curve that the model describes.
       if (first > 0) case(i)%like = fitted(first)%outcome%fitted%value
       call fit_case(scene, progress, index, case(i), fitted(i))
       call take_curve(fitted(i), curve(i))
@@ -216,7 +216,7 @@ contains
 
   end subroutine fit_together
 
-  !> Makes a curve of the joint fit from its fit alone.
+  !> Makes a curve for the joint fit from the fit of this curve alone.
   subroutine take_curve(fitted, curve)
     type(fitted_case_t), intent(in) :: fitted
     type(joint_curve_t), intent(out) :: curve
@@ -225,7 +225,7 @@ contains
 
     curve%outcome = fitted%outcome
     if (.not. fitted%readable) return
-    ! The deck was read, so that the family has no mistake.
+    ! The deck has been read already, so that its family has no mistake.
     call family_of_fit(fitted%scene%deck, family, error)
     allocate (curve%family, source=family)
     allocate (curve%wider, source=widened(family))

@@ -1,5 +1,5 @@
-!> The cases of a sweep: those to be computed, in order, and the rows of those that have ended. Each
-!> case is one row: the values of its keys, and its numbers.
+!> The cases of a sweep: those still to be computed, in order, and the rows of completed cases. Each
+!> case has one row with the values of its keys and its numbers.
 module case_queue
   use kinds, only: wp
   use failure, only: failure_t, fail, bad_input, file_trouble
@@ -15,22 +15,23 @@ module case_queue
   private
   public :: case_queue_t
 
-  !> Number of the first cases of a sweep of fits, of which one shows the others where to start.
+  !> In a sweep of fits, the first fit among this number of cases that succeeds gives the starting
+  !> values of the later ones.
   integer, parameter :: most_first = 5
 
-  !> The cases of a sweep: number of cases handed out, cases that wait for the rows before theirs,
-  !> number of rows written, and the tally of these. `waiting` has a case at its number modulo the
-  !> array's size.
+  !> The cases of a sweep. handed_out: number of cases handed out. waiting: completed cases whose
+  !> rows cannot be written before those of earlier cases; a case stands at its number modulo the
+  !> size of the array. written: number of rows written. tally: the tally of these.
   type, extends(foreman_t) :: case_queue_t
     type(scene_t), pointer :: scene => null()
     type(results_t), pointer :: results => null()
     character(len=column_width), allocatable :: columns(:), cost_columns(:)
-    !> The file of the cases, if the sweep has one.
+    !> The file with the cases, if the sweep has one.
     type(case_rows_t) :: rows
     type(case_t), allocatable :: waiting(:)
     integer :: handed_out = 0, written = 0
     type(sweep_tally_t) :: tally
-    !> The fitted values of the first curve that its model describes, from which later ones start.
+    !> The fitted values of the first curve that the model describes; later fits start from them.
     real(wp), allocatable :: like(:)
   contains
     procedure :: next
@@ -47,8 +48,8 @@ module case_queue
 
 contains
 
-  !> The next case that is not complete. found = .false. if there is none, if results cannot be
-  !> written, or if the file has changed since the deck was read.
+  !> The next case that is not complete. found = .false. if there is no such case, if results cannot
+  !> be written, or if the file has changed since the deck was read.
   subroutine next(self, case, found)
     class(case_queue_t), intent(inout) :: self
     type(case_t), intent(inout) :: case
@@ -84,9 +85,9 @@ contains
     end associate
   end subroutine next
 
-  !> Whether the next case has to wait: the first fits are made one by one until the model describes
-  !> a curve. Then no result depends on how many are made at once. Fits that are made together are
-  !> made one by one anyway.
+  !> Whether the next case has to wait. The first fits are made one by one until the model describes
+  !> a curve; then no result depends on the number of fits made at the same time. Fits that are made
+  !> together are made one by one anyway.
   pure logical function waits(self)
     class(case_queue_t), intent(in) :: self
 
@@ -95,10 +96,10 @@ contains
     if (waits) waits = .not. self%scene%fit%is_joint()
   end function waits
 
-  !> Reads the row of the next case from the file, or, if all are `given`, what is after the last.
-  !> The file was read before without a mistake, and all of its lines are compared with that
-  !> reading: a changed row may be a case too. Nothing shows which cases are still of the deck, so
-  !> that no run may go on from them.
+  !> Reads the row of the next case from the file. If all cases are `given`, it checks that no row
+  !> follows. The file was read before without a mistake. All of its lines are compared with that
+  !> reading, since a changed row may also be a valid case. If the file has changed, it is not known
+  !> which completed cases belong to the deck, so that no run may continue from them.
   subroutine next_row(self, values, given, error)
     class(case_queue_t), intent(inout) :: self
     real(wp), allocatable, intent(inout) :: values(:)
@@ -140,7 +141,7 @@ contains
     call self%enter(case)
   end subroutine take_answer
 
-  !> Takes a case that has been computed, and appends it to the journal.
+  !> Takes a computed case and appends it to the journal.
   subroutine enter(self, case)
     class(case_queue_t), intent(inout) :: self
     type(case_t), intent(inout) :: case
@@ -169,7 +170,7 @@ contains
     end do
   end subroutine begin
 
-  !> Whether a case has ended, in this run or in the interrupted one.
+  !> Whether a case is complete, from this run or from the interrupted one.
   pure logical function has(self, number)
     class(case_queue_t), intent(in) :: self
     integer, intent(in) :: number
@@ -178,7 +179,7 @@ contains
     if (.not. has) has = self%waiting(mod(number, size(self%waiting)))%number == number
   end function has
 
-  !> Adds a case that has ended, and writes all rows that are next.
+  !> Adds a completed case, and writes all rows that are next in order.
   subroutine add(self, case)
     class(case_queue_t), intent(inout) :: self
     type(case_t), intent(in) :: case
@@ -198,7 +199,8 @@ contains
     end do
   end subroutine add
 
-  !> Keeps the values of the first of the first curves that is described.
+  !> Keeps the fitted values of a case if it is the first one that the model describes, among the
+  !> first cases.
   pure subroutine learn(self, case)
     class(case_queue_t), intent(inout) :: self
     type(case_t), intent(in) :: case
@@ -226,7 +228,7 @@ contains
     end associate
   end subroutine write_case
 
-  !> Makes room for a case that is `ahead` cases after the last one written.
+  !> Enlarges the array for a case that comes `ahead` cases after the last one written.
   subroutine make_room(waiting, ahead)
     type(case_t), allocatable, intent(inout) :: waiting(:)
     integer, intent(in) :: ahead

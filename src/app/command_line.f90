@@ -12,12 +12,13 @@ module command_line
     character(len=:), allocatable :: name
   end type file_t
 
-  !> The content of the command line.
+  !> The content of the command line: options and decks.
   type :: options_t
-    !> Folder in which each deck gets a folder of its own, or '-' for standard output; folder for
-    !> the results of a single deck, which go to standard output too if the first is '-'.
+    !> out: the folder in which each deck gets a folder of its own, or '-' for standard output.
+    !> into: the folder for the results of a single deck; if `out` is '-', these are also written to
+    !> standard output.
     character(len=:), allocatable :: out, into
-    !> The name of the deck on standard input in messages and results.
+    !> The name that the deck on standard input has in messages and results.
     character(len=:), allocatable :: name
     logical :: check = .false., price = .false., resume = .false., quiet = .false., &
       verbose = .false.
@@ -36,8 +37,8 @@ module command_line
 
 contains
 
-  !> Reads the arguments of this run. Fails on unknown options, if a deck is missing, and on two
-  !> decks whose results would have the same folder.
+  !> Reads the arguments of this run. It fails on unknown options, if a deck is missing, and if two
+  !> decks would have the same folder of results.
   subroutine read_command_line(options, error)
     type(options_t), intent(out) :: options
     type(failure_t), allocatable, intent(out) :: error
@@ -112,7 +113,7 @@ contains
       all([(options%decks(i)%name /= '-', i=1, size(options%decks))])) then
       call fail(error, bad_input, '--name is for a deck on standard input, -')
     else if (allocated(options%name)) then
-      ! The folder would be that of all results, or one above it.
+      ! The folder would be the one of all results, or one above it.
       if (verify(stem_of(options%name), '.') == 0) call fail(error, bad_input, &
         '--name needs a name for a folder, not "' // printable(options%name) // '"')
     end if
@@ -137,7 +138,7 @@ contains
       if (allocated(option)) given = option == text
     end function given
 
-    !> Takes the text after the sign of an option, or the next argument.
+    !> Takes the value of an option: the text after its equals sign, or the next argument.
     subroutine take_value(taken)
       character(len=:), allocatable, intent(inout) :: taken
 
@@ -153,14 +154,14 @@ contains
 
   end subroutine read_command_line
 
-  !> Whether the program is asked about itself, and no deck is read.
+  !> Whether the options only ask for information about the program, so that no deck is read.
   pure logical function informs(self)
     class(options_t), intent(in) :: self
 
     informs = self%keys .or. self%results .or. self%version .or. self%help
   end function informs
 
-  !> Refuses two decks whose results would have one folder.
+  !> Refuses two decks whose results would be in the same folder.
   subroutine check_stems(options, error)
     type(options_t), intent(in) :: options
     type(failure_t), allocatable, intent(inout) :: error
@@ -191,8 +192,8 @@ contains
 
   end subroutine check_stems
 
-  !> The file name of `path` without folders and without its last extension. A name like `...nml`
-  !> stays whole, since its stem would be a folder above the results.
+  !> The file name of `path` without folders and without its last extension. A name such as `...nml`
+  !> is kept whole, since without the extension it would name a folder above the results.
   pure function stem_of(path) result(stem)
     character(len=*), intent(in) :: path
     character(len=:), allocatable :: stem
@@ -214,7 +215,7 @@ contains
     argument = with_slashes(argument)
   end function argument_at
 
-  !> A description of the program, its options and a deck to start from.
+  !> A description of the program and its options, and an example of a deck.
   function help_text() result(text)
     character(len=:), allocatable :: text
     integer :: i

@@ -1,5 +1,5 @@
-!> Distributes the cases of a sweep over processes, in batches that take about `batch_seconds` each,
-!> so that there are few messages, however short a case is.
+!> Distributes the cases of a sweep over processes. A batch of cases takes about `batch_seconds`, so
+!> that there are few messages even if cases are short.
 module dispatch
   use kinds, only: wp
   use byte_record, only: byte_record_t
@@ -8,14 +8,14 @@ module dispatch
   private
   public :: foreman_t, worker_t, hand_out, work_through, dismiss
 
-  !> Provides cases and takes their answers.
+  !> Provides the cases and takes the answers to them.
   type, abstract :: foreman_t
   contains
     procedure(put_case), deferred :: put_next
     procedure(take_case), deferred :: take_answer
   end type foreman_t
 
-  !> Computes a batch of cases.
+  !> Computes the cases of a batch.
   type, abstract :: worker_t
   contains
     procedure(work), deferred :: work
@@ -37,8 +37,8 @@ module dispatch
       type(byte_record_t), intent(inout) :: answers
     end subroutine take_case
 
-    !> Takes `cases` cases of the given job from a batch and adds the answer of each to `answers`.
-    !> seconds: the time that this took.
+    !> Takes `cases` cases of the given job from a batch, computes them, and adds the answer of each
+    !> to `answers`. seconds: the time that this took.
     subroutine work(self, job, cases, batch, answers, seconds)
       import :: worker_t, byte_record_t, wp
       class(worker_t), intent(inout) :: self
@@ -48,17 +48,17 @@ module dispatch
     end subroutine work
   end interface
 
-  !> Seconds of work in a message, and its largest number of cases.
+  !> Computing time of a batch [s]; largest number of cases in a batch.
   real(wp), parameter :: batch_seconds = 0.05_wp
   integer, parameter :: most_cases = 10000
-  !> The job number that ends a worker.
+  !> The number of a job that tells a worker to stop.
   integer, parameter :: no_job = 0
 
 contains
 
-  !> Has the workers of a team compute all cases of a job, which has a number above 0. threads: the
-  !> number of cases that a worker computes at once. messages: the number of messages sent. lost: a
-  !> worker is gone, and not all cases have an answer.
+  !> Distributes all cases of a job among the workers of a team. job: its number, above 0. threads:
+  !> the number of cases that a worker computes at the same time. messages: the number of messages
+  !> sent. lost: a worker has ended, and not all cases have an answer.
   subroutine hand_out(team, job, foreman, threads, messages, lost)
     class(team_t), intent(inout) :: team
     integer, intent(in) :: job, threads
@@ -75,7 +75,7 @@ contains
     goal = threads
     idle = .true.
     do
-      ! An answer may free more cases than one.
+      ! After an answer more than one case may become available.
       do i = 1, team%workers
         if (idle(i)) call give(i)
       end do
@@ -91,7 +91,7 @@ contains
       do i = 1, cases
         call foreman%take_answer(answers)
       end do
-      ! At most twice as many cases as in the last batch, since cases differ.
+      ! A batch has at most twice as many cases as the last one, since computing times differ.
       goal(from) = max(threads, min(2*goal(from), most_cases, &
         nint(batch_seconds*cases/max(seconds, batch_seconds*cases/most_cases))))
     end do
@@ -121,7 +121,7 @@ contains
 
   end subroutine hand_out
 
-  !> Computes batches until there are no more.
+  !> Computes batches until there are no more cases.
   subroutine work_through(team, worker)
     class(team_t), intent(inout) :: team
     class(worker_t), intent(inout) :: worker
@@ -145,7 +145,7 @@ contains
     end do
   end subroutine work_through
 
-  !> Tells the workers of a team that there is no more work.
+  !> Tells the workers of a team that there are no more cases.
   subroutine dismiss(team)
     class(team_t), intent(in) :: team
     type(byte_record_t) :: message

@@ -1,10 +1,11 @@
 !> Warnings before a run about numerical choices that would fail or be slow: mixing in stiff
-!> contacts, uniform grids whose nodes are too far apart.
+!> contacts, and uniform grids whose nodes are too far apart.
 !>
-!> Mixing multiplies an error of the eigenvalue lambda of 1 - W p' by 1 - ratio lambda. The ratio is
-!> at most about the inverse of the largest eigenvalue, so the error of the smallest one decreases
-!> slowly. The largest one belongs to the contact as a whole, the smallest one to a motion of its
-!> edge. Both are estimated for the contact of JKR or Hertz theory at the smallest h0.
+!> In one iteration, mixing multiplies the error component that belongs to the eigenvalue lambda of
+!> 1 - W p' by 1 - ratio lambda. The ratio is at most about the inverse of the largest eigenvalue;
+!> therefore the error component of the smallest eigenvalue decreases slowly. The largest eigenvalue
+!> belongs to the contact as a whole, the smallest one to a motion of its edge. Both are estimated
+!> for the contact of JKR or Hertz theory at the smallest h0.
 module forecast
   use kinds, only: wp, pi
   use text, only: brief, rounded
@@ -27,22 +28,23 @@ module forecast
     character(len=:), allocatable :: text
   end type advice_t
 
-  !> Estimates of the smallest and the largest eigenvalue of 1 - W p' of a contact.
+  !> Estimates of the smallest and the largest eigenvalue of 1 - W p' for a contact.
   type :: spectrum_t
     real(wp) :: least = 1, largest = 1
   end type spectrum_t
 
-  !> Time of a product for each entry of the matrix [s]; calculations that take longer than the
-  !> second value [s] are announced.
+  !> Time per entry of the matrix in a matrix-vector product [s]. Calculations that take longer than
+  !> `long_run` [s] are announced.
   real(wp), parameter :: an_entry = 3.0e-10_wp, long_run = 20
-  !> Number of times that a state which does not converge is tried, each time with a shorter step.
+  !> How often a state that does not converge is tried, each time with a shorter step.
   integer, parameter :: attempts = 8
-  !> Error of the first iterate of a state, in the law's lengths.
+  !> Error of the first iterate of a state, in lengths L of the law.
   real(wp), parameter :: first_error = 0.1_wp
 
 contains
 
-  !> The advice on a scene and its problem; on numerical choices of a sweep, that on its last case.
+  !> The advice on a scene and its problem. The advice on numerical choices of a sweep is that on
+  !> its last case.
   function advice_on(scene, problem) result(advice)
     type(scene_t), intent(in) :: scene
     type(problem_t), intent(in) :: problem
@@ -63,18 +65,19 @@ contains
     end if
   end function advice_on
 
-  !> What is said of bodies so soft that adhesion alone draws them into each other, whose paths may
-  !> take minutes: the unit of the stiffness may be wrong. Empty for other bodies.
+  !> Advice on bodies so soft that adhesion alone draws them into each other, whose paths may take
+  !> minutes. In this case the modulus may have a wrong unit. The text is empty for other bodies.
   pure function advice_on_stiffness(problem) result(text)
     type(problem_t), intent(in) :: problem
     character(len=:), allocatable :: text
     real(wp) :: slope
-    !> Slope at the edge of the contact without load, far above any of the model.
+    !> absurd: slope at the contact edge without load, far above all slopes for which the model is
+    !> valid. short: ratio of L to the radius above which no advice is given.
     real(wp), parameter :: absurd = 2, short = 0.1_wp
 
     text = ''
     if (problem%rigid .or. .not. problem%law%adhesion > 0) return
-    ! Where the law is as long as the radius, the deck has units of its own.
+    ! If L is about as large as the radius, the deck uses dimensionless units.
     if (problem%length > short*problem%radius) return
     slope = problem%shape%slope(largest_radius(problem, 1.0_wp, 1.0_wp))*problem%length/ &
       problem%lateral
@@ -83,8 +86,8 @@ contains
       rounded(slope) // ' at its edge; moduli of a deck are in Pa: 70 GPa are 70e9'
   end function advice_on_stiffness
 
-  !> Whether the deck or its sweep may choose a fixed grid or mixing. The default needs no advice,
-  !> and no time for making the problem.
+  !> Whether the deck or its sweep may choose a fixed grid or mixing. The default choices need no
+  !> advice, and the problem is then not made.
   pure logical function prescribes_numerics(scene) result(prescribes)
     type(scene_t), intent(in) :: scene
 
@@ -93,7 +96,7 @@ contains
       prescribes = prescribes .or. index(scene%sweep%names, 'numerics.') > 0
   end function prescribes_numerics
 
-  !> Advises on one scene, of which there are `cases`.
+  !> Gives advice on one scene. cases: number of cases of its sweep.
   subroutine advise(scene, cases, advice)
     type(scene_t), intent(in) :: scene
     integer, intent(in) :: cases
@@ -106,7 +109,7 @@ contains
     problem = problem_of(scene)
     if (problem%rigid) return
     chosen = choose(scene, problem)
-    ! Without contact nothing is stiff, and there is no cohesive zone.
+    ! Without contact there is neither a stiff contact nor a cohesive zone.
     if (.not. chosen%is_fixed() .or. chosen%low > max(1.0_wp, yielding_gap(problem, 1.0_wp))) return
     if (chosen%grid == uniform .and. problem%law%adhesion > 0) then
       spacing = chosen%extent/(chosen%nodes - 1)
@@ -156,10 +159,11 @@ contains
     end if
   end subroutine advise_on_mixing
 
-  !> The eigenvalues at an H0 in contact. The pressure in the middle of the contact is that of JKR
-  !> or Hertz theory. Where the slope of the law is proportional to a pressure of Hertz, the row of
-  !> -W p' on the axis has the sum pi coupling a |p'|, which no eigenvalue exceeds. The edge moves
-  !> nearly freely: the narrower its cohesive zone, the smaller the eigenvalue.
+  !> Estimates the eigenvalues for an H0 at which the bodies are in contact. The pressure at the
+  !> centre of the contact is that of JKR or Hertz theory. If the slope of the law varied as the
+  !> pressure of Hertz theory, the row of -W p' on the axis would have the sum pi coupling a |p'|,
+  !> and no eigenvalue exceeds this sum. The edge moves nearly freely: the narrower the cohesive
+  !> zone, the smaller the eigenvalue.
   type(spectrum_t) function spectrum_of(problem, h0) result(spectrum)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: h0
@@ -185,7 +189,7 @@ contains
     if (adhesion > 0) spectrum%least = 1/(1 + 1/cohesive_width(problem))
   end function spectrum_of
 
-  !> Number of plain iterations from the first error to the tolerance.
+  !> Number of iterations with mixing that reduce the first error to the tolerance.
   pure real(wp) function iterations_of(spectrum, limit, tolerance) result(iterations)
     type(spectrum_t), intent(in) :: spectrum
     real(wp), intent(in) :: limit, tolerance
@@ -194,7 +198,7 @@ contains
       (spectrum%least*min(limit, 2/spectrum%largest, 1.0_wp))
   end function iterations_of
 
-  !> Number of nodes with a spacing.
+  !> Number of nodes that have this spacing over the extent of a grid.
   pure integer function nodes_for(spacing, extent)
     real(wp), intent(in) :: spacing, extent
 

@@ -1,11 +1,11 @@
-!> Whether other processes were started together with this one.
+!> Whether this process was started together with others.
 module launch
   implicit none
   private
   public :: started_together, own_rank
 
-  !> Environment variables with the number of processes that were started together, and the number
-  !> of this process: of OpenMPI, of MPICH and its relatives, of Slurm's srun.
+  !> Environment variables with the number of processes that were started together, and with the
+  !> number of this process, as set by OpenMPI, by MPICH and its relatives, and by Slurm's srun.
   character(len=*), parameter :: sizes(*) = [character(len=20) :: 'OMPI_COMM_WORLD_SIZE', &
     'PMI_SIZE', 'SLURM_STEP_NUM_TASKS']
   character(len=*), parameter :: numbers(*) = [character(len=20) :: 'OMPI_COMM_WORLD_RANK', &
@@ -18,12 +18,12 @@ contains
     started_together = first_set(sizes, 1)
   end function started_together
 
-  !> Number of this process, from 0.
+  !> Number of this process, counted from 0.
   integer function own_rank()
     own_rank = first_set(numbers, 0)
   end function own_rank
 
-  !> The first number among these environment variables; `otherwise` if there is none.
+  !> The value of the first of these environment variables that is set; `otherwise` if none is.
   integer function first_set(names, otherwise) result(number)
     character(len=*), intent(in) :: names(:)
     integer, intent(in) :: otherwise

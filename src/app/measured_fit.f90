@@ -1,4 +1,4 @@
-!> The fit of a scene to its measured curve, which is in memory.
+!> The fit of a scene to its measured curve, which has been read.
 module measured_fit
   use kinds, only: wp
   use failure, only: failure_t
@@ -26,7 +26,7 @@ contains
     type(deck_family_t) :: family
     type(failure_t), allocatable :: error
 
-    ! The deck was read, so that the family has no mistake.
+    ! The deck has been read already, so that its family has no mistake.
     call family_of_fit(scene%deck, family, error)
     call run_fit(scene%measured, scene%fit, scene%numerics, family, widened(family), problem, &
       theories, listener, outcome, like)

@@ -1,5 +1,5 @@
-!> Derivatives of all reported numbers by the parameters of &sensitivity: differences of whole runs
-!> with other values of a parameter.
+!> Derivatives of all reported numbers by the parameters of &sensitivity, as finite differences
+!> between whole runs with other values of a parameter.
 module number_rates
   use kinds, only: wp
   use failure, only: failure_t
@@ -17,13 +17,14 @@ module number_rates
   private
   public :: rate_numbers
 
-  !> Places of the runs in units of their distance, on both sides of the parameter or, at the end of
-  !> its range, on one. The rule is of fourth order, and of second order without the outermost.
+  !> Positions of the runs relative to the parameter, in units of their distance: on both sides or,
+  !> at the end of the parameter's range, on one side. The difference formula is of fourth order,
+  !> and of second order without the outermost runs.
   real(wp), parameter :: places(5, 3) = reshape([-2, -1, 1, 2, 0,  0, 1, 2, 3, 4,  &
     0, -1, -2, -3, -4]*1.0_wp, [5, 3])
   integer, parameter :: runs(3) = [4, 5, 5]
-  !> Distance of the runs of a drive in time, over the parameter: its steps follow the motion, and
-  !> the error of numbers is not that of a similar drive.
+  !> Distance of the runs of a drive in time, relative to the parameter. It is large because the
+  !> time steps follow the motion, so that the errors of two similar runs differ.
   real(wp), parameter :: of_drive = 0.05_wp
 
 contains
@@ -64,8 +65,8 @@ contains
     end do
   end subroutine rate_numbers
 
-  !> The scenes with other values of parameter j; not allocated if the deck allows them on no side.
-  !> offset: the differences of the values.
+  !> Makes the scenes with other values of parameter j. They are not allocated if the deck allows
+  !> such values on no side. offset: the differences of the values.
   subroutine pose_variants(scene, j, offset, variant)
     type(scene_t), intent(in) :: scene
     integer, intent(in) :: j
@@ -77,7 +78,7 @@ contains
 
     associate (varied => scene%varied(j))
       apart = of_drive*abs(varied%parameter%value)
-      ! The problem is smooth over the range of the varied problems.
+      ! The problem varies smoothly over the range of the varied problems.
       if (allocated(varied%offset)) apart = (maxval(varied%offset) - minval(varied%offset))/4
       do side = 1, size(runs)
         offset = apart*places(:runs(side), side)
@@ -86,7 +87,7 @@ contains
           call swept_scene(scene, varied%parameter%name, [varied%parameter%value + offset(k)], &
             variant(k), error)
           if (allocated(error)) exit
-          ! All that is read for &sensitivity is read again.
+          ! Allocated, so that everything that only &sensitivity needs is also read for this scene.
           allocate (variant(k)%varied(0))
         end do
         if (.not. allocated(error)) return

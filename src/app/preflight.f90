@@ -1,6 +1,6 @@
 !> Checks before a run whether there is memory for its matrices and disk space for its files, and
-!> whether these would replace files that the deck reads or that no run has written. Such a run is
-!> not begun.
+!> whether the files would replace others that the deck reads or that no run has written. A run that
+!> fails a check is not begun.
 module preflight
   use kinds, only: wp
   use failure, only: failure_t, fail, bad_input, no_room
@@ -23,23 +23,23 @@ module preflight
   private
   public :: check_room, check_inputs, large_results
 
-  !> Memory of a run (compiler note 7) apart from matrices for a number of nodes that the deck gives
-  !> [bytes]; the meshes of a path are part of it.
+  !> Memory of a run (compiler note 7) [bytes], without the matrices for a number of nodes that the
+  !> deck gives. It includes the meshes of a path.
   real(wp), parameter :: other_bytes = 6.0e7_wp
-  !> Number of matrices for a verified eigenvalue.
+  !> Number of matrices that a verified eigenvalue needs.
   real(wp), parameter :: eigenvalue_matrices = 5
   !> Number of cells in a row of the curve, of a profile and of a table of theories.
   integer, parameter :: of_curve = 10, of_profile = 9, of_theory = 5
   !> Approximate number of nodes of a mesh.
   real(wp), parameter :: of_mesh = 200
-  !> Size of results above which they are announced, and the free disk space is checked [bytes].
+  !> Size of results [bytes] above which they are announced and the free disk space is checked.
   real(wp), parameter :: large = 1.0e8_wp
 
 contains
 
   !> Fails if results in `folder` would replace a file that no run has written, or one that the deck
-  !> reads: the deck itself, `name`, or a table. A summary may be the deck of its own folder, since
-  !> its successor has the same deck.
+  !> reads: the deck itself, `name`, or a table. A summary may be a deck whose results go to its own
+  !> folder, since the new summary contains the same deck.
   subroutine check_inputs(scene, name, folder, error)
     type(scene_t), intent(in) :: scene
     character(len=*), intent(in) :: name, folder
@@ -74,8 +74,8 @@ contains
 
   end subroutine check_inputs
 
-  !> Fails if something in `folder` has the name of a result and no run has written it. A folder
-  !> that cannot be opened is the run's own failure.
+  !> Fails if something in `folder` has the name of a result although no run has written it. If the
+  !> folder cannot be opened, the run reports this later.
   subroutine check_target(name, folder, error)
     character(len=*), intent(in) :: name, folder
     type(failure_t), allocatable, intent(out) :: error
@@ -92,7 +92,8 @@ contains
     error%message = name // ': ' // error%message
   end subroutine check_target
 
-  !> Fails if memory, or the disk with the folder of the results, does not suffice for a run.
+  !> Fails if there is not enough memory for a run, or not enough space on the disk with the folder
+  !> of the results.
   subroutine check_room(scene, folder, error)
     type(scene_t), intent(in) :: scene
     character(len=*), intent(in) :: folder
@@ -105,7 +106,7 @@ contains
     copies = 1
     call count_matrices(scene, bytes, nodes)
     if (allocated(scene%sweep)) then
-      ! The sweep may change the mesh; the last case is taken as an example.
+      ! The sweep may change the mesh; its last case serves as an example.
       call swept_scene(scene, scene%sweep%names, scene%sweep%last(), last, error)
       if (.not. allocated(error)) then
         call count_matrices(last, more, most)
@@ -115,7 +116,7 @@ contains
         deallocate (error)
       end if
       copies = min(thread_count(), scene%sweep%cases())
-      ! Cases whose cost is measured run one by one.
+      ! Cases whose cost is measured are computed one by one.
       if (scene%sweep%costs) copies = 1
       bytes = copies*bytes
     end if
@@ -134,7 +135,7 @@ contains
       gigabytes(bytes)//' on the disk, and '//gigabytes(available)//' are free')
   end subroutine check_room
 
-  !> The announcement of large results; empty for others.
+  !> The announcement of large results; empty if the results are not large.
   function large_results(scene) result(text)
     type(scene_t), intent(in) :: scene
     character(len=:), allocatable :: text
@@ -144,7 +145,8 @@ contains
       gigabytes(disk_bytes(scene))//' on the disk while it runs'
   end function large_results
 
-  !> Bytes of what exists at the same time, and number of nodes of a grid of the deck.
+  !> Number of bytes that are allocated at the same time, and number of nodes of a grid that the
+  !> deck gives.
   subroutine count_matrices(scene, bytes, nodes)
     type(scene_t), intent(in) :: scene
     real(wp), intent(out) :: bytes
@@ -163,7 +165,7 @@ contains
     if (chosen%is_fixed()) then
       nodes = chosen%nodes
       other = with_fewer_nodes(chosen)
-      ! The kernel, the factors in use, and those for following a jump.
+      ! The kernel, the factors in use, and the factors for following a jump.
       matrices = merge(1, 3, chosen%options%mixing)
       if (scene%has_eigenvalues()) matrices = matrices + eigenvalue_matrices
       entries = matrices*real(chosen%nodes, wp)**2 + 2*real(other%nodes, wp)**2
@@ -171,8 +173,8 @@ contains
     bytes = other_bytes + 8*entries
   end subroutine count_matrices
 
-  !> Largest size of the files of a run [bytes], without rows of a path, whose number is not known
-  !> before.
+  !> Largest size of the files of a run [bytes]. The rows of a path are left out, since their number
+  !> is not known in advance.
   pure real(wp) function disk_bytes(scene) result(bytes)
     type(scene_t), intent(in) :: scene
 
@@ -199,7 +201,7 @@ contains
 
   end function disk_bytes
 
-  !> A number of bytes for a message.
+  !> A number of bytes as text for a message.
   function gigabytes(bytes) result(text)
     real(wp), intent(in) :: bytes
     character(len=:), allocatable :: text

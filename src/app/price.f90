@@ -1,6 +1,7 @@
-!> What accuracy costs on a given deck: the deck at five accuracies, as a table on standard output
-!> with time, work and estimated errors. The rows are cases of a sweep whose costs are measured. On
-!> a uniform grid, whose errors do not follow from the accuracy, the rows are five numbers of nodes.
+!> The relation of accuracy and cost for a deck: the deck is computed with five accuracies, and a
+!> table on standard output shows time, work and estimated errors. The rows are cases of a sweep
+!> whose costs are measured. On a uniform grid, whose errors do not follow from the accuracy, the
+!> rows have five numbers of nodes instead.
 module price
   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
   use kinds, only: wp, nan
@@ -26,17 +27,18 @@ module price
 
   integer, parameter :: rows = 5
   !> The accuracies of a path or cycle. The cost of a drive in time is a power of its accuracy, and
-  !> that of a uniform grid a power of its nodes. Their rows end at the values of the deck, so that
-  !> no row costs more. The first row of a drive is at most so many times less accurate; the first
-  !> grid has this part of the nodes.
+  !> that of a uniform grid a power of its number of nodes. Their last rows have the values of the
+  !> deck, so that no row costs more. drive_range: ratio of the accuracy in the first row of a drive
+  !> to that in the last; least_accurate: its upper limit. grid_range: ratio of the number of nodes
+  !> in the last row to that in the first.
   real(wp), parameter :: accuracies(rows) = [1e-3_wp, 1e-4_wp, 1e-6_wp, 1e-8_wp, 1e-10_wp], &
     drive_range = 100, least_accurate = 0.1_wp, grid_range = 4
 
 contains
 
-  !> Prints the table of a scene, whose deck has the name `name`. quiet: without progress.
-  !> converged: whether all rows were computed. error: the deck has no such table, or it cannot be
-  !> written.
+  !> Prints the table of a scene. name: the name of the deck. quiet: no progress is shown.
+  !> converged: whether all rows were computed. error: the deck can have no such table, or the table
+  !> cannot be written.
   subroutine price_scene(scene, name, quiet, converged, error)
     type(scene_t), intent(in) :: scene
     character(len=*), intent(in) :: name
@@ -81,7 +83,7 @@ contains
     call write_stdout(conclusion_of(varied%sweep%names, row), error)
   end subroutine price_scene
 
-  !> Fails for a deck that is more than one run, or no calculation of states.
+  !> Fails for a deck that means more than one run, or that computes no states.
   subroutine refuse(scene, problem, error)
     type(scene_t), intent(in) :: scene
     type(problem_t), intent(in) :: problem
@@ -102,7 +104,7 @@ contains
     end if
   end subroutine refuse
 
-  !> The sweep with the rows of a scene as its cases.
+  !> The sweep whose cases are the rows of the table.
   type(sweep_t) function ladder(scene, problem) result(sweep)
     type(scene_t), intent(in) :: scene
     type(problem_t), intent(in) :: problem
@@ -137,7 +139,7 @@ contains
     one_digit = anint(x/order)*order
   end function one_digit
 
-  !> Fills a row from its case.
+  !> Fills a row with the numbers of its case.
   subroutine read_case(scene, problem, row)
     type(scene_t), intent(in) :: scene
     type(problem_t), intent(in) :: problem
@@ -157,7 +159,8 @@ contains
       row%value(i) = numbered(of_numbers(2:), row%case%numbers, trim(keys(i)))
       if (ieee_is_nan(row%value(i))) cycle
       scale = abs(row%value(i))
-      ! As in error_estimate: h0 may be zero at a jump.
+      ! As in error_estimate, the error of h0 is relative to at least L, since h0 may be zero at a
+      ! jump.
       if (index(keys(i), '_h0') > 0) scale = max(scale, problem%length)
       row%error(i) = cost(trim(keys(i))//'_error')
       if (keys(i) == 'energy_lost') row%error(i) = cost('energy_lost_uncertainty')
@@ -174,7 +177,7 @@ contains
 
   end subroutine read_case
 
-  !> The number in the column `key`, NaN if there is none.
+  !> The number in the column `key`; NaN if there is no such column.
   pure real(wp) function numbered(columns, numbers, key)
     character(len=*), intent(in) :: columns(:), key
     real(wp), intent(in) :: numbers(:)

@@ -1,4 +1,4 @@
-!> The text of the table of what accuracy costs: its rows, and the sentences below it.
+!> The text of the table of accuracy and cost: its rows, and the sentences below it.
 module price_table
   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
   use kinds, only: wp, nan
@@ -13,7 +13,7 @@ module price_table
     'jump_out_h0', 'energy_lost', 'energy_dissipated', 'end_load']
   character(len=*), parameter :: names(*) = [character(len=11) :: 'pull-off', 'jump in', &
     'jump out', 'energy lost', 'dissipated', 'end load']
-  !> Errors for which the cheapest row is named.
+  !> Errors for each of which the table names the cheapest row.
   real(wp), parameter :: aims(*) = [1e-2_wp, 1e-3_wp, 1e-6_wp, 1e-9_wp]
   character(len=*), parameter :: aim_names(*) = [character(len=15) :: 'errors of 1 %', &
     'errors of 0.1 %', 'six digits', 'nine digits']
@@ -29,8 +29,8 @@ module price_table
 
 contains
 
-  !> The title and the names of the columns; `varied` is the key with the values of the rows,
-  !> `shown` says which of `keys` are columns.
+  !> The title and the names of the columns. varied: the key whose values the rows have. shown:
+  !> which of `keys` are columns.
   function head_of(name, varied, shown) result(text)
     character(len=*), intent(in) :: name, varied
     logical, intent(in) :: shown(:)
@@ -43,7 +43,7 @@ contains
       line_of([cells, pack([character(len=width) :: names], shown)])
   end function head_of
 
-  !> A row, with the reason of a failure below it, or with its first warning, unless this was
+  !> The text of a row. Below it stands the reason of a failure, or the first warning unless it was
   !> `told` before.
   function text_of_row(row, shown, told) result(text)
     type(price_row_t), intent(in) :: row
@@ -71,7 +71,8 @@ contains
       text = text//'    warning: '//trim(row%case%warning)//nl
   end function text_of_row
 
-  !> Which row is enough for what, what a digit costs, and whether the rows agree.
+  !> The sentences below the table: which row suffices for which error, what a further digit costs,
+  !> and whether the rows agree.
   function conclusion_of(varied, row) result(text)
     character(len=*), intent(in) :: varied
     type(price_row_t), intent(in) :: row(:)
@@ -118,7 +119,7 @@ contains
 
   contains
 
-    !> The first row with an error of at most `aim`; 0 if there is none.
+    !> The index of the first row with an error of at most `aim`; 0 if there is none.
     pure integer function first_below(aim)
       real(wp), intent(in) :: aim
 
@@ -131,7 +132,7 @@ contains
 
   end function conclusion_of
 
-  !> A time with three digits.
+  !> A time as text with three digits.
   function time_of(seconds) result(text)
     real(wp), intent(in) :: seconds
     character(len=:), allocatable :: text
@@ -155,7 +156,7 @@ contains
     text = trim(adjustl(buffer))
   end function two_digits
 
-  !> The line of a row of cells.
+  !> The line of the table with these cells.
   function line_of(cells) result(line)
     character(len=*), intent(in) :: cells(:)
     character(len=:), allocatable :: line

@@ -1,4 +1,4 @@
-!> What a run says on standard error: each line begins with the folder of the results.
+!> The messages of a run on standard error. Each line begins with the folder of the results.
 module run_messages
   use kinds, only: wp, nan
   use units, only: with_unit
@@ -13,8 +13,9 @@ module run_messages
   private
   public :: destination_t, tell
 
-  !> The folder of a run's results, or the program's name if they go to standard output; whether
-  !> messages are left out or tell the numerics, too; and whether results go to standard output.
+  !> folder: the folder of a run's results, or the program's name if they go to standard output.
+  !> quiet: no messages. verbose: messages also describe the numerical methods. to_stream: results
+  !> go to standard output.
   type :: destination_t
     character(len=:), allocatable :: folder
     logical :: quiet = .false., verbose = .false., to_stream = .false.
@@ -22,14 +23,14 @@ module run_messages
     procedure :: say
   end type destination_t
 
-  !> The command that draws, beside an installed program; Python and the folder of the scripts in a
-  !> checkout, with the program in a build folder.
+  !> The name of the plotting command, which stands beside an installed program; in a checkout,
+  !> where the program is in a build folder, the path of Python and the folder of the scripts.
   character(len=*), parameter :: plotter = 'snapin-plot', python_there = '.venv/bin/python', &
     scripts = 'pywrap/plots/'
 
 contains
 
-  !> Writes warnings, the main results and, if asked for, the numerics to standard error.
+  !> Writes warnings, the main results and, if wanted, the numerical methods to standard error.
   subroutine tell(scene, destination, summary, cost)
     type(scene_t), intent(in) :: scene
     type(destination_t), intent(in) :: destination
@@ -55,7 +56,7 @@ contains
       'the path begins at h0 = '//in_metres('path_traced_h0'))
     if (destination%verbose .and. summary%has('path_undeformed_h0')) call destination%say( &
       'before it, from h0 = '//in_metres('path_undeformed_h0')//', bodies are taken as rigid')
-    ! The path of a fit is that of the deck's own values.
+    ! The path of a fit belongs to the deck's own values, and its results are not reported.
     allocate (lines(0))
     if (.not. allocated(scene%fit)) lines = findings_of(summary)
     do i = 1, size(lines)
@@ -103,7 +104,7 @@ contains
     if (.not. self%quiet) call write_stderr(self%folder//': '//text)
   end subroutine say
 
-  !> The command that draws the sweep in a folder of results; empty if there is none.
+  !> The command that draws the sweep in a folder of results; empty if no plotting command is found.
   function drawing_of(folder, script) result(command)
     character(len=*), intent(in) :: folder, script
     character(len=:), allocatable :: command, program, beside, top, python
@@ -125,7 +126,7 @@ contains
       shell_word(folder)
   end function drawing_of
 
-  !> A text as one word of a shell command: in quotes, if a character may mean something.
+  !> A text as one word of a shell command, in quotes if a character may have a special meaning.
   pure function shell_word(text) result(word)
     character(len=*), intent(in) :: text
     character(len=:), allocatable :: word

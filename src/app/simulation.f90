@@ -1,4 +1,5 @@
-!> One deck from scene to results. Effects that the scene does not have cost nothing.
+!> Computes one deck, from the scene to the results. Features that the scene does not use cost no
+!> time.
 module simulation
   use kinds, only: wp, long
   use failure, only: failure_t, bad_input
@@ -51,12 +52,12 @@ module simulation
 
 contains
 
-  !> Computes a scene and writes its results into the folder `out_dir`, and with `handed_over` then
-  !> to standard output. If memory or disk space does not suffice, the folder is not changed.
-  !> converged: .false. if a calculation failed; the results are kept and the summary says what
-  !> failed. error: there are no results, or they could not be written. resume: an interrupted sweep
-  !> in the folder is continued, and finished results are left as they are. crew: the processes that
-  !> compute a sweep, for which `job` is the number of the scene.
+  !> Computes a scene and writes its results into the folder `out_dir`; with `handed_over` it then
+  !> also writes them to standard output. If memory or disk space does not suffice, the folder is
+  !> not changed. converged: .false. if a calculation failed; the results are kept, and the summary
+  !> says what failed. error: there are no results, or they could not be written. resume: an
+  !> interrupted sweep in the folder is continued, and finished results are left as they are. crew:
+  !> the processes that compute a sweep. job: the number of the scene for these processes.
   subroutine run_scene(scene, out_dir, handed_over, quiet, verbose, resume, crew, job, &
     converged, error)
     type(scene_t), intent(in) :: scene
@@ -91,7 +92,7 @@ contains
     call open_folder()
     if (allocated(error)) return
     call compute()
-    ! A table of the deck's own numbers would belong to no case of a sweep.
+    ! The theories are computed with the deck's own numbers, which are no case of a sweep.
     if (.not. allocated(scene%sweep)) call write_theories()
     if (allocated(scene%fit) .and. .not. allocated(scene%sweep)) call report_fit()
     call summary%set('version', version)
@@ -114,8 +115,8 @@ contains
 
   contains
 
-    !> With `resume` and a finished run in the folder, finished = .true., and there is nothing to
-    !> compute; converged is that of the finished run.
+    !> If `resume` is given and the folder has a finished run, finished = .true., and nothing is
+    !> computed; `converged` is then that of the finished run.
     subroutine take_up_earlier()
       finished = .false.
       if (.not. resume .or. file_exists(journal_of(destination%folder))) return
@@ -137,7 +138,7 @@ contains
       end if
     end subroutine take_up_earlier
 
-    !> Says which numerical choices will fail or take long, before time is spent on them.
+    !> Warns of numerical choices that will fail or take long, before the computation starts.
     subroutine warn_before()
       type(advice_t), allocatable :: advice(:)
       integer :: i
@@ -174,7 +175,7 @@ contains
       end if
     end subroutine open_folder
 
-    !> Runs the experiments or the sweep; their records go into the results.
+    !> Runs the experiments or the sweep, whose records are written to the results.
     subroutine compute()
       type(experiment_result_t) :: outcome
       character(len=:), allocatable :: name
@@ -205,13 +206,13 @@ contains
       end if
     end subroutine compute
 
-    !> Whether curves are fitted together: then no row is of use without all others.
+    !> Whether curves are fitted together. In this case no row is useful without all others.
     pure logical function is_joint()
       is_joint = allocated(scene%fit)
       if (is_joint) is_joint = scene%fit%is_joint()
     end function is_joint
 
-    !> How many fits of a sweep have each verdict.
+    !> A text with the number of fits of a sweep that have each verdict.
     function told_of(tally) result(text)
       type(sweep_tally_t), intent(in) :: tally
       character(len=:), allocatable :: text
@@ -224,8 +225,8 @@ contains
       end do
     end function told_of
 
-    !> Runs the experiments. Each state goes into the results, with its eigenvalue if the scene asks
-    !> for it.
+    !> Runs the experiments. Each state is written to the results, with its eigenvalue if the scene
+    !> asks for it.
     subroutine run_observed()
       type(experiment_result_t) :: outcome
       type(stability_recorder_t) :: recorder
@@ -241,7 +242,7 @@ contains
         call write_path_tables(problem, outcome%readings, outcome%places, results)
       if (allocated(scene%varied)) call rate_numbers(scene, results, outcome)
       summary = summary_of(scene, problem, outcome)
-      ! An error that is not allocated counts as absent.
+      ! An unallocated error estimate counts as an absent argument.
       if (scene%has_eigenvalues()) call recorder%warn(summary, outcome%error_estimate)
       if (allocated(scene%varied)) &
         call write_sensitivities(scene%varied, problem, outcome, summary, results)
@@ -253,13 +254,14 @@ contains
     subroutine write_theories()
       if (allocated(scene%classical)) call write_classical(problem, scene%classical, &
         path_start(scene, problem), results, summary)
-      ! Bodies are nearly undeformed only before the path comes to contact.
+      ! The approximation assumes nearly undeformed bodies, as on the path before contact.
       if (allocated(scene%approximations)) call write_approximations(problem, &
         scene%approximations, max(path_start(scene, problem), &
         problem%law%separation_of(calm_gap(problem))), results)
     end subroutine write_theories
 
-    !> Makes the fit of &fit, its files and messages; without a fit the summary says why.
+    !> Makes the fit of &fit and writes its files and messages. If there is no fit, the summary
+    !> gives the reason.
     subroutine report_fit()
       type(fit_outcome_t) :: outcome
       type(line_t), allocatable :: doubts(:), lines(:)

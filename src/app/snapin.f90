@@ -1,5 +1,5 @@
-!> The program: command line, decks, exit status. 0 done, 1 a calculation failed, 2 the deck or the
-!> command line is wrong.
+!> The main program: command line, decks, exit status. The status is 0 after success, 1 if a
+!> calculation failed, 2 if the deck or the command line is wrong.
 program snapin
   use, intrinsic :: iso_c_binding, only: c_int
   use failure, only: failure_t, fail, bad_input
@@ -27,7 +27,8 @@ program snapin
   implicit none
 
   interface
-    ! `stop` would print its code and any floating-point flags; C's exit is silent.
+    ! `stop` would print its code and any floating-point flags; exit of the C library prints
+    ! nothing.
     subroutine c_exit(status) bind(c, name='exit')
       import :: c_int
       implicit none
@@ -49,7 +50,7 @@ program snapin
     call write_stderr('try "snapin --help"')
     call leave(2)
   end if
-  ! Of several processes the first answers.
+  ! If there are several processes, only the first one answers.
   if (options%informs() .or. options%price) then
     if (own_rank() > 0) call leave(0)
   end if
@@ -68,7 +69,7 @@ program snapin
 
 contains
 
-  !> Prints the keys of the named groups, or the named keys, or all; returns the exit status.
+  !> Prints the keys of the named groups, the named keys, or all keys; returns the exit status.
   integer function show_keys() result(status)
     type(key_spec), allocatable :: specs(:)
     character(len=:), allocatable :: name
@@ -131,7 +132,7 @@ contains
         call print_notes(scenes(i), options%decks(i)%name, folder_of(i))
       end if
     end do
-    ! A deck that one process cannot read stops all processes.
+    ! If one process cannot read a deck, all processes stop.
     first = crew%first_of(status /= 0)
     if (first > 0 .and. first == crew%rank) call write_stderr(said)
     if (first >= 0) status = 2
@@ -162,8 +163,8 @@ contains
     call dismiss(crew)
   end function run_decks
 
-  !> Prints what `--check` says of a valid deck: how its curve is understood, what its results need
-  !> and leave out, and the choices that will fail or take long.
+  !> Prints the notes of `--check` on a valid deck: how its curve is understood, what its results
+  !> need and leave out, and which choices will fail or take long.
   subroutine print_notes(scene, name, folder)
     type(scene_t), intent(in) :: scene
     character(len=*), intent(in) :: name, folder
@@ -186,7 +187,7 @@ contains
     end do
   end subroutine print_notes
 
-  !> Prints what is to be said of a deck, if anything.
+  !> Prints a note on a deck, if the note is not empty.
   subroutine print_note(name, text)
     character(len=*), intent(in) :: name, text
 
@@ -202,7 +203,7 @@ contains
     if (allocated(options%into)) folder = options%into
   end function folder_of
 
-  !> Writes `text` to standard output; the exit status, 1 if that fails.
+  !> Writes `text` to standard output; returns the exit status, which is 1 if writing fails.
   integer function status_of(text) result(status)
     character(len=*), intent(in) :: text
     type(failure_t), allocatable :: trouble

@@ -1,5 +1,6 @@
-!> Equilibria of a deck for Fortran programs of others: the text of a deck in, loads, profiles and
-!> summary out, as the program computes them, without files: examples/one_state.f90.
+!> Equilibria of a deck for other Fortran programs. The input is the text of a deck; the output is
+!> loads, profiles and summary, as the program computes them, without files. An example is
+!> examples/one_state.f90.
 module solved_deck
   use kinds, only: wp
   use failure, only: failure_t, fail, bad_input
@@ -21,7 +22,7 @@ module solved_deck
   private
   public :: solved_state_t, solved_deck_t, solve_deck
 
-  !> Groups whose results are in files alone.
+  !> Groups whose results are written to files only.
   character(len=*), parameter :: of_files(*) = [character(len=11) :: 'fit', 'measurement', &
     'sensitivity', 'stability']
 
@@ -31,9 +32,9 @@ module solved_deck
     type(state_profile_t) :: profile
   end type solved_state_t
 
-  !> The equilibria for which &profiles asks, in the order of the curve; several at one h0 where
-  !> there are several. The summary has the numbers of summary.nml with their errors, such as
-  !> `profiles_error`, and warnings. Nothing may be relied upon if `converged` is .false.
+  !> The equilibria that &profiles asks for, in the order of the curve; at one h0 there may be
+  !> several. The summary has the numbers of summary.nml with their errors, such as
+  !> `profiles_error`, and warnings. If `converged` is .false., no result is reliable.
   type, extends(observer_t) :: solved_deck_t
     type(solved_state_t), allocatable :: state(:)
     type(summary_t) :: summary
@@ -44,8 +45,8 @@ module solved_deck
 
 contains
 
-  !> Solves a deck, given as text. error: the deck is wrong, asks for no profiles or for what is
-  !> written into files alone, or memory does not suffice.
+  !> Solves a deck, given as text. error: the deck is wrong, it asks for no profiles or for results
+  !> that are written to files only, or memory does not suffice.
   subroutine solve_deck(text, solved, error)
     character(len=*), intent(in) :: text
     type(solved_deck_t), intent(out) :: solved

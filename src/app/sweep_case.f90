@@ -26,33 +26,34 @@ module sweep_case
 
   !> Largest number of characters of a warning, or of the reason of a failure.
   integer, parameter :: failure_width = 400
-  !> A case whose cost is measured is repeated until all its runs together take this time [s], at
-  !> most so many times, since the first run of a case is slower.
+  !> A case whose cost is measured is repeated until all its runs together take this time [s], but
+  !> at most `most_runs` times. Repetition is needed because the first run of a case is slower.
   real(wp), parameter :: enough_seconds = 0.1_wp
   integer, parameter :: most_runs = 7
 
   !> One case, kept until its row is written.
   type :: case_t
-    !> Number of the case; 0: none.
+    !> Number of the case; 0 without a case.
     integer :: number = 0
-    !> Values of the sweep's keys; the text of the key that holds one.
+    !> Values of the sweep's keys; text of the key that holds a text.
     real(wp), allocatable :: values(:)
     character(len=:), allocatable :: text
-    !> Of a fit: the values of another curve, from which it starts; empty: none. The verdict.
+    !> For a fit: the values of another curve, from which it starts; empty if there are none. The
+    !> verdict on the fit.
     real(wp), allocatable :: like(:)
     integer :: verdict = 0
     logical :: converged = .false.
-    !> Its numbers, as `numbers_of`, and behind them those of a fit, as `numbers_of_fit`.
+    !> The numbers of `numbers_of`, followed by those of `numbers_of_fit` if the case is a fit.
     real(wp), allocatable :: numbers(:)
-    !> Its row of costs.csv, as `costs_of`; empty if costs are not measured.
+    !> The row of costs.csv, from `costs_of`; empty if costs are not measured.
     real(wp), allocatable :: costs(:)
-    !> Why it failed; the first warning of a case that did not. The length is not deferred: compiler
-    !> note 4.
+    !> Reason of a failure; first warning of a case that did not fail. The length is not deferred:
+    !> compiler note 4.
     character(len=failure_width) :: failure = '', warning = ''
     type(cost_t) :: cost
   end type case_t
 
-  !> Shows the present activity of a case, or of all (case 0); ignores records.
+  !> Shows what is computed at present for a case, or for all cases (case 0); ignores records.
   type, extends(observer_t) :: case_observer_t
     integer :: case = 0
     type(progress_t), pointer :: progress => null()
@@ -60,8 +61,8 @@ module sweep_case
     procedure :: hear
   end type case_observer_t
 
-  !> The number of cases that failed, and of those that gave a warning; number and warning of the
-  !> first of these; of fits, the number of each verdict; the total cost.
+  !> The number of cases that failed, and of those with a warning; number and warning of the first
+  !> one with a warning; for fits, the number of each verdict; the total cost.
   type :: sweep_tally_t
     integer :: failed = 0, warned = 0, first_warned = 0, verdict(size(verdicts)) = 0
     character(len=failure_width) :: warning = ''
@@ -73,8 +74,8 @@ module sweep_case
 contains
 
   !> Computes the case with the given number, values and text of the scene's sweep, on meshes that
-  !> the cases share. If costs are measured, the case has its own meshes, and one thread at a time
-  !> computes.
+  !> all cases share. If costs are measured, the case has meshes of its own, and only one thread
+  !> computes at a time.
   subroutine run_case(scene, progress, store, case)
     type(scene_t), intent(in) :: scene
     type(progress_t), intent(in), target :: progress
@@ -90,8 +91,9 @@ contains
     end if
   end subroutine run_case
 
-  !> Computes the case, on meshes of `store` if it is given. Its time is that of its experiments,
-  !> without the deck and the tables of layers, which do not depend on the accuracy.
+  !> Computes the case, on meshes of `store` if it is given. The measured time is that of the
+  !> experiments, without reading the deck and tabulating layers, which do not depend on the
+  !> accuracy.
   subroutine compute_case(scene, progress, store, case)
     type(scene_t), intent(in) :: scene
     type(progress_t), intent(in), target :: progress
@@ -142,7 +144,8 @@ contains
 
   contains
 
-    !> Runs the experiment; if costs are measured, several times, of which the fastest counts.
+    !> Runs the experiment. If costs are measured, it runs several times, and the shortest time
+    !> counts.
     subroutine run_timed()
       type(experiment_result_t) :: again
       real(wp) :: began, total
@@ -167,7 +170,8 @@ contains
 
   end subroutine compute_case
 
-  !> Writes into a variable, since threads share the strings of expressions: compiler note 4.
+  !> The text is written to a variable, since threads share the strings of expressions: compiler
+  !> note 4.
   subroutine hear(self, what)
     class(case_observer_t), intent(inout) :: self
     character(len=*), intent(in) :: what
@@ -178,7 +182,7 @@ contains
     call self%progress%detail(label)
   end subroutine hear
 
-  !> Passes what a case is to be computed from to or from a record.
+  !> Writes the input of a case to a record, or reads it from a record.
   subroutine pass_task(record, case)
     type(byte_record_t), intent(inout) :: record
     type(case_t), intent(inout) :: case
@@ -189,7 +193,7 @@ contains
     call record%pass(case%like)
   end subroutine pass_task
 
-  !> Passes a case to or from a record.
+  !> Writes the results of a case to a record, or reads them from a record.
   subroutine pass_case(record, case)
     type(byte_record_t), intent(inout) :: record
     type(case_t), intent(inout) :: case
@@ -216,7 +220,7 @@ contains
       text = passed
     end subroutine pass_text
 
-    !> All components of a cost are numbers of one word.
+    !> The cost is passed as words: all its components are numbers of one word.
     subroutine pass_cost(cost)
       type(cost_t), intent(inout) :: cost
       integer(long) :: words(storage_size(cost)/storage_size(0_long))
@@ -228,7 +232,7 @@ contains
 
   end subroutine pass_case
 
-  !> Adds a case; cases come in the order of their numbers.
+  !> Adds a case to the tally; cases come in the order of their numbers.
   pure subroutine add(self, case)
     class(sweep_tally_t), intent(inout) :: self
     type(case_t), intent(in) :: case

@@ -1,4 +1,5 @@
-!> A sweep: its cases (`case_queue`), distributed over the cores, or over the processes of a crew.
+!> A sweep: its cases (`case_queue`) are distributed over the cores, or over the processes of a
+!> crew.
 module sweeps
   use kinds, only: wp
   use failure, only: failure_t, fail, file_trouble
@@ -28,7 +29,7 @@ module sweeps
   type, extends(worker_t) :: sweep_worker_t
     type(scene_t), pointer :: scenes(:) => null()
     integer :: job = 0
-    !> The meshes of the present job, and the curves of its file.
+    !> The meshes of the present job, and the index of the curves in its file.
     type(mesh_store_t), allocatable :: store
     type(curve_index_t) :: index
   contains
@@ -37,11 +38,12 @@ module sweeps
 
 contains
 
-  !> Computes all cases of scene%sweep and gives their rows to `results`, in the order of the cases.
-  !> The workers of the crew compute them if there are any; `job` is the number of the scene for
+  !> Computes all cases of scene%sweep and writes their rows to `results`, in the order of the
+  !> cases. If the crew has workers, these compute the cases; `job` is the number of the scene for
   !> them. Cases in the journal of the results are complete, in any order; further cases are
-  !> appended when they end. The row of a failed case says why it failed. After an error of writing
-  !> no case begins. joint: the fit of curves that are fitted together.
+  !> appended when they are complete. The row of a failed case gives the reason of the failure.
+  !> After an error in writing no further case is begun. joint: the fit of curves that are fitted
+  !> together.
   subroutine run_sweep(scene, crew, job, results, tally, joint)
     type(scene_t), intent(in), target :: scene
     type(crew_t), intent(inout) :: crew
@@ -75,7 +77,7 @@ contains
     else if (allocated(scene%fit)) then
       call complete_cases(queue, store)
     else
-      ! Each case has one thread, also for its kernels and its linear algebra.
+      ! Each case has one thread, which also computes its kernels and its linear algebra.
       !$omp parallel
       call complete_cases(queue, store)
       !$omp end parallel
@@ -83,8 +85,8 @@ contains
     tally = queue%tally
   end subroutine run_sweep
 
-  !> Fits curves in as many processes as there would be threads, which may not make strings at the
-  !> same time.
+  !> Fits curves in as many processes as there would be threads. Threads would not do, since only
+  !> one at a time may make strings.
   subroutine fit_in_processes(scene, queue, trouble)
     type(scene_t), intent(in) :: scene
     type(case_queue_t), intent(inout) :: queue
@@ -124,7 +126,7 @@ contains
       call queue%next(case(i), found)
       if (.not. found) return
     end do
-    ! A file with further rows has changed.
+    ! If the file has further rows, it has changed.
     call queue%next(further, found)
     if (allocated(queue%results%trouble)) return
     call fit_together(queue%scene, queue%results%progress, case, joint)
@@ -133,7 +135,7 @@ contains
     end do
   end subroutine complete_together
 
-  !> Computes cases until there are no more; several threads do this at once.
+  !> Computes cases until there are no more. Several threads execute this at the same time.
   subroutine complete_cases(queue, store)
     type(case_queue_t), intent(inout) :: queue
     type(mesh_store_t), intent(inout) :: store
@@ -158,7 +160,7 @@ contains
     end do
   end subroutine complete_cases
 
-  !> Computes the batches that a crew's first process hands out from the sweeps of `scenes`.
+  !> Computes the batches of cases of `scenes` that the crew's first process hands out.
   subroutine work_on_sweeps(crew, scenes)
     type(crew_t), intent(inout) :: crew
     type(scene_t), intent(in), target :: scenes(:)
@@ -169,7 +171,7 @@ contains
     call work_through(crew, worker)
   end subroutine work_on_sweeps
 
-  !> Computes a batch on all threads.
+  !> Computes a batch with all threads.
   subroutine work(self, job, cases, batch, answers, seconds)
     class(sweep_worker_t), intent(inout) :: self
     integer, intent(in) :: job, cases

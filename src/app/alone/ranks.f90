@@ -1,4 +1,4 @@
-!> The crew of a build without MPI: one process. `mpi/ranks.f90` documents each procedure.
+!> The crew in a build without MPI, which is one process. `mpi/ranks.f90` documents each procedure.
 module ranks
   use kinds, only: long
   use failure, only: failure_t, fail, bad_input
@@ -21,7 +21,7 @@ module ranks
 
 contains
 
-  !> Fails if there are other processes, since each of them would do all the work.
+  !> Fails if other processes were started too, since each of them would do all the work.
   subroutine begin(self, error)
     class(crew_t), intent(inout) :: self
     type(failure_t), allocatable, intent(out) :: error
@@ -40,7 +40,7 @@ contains
     self%workers = 0
   end subroutine end_crew
 
-  !> 0 if `true`, else -1.
+  !> 0 if `true`, otherwise -1.
   integer function first_of(self, true)
     class(crew_t), intent(in) :: self
     logical, intent(in) :: true
@@ -48,7 +48,7 @@ contains
     first_of = merge(self%rank, -1, true)
   end function first_of
 
-  !> There are no processes to send to.
+  !> Does nothing, since there are no processes to send to.
   subroutine send(self, record, to)
     class(crew_t), intent(in) :: self
     type(byte_record_t), intent(in) :: record
@@ -57,7 +57,7 @@ contains
     if (to > self%workers .or. record%held < 0) error stop 'no such process'
   end subroutine send
 
-  !> No process sends: an empty record.
+  !> Returns an empty record, since no process sends one.
   subroutine receive(self, record, from)
     class(crew_t), intent(inout) :: self
     type(byte_record_t), intent(inout) :: record

@@ -26,13 +26,13 @@ module ranks
 
   !> The tag of all messages.
   integer, parameter :: tag = 1
-  !> Microseconds between polls for a message: the first, and the longest. MPI's own waiting
-  !> occupies a whole core.
+  !> Microseconds between polls for a message: the first interval, and the longest. MPI's own
+  !> waiting would occupy a whole core.
   integer(c_int), parameter :: shortest = 10, longest = 200
 
 contains
 
-  !> Joins the processes that were started together; does not use MPI for a single process. Fails if
+  !> Joins the processes that were started together. For a single process MPI is not used. Fails if
   !> MPI does not know the other processes.
   subroutine begin(self, error)
     class(crew_t), intent(inout) :: self
@@ -52,7 +52,7 @@ contains
       'built with; use the mpirun of that one')
   end subroutine begin
 
-  !> Waits for all processes. If a process ends without this call, MPI ends all of them.
+  !> Waits for all processes. If a process ends without this call, MPI terminates all of them.
   subroutine end_crew(self)
     class(crew_t), intent(inout) :: self
 
@@ -60,7 +60,8 @@ contains
     self%workers = 0
   end subroutine end_crew
 
-  !> The lowest number of a process for which `true` holds, or -1. All processes call this together.
+  !> The lowest number of a process for which `true` holds, or -1. All processes must call this
+  !> function.
   integer function first_of(self, true)
     class(crew_t), intent(in) :: self
     logical, intent(in) :: true
@@ -73,7 +74,7 @@ contains
     if (first_of == huge(mine)) first_of = -1
   end function first_of
 
-  !> Sends a record to a process that receives.
+  !> Sends a record to a process that waits for one.
   subroutine send(self, record, to)
     class(crew_t), intent(in) :: self
     type(byte_record_t), intent(in) :: record
@@ -83,7 +84,7 @@ contains
     call mpi_send(record%words, record%held, mpi_integer8, to, tag, mpi_comm_world)
   end subroutine send
 
-  !> Waits for a record from any process, whose number is `from`.
+  !> Waits for a record from any process. from: the number of this process.
   subroutine receive(self, record, from)
     class(crew_t), intent(inout) :: self
     type(byte_record_t), intent(inout) :: record
