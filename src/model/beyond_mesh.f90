@@ -1,6 +1,6 @@
-!> Forces beyond the end of a mesh, where the deformation hardly varies: from the position r0 on the
-!> gap is H(r) = H(r0) + f(r) - f(r0). For the parabola r dr = dH, so that the integrals are the
-!> law's own, Derjaguin's (23). For other shapes they are integrals over r0/r.
+!> Forces beyond the end of a mesh, where the deformation hardly varies: from the position r0 on,
+!> the gap is H(r) = H(r0) + f(r) - f(r0). For the parabola r dr = dH, so that the integrals are the
+!> law's own, Derjaguin's (23). For other shapes they are computed as integrals over r0/r.
 module beyond_mesh
   use kinds, only: wp
   use force_law, only: of_pressure, of_energy
@@ -12,17 +12,17 @@ module beyond_mesh
 
   !> Number of points of the quadrature.
   integer, parameter :: points = 24
-  !> Largest gap with a force; powers of this gap do not overflow.
+  !> Largest gap at which a force is computed; powers of this gap do not overflow.
   real(wp), parameter :: farthest = 1.0e30_wp
 
-  !> The points: gap, and the weight of g in Int g(H) r dr.
+  !> The points of the quadrature: the gaps, and the weights of g in Int g(H) r dr.
   type :: rule_t
     real(wp), allocatable :: gap(:), weight(:)
   end type rule_t
 
 contains
 
-  !> Int P(H) r dr from `from`, where the gap is `gap`: the load over 2 pi.
+  !> Int P(H) r dr from the position `from`, where the gap is `gap`: the load divided by 2 pi.
   pure real(wp) function load_beyond(problem, gap, from) result(load)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: gap, from
@@ -36,7 +36,7 @@ contains
     end if
   end function load_beyond
 
-  !> The derivatives of the load by the gap and by the position.
+  !> The derivatives of this load by the gap and by the position.
   pure function load_slope_beyond(problem, gap, from) result(slope)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: gap, from
@@ -53,8 +53,8 @@ contains
   end function load_slope_beyond
 
   !> The energy of the surface force per area, at gaps and positions. If it falls slowly, the energy
-  !> of undeformed bodies at the H0 `reference` is subtracted, since only differences of energies
-  !> matter.
+  !> per area of undeformed bodies at the H0 `reference` is subtracted, since only differences of
+  !> energies matter.
   pure function energy_density(problem, gap, r, reference) result(energy)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: gap(:), r(:), reference
@@ -65,17 +65,17 @@ contains
       energy = energy - problem%law%energy(min(reference + problem%shape%height(r), farthest))
   end function energy_density
 
-  !> Whether the energy per area falls so slowly that its integral hardly converges, or diverges: as
-  !> r^-2 for gap^-3 between cones, or gap^-2 between parabolas.
+  !> Whether the energy per area falls so slowly that its integral hardly converges, or diverges. An
+  !> example is a fall as r^-2, which gap^-3 gives between cones and gap^-2 between parabolas.
   pure logical function falls_slowly(problem)
     type(problem_t), intent(in) :: problem
     real(wp), parameter :: falls_well = 4
 
-    ! The power of a law without a tail is too large for a product.
+    ! The condition has no product with the power, which may be `huge` for a law without a tail.
     falls_slowly = problem%law%tail_power < 1 + falls_well/problem%shape%growth
   end function falls_slowly
 
-  !> The rule for r = from/x.
+  !> The quadrature with r = from/x.
   pure type(rule_t) function rule_beyond(problem, gap, from) result(rule)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: gap, from

@@ -21,37 +21,41 @@ module dimensionless_problem
   type :: problem_t
     class(force_law_t), allocatable :: law
     class(shape_t), allocatable :: shape
-    !> The remainder of the bodies beside a half-space; homogeneous bodies have none.
+    !> The remainder that the compliance of the bodies has in addition to that of a half-space;
+    !> homogeneous bodies have none.
     class(elastic_body_t), allocatable :: body
     real(wp) :: coupling = 0
     !> Units: gap [m], lateral position [m], pressure [Pa], load [N].
     real(wp) :: length = 1, lateral = 1, pressure = 1, load = 1
-    !> Bodies, SI: R of their shape, and E/(1-nu^2) of two identical bodies.
+    !> The bodies in SI units: R of their shape, and the plane-strain modulus E/(1-nu^2) of two
+    !> identical bodies.
     real(wp) :: radius = 1, stiffness = 1
     logical :: rigid = .false.
-    !> Largest gap (law's lengths) at which the pressure of a draining fluid is not yet a power of
-    !> the position; 0 without a fluid.
+    !> Largest gap (lengths L of the law) at which the pressure of a draining fluid is not yet a
+    !> power of the position; 0 without a fluid.
     real(wp) :: film_gap = 0
-    !> Deformation of each body over that of identical bodies.
+    !> Deformation of each body, relative to that of identical bodies.
     real(wp) :: share(2) = 1
   end type problem_t
 
-  !> Bodies are in contact, as in the paper's Fig. 6, at gaps below this multiple of the gap at
-  !> rest.
+  !> Bodies are in contact, as in the paper's Fig. 6, at gaps smaller than this multiple of the
+  !> equilibrium gap.
   real(wp), parameter :: contact_gap = 1.1_wp
-  !> The tension counts as uniform from contact to its largest value if their distance, over the
-  !> range (depth of the well over largest tension), exceeds this: it is 0.2 for the Lennard-Jones
-  !> law, 0.35 for Morse's, 0.9 and more for a step.
+  !> The tension counts as uniform between contact and the gap of largest tension if the distance of
+  !> these two gaps exceeds this fraction of the range (depth of the well over largest tension). The
+  !> fraction is 0.2 for the Lennard-Jones law, 0.35 for Morse's, 0.9 and more for a step.
   real(wp), parameter :: even = 0.5_wp
-  !> Width of the cohesive zone times sigma, lateral units.
+  !> The width of the cohesive zone (lateral units) times sigma.
   real(wp), parameter :: neck = 0.375_wp
 
-  !> Stiffness of the repulsion, relative to that of the bodies, at which its kinks have no effect.
+  !> Ratio of the stiffness of the repulsion to that of the bodies above which kinks of the
+  !> repulsion have no effect.
   real(wp), parameter :: stiff = 30
 
 contains
 
-  !> A problem; stiffness [Pa] is that of `bodies`, and is ignored for rigid bodies.
+  !> Makes a problem. stiffness [Pa]: the plane-strain modulus of `bodies`, ignored for rigid
+  !> bodies.
   type(problem_t) function new_problem(law, shape, stiffness, rigid) result(problem)
     class(force_law_t), intent(in) :: law
     class(shape_t), intent(in) :: shape
@@ -72,8 +76,8 @@ contains
     call forget_stiff_kinks(problem)
   end function new_problem
 
-  !> Forgets kinks where the repulsion is so much stiffer than the bodies that gaps follow
-  !> pressures: there a kink hardly changes a gap.
+  !> Removes kinks from the law's list where the repulsion is so much stiffer than the bodies that
+  !> gaps follow pressures. There a kink hardly changes a gap.
   subroutine forget_stiff_kinks(problem)
     type(problem_t), intent(inout) :: problem
 
@@ -84,16 +88,17 @@ contains
     end associate
   end subroutine forget_stiff_kinks
 
-  !> sigma (40): the coupling times the surface energy; 0 without adhesion.
+  !> sigma (40): the coupling times the dimensionless work of adhesion; 0 without adhesion.
   pure real(wp) function adhesion_strength(problem)
     type(problem_t), intent(in) :: problem
 
     adhesion_strength = problem%coupling*problem%law%adhesion
   end function adhesion_strength
 
-  !> The coupling of half-spaces with the same compliance under a flat punch of this radius (lateral
-  !> units), approximately. A punch makes waves of weight (sin(k radius)/(k radius))^2; these are
-  !> replaced by equal weights up to a k that keeps their sum.
+  !> The approximate coupling of half-spaces that have the same compliance under a flat punch of
+  !> this radius (lateral units). The pressure of a punch has Hankel components of weight (sin(k
+  !> radius)/(k radius))^2. These are replaced by equal weights up to a k for which their sum is the
+  !> same.
   elemental real(wp) function coupling_over(problem, radius) result(coupling)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: radius
@@ -104,7 +109,8 @@ contains
   end function coupling_over
 
   !> Width of the zone outside the contact edge over which the tension decays, in lateral units:
-  !> 0.75 E* L^2/gamma = 0.375/sigma; huge for rigid bodies or without attraction.
+  !> 0.75 E* L^2/w = 0.375/sigma with the work of adhesion w. It is huge for rigid bodies or without
+  !> attraction.
   pure real(wp) function neck_width(problem)
     type(problem_t), intent(in) :: problem
 
@@ -112,7 +118,8 @@ contains
     if (adhesion_strength(problem) > 0) neck_width = neck/adhesion_strength(problem)
   end function neck_width
 
-  !> A distance between nodes (lateral units) over the width of the cohesive zone; 0 without one.
+  !> A distance between nodes (lateral units), relative to the width of the cohesive zone; 0 without
+  !> such a zone.
   pure real(wp) function spacing_over_neck(problem, spacing)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: spacing
@@ -120,9 +127,10 @@ contains
     spacing_over_neck = spacing*adhesion_strength(problem)/neck
   end function spacing_over_neck
 
-  !> Tabor's parameter (R gamma^2/(E*^2 L^3))^(1/3) = (4 sigma^2)^(1/3); for a gap B r^n it is
-  !> ((gamma/E*)^n/(2 B L^(2n-1)))^(1/(2n-1)) = (2 sigma)^(n/(2n-1)). 0 without adhesion. Where the
-  !> tension is even, L is its range, even if a repulsion gives the law another length.
+  !> Tabor's parameter (R w^2/(E*^2 L^3))^(1/3) = (4 sigma^2)^(1/3), with the work of adhesion w.
+  !> For a gap B r^n it is ((w/E*)^n/(2 B L^(2n-1)))^(1/(2n-1)) = (2 sigma)^(n/(2n-1)). It is 0
+  !> without adhesion. If the tension is uniform, L is its range, even if a repulsion gives the law
+  !> another length.
   pure real(wp) function tabor_parameter(problem)
     type(problem_t), intent(in) :: problem
 
@@ -136,14 +144,14 @@ contains
     if (tension_is_even(problem)) tabor_parameter = tabor_parameter/range_of(problem)
   end function tabor_parameter
 
-  !> The depth of the well of contact over the largest tension, law's lengths.
+  !> The range: the depth of the primary minimum over the largest tension, in lengths L of the law.
   pure real(wp) function range_of(problem)
     type(problem_t), intent(in) :: problem
 
     range_of = problem%law%adhesion/(-problem%law%at(of_pressure, problem%law%edge_gap))
   end function range_of
 
-  !> Whether the tension is about as large from contact to a far gap, as under a step. Then it is
+  !> Whether the tension is nearly uniform from contact to a far gap, as under a step. It is then
   !> largest at this gap, outside the contact of the theories.
   pure logical function tension_is_even(problem)
     type(problem_t), intent(in) :: problem
@@ -154,8 +162,8 @@ contains
   end function tension_is_even
 
   !> A gap beyond which bodies hardly deform: twice the gap at which parabolas snap in under an r^-3
-  !> attraction, (37). For any shape and attractive law, the deformation there is
-  !> about a tenth of that at the jump. The gap is outside a step of the law.
+  !> attraction, (37). For any shape and attractive law, the deformation there is about a tenth of
+  !> that at snap-in. If the law has a step, the gap is larger than that of the step.
   pure real(wp) function calm_gap(problem) result(gap)
     type(problem_t), intent(in) :: problem
 
@@ -167,15 +175,15 @@ contains
   end function calm_gap
 
   !> The largest gap at which bodies deform by more than the fraction `left` of the deformation at
-  !> snap-in; 0 if there is none. Over the zone of interaction, sqrt(gap) wide for a
-  !> parabola, the law's slope deforms bodies by coupling*slope*width of their gap, times a
-  !> constant. The constant makes the result one at (37), the gap of the jump under an r^-3
+  !> snap-in; 0 if there is none. The law acts over a zone of a certain width, sqrt(gap) for a
+  !> parabola. Its slope deforms the bodies by a constant times coupling*slope*width, relative to
+  !> their gap. The constant makes this quantity one at (37), the gap of snap-in under an r^-3
   !> attraction.
   pure real(wp) function yielding_gap(problem, left) result(gap)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: left
     real(wp), parameter :: at_jump = 27.0_wp/8
-    !> Ratio of the gaps tried, and their number: up to 1e6 lengths.
+    !> Ratio of successive trial gaps, and their number, with which they reach 1e6 lengths L.
     real(wp), parameter :: ratio = 1.05_wp
     integer, parameter :: tried = 284
     real(wp) :: at(tried), width(tried)
@@ -190,15 +198,16 @@ contains
     if (last > 0) gap = at(last)
   end function yielding_gap
 
-  !> gamma [J/m^2], the work of adhesion; 0 for a law that does not attract, negative if contact is
-  !> only metastable.
+  !> The work of adhesion w [J/m^2]; 0 for a law that does not attract, negative if contact is only
+  !> metastable.
   pure real(wp) function surface_energy(problem)
     type(problem_t), intent(in) :: problem
 
     surface_energy = problem%law%work*problem%pressure*problem%length
   end function surface_energy
 
-  !> Largest tension of the law [Pa], at the contact edge; 0 for a law without a largest tension.
+  !> The largest tension of the law [Pa], which acts at the contact edge; 0 for a law without a
+  !> largest tension.
   pure real(wp) function largest_tension(problem)
     type(problem_t), intent(in) :: problem
 
@@ -207,7 +216,8 @@ contains
       largest_tension = -problem%law%at(of_pressure, problem%law%edge_gap)*problem%pressure
   end function largest_tension
 
-  !> Largest gap of bodies in contact (law's lengths); -huge if the law does not define it.
+  !> Largest gap (lengths L) at which bodies count as in contact; -huge if the law does not define
+  !> it.
   pure real(wp) function contact_level_of(problem) result(level)
     type(problem_t), intent(in) :: problem
 

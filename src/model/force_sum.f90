@@ -1,4 +1,4 @@
-!> The sum of several forces. A single law is kept as it is, without the cost of a sum.
+!> The sum of several forces. A single law is not converted into a sum, which saves time.
 module force_sum
   use kinds, only: wp
   use force_law, only: force_law_t, of_pressure, of_slope, of_energy
@@ -7,8 +7,8 @@ module force_sum
   private
   public :: add_term, settle
 
-  !> One of the forces. Its gap is stretch*gap + shift in its own units, and its pressure is
-  !> multiplied by `weight`.
+  !> One of the forces. In its own units its gap is stretch*gap + shift; its pressure is multiplied
+  !> by `weight`.
   type :: term_t
     class(force_law_t), allocatable :: law
     real(wp) :: stretch = 1, shift = 0, weight = 1
@@ -24,7 +24,7 @@ module force_sum
 
 contains
 
-  !> Adds a term to a law. Either may be unallocated; the term is moved.
+  !> Adds a term to a law. Either may be unallocated. The term is moved, not copied.
   subroutine add_term(law, term)
     class(force_law_t), allocatable, intent(inout) :: law, term
     type(force_sum_t) :: sum_of
@@ -45,7 +45,7 @@ contains
 
   contains
 
-    !> Moves the parts of a law into the terms.
+    !> Moves the terms of a law, or the law itself, into the list of terms.
     subroutine take(from)
       class(force_law_t), allocatable, intent(inout) :: from
       integer :: i
@@ -65,7 +65,7 @@ contains
 
   end subroutine add_term
 
-  !> Number of forces in a law; one group of the deck may have several.
+  !> Number of forces in a law, which may be larger than the number of groups.
   pure integer function terms_in(law)
     class(force_law_t), intent(in) :: law
 
@@ -77,10 +77,10 @@ contains
   end function terms_in
 
   !> Sets units and scales of a law with all its terms. A sum is first scanned in units of its
-  !> shortest length. If it has a well, the scales of the well become its units: as length the z0 of
-  !> the first term that has one, else the range (depth over largest tension); as pressure the
-  !> largest tension. The contact is at gap 1. The same is done for a single law without units of
-  !> its own.
+  !> shortest length. If it has a minimum with an attraction outside, the scales of this minimum
+  !> become its units. The length is the z0 of the first term that has one, otherwise the range
+  !> (depth over largest tension); the unit of pressure is the largest tension. The equilibrium is
+  !> at gap 1. The same is done for a single law without units of its own.
   subroutine settle(law)
     class(force_law_t), allocatable, intent(inout) :: law
     type(force_sum_t) :: alone
@@ -123,7 +123,8 @@ contains
     end select
   end subroutine settle
 
-  !> The sum of these terms, which are moved, in the given units; its scales are not known yet.
+  !> Makes the sum of these terms, which are moved, in the given units. Its scales are not yet
+  !> known.
   subroutine take_units(law, terms, length, unit, origin)
     type(force_sum_t), intent(out) :: law
     type(term_t), allocatable, intent(inout) :: terms(:)
@@ -167,7 +168,7 @@ contains
     law%length_key = law%term(1)%law%length_key
   end subroutine take_units
 
-  !> The gap of a term at a gap of the sum.
+  !> The gap of a term in its own units, at a gap of the sum.
   elemental real(wp) function own_gap(term, gap)
     type(term_t), intent(in) :: term
     real(wp), intent(in) :: gap
@@ -175,7 +176,7 @@ contains
     own_gap = term%stretch*gap + term%shift
   end function own_gap
 
-  !> Lengths of those terms that have a characteristic length, or of all terms if none has.
+  !> Lengths of those terms that have a characteristic length, or of all terms if no term has one.
   pure function lengths(law)
     type(force_sum_t), intent(in) :: law
     real(wp), allocatable :: lengths(:)
@@ -222,8 +223,9 @@ contains
     end do
   end function table_error
 
-  !> The smallest closure of all forces; beyond the range also half of the excess over the range,
-  !> since distant gaps are large, and so are the errors of their prediction.
+  !> The smallest closure of all forces. Beyond the range of the repulsion, half of the excess over
+  !> this range is also allowed, since distant gaps are large, and so are the errors of their
+  !> prediction.
   pure function closure(self, gap) result(most)
     class(force_sum_t), intent(in) :: self
     real(wp), intent(in) :: gap(:)

@@ -1,8 +1,9 @@
-!> A force that is known at points. The pressure, or the energy, is divided by its tail and
-!> interpolated: q = p g^m as a function of u = ln g for a tail that is a power, q = p exp(u) with u
-!> = g/l for an exponential tail; the gap g is in units of the first gap. The energy is the integral
-!> of the interpolant, or the pressure its derivative. Beyond the last point q is constant. Before
-!> the first point the pressure is a power of the gap with the same value and slope.
+!> A force that is known at points. The pressure, or the energy, is divided by its tail and then
+!> interpolated. For a tail that is a power, q = p g^m is interpolated as a function of u = ln g;
+!> for an exponential tail, q = p exp(u) with u = g/l. The gap g is in units of the first gap. If
+!> the pressure is given, the energy is the integral of the interpolant; if the energy is given, the
+!> pressure is its derivative. Beyond the last point q is constant. Before the first point the
+!> pressure is a power of the gap that continues its value and slope.
 module force_table
   use kinds, only: wp
   use interpolation, only: spline, monotone, interval_of
@@ -11,17 +12,20 @@ module force_table
   private
   public :: force_table_t, new_force_table, largest_step
 
-  !> The quadrature is exact to rounding for pieces over which the tail falls by exp(-largest_step).
+  !> The quadrature is exact except for rounding over intervals in which the tail falls by no more
+  !> than exp(-largest_step).
   integer, parameter :: order = 16
   real(wp), parameter :: largest_step = 10
 
   type :: force_table_t
     logical :: of_energy = .false.
-    !> Exponents of the tails of the interpolated quantity and of the energy; 1 for an exponential.
+    !> Exponents of the tails of the interpolated quantity and of the energy; 1 for an exponential
+    !> tail.
     real(wp) :: rate = 1, energy_rate = 1
-    !> l; 0 for a power.
+    !> The decay length l; 0 for a tail that is a power.
     real(wp) :: decay_length = 0
-    !> The repulsion before the first point is gap^-power; pressure and energy at the first point.
+    !> The repulsion before the first point is gap^-power; pressure and energy are those at the
+    !> first point.
     real(wp) :: power = 0, pressure = 0, energy = 0
     real(wp), allocatable :: u(:), cubic(:, :), energy_from(:)
     real(wp) :: x(order) = 0, w(order) = 0
@@ -32,8 +36,9 @@ module force_table
 
 contains
 
-  !> The table of `value`, pressures or energies, at the ascending gaps g, the first of which is 1.
-  !> The pressure ends as g^-tail_exponent, or as exp(-g/decay_length) if decay_length is not 0.
+  !> Makes the table from `value`, pressures or energies at the ascending gaps g, the first of which
+  !> is 1. Beyond the last point the pressure falls as g^-tail_exponent, or as exp(-g/decay_length)
+  !> if decay_length is not 0.
   function new_force_table(g, value, of_energy, tail_exponent, decay_length, by_spline) &
     result(table)
     real(wp), intent(in) :: g(:), value(:), tail_exponent, decay_length
@@ -67,11 +72,11 @@ contains
     at_first = table%values(1.0_wp, with_energy=.true.)
     table%pressure = at_first(1)
     table%energy = at_first(3)
-    ! Without a pressure there is no power.
+    ! If the pressure vanishes, it has no power.
     table%power = -at_first(2)/sign(max(abs(at_first(1)), tiny(1.0_wp)), at_first(1))
   end function new_force_table
 
-  !> u at a gap.
+  !> The coordinate u of a gap.
   elemental real(wp) function u_of(self, gap) result(u)
     class(force_table_t), intent(in) :: self
     real(wp), intent(in) :: gap
@@ -83,7 +88,7 @@ contains
     end if
   end function u_of
 
-  !> The integral of the pressure from u, in piece i, to the end of the piece.
+  !> The integral of the pressure from u, in interval i, to the end of this interval.
   pure real(wp) function integral(self, i, u)
     class(force_table_t), intent(in) :: self
     integer, intent(in) :: i
@@ -99,8 +104,8 @@ contains
     if (self%decay_length > 0) integral = integral*self%decay_length
   end function integral
 
-  !> Pressure, slope and energy at a gap; with_energy = .false.: pressure and slope, which are
-  !> faster.
+  !> Pressure, slope and energy at a gap. with_energy = .false.: pressure and slope only, which
+  !> takes less time.
   pure function values(self, gap, with_energy) result(value)
     class(force_table_t), intent(in) :: self
     real(wp), intent(in) :: gap
@@ -134,7 +139,7 @@ contains
     end associate
     if (u >= self%u(n)) q(1:) = 0
     fall = exp(-self%rate*u)
-    ! Derivative by u, including that of the tail.
+    ! The derivative by u, with the factor of the tail.
     q(2) = fall*(q(2) - 2*self%rate*q(1) + self%rate**2*q(0))
     q(1) = fall*(q(1) - self%rate*q(0))
     q(0) = fall*q(0)

@@ -1,4 +1,4 @@
-!> Common parts of the readers of force laws and shapes.
+!> Procedures that the readers of force laws and shapes have in common.
 module group_reading
   use kinds, only: wp
   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
@@ -11,11 +11,11 @@ module group_reading
   public :: keys_of_force, is_law, require, refuse_foreign, check_decades, accept_law, &
     keys_of_shape, read_radius, refuse_radius
 
-  !> Largest decimal order, positive or negative, of units and derived quantities.
+  !> Largest decimal order, positive or negative, of units and of derived quantities.
   integer, parameter :: most_decades = 100
 
-  !> The row of &force, the group of the paper's two laws, and the row of its key `law`; the laws
-  !> add their own rows.
+  !> The row of &force, the group of the paper's two laws, and the row of its key `law`. The modules
+  !> of the laws add their own rows.
   type(key_spec), parameter :: keys_of_force(*) = [ &
     key_spec('force', meaning='Force per area between the surfaces, against their separation.', &
       choices='&force law = ''lennard_jones'', work_of_adhesion = 0.05, z0 = 0.3e-9 /'), &
@@ -34,8 +34,8 @@ contains
     is_law = name == law
   end function is_law
 
-  !> Fails if the deck does not give a key of a group that a `choice` needs, the value of the
-  !> group's key `by`.
+  !> Fails if the deck does not give a key of a group that is needed for a `choice`, which is the
+  !> value of the group's key `by`.
   pure subroutine require(deck, group, by, choice, key)
     type(deck_t), intent(inout) :: deck
     character(len=*), intent(in) :: group, by, choice, key
@@ -44,7 +44,8 @@ contains
       quoted(choice)//' needs it')
   end subroutine require
 
-  !> Fails if the deck gives one of the keys `rows`, which belong to one choice, to another.
+  !> Fails if the deck gives one of the keys `rows` although its `choice` is not the one to which
+  !> they belong.
   pure subroutine refuse_foreign(deck, group, by, choice, rows)
     type(deck_t), intent(inout) :: deck
     character(len=*), intent(in) :: group, by, choice
@@ -60,8 +61,9 @@ contains
     end do
   end subroutine refuse_foreign
 
-  !> Refuses `what`, a quantity of 10^decades `unit` that follows from values of &bodies and of the
-  !> group, if it is out of range. most: the largest decimal order; `most_decades` if absent.
+  !> Refuses a quantity that is out of range. what: the quantity, equal to 10^decades `unit`, which
+  !> follows from values of &bodies and of the group. most: the largest decimal order;
+  !> `most_decades` if absent.
   pure subroutine check_decades(deck, group, key, decades, what, unit, most)
     type(deck_t), intent(inout) :: deck
     character(len=*), intent(in) :: group, key, what, unit
@@ -82,8 +84,8 @@ contains
     end if
   end subroutine check_decades
 
-  !> Hands out a law that was read from a group, with the names of the group and of its keys for the
-  !> magnitudes of pressure and gap; refuses it if its pressure is out of range.
+  !> Hands over a law that was read from a group, with the names of the group and of its keys for
+  !> the magnitudes of pressure and gap. The law is refused if its pressure is out of range.
   subroutine accept_law(deck, group, strength_key, length_key, this, law)
     type(deck_t), intent(inout) :: deck
     character(len=*), intent(in) :: group, strength_key, length_key
@@ -98,8 +100,8 @@ contains
     allocate (law, source=this)
   end subroutine accept_law
 
-  !> The rows that belong to no single kind; `kinds` has the names of all kinds. The rows of the
-  !> shapes follow them.
+  !> The rows of &shape that belong to no single kind of shape. kinds: the names of all kinds. The
+  !> rows of the kinds follow.
   pure function keys_of_shape(kinds) result(rows)
     character(len=*), intent(in) :: kinds
     type(key_spec), allocatable :: rows(:)
@@ -131,7 +133,7 @@ contains
     end if
   end subroutine read_radius
 
-  !> Fails for the given reason if the deck gives a radius.
+  !> Fails with the given reason if the deck gives a radius.
   pure subroutine refuse_radius(deck, reason)
     type(deck_t), intent(inout) :: deck
     character(len=*), intent(in) :: reason

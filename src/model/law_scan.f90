@@ -1,5 +1,5 @@
-!> The scales of a force law from a scan of its pressure: zeros, largest tension, range, depth of
-!> the well. Solvers use only these and the formulas of a law.
+!> The scales of a force law, from a scan of its pressure: zeros, largest tension, range, depth of
+!> the minimum. Solvers use only these scales and the formulas of a law.
 module law_scan
   use kinds, only: wp
   use root_finding, only: bracket_t
@@ -8,30 +8,32 @@ module law_scan
   private
   public :: find_scales, surroundings_t, surroundings_of
 
-  !> Features outside the well of contact, in the law's units: the highest barrier of energy, with
-  !> the largest pressure on its far side, and the deepest outer well.
+  !> Features outside the primary minimum, in the law's units: the highest barrier of energy, with
+  !> the largest pressure on its far side, and the deepest secondary minimum.
   type :: surroundings_t
     logical :: has_barrier = .false., has_well = .false.
     real(wp) :: barrier_pressure = 0, barrier_energy = 0, well_gap = 0, well_energy = 0
   end type surroundings_t
 
-  !> Gaps of the scan, in the law's lengths: geometrically spaced from `nearest` to `farthest` above
-  !> the smallest gap of a singular law; for other laws also evenly spaced below.
+  !> Gaps of the scan, in lengths L of the law. They are geometrically spaced from `nearest` to
+  !> `farthest` above the smallest gap of a singular law. For other laws further gaps are evenly
+  !> spaced below.
   real(wp), parameter :: nearest = 1.0e-2_wp, farthest = 1.0e5_wp, lowest = -60
   integer, parameter :: geometric = 3000, even = 3000
-  !> A law has ended where its pressure is below this part of the largest tension or the unit, or so
-  !> many lengths beyond the equilibrium separation.
+  !> A law ends where its pressure is smaller than this fraction of the largest tension or of the
+  !> unit, or at this number of lengths beyond the equilibrium separation.
   real(wp), parameter :: ended = 1.0e-16_wp, longest = 59
-  !> Pressures below this count as zero.
+  !> Pressures smaller than this one count as zero.
   real(wp), parameter :: vanished = 1.0e-100_wp
-  !> Error of the local exponent below which a pressure counts as a power.
+  !> Error of the local exponent below which the pressure counts as a power of the gap.
   real(wp), parameter :: settled = 1.0e-2_wp
-  !> Barriers and outer wells with pressures below this part of the largest tension are ignored.
+  !> Barriers and secondary minima whose pressures are smaller than this fraction of the largest
+  !> tension are ignored.
   real(wp), parameter :: nothing = 1.0e-12_wp
 
 contains
 
-  !> Sets the scales of a law that has not set its range.
+  !> Sets the scales of a law, unless the law has set its range itself.
   subroutine find_scales(law)
     class(force_law_t), intent(inout) :: law
     real(wp), allocatable :: gap(:), pressure(:), slope(:)
@@ -95,9 +97,9 @@ contains
   end subroutine find_scales
 
   !> Sets adhesion and work of a law without an equilibrium separation, whose attraction ends at a
-  !> gap, or nowhere. The work of adhesion is the energy at contact. That of a singular law is
-  !> infinite, and work is 0; adhesion is then only a scale, from a gap of one length, or half the
-  !> gap at which the attraction ends.
+  !> gap, or nowhere. The work of adhesion is the energy at contact. It would be infinite for a
+  !> singular law; then work is 0, and adhesion is only a scale, the energy at a gap of one length,
+  !> or at half the gap where the attraction ends.
   subroutine find_adhesion_without_rest(law, ends)
     class(force_law_t), intent(inout) :: law
     real(wp), intent(in) :: ends
@@ -113,7 +115,7 @@ contains
     if (ends < huge(1.0_wp)) law%adhesion = law%adhesion + law%at(of_energy, ends)
   end subroutine find_adhesion_without_rest
 
-  !> Finds the features outside the well of contact.
+  !> Finds the features outside the primary minimum.
   type(surroundings_t) function surroundings_of(law) result(found)
     class(force_law_t), intent(in) :: law
     real(wp), allocatable :: gap(:), pressure(:)
@@ -124,8 +126,8 @@ contains
     if (.not. law%edge_gap > 0) return
     gap = gaps_of(law)
     pressure = law%pressure(gap)
-    ! Smaller pressures are negligible or rounding errors; a barrier that fades into them has no
-    ! well.
+    ! Smaller pressures are negligible or rounding errors. A barrier that decays into them has no
+    ! secondary minimum.
     counts = abs(pressure) >= nothing*abs(law%at(of_pressure, law%edge_gap))
     gap = pack(gap, counts)
     pressure = pack(pressure, counts)
@@ -170,8 +172,8 @@ contains
     i = 0
   end function next_zero
 
-  !> A zero of the pressure, or of its slope (`quantity`), between two gaps of different signs,
-  !> bisected to rounding, since all scales depend on it.
+  !> A zero of the pressure or of its slope (`quantity`), between two gaps at which the signs
+  !> differ. Bisection goes on to rounding accuracy, since all scales depend on the result.
   real(wp) function zero_between(law, from, to, quantity) result(middle)
     class(force_law_t), intent(in) :: law
     real(wp), intent(in) :: from, to
@@ -187,8 +189,8 @@ contains
     middle = bracket%middle()
   end function zero_between
 
-  !> The gaps of the scan, in ascending order; a step of the law, which may be narrower than they
-  !> are apart, has gaps of its own.
+  !> The gaps of the scan, in ascending order. A step of the law may be narrower than the spacing of
+  !> these gaps; therefore gaps within the step are added.
   pure function gaps_of(law) result(gap)
     class(force_law_t), intent(in) :: law
     real(wp), allocatable :: gap(:)
@@ -205,9 +207,9 @@ contains
     gap = [gap, (base + nearest*(farthest/nearest)**(real(i, wp)/geometric), i=0, geometric)]
     if (.not. law%step_width > 0) return
     through = law%step_at + law%step_width*[(0.5_wp*i, i=-16, 16)]
-    ! A wide step begins at contact.
+    ! A wide step may begin at contact.
     through = pack(through, through > gap(1))
-    ! A step nearer than all gaps is part of contact.
+    ! A step at gaps smaller than all of the scan is part of contact.
     if (size(through) == 0) return
     gap = [pack(gap, gap < through(1)), through, pack(gap, gap > through(size(through)))]
   end function gaps_of

@@ -1,11 +1,12 @@
-!> The pressure of the nonlinear double layer as a table. With u = -ln tanh(h/2), which is -ln(h/2)
-!> at small gaps h and 2 exp(-h) at large gaps, q = p sinh h varies slowly over the decades of u and
-!> is constant at large gaps, except for terms like u ln u. On panels of u it is a Chebyshev series.
-!> Since du = -dh/sinh h, the energy is the integral of q over u, the exact integral of the series,
-!> and the slope is its derivative.
+!> The pressure of the nonlinear double layer as a table. Let u = -ln tanh(h/2), which is -ln(h/2)
+!> at small gaps h and 2 exp(-h) at large gaps. The function q = p sinh h varies slowly over the
+!> decades of u. At large gaps it is constant, except for terms like u ln u. On panels of u, q is a
+!> Chebyshev series. Since du = -dh/sinh h, the energy is the exact integral of the series over u,
+!> and the slope is the derivative of the series.
 !>
-!> Few panels are solved, but u takes long to evaluate. The table itself has polynomials of the gap:
-!> on an eighth of a factor of two, pressure, slope and energy times exp(h) are as smooth as powers.
+!> The panels need few solutions of the equation, but u takes long to evaluate. Therefore the table
+!> consists of polynomials of the gap. On an eighth of a factor of two, pressure, slope and energy
+!> times exp(h) are as smooth as powers.
 module layer_table
   use kinds, only: wp
   use chebyshev, only: chebyshev_points, chebyshev_series, series_value, series_slope, &
@@ -17,32 +18,33 @@ module layer_table
   private
   public :: layer_table_t, new_layer_table, nearest_gap
 
-  !> Binary exponents of the first and the last factor of two of the table.
+  !> Binary exponents of the first and the last factor of two in the gap that the table covers.
   integer, parameter :: first_octave = -19, last_octave = 6
-  !> Smallest gap of the table in Debye lengths, 1e-6. Even for the 1 um of pure water this is a
-  !> hundredth of an atom.
+  !> Smallest gap of the table in Debye lengths, 1e-6. Even in pure water, whose Debye length is 1
+  !> um, this is a hundredth of the size of an atom.
   real(wp), parameter :: nearest_gap = 2.0_wp**(first_octave - 1)
-  !> Gap beyond which q is its limit to rounding: u ln u is below 1e-16.
+  !> Gap beyond which q equals its limit except for rounding errors: u ln u is smaller than 1e-16.
   real(wp), parameter :: farthest_gap = 40
-  !> The largest gap on a piece.
+  !> The largest gap within the last piece.
   real(wp), parameter :: last_gap = 2.0_wp**last_octave*(1 - epsilon(1.0_wp))
-  !> Degree on a piece, smallest and largest number of pieces of a factor of two: on a piece whose
-  !> centre is 17 half-widths from 0, powers of the gap have errors of 34**-10. Largest last
-  !> coefficient over the pressure; the next one would be smaller by a factor of 30.
+  !> Degree of the polynomial on a piece; smallest and largest number of pieces for a factor of two.
+  !> On a piece whose centre is 17 half-widths from 0, powers of the gap have errors of 34**-10.
+  !> Largest ratio of the last coefficient to the pressure; the next coefficient would be 30 times
+  !> smaller.
   integer, parameter :: piece_degree = 9, fewest = 8, finest = 64
   real(wp), parameter :: last_part = 1.0e-12_wp
-  !> Degree of a series; largest size of its last two coefficients over the pressure, and the size
-  !> that is tolerated for the rounding of the quadratures.
+  !> Degree of a series; ratio of its last two coefficients to the pressure at which it counts as
+  !> resolved, and the ratio that is tolerated because of rounding in the quadratures.
   integer, parameter :: degree = 18
   real(wp), parameter :: resolved = 1.0e-13_wp, tolerated = 1.0e-11_wp
-  !> Logarithm of the ratio of u over a panel: first and largest value, and smallest.
+  !> Logarithm of the ratio of u over a panel: the first and largest value, and the smallest value.
   real(wp), parameter :: longest = 8, shortest = 0.02_wp
-  !> The ratio for the next panel, or for a failed panel, over the ratio that would just be
+  !> Ratio of the next panel, or of a repeated panel, relative to the one that would just be
   !> resolved.
   real(wp), parameter :: careful = 0.9_wp
 
-  !> power(:, piece, quantity): coefficients of the powers of the coordinate on a piece, from -1 to
-  !> 1; parts: number of pieces of a factor of two.
+  !> power(:, piece, quantity): coefficients of the powers of a coordinate that runs from -1 to 1 on
+  !> a piece. parts: number of pieces for a factor of two.
   type :: layer_table_t
     private
     integer :: parts = fewest
@@ -51,15 +53,16 @@ module layer_table
     procedure :: value
   end type layer_table_t
 
-  !> Panels from the smallest u on, each from `first` to `last`; columns are series in the panel's
-  !> [-1, 1]. Energies are integrals from the gap to infinity.
+  !> Panels, ordered from the smallest u, each from `first` to `last`. Columns are series in a
+  !> coordinate that runs from -1 to 1 on the panel. Energies are integrals from the gap to
+  !> infinity.
   type :: panels_t
     real(wp), allocatable :: first(:), last(:)
     real(wp), allocatable :: q(:, :), slope(:, :), energy(:, :)
   end type panels_t
 
-  !> The last states that were solved, from which the next is extrapolated; their number, and the
-  !> largest magnitude of the pressure so far.
+  !> The states that were solved last, from which the next one is extrapolated; their number; and
+  !> the largest magnitude of the pressure so far.
   integer, parameter :: most = 4
   type :: trail_t
     integer :: length = 0
@@ -70,8 +73,8 @@ module layer_table
 
 contains
 
-  !> Tabulates the pressure between two surfaces; the first has the higher potential, which is
-  !> positive. solved = .false. if an equation was not solved; there is then no table.
+  !> Tabulates the pressure between two surfaces, the first of which has the higher potential, which
+  !> is positive. solved = .false.: an equation was not solved, and there is no table.
   pure subroutine new_layer_table(surface, table, solved)
     type(surface_t), intent(in) :: surface(2)
     type(layer_table_t), intent(out) :: table
@@ -89,7 +92,7 @@ contains
       trial = trail
       call solve_panel(surface, first, last, trial, series, solved)
       rest = huge(rest)
-      ! Where the pressure vanishes, errors are relative to a part of the largest pressure.
+      ! Where the pressure vanishes, errors are relative to a fraction of the largest pressure.
       if (solved) rest = maxval(abs(series(degree - 1:)))/ &
         max(maxval(abs(series)), trial%largest*sinh(u_at(last)))
       better = careful*(resolved/max(rest, tiny(rest)))**(1.0_wp/degree)
@@ -114,7 +117,8 @@ contains
     end do
   end subroutine new_layer_table
 
-  !> Solves at the points of one panel, from large gaps to small ones, and makes the series of q.
+  !> Solves the equation at the points of one panel, from large gaps to small ones, and makes the
+  !> series of q.
   pure subroutine solve_panel(surface, first, last, trail, series, solved)
     type(surface_t), intent(in) :: surface(2)
     real(wp), intent(in) :: first, last
@@ -128,7 +132,7 @@ contains
     u = first + (last - first)*(1 + chebyshev_points(degree))/2
     solved = .true.
     do i = 0, degree
-      ! The first point of a panel is the last of the panel before.
+      ! The first point of a panel coincides with the last point of the panel before.
       if (i > 0 .or. trail%length == 0) then
         state = next_state(surface, u(i), trail)
         call solve_gap(surface, u_at(u(i)), state, solved)
@@ -141,7 +145,7 @@ contains
     series = chebyshev_series(q)
   end subroutine solve_panel
 
-  !> The first estimate of the state at u, extrapolated from the states that were solved.
+  !> The first estimate of the state at u, extrapolated from the states solved before.
   pure type(gap_state_t) function next_state(surface, u, trail) result(state)
     type(surface_t), intent(in) :: surface(2)
     real(wp), intent(in) :: u
@@ -160,7 +164,7 @@ contains
     end select
   end function next_state
 
-  !> Appends a panel; before the first panel q is constant.
+  !> Appends a panel. At gaps larger than those of the first panel q is constant.
   pure subroutine append(panels, first, last, series)
     type(panels_t), intent(inout) :: panels
     real(wp), intent(in) :: first, last, series(0:degree)
@@ -189,7 +193,7 @@ contains
 
     u = u_at(gap)
     i = max(count(panels%first <= u), 1)
-    ! At larger gaps q is its limit, that of the first point.
+    ! At larger gaps q has its limit, the value at the first point.
     x = max(-1.0_wp, 2*(u - panels%first(i))/(panels%last(i) - panels%first(i)) - 1)
     q = series_value(panels%q(:, i), x)
     value(of_pressure) = q/sinh(gap)
@@ -226,8 +230,8 @@ contains
           gap = 2.0_wp**(octave - 1)*(1 + (part + (1 + point(k))/2)/table%parts)
           sample(k, :) = exp(gap)*solved_at(panels, gap)
         end do
-        ! One matrix after the other: coefficients of a series decrease, so that those of powers
-        ! have small rounding errors.
+        ! The matrices are multiplied one after the other. Since the coefficients of a series
+        ! decrease, those of the powers then have small rounding errors.
         table%power(:, piece, :) = matmul(powers, matmul(series, sample))
       end do
     end do
@@ -243,8 +247,8 @@ contains
     integer :: i, k, piece
 
     do i = 1, size(gap)
-      ! Beyond the last piece its end value is used. A NaN also gets a piece, and the exponential
-      ! makes the result NaN.
+      ! Beyond the last piece the value at its end is used. A NaN is also assigned a piece; the
+      ! exponential then makes the result NaN.
       near = last_gap
       if (gap(i) < last_gap) near = gap(i)
       x = self%parts*(2*fraction(near) - 1)
@@ -258,7 +262,8 @@ contains
     value = value*exp(-gap)
   end function value
 
-  !> u = -ln tanh(gap/2), with all digits at small and large gaps. The function is its own inverse.
+  !> u = -ln tanh(gap/2), without loss of digits at small and large gaps. The function is its own
+  !> inverse.
   pure real(wp) function u_at(gap) result(u)
     real(wp), intent(in) :: gap
 

@@ -1,6 +1,6 @@
-!> Bodies of bonded layers. Under a wave k the compliance of their surfaces is L(k) times that of
-!> half-spaces of the top layers (`layered_surface`). L - 1 falls as exp(-2 k thickness) with the
-!> thickness of the top layer. It is tabulated as series of powers on panels of k.
+!> Bodies of bonded layers. For the wave number k the compliance of their surfaces is L(k) times
+!> that of half-spaces of the top layers (`layered_surface`). L - 1 falls as exp(-2 k t), where t is
+!> the thickness of the top layer. It is tabulated as power series on panels of k.
 module layered_body
   use kinds, only: wp, nan
   use matrix_products, only: multiply_transposed
@@ -13,33 +13,36 @@ module layered_body
   private
   public :: layered_body_t, new_layered_body
 
-  !> Largest k times twice the top layer's thickness: L - 1 is then exp(-28) (28)^2 = 5e-10, and so
-  !> short a wave has still less of a pressure. For fewer digits the largest product is a constant
-  !> and a number for each digit: waves beyond 20 change loads by 1e-8 or less, beyond 24 by 1e-10.
+  !> Largest k times twice the top layer's thickness. There L - 1 is exp(-28) (28)^2 = 5e-10, and
+  !> the component of a pressure with so large a k is even smaller. For fewer digits, the largest
+  !> product is a constant plus a number for each digit. Components beyond 20 change loads by 1e-8
+  !> or less, beyond 24 by 1e-10.
   real(wp), parameter :: last_wave = 28, last_at_none = 8.8_wp, last_a_digit = 1.6_wp
-  !> Degree of L - 1 on a panel of waves; largest number of halvings of a panel.
+  !> Degree of the series of L - 1 on a panel of k; largest number of halvings of a panel.
   integer, parameter :: degree = 16, halvings = 60
-  !> Largest turn of a wave over a panel of waves, and numbers of nodes of a panel (`wave_rule`).
+  !> Largest change of the phase k r over a panel of k; numbers of nodes of a panel (`wave_rule`).
   real(wp), parameter :: swing = 16
   real(wp), parameter :: nodes(2) = 20
-  !> More panels than needed for layers within the limits of `scene_layers`.
+  !> An upper limit of the number of panels, larger than layers within the limits of `scene_layers`
+  !> need.
   integer, parameter :: most_panels = 1000
-  !> Largest size of the last coefficients of a series.
+  !> Largest size of the last coefficients of a series that counts as resolved.
   real(wp), parameter :: resolved = 1.0e-13_wp
 
   !> L - 1 of both bodies together, in lateral units.
   type, extends(elastic_body_t) :: layered_body_t
     private
-    !> Ends of panels of k; series on the panels of L - 1, of dL/dk, and of the integral of L - 1
-    !> from 0.
+    !> Ends of the panels of k; series on the panels for L - 1, for dL/dk, and for the integral of L
+    !> - 1 from 0.
     real(wp), allocatable :: ends(:), series(:, :), slope(:, :), whole(:, :)
-    !> Whether L is 1 for all k: layers and base are of one material.
+    !> Whether L is 1 for all k because layers and base have the same material.
     logical :: plain = .false.
-    !> L(0), of the base: for infinitely long waves.
+    !> L(0), for infinite wavelength, which depends on the base only.
     real(wp), public :: bottom = 1
-    !> The thinnest of the top layers.
+    !> Thickness of the thinnest top layer.
     real(wp), public :: thinnest = 1
-    !> The bodies, and the share of each in the compliance of the half-spaces of the top layers.
+    !> The surfaces of the bodies; and the share of each body in the compliance of the half-spaces
+    !> of the top layers.
     type(layered_surface_t), public :: surface(2)
     real(wp), public :: part(2) = 0.5_wp
   contains
@@ -93,15 +96,15 @@ contains
       body%whole = reshape([body%whole, power_series(whole)], [degree + 2, size(body%ends) - 1])
     end do
     body%plain = largest <= resolved
-    ! NaN if the panels do not reach the largest k, so that no state converges.
+    ! The series is NaN if the panels do not reach the largest k, so that no state converges.
     if (body%ends(size(body%ends)) < last) body%series = nan
     body%bottom = body%compliance(tiny(last))
-    ! On a rigid base only rounding errors are left.
+    ! On a rigid base L(0) is zero except for rounding errors.
     if (body%bottom < resolved) body%bottom = 0
 
   contains
 
-    !> L - 1 on a panel.
+    !> The series of L - 1 on a panel.
     function series_on(from, to) result(coefficient)
       real(wp), intent(in) :: from, to
       real(wp) :: coefficient(0:degree), k(0:degree)
@@ -180,7 +183,8 @@ contains
     mean_beside = whole(1)/k
   end function mean_beside
 
-  !> The series at wave numbers, each from the panel that contains it; 0 beyond the panels.
+  !> The values of the series at wave numbers, each from the panel that contains it; 0 beyond the
+  !> panels.
   pure function on_panels(ends, series, k) result(value)
     real(wp), intent(in) :: ends(:), series(:, :), k(:)
     real(wp) :: value(size(k))
@@ -190,7 +194,7 @@ contains
     do i = 1, size(k)
       value(i) = 0
       if (k(i) > ends(size(ends))) cycle
-      ! Wave numbers mostly are in ascending order.
+      ! Wave numbers usually are in ascending order.
       if (k(i) < ends(panel)) panel = 1
       do while (k(i) > ends(panel + 1))
         panel = panel + 1

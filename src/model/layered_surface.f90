@@ -1,9 +1,9 @@
-!> The compliance of a surface of bonded layers on a base to a wave of pressure. Under p cos(k x),
-!> or p J0(k r), the surface moves by 2 p L(k)/(E' k), with E' = E/(1-nu^2) of the top layer; for a
-!> half-space L = 1.
+!> The compliance of a surface of bonded layers on a base, for a periodic pressure. Under p cos(k
+!> x), or p J0(k r), the surface moves by 2 p L(k)/(E' k) times the same function, with E' =
+!> E/(1-nu^2) of the top layer. For a half-space L = 1.
 !>
-!> In a layer the state (U, W, S, T) of a wave, displacements along and across the surface and
-!> stresses S normal and T tangential over the shear modulus G, obeys with z k as depth
+!> In a layer the amplitudes (U, W, S, T) are displacements along and across the surface, and normal
+!> (S) and tangential (T) stresses over the shear modulus G. With z k as depth they obey
 !>
 !>     U' = W + T,  W' = -eta U + beta S,  T' = gamma U + eta S,  S' = -T ,
 !>
@@ -20,17 +20,17 @@
 !>
 !>     exp(M a) y = [1 + a M + a^2/2 M^2 + (sinh 2a - 2a)/8 M^3 + (cosh 2a - 1 - 2 a^2)/16 M^4] y .
 !>
-!> At the surface W/S without T is -v/x.
+!> At the surface, W/S without tangential stress T is -v/x.
 module layered_surface
   use kinds, only: wp
   implicit none
   private
   public :: layered_surface_t
 
-  !> Layers from the top down; lengths in any unit, moduli in any unit.
+  !> Layers from the top down; any unit of length and any unit of modulus.
   type :: layered_surface_t
     real(wp), allocatable :: thickness(:), shear(:), poisson(:)
-    !> The base below the layers: rigid, or a half-space.
+    !> The base below the layers is rigid, or a half-space.
     logical :: on_rigid = .false.
     real(wp) :: base_shear = 1, base_poisson = 0
   contains
@@ -39,7 +39,7 @@ module layered_surface
 
 contains
 
-  !> L at a wave number k > 0, in one over the unit of the thicknesses.
+  !> L at a wave number k > 0, in inverse units of the thicknesses.
   pure real(wp) function compliance(self, k)
     class(layered_surface_t), intent(in) :: self
     real(wp), intent(in) :: k
@@ -58,7 +58,7 @@ contains
       below = self%shear(size(self%shear))
     end if
     do i = size(self%thickness), 1, -1
-      ! Stresses are relative to the shear modulus of the layer.
+      ! Stresses are relative to the shear modulus of the present layer.
       associate (ratio => self%shear(i)/below)
         y(1) = y(1)*ratio
         y(5) = y(5)/ratio

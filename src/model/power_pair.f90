@@ -1,6 +1,6 @@
-!> Repulsion and attraction as two powers of the gap: with the surface energy w
-!> p = (w/z0) C [(z0/h)^n - (z0/h)^m], C = (n - 1)(m - 1)/(n - m), whole or either part alone. With
-!> n, m = 9, 3 it is the Lennard-Jones law between half-spaces.
+!> Repulsion and attraction as two powers of the gap. With the work of adhesion w, the pressure is p
+!> = (w/z0) C [(z0/h)^n - (z0/h)^m], C = (n - 1)(m - 1)/(n - m), either as a whole or one part
+!> alone. With n, m = 9, 3 it is the Lennard-Jones law between half-spaces.
 module power_pair
   use kinds, only: wp
   use force_law, only: force_law_t, of_pressure, of_slope, closure_of_power, length_of_power
@@ -8,8 +8,8 @@ module power_pair
   private
   public :: power_pair_t, new_power_pair, pair_factor
 
-  !> The pressure is repulsive/gap^n - attractive/gap^m; in units of w/z0 these factors are C times
-  !> the weights of the parts, which are 0 or 1.
+  !> The pressure is repulsive/gap^n - attractive/gap^m. In units of w/z0 these two factors are C
+  !> times the weights of the parts, which are 0 or 1.
   type, extends(force_law_t) :: power_pair_t
     real(wp) :: n = 9, m = 3
     real(wp) :: repulsive = 0, attractive = 0
@@ -27,8 +27,8 @@ contains
     pair_factor = (exponents(1) - 1)*(exponents(2) - 1)/(exponents(1) - exponents(2))
   end function pair_factor
 
-  !> surface_energy [J/m^2], z0 [m]; exponents n > m > 1; part is 'full', 'repulsive' or
-  !> 'attractive'. The scales have closed forms.
+  !> Makes the law. surface_energy: the work of adhesion w [J/m^2]; z0 [m]; exponents: n > m > 1;
+  !> part: 'full', 'repulsive' or 'attractive'. The scales have closed forms.
   pure type(power_pair_t) function new_power_pair(surface_energy, z0, exponents, part) result(law)
     real(wp), intent(in) :: surface_energy, z0, exponents(2)
     character(len=*), intent(in) :: part
@@ -54,7 +54,7 @@ contains
     law%length_key = 'z0'
   end function new_power_pair
 
-  !> Sets what follows from n.
+  !> Sets the scales that follow from n.
   pure subroutine set_scales(self)
     class(power_pair_t), intent(inout) :: self
 
@@ -85,7 +85,7 @@ contains
     end select
   end subroutine evaluate
 
-  !> gap**(-n). Whole exponents need multiplications alone, which take a quarter of the time.
+  !> gap**(-n). For integer exponents multiplications suffice, which take a quarter of the time.
   pure function inverse_power(gap, n) result(value)
     real(wp), intent(in) :: gap(:), n
     real(wp) :: value(size(gap)), square(size(gap))

@@ -1,13 +1,13 @@
-!> The interface of all shapes of the two bodies: the gap f(r) between them when they touch without
-!> force. A shape is a type that extends this one, in a file of its own under shapes/, with its
-!> keys, their reader, its parameters and formulas.
+!> The interface of all shapes of the two bodies. The shape is the gap f(r) between the bodies when
+!> they touch without force. A shape is a type that extends this one. It stands in a file of its own
+!> under shapes/, with its keys, their reader, its parameters and formulas.
 !>
-!> Formulas are in the units of `dimensionless_problem`: lateral positions in l, heights in the
-!> force law's length L. A shape chooses l; with the radius l^2/L all else follows as for the
-!> parabola r^2/(2R), whose l is sqrt(R L). Shapes are convex and smooth except at `breaks`.
+!> Formulas are in the units of `dimensionless_problem`: lateral positions in units of l, heights in
+!> lengths L of the force law. Each shape chooses l. With the radius l^2/L, all equations are those
+!> of the parabola r^2/(2R), whose l is sqrt(R L). Shapes are convex, and smooth except at `breaks`.
 !>
 !> The theory of contact needs two integrals of the slope, after Galin and Sneddon: the indentation
-!> q(a) by a rigid body of this shape up to the contact radius a, and the load for it.
+!> q(a) of a rigid body of this shape with contact radius a, and the load for this indentation.
 module shape
   use kinds, only: wp, pi
   use quadrature, only: gauss_legendre
@@ -17,17 +17,19 @@ module shape
   public :: shape_t
 
   type, abstract :: shape_t
-    !> l^2/L [m], with the lateral unit l.
+    !> The radius l^2/L [m], where l is the lateral unit.
     real(wp) :: radius = 1
-    !> Whether this is the parabola, for which the load of rigid bodies is the law's energy.
+    !> Whether the shape is the parabola, for which the load of rigid bodies is 2 pi times the law's
+    !> energy.
     logical :: parabolic = .false.
-    !> Power of r that describes the shape near the axis (0: none), and at large r.
+    !> The power of r that describes the shape near the axis (0 if there is none), and the power at
+    !> large r.
     real(wp) :: exponent = 2, growth = 2
-    !> Positions between 0 and infinity at which the slope or a derivative of it jumps.
+    !> Positions between 0 and infinity at which the slope or one of its derivatives jumps.
     real(wp), allocatable :: breaks(:)
-    !> Position at which the body ends. Beyond it the shape only defines a gap.
+    !> Position at which the body ends. Farther out the shape only defines a gap.
     real(wp) :: ends = huge(1.0_wp)
-    !> Position of the last point of a file.
+    !> Position of the last point, if the shape was read from a file.
     real(wp) :: known_to = huge(1.0_wp)
   contains
     !> f(r) and f'(r) at positions r >= 0.
@@ -54,13 +56,13 @@ module shape
     end function profile_function
   end interface
 
-  !> Number of points of the quadratures, and smallest number in each piece between breaks; number
-  !> of points for estimates.
+  !> Number of points of the quadratures; smallest number of points in each piece between breaks;
+  !> number of points for estimates.
   integer, parameter :: points = 48, fewest = 4, rough = 12
 
 contains
 
-  !> Position at which the shape has a height >= 0.
+  !> The position at which the shape has a given height >= 0.
   elemental real(wp) function position_of(self, height) result(r)
     class(shape_t), intent(in) :: self
     real(wp), intent(in) :: height
@@ -76,7 +78,7 @@ contains
     r = bracket%high
   end function position_of
 
-  !> f(r + dr) - f(r) - f'(r) dr, the remainder of a linear step.
+  !> f(r + dr) - f(r) - f'(r) dr, the remainder after the linear term.
   elemental real(wp) function bend(self, r, dr)
     class(shape_t), intent(in) :: self
     real(wp), intent(in) :: r, dr
@@ -84,7 +86,8 @@ contains
     bend = self%height(r + dr) - self%height(r) - self%slope(r)*dr
   end function bend
 
-  !> x f'(c x) - f(c x)/c: the change of f(c x) with c beyond proportionality.
+  !> x f'(c x) - f(c x)/c: the derivative of f(c x) by c, minus the derivative that f would have if
+  !> it were proportional to c.
   elemental real(wp) function unlike_scaling(self, c, x) result(change)
     class(shape_t), intent(in) :: self
     real(wp), intent(in) :: c, x
@@ -100,7 +103,7 @@ contains
     indentation = a*slope_integral(self, a, 0)
   end function indentation
 
-  !> Int_0^a [q(a) - q(x)] dx = Int_0^a r^2 f'(r)/sqrt(a^2 - r^2) dr; times 2 E* it is the load.
+  !> Int_0^a [q(a) - q(x)] dx = Int_0^a r^2 f'(r)/sqrt(a^2 - r^2) dr; the load is 2 E* times this.
   elemental real(wp) function indentation_load(self, a) result(load)
     class(shape_t), intent(in) :: self
     real(wp), intent(in) :: a
@@ -129,7 +132,7 @@ contains
     end do
   end function slope_integral
 
-  !> Inverse of `indentation`; 0 if there is no indentation.
+  !> The inverse of `indentation`; 0 if there is no indentation.
   elemental real(wp) function contact_radius(self, depth) result(a)
     class(shape_t), intent(in) :: self
     real(wp), intent(in) :: depth
@@ -152,8 +155,8 @@ contains
     a = search%root
   end function contact_radius
 
-  !> How fast the gap opens outside a contact of radius a: at the distance s from the edge as
-  !> sqrt(opening) s^(3/2), as for the parabola, for which it is a.
+  !> How fast the gap opens outside a contact of radius a without adhesion. At the distance s from
+  !> the edge it is proportional to sqrt(opening) s^(3/2); for the parabola `opening` is a.
   elemental real(wp) function opening(self, a)
     class(shape_t), intent(in) :: self
     real(wp), intent(in) :: a
@@ -162,7 +165,7 @@ contains
     opening = ((self%indentation(a*(1 + part)) - self%indentation(a*(1 - part)))/(4*part*a))**2/a
   end function opening
 
-  !> `indentation` for estimates, at several radii.
+  !> A less accurate `indentation` for estimates, at several radii.
   pure function rough_indentation(self, a) result(indentation)
     class(shape_t), intent(in) :: self
     real(wp), intent(in) :: a(:)
@@ -171,8 +174,8 @@ contains
     indentation = self%indentation(a)
   end function rough_indentation
 
-  !> The gap outside a contact of radius a without adhesion, at a (1 + beyond) from the axis,
-  !> 2/pi Int_a^r [q(t) - q(a)]/sqrt(r^2 - t^2) dt, for estimates.
+  !> The gap outside a contact of radius a without adhesion, at r = a (1 + beyond), for estimates:
+  !> 2/pi Int_a^r [q(t) - q(a)]/sqrt(r^2 - t^2) dt.
   pure function hertz_gap(self, a, beyond) result(gap)
     class(shape_t), intent(in) :: self
     real(wp), intent(in) :: a, beyond(:)
@@ -186,7 +189,8 @@ contains
     gap = 2/pi*angle*(matmul(reshape(depth(1:), [size(beyond), rough]), weight) - depth(0))
   end function hertz_gap
 
-  !> Position beyond which, up to its end, the body is smooth; 0 if it is smooth except on the axis.
+  !> Position beyond which the body is smooth up to its end; 0 if it is smooth everywhere except on
+  !> the axis.
   pure real(wp) function smooth_from(self) result(r)
     class(shape_t), intent(in) :: self
 
@@ -194,7 +198,7 @@ contains
     if (allocated(self%breaks)) r = maxval([0.0_wp, pack(self%breaks, self%breaks < self%ends)])
   end function smooth_from
 
-  !> Whether the shape is even in r, so that it is smooth on its axis.
+  !> Whether the shape is an even function of r, and therefore smooth on its axis.
   pure logical function is_even(self)
     class(shape_t), intent(in) :: self
 

@@ -1,6 +1,7 @@
-!> An attraction that is constant up to some separation and ends there: p = -stress
-!> erfc((h - range)/s)/2. The smoothing length s avoids a jump of the pressure, which would have no
-!> Jacobian. Dugdale's law, the depletion force and a capillary bridge are of this kind.
+!> An attraction that is constant up to some separation and ends there: p = -stress erfc((h -
+!> range)/s)/2. The smoothing length s avoids a discontinuity of the pressure, at which the
+!> equations would have no Jacobian. Dugdale's law, the depletion force and a capillary bridge are
+!> of this kind.
 module step_attraction
   use kinds, only: wp, pi
   use deck, only: deck_t
@@ -18,15 +19,17 @@ module step_attraction
     procedure :: closure
   end type step_t
 
-  !> Default of the smoothing over the range; and number of smoothing lengths beyond which the error
-  !> function has its limit.
+  !> Default of the ratio of the smoothing length to the range; number of smoothing lengths from the
+  !> step beyond which the error function equals its limit.
   real(wp), parameter :: usual = 0.02_wp, farthest = 26
-  !> Smallest distance between the step and the breaks about it, which rounding does not hide.
+  !> Smallest distance between the step and the breaks on its sides, which must exceed rounding
+  !> errors.
   real(wp), parameter :: least = 1.0e-12_wp
 
 contains
 
-  !> The law of a group whose keys `strength_key` [Pa] and `length_key` [m] give stress and range.
+  !> Reads the law of a group whose keys `strength_key` [Pa] and `length_key` [m] give stress and
+  !> range.
   subroutine read_step(deck, group, strength_key, length_key, law)
     type(deck_t), intent(inout) :: deck
     character(len=*), intent(in) :: group, strength_key, length_key
@@ -38,8 +41,8 @@ contains
     call new_step(deck, group, strength_key, length_key, stress, range, law)
   end subroutine read_step
 
-  !> The law with stress [Pa] and range [m], and the key `smoothing` of the group; the other keys
-  !> are for messages.
+  !> Makes the law with stress [Pa] and range [m], and with the group's key `smoothing`. The other
+  !> keys are named in messages.
   subroutine new_step(deck, group, strength_key, length_key, stress, range, law)
     type(deck_t), intent(inout) :: deck
     character(len=*), intent(in) :: group, strength_key, length_key
@@ -60,7 +63,7 @@ contains
     call accept_law(deck, group, strength_key, length_key, this, law)
   end subroutine new_step
 
-  !> Distance of the gap from the step in smoothing lengths.
+  !> The distance of a gap from the step, in smoothing lengths.
   elemental real(wp) function place(self, gap)
     class(step_t), intent(in) :: self
     real(wp), intent(in) :: gap
@@ -88,7 +91,8 @@ contains
     where (x >= farthest) value = 0
   end subroutine evaluate
 
-  !> Largest decrease of gaps in one iteration: half the way to the step, and its width.
+  !> Largest decrease of gaps in one iteration: half the distance to the step, plus the width of the
+  !> step.
   pure function closure(self, gap) result(most)
     class(step_t), intent(in) :: self
     real(wp), intent(in) :: gap(:)

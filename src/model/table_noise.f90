@@ -1,20 +1,20 @@
-!> The noise of the numbers of a table. Numbers of a smooth curve follow a polynomial over a few
-!> points, so their differences of high order nearly vanish; those of noise do not.
+!> The noise of the values in a table. Values of a smooth curve follow a polynomial over a few
+!> points, so that their differences of high order nearly vanish; the differences of noise do not.
 module table_noise
   use kinds, only: wp
   implicit none
   private
   public :: noise_of, noise_of_integral
 
-  !> Number of points of a difference, which is one of the eighth order; and number of neighbouring
-  !> differences to either side over which the noise at a point is a mean, since a single difference
-  !> may be small by chance.
+  !> Number of points in a difference, which is of eighth order. Number of neighbouring differences
+  !> on either side over which the noise at a point is averaged, since a single difference may be
+  !> small by chance.
   integer, parameter :: points = 9, beside = 2
 
 contains
 
-  !> The standard deviation of numbers at ascending places, or what a polynomial over `points`
-  !> points does not follow; 0 for fewer points.
+  !> The standard deviation of values at ascending places. It includes deviations from a polynomial
+  !> over `points` points. It is 0 if there are fewer points.
   pure function noise_of(place, value) result(noise)
     real(wp), intent(in) :: place(:), value(:)
     real(wp) :: noise(size(place)), weight(points), square(size(place))
@@ -32,7 +32,7 @@ contains
       square(k) = dot_product(weight, value(k:k + points - 1))**2/dot_product(weight, weight)
     end do
     do i = 1, size(place)
-      ! The differences whose middle is near the point.
+      ! The differences whose centre is near the point.
       k = min(n, max(1, i - points/2))
       associate (first => max(1, k - beside), last => min(n, k + beside))
         noise(i) = sqrt(sum(square(first:last))/(last - first + 1))
@@ -40,8 +40,8 @@ contains
     end do
   end function noise_of
 
-  !> The standard deviation of the integral of numbers from each place to the last one, and by
-  !> `beyond` times the last number farther. The noise of different points is independent.
+  !> The standard deviation of the integral of values from each place to the last one, to which
+  !> `beyond` times the last value is added. The noise of different points is independent.
   pure function noise_of_integral(place, noise, beyond) result(deviation)
     real(wp), intent(in) :: place(:), noise(:), beyond
     real(wp) :: deviation(size(place)), weight(size(place))

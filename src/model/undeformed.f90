@@ -1,7 +1,8 @@
-!> Bodies that do not deform, because they are rigid or far apart: Derjaguin's load (23), which is
-!> the integral of the pressure over the gap H0 + f, and the energy; in the units of
-!> `dimensionless_problem`. The load of parabolas is the law's own energy; all else is integrated to
-!> rounding, in pieces between the positions at which law or shape are not smooth.
+!> Bodies that do not deform, because they are rigid or far apart. Derjaguin's load (23) is the
+!> integral of the pressure over the gap H0 + f; the energy is computed likewise. All numbers are in
+!> the units of `dimensionless_problem`. The load of parabolas is 2 pi times the law's energy.
+!> Everything else is integrated to rounding accuracy, in pieces between the positions at which law
+!> or shape are not smooth.
 module undeformed
   use kinds, only: wp, pi
   use adaptive_quadrature, only: integral_t, new_integral, rule_nodes, in_order
@@ -13,26 +14,28 @@ module undeformed
   public :: measured_t, measured_load, measured_slope
   public :: load_undeformed, load_slope_undeformed, energy_undeformed
 
-  !> A number and its error.
+  !> A number and its estimated error.
   type :: measured_t
     real(wp) :: value = 0, error = 0
   end type measured_t
 
-  !> The H0 whose energy is subtracted from energies that fall slowly.
+  !> The H0 at which the energy is subtracted, if the energy falls slowly.
   real(wp), parameter :: at_reference = 1
-  !> Relative error of numbers without a quadrature.
+  !> Relative error of numbers that need no quadrature.
   real(wp), parameter :: rounding = 8*epsilon(1.0_wp)
-  !> Height of the shape at the end of the first piece. Each further piece doubles the position, up
-  !> to the position at which the height is this many times h0 or 1; the last one goes to infinity.
+  !> The first piece ends where the height of the shape is `first`. The end of each further piece is
+  !> at twice the position, until the height is `last` times the larger of h0 and 1. The last piece
+  !> extends to infinity.
   real(wp), parameter :: first = 0.25_wp, last = 4
-  !> Gap over 1 or h0 from which on a difference of energies is that of first order: the error of
-  !> this, the inverse square, is less than that of rounding.
+  !> Ratio of the gap to the larger of h0 and 1 above which a difference of energies is computed to
+  !> first order. The relative error of this, the inverse square of the ratio, is smaller than
+  !> rounding errors.
   real(wp), parameter :: far = 1.0e6_wp
-  !> Power of r from which on a pressure falls so fast that the integral beyond `farthest` is
+  !> Power of r with which a pressure falls so fast that the integral beyond `farthest` is
   !> negligible.
   real(wp), parameter :: fast = 4
-  !> Largest length of a piece over its position for which the slope in it is that of a step:
-  !> rounding does not tell its nodes apart.
+  !> Largest ratio of the length of a piece to its position for which the slope within the piece is
+  !> treated as that of a step, since rounding would make the nodes of the piece coincide.
   real(wp), parameter :: narrow = 1.0e-5_wp
 
 contains
@@ -94,7 +97,7 @@ contains
     energy = found%value
   end function energy_undeformed
 
-  !> 2 pi Int g(h0 + f(r)) r dr.
+  !> 2 pi Int g(h0 + f(r)) r dr, where g is the quantity `what`.
   pure type(measured_t) function integral_of(problem, h0, what) result(found)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: h0
@@ -118,9 +121,10 @@ contains
     jumps = 0
     if (what == of_slope) jumps = sum(jump_over(ends(:size(ends) - 1), ends(2:)), too_narrow)
     found = measured_t(2*pi*(near%value + jumps), 2*pi*near%error)
-    ! A body that ends has no tail; a force that falls slowly would act on the shape beyond its end.
+    ! A body that ends has no tail: a force that falls slowly would act on the shape beyond this
+    ! end.
     if (problem%law%tail_power <= 2/problem%shape%growth) return
-    ! The tail in x = reach/r, up to the gap `farthest`.
+    ! The integral of the tail over x = reach/r, up to the gap `farthest`.
     associate (least => (problem%shape%height(reach)/farthest)**(1/problem%shape%growth))
       tail = new_integral([least], [1.0_wp], near)
       do while (tail%is_open())
@@ -128,7 +132,8 @@ contains
         call tail%note((reach/x)**2/x*integrand(reach/x))
       end do
       found = measured_t(found%value + 2*pi*tail%value, found%error + 2*pi*tail%error)
-      ! Beyond, the integrand is a power of r; its integral is negligible unless it falls slowly.
+      ! At larger gaps the integrand is a power of r, whose integral is negligible unless it falls
+      ! slowly.
       if (problem%law%tail_power >= fast/problem%shape%growth .or. what == of_slope) return
       x = least
       x = (reach/x)**2*integrand(reach/x)
@@ -144,7 +149,8 @@ contains
       gap = min(h0 + problem%shape%height(r), farthest)
       if (what == of_energy) then
         g = energy_density(problem, gap, r, at_reference)
-        ! Far away, where rounding hides the difference of two energies, it is that of first order.
+        ! Far away, where rounding hides the difference of two energies, the difference is computed
+        ! to first order.
         if (falls_slowly(problem)) where (gap > far*max(1.0_wp, abs(h0))) &
           g = (at_reference - h0)*problem%law%pressure(gap + 0.5_wp*(at_reference - h0))
       else
@@ -152,7 +158,7 @@ contains
       end if
     end function integrand
 
-    !> The integral of the slope over a piece so narrow that only the pressure varies in it.
+    !> The integral of the slope over a piece so narrow that only the pressure varies within it.
     elemental real(wp) function jump_over(left, right) result(jump)
       real(wp), intent(in) :: left, right
       real(wp) :: pressure(2)
@@ -166,7 +172,7 @@ contains
 
   end function integral_of
 
-  !> The ends of the pieces of an integral from the axis, in any order.
+  !> The ends of the pieces into which an integral from the axis is split, in any order.
   pure function ends_of_pieces(problem, h0) result(r)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: h0

@@ -1,7 +1,7 @@
 !> Problems that differ in the values of parameters, for fits, and problems with one parameter
-!> varied, with a rule for derivatives by differences. So laws, shapes and bodies need no
-!> derivatives by parameters. Reported derivatives are of sixth order; second order suffices for a
-!> search.
+!> varied, with a rule for derivatives by finite differences. With this rule laws, shapes and bodies
+!> need no formulas for derivatives by parameters. Reported derivatives are of sixth order; for a
+!> search second order suffices.
 module variation
   use kinds, only: wp
   use failure, only: failure_t
@@ -11,9 +11,9 @@ module variation
   private
   public :: problem_family_t, parameter_t, variation_t, vary, find_rule, to_report, to_search
 
-  !> A parameter: its value in the present problem, SI units, and its scale, which is the value
-  !> unless the value is zero. follows: the value is a factor of the parameter's default, which may
-  !> follow from other parameters.
+  !> A parameter: its value in the present problem, in SI units, and its scale, which is the value
+  !> unless the value is zero. follows: the value is a factor that multiplies the parameter's
+  !> default, which may depend on other parameters.
   type :: parameter_t
     character(len=:), allocatable :: name
     real(wp) :: value = 0, scale = 1
@@ -23,7 +23,7 @@ module variation
   type, abstract :: problem_family_t
     type(parameter_t), allocatable :: parameter(:)
   contains
-    !> The problem with other values of the parameters; fails if a value is not allowed.
+    !> Makes the problem with other values of the parameters; fails if a value is not allowed.
     procedure(pose_problem), deferred :: pose
   end type problem_family_t
 
@@ -37,33 +37,33 @@ module variation
     end subroutine pose_problem
   end interface
 
-  !> Number of problems on either side of the present one; and for each number the step between two,
-  !> as a part of the parameter's scale. The error of differences of sixth order, for h^-n about
-  !> n^7/140 step^6, is below their rounding error, about 1e-16/step; those of second order have an
-  !> error of n^3/6 step^2, which leaves six digits.
+  !> Number of varied problems on either side of the present one, and for each number the step
+  !> between two problems, relative to the parameter's scale. For h^-n the error of differences of
+  !> sixth order is about n^7/140 step^6, which is smaller than their rounding error of about
+  !> 1e-16/step. Differences of second order have an error of n^3/6 step^2, which leaves six digits.
   integer, parameter :: to_report = 3, to_search = 1
   real(wp), parameter :: step(to_report) = [1.0e-4_wp, 1.0e-3_wp, 1.0e-3_wp]
-  !> For reported derivatives: relative difference of the two rules, for pressures and heights,
-  !> above which a quarter of the step is tried, and the least step.
+  !> For reported derivatives of pressures and heights: the relative difference of the two rules
+  !> above which a quarter of the step is tried, and the smallest step.
   real(wp), parameter :: coarse = 1.0e-6_wp, least_step = 1.0e-7_wp
 
   type :: variation_t
     type(parameter_t) :: parameter
-    !> Difference of the parameter in each problem, SI units.
+    !> Difference of the parameter from its value in each problem, in SI units.
     real(wp), allocatable :: offset(:)
-    !> dQ/dp = sum(weight*Q); and the same without the outermost points; the difference of the two
-    !> shows the error.
+    !> The rule dQ/dp = sum(weight*Q), and the same without the outermost points. The difference of
+    !> the two is the error estimate.
     real(wp), allocatable, dimension(:) :: weight, coarser
-    !> Allocatable: compiler note 11.
+    !> Allocatable because of compiler note 11.
     type(problem_t), allocatable :: problem(:)
   end type variation_t
 
 contains
 
-  !> Varies parameter i by `aside` problems on either side, `to_report` or `to_search`. For reported
-  !> derivatives the step is so short that pressures and heights, which may depend steeply on the
-  !> parameter, change smoothly. If the range of the parameter ends nearby, all problems are on one
-  !> side. Fails if neither side is allowed.
+  !> Varies parameter i with `aside` problems on either side, `to_report` or `to_search`. For
+  !> reported derivatives the step is so short that pressures and heights, which may depend steeply
+  !> on the parameter, change smoothly. If the range of the parameter ends nearby, all problems are
+  !> on one side. It fails if neither side is allowed.
   subroutine vary(family, i, aside, varied, error)
     class(problem_family_t), intent(in) :: family
     integer, intent(in) :: i, aside
@@ -88,7 +88,7 @@ contains
 
   contains
 
-    !> Poses the problems at distances `apart`, as a part of the parameter's scale.
+    !> Makes the problems at distances `apart`, relative to the parameter's scale.
     subroutine pose_beside(i)
       integer, intent(in) :: i
       real(wp) :: value(size(family%parameter))
@@ -96,7 +96,7 @@ contains
 
       do shift = 0, 2
         varied%offset = [(real(k + aside*merge(-1, shift, shift == 2), wp), k=-aside, aside)]
-        ! With two sides the present problem has no weight.
+        ! With problems on both sides the present problem has no weight.
         if (shift == 0) varied%offset = pack(varied%offset, abs(varied%offset) > 0)
         varied%offset = apart*varied%parameter%scale*varied%offset
         deallocate (varied%problem)
@@ -111,8 +111,8 @@ contains
       end do
     end subroutine pose_beside
 
-    !> Whether the two rules agree for the pressures at many separations, also within the step of a
-    !> law, and for the heights of the shape.
+    !> Whether the two rules agree for the pressures at many separations, including those within the
+    !> step of a law, and for the heights of the shape.
     logical function is_smooth()
       integer, parameter :: tried = 40
       real(wp), parameter :: nearest = 0.1_wp
@@ -137,8 +137,8 @@ contains
       is_smooth = agree(pressure) .and. agree(height)
     end function is_smooth
 
-    !> Whether the rules agree for values in the varied problems, except for rounding, and the
-    !> largest value changes little.
+    !> Whether the two rules agree for values in the varied problems, except for rounding errors,
+    !> and whether the largest value changes little.
     logical function agree(value)
       real(wp), intent(in) :: value(:, :)
       real(wp), parameter :: rounding = 1.0e-14_wp, little = 0.05_wp
@@ -152,8 +152,8 @@ contains
 
   end subroutine vary
 
-  !> The rule for the slope at 0 of values at `offset`: sum(weight*value), and the same without the
-  !> outermost two.
+  !> The rule for the slope at 0 from values at `offset`: sum(weight*value), and the same without
+  !> the outermost two.
   pure subroutine find_rule(offset, weight, coarser)
     real(wp), intent(in) :: offset(:)
     real(wp), allocatable, dimension(:), intent(out) :: weight, coarser

@@ -1,7 +1,7 @@
-!> Capillary bridge at equilibrium with the vapour: the pressure in it, surface_tension/r_K, acts
-!> at separations below r_K (cos theta_1 + cos theta_2). r_K is Kelvin's radius, given or from the
-!> humidity: molar_volume surface_tension/(R T ln(1/humidity)). The step is smoothed
-!> (`step_attraction`).
+!> A capillary bridge in equilibrium with the vapour. The Laplace pressure surface_tension/r_K acts
+!> at separations smaller than r_K (cos theta_1 + cos theta_2). The Kelvin radius r_K is given or
+!> follows from the humidity: molar_volume surface_tension/(R T ln(1/humidity)). The step is
+!> smoothed (`step_attraction`).
 module capillary
   use kinds, only: wp
   use physical_constants, only: boltzmann, avogadro
@@ -35,7 +35,7 @@ module capillary
 
 contains
 
-  !> The law of its group.
+  !> Reads the law from its group.
   subroutine read_law(deck, law)
     type(deck_t), intent(inout) :: deck
     class(force_law_t), allocatable, intent(out) :: law

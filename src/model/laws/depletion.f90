@@ -1,6 +1,6 @@
-!> Depletion force between walls in a solution of hard spheres (Asakura and Oosawa): at separations
-!> below their diameter the osmotic pressure acts only from outside. The step is smoothed
-!> (`step_attraction`).
+!> Depletion force between walls in a solution of hard spheres (Asakura and Oosawa). At separations
+!> smaller than the diameter of the spheres, their osmotic pressure acts only from outside. The step
+!> is smoothed (`step_attraction`).
 module depletion
   use kinds, only: wp
   use deck, only: deck_t
@@ -24,7 +24,7 @@ module depletion
 
 contains
 
-  !> The law of its group.
+  !> Reads the law from its group.
   subroutine read_law(deck, law)
     type(deck_t), intent(inout) :: deck
     class(force_law_t), allocatable, intent(out) :: law

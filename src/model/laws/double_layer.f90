@@ -28,16 +28,17 @@ module double_layer
   type, extends(force_law_t) :: double_layer_t
     integer :: model = linear
     type(surface_t) :: surface(2)
-    !> 2 n kT over the pressure unit.
+    !> 2 n kT divided by the pressure unit.
     real(wp) :: scale = 1
     type(layer_table_t) :: table
   contains
     procedure :: evaluate
   end type double_layer_t
 
-  !> Reduced potential above which the linear equation is wrong: 25.7 mV for single charges.
+  !> Reduced potential above which the linear equation is inaccurate: 25.7 mV for univalent ions.
   real(wp), parameter :: small_potential = 1
-  !> Largest reduced potential, 0.5 V for single charges: above it the finite size of ions matters.
+  !> Largest reduced potential, 0.5 V for univalent ions, above which the finite size of ions
+  !> matters.
   real(wp), parameter :: largest_potential = 20
 
   !> The rows of &double_layer.
@@ -65,7 +66,7 @@ module double_layer
 
 contains
 
-  !> The law of its group.
+  !> Reads the law from its group.
   subroutine read_law(deck, law)
     type(deck_t), intent(inout) :: deck
     class(force_law_t), allocatable, intent(out) :: law
@@ -92,7 +93,8 @@ contains
     if (this%model == superposition) then
       this%closure_length = 2
     else
-      ! A third of the gap; at small gaps the repulsion may be as large as gap^-2.
+      ! closure_fraction is a third of the gap; at small gaps the repulsion may be as large as
+      ! gap^-2.
       this%smallest_gap = nearest_gap
       this%closure_fraction = usual_closure
       this%repulsion_length = 0.5_wp
@@ -108,7 +110,7 @@ contains
     allocate (law, source=this)
   end subroutine read_law
 
-  !> Sets Debye length and surfaces. osmotic: 2 n kT [Pa].
+  !> Sets the Debye length and the surfaces. osmotic: 2 n kT [Pa].
   subroutine take_electrolyte(deck, this, osmotic)
     type(deck_t), intent(inout) :: deck
     type(double_layer_t), intent(inout) :: this
@@ -141,8 +143,8 @@ contains
     else
       call deck%get('double_layer', 'debye_length', this%length)
     end if
-    ! The surface with the larger potential is first, and its sign is made positive: this does not
-    ! change pressures.
+    ! The surface with the larger potential is made the first one, and the sign of its potential
+    ! positive; neither changes the pressure.
     this%surface%potential = [potential(1), potential(size(potential))]/thermal
     this%surface%regulation = [regulation(1), regulation(size(regulation))]
     if (abs(this%surface(2)%potential) > abs(this%surface(1)%potential)) &
@@ -194,8 +196,9 @@ contains
     real(wp), intent(in) :: gap
     real(wp) :: value(3), y(2), p(2), sense, x, d, ab, g, mixed, top, top_slope, bottom
 
-    ! Changing the sign of one potential, and p into 1 - p, only changes the sign of the pressure.
-    ! The form below loses no digits at small gaps where both p are small; their sum is at most 1.
+    ! If the sign of one potential is changed and both p are replaced by 1 - p, only the sign of the
+    ! pressure changes. The form below loses no digits at small gaps where both p are small. By this
+    ! symmetry their sum is made at most 1.
     y = surface%potential
     p = surface%regulation
     sense = 1

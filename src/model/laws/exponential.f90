@@ -1,5 +1,5 @@
 !> Exponential repulsion, (30) of the paper: p = p0 exp(-h/decay_length). Other forces with this
-!> decay use it too, also attractions.
+!> decay, among them attractions, use this type too.
 module exponential
   use kinds, only: wp
   use deck, only: deck_t
@@ -12,13 +12,13 @@ module exponential
   public :: exponential_t, keys, read_law, read_exponentials, largest_exponent
 
   type, extends(force_law_t) :: exponential_t
-    !> 1, or -1 for an attraction.
+    !> 1 for a repulsion, -1 for an attraction.
     real(wp) :: sense = 1
   contains
     procedure :: evaluate
   end type exponential_t
 
-  !> Exponent above which the pressure would underflow or overflow.
+  !> Largest magnitude of the exponent at which exp neither underflows nor overflows.
   real(wp), parameter :: largest_exponent = 700
 
   !> The keys of the law in &force.
@@ -30,7 +30,7 @@ module exponential
 
 contains
 
-  !> The law of its group.
+  !> Reads the law from its group.
   subroutine read_law(deck, law)
     type(deck_t), intent(inout) :: deck
     class(force_law_t), allocatable, intent(out) :: law
@@ -49,8 +49,8 @@ contains
     call accept_law(deck, 'force', 'p0', 'decay_length', this, law)
   end subroutine read_law
 
-  !> The terms of a group with the lists `decay_length` and `energy` or `pressure`. sense: 1 for
-  !> repulsion, -1 for attraction. A list with one value has this value for all terms.
+  !> Reads the terms of a group with the lists `decay_length` and `energy` or `pressure`. sense: 1
+  !> for repulsion, -1 for attraction. If a list has one value, this value holds for all terms.
   subroutine read_exponentials(deck, group, sense, law)
     type(deck_t), intent(inout) :: deck
     character(len=*), intent(in) :: group
@@ -90,18 +90,18 @@ contains
     end do
   end subroutine read_exponentials
 
-  !> p0 [Pa], decay_length [m], both positive.
+  !> Makes the law; p0 [Pa] and decay_length [m] must be positive.
   pure type(exponential_t) function new_exponential(p0, decay_length) result(law)
     real(wp), intent(in) :: p0, decay_length
 
     law%length = decay_length
     law%pressure_unit = p0
     law%range = 45
-    ! The pressure may grow by a factor of seven in an iteration.
+    ! In one iteration the pressure may grow by a factor of seven.
     law%closure_length = 2
   end function new_exponential
 
-  !> sense*exp(-gap); 0 without underflow at large gaps, and finite at any gap.
+  !> sense*exp(-gap), which is 0 without underflow at large gaps, and finite at any gap.
   pure subroutine evaluate(self, quantity, gap, value)
     class(exponential_t), intent(in) :: self
     integer, intent(in) :: quantity

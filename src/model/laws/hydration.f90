@@ -23,7 +23,7 @@ module hydration
 
 contains
 
-  !> The law of its group.
+  !> Reads the law from its group.
   subroutine read_law(deck, law)
     type(deck_t), intent(inout) :: deck
     class(force_law_t), allocatable, intent(out) :: law

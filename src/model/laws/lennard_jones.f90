@@ -12,7 +12,7 @@ module lennard_jones
   private
   public :: lennard_jones_t, keys, read_law
 
-  !> The pair of the powers 9 and 3, by products, which are faster.
+  !> The pair of the powers 9 and 3; products compute them faster than general powers.
   type, extends(power_pair_t) :: lennard_jones_t
   contains
     procedure :: evaluate
@@ -35,7 +35,7 @@ module lennard_jones
 
 contains
 
-  !> The law of its group.
+  !> Reads the law from its group.
   subroutine read_law(deck, law)
     type(deck_t), intent(inout) :: deck
     class(force_law_t), allocatable, intent(out) :: law
@@ -93,7 +93,8 @@ contains
 
   end subroutine read_law
 
-  !> hamaker [J] and z0 [m] positive; part is 'full', 'repulsive' or 'attractive'.
+  !> Makes the law; hamaker [J] and z0 [m] must be positive, and part is 'full', 'repulsive' or
+  !> 'attractive'.
   pure type(lennard_jones_t) function new_lennard_jones(hamaker, z0, part) result(law)
     real(wp), intent(in) :: hamaker, z0
     character(len=*), intent(in) :: part

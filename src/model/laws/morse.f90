@@ -1,7 +1,7 @@
 !> Morse law between surfaces: the energy per area is w [exp(-2 (h - z0)/l) - 2 exp(-(h - z0)/l)],
-!> with surface energy w and decay length l. The largest tension is w/(2 l) at z0 + l ln 2. In units
-!> of 2 l, the range w over largest tension, and w/(2 l) the pressure is 4 (q^2 - q), q = exp(-2 (H
-!> - 1)).
+!> with the work of adhesion w and the decay length l. The largest tension is w/(2 l) at z0 + l ln
+!> 2. In units of 2 l, which is the range w over largest tension, and of the pressure w/(2 l), the
+!> pressure is 4 (q^2 - q), q = exp(-2 (H - 1)).
 module morse
   use kinds, only: wp
   use special_functions, only: largest_exponent
@@ -31,7 +31,7 @@ module morse
 
 contains
 
-  !> The law of its group.
+  !> Reads the law from its group.
   subroutine read_law(deck, law)
     type(deck_t), intent(inout) :: deck
     class(force_law_t), allocatable, intent(out) :: law
@@ -49,14 +49,15 @@ contains
     call accept_law(deck, 'morse', 'work_of_adhesion', 'decay_length', this, law)
   end subroutine read_law
 
-  !> exp(-2 (gap - 1)), finite at any gap and constant where it would underflow.
+  !> exp(-2 (gap - 1)), limited to finite values, and constant where it would underflow.
   elemental real(wp) function decay(gap)
     real(wp), intent(in) :: gap
 
     decay = exp(max(min(-2*(gap - 1), largest_exponent), -largest_exponent))
   end function decay
 
-  !> The same, and 0 where it is constant: there the energy has no derivative.
+  !> The same as `decay`, but 0 where that is constant, since the derivative of the energy vanishes
+  !> there.
   elemental real(wp) function falling(gap)
     real(wp), intent(in) :: gap
 

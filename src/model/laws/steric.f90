@@ -1,6 +1,7 @@
-!> Steric repulsion of polymer brushes of thickness L, which touch at h = 2 L (one brush: L). With u
-!> the gap over this length: Alexander and de Gennes, p = kT Gamma^(3/2) (u^(-9/4) - u^(3/4)), or
-!> Milner, Witten and Cates, p = kT Gamma^(3/2) (1/(2 u^2) - u + u^4/2); zero beyond u = 1.
+!> Steric repulsion of polymer brushes of thickness L, which touch at h = 2 L (one brush: at L).
+!> With u the gap over this separation, the pressure after Alexander and de Gennes is p = kT
+!> Gamma^(3/2) (u^(-9/4) - u^(3/4)). After Milner, Witten and Cates it is p = kT Gamma^(3/2) (1/(2
+!> u^2) - u + u^4/2). It is zero for u > 1.
 module steric
   use kinds, only: wp
   use physical_constants, only: boltzmann
@@ -19,7 +20,8 @@ module steric
     procedure :: evaluate
   end type steric_t
 
-  !> Exponents of Alexander and de Gennes: osmotic pressure, and elasticity of the chains.
+  !> Exponents in the model of Alexander and de Gennes: those of the osmotic pressure and of the
+  !> elasticity of the chains.
   real(wp), parameter :: osmotic = 9/4.0_wp, elastic = 3/4.0_wp
 
   !> The rows of &steric.
@@ -40,7 +42,7 @@ module steric
 
 contains
 
-  !> The law of its group.
+  !> Reads the law from its group.
   subroutine read_law(deck, law)
     type(deck_t), intent(inout) :: deck
     class(force_law_t), allocatable, intent(out) :: law

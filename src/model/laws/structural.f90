@@ -11,7 +11,7 @@ module structural
   public :: keys, read_law
 
   type, extends(force_law_t) :: structural_t
-    !> 2 pi/d in units of 1/length, and the phase.
+    !> The wave number 2 pi/d in units of 1/length, and the phase.
     real(wp) :: wave_number = 0, phase = 0
   contains
     procedure :: evaluate
@@ -32,7 +32,8 @@ module structural
 
 contains
 
-  !> The law of its group. A negative amplitude is a positive one with another phase.
+  !> Reads the law from its group. A negative amplitude is replaced by a positive one with another
+  !> phase.
   subroutine read_law(deck, law)
     type(deck_t), intent(inout) :: deck
     class(force_law_t), allocatable, intent(out) :: law
@@ -52,13 +53,14 @@ contains
     this%wave_number = 2*pi*this%length/period
     this%period = period/this%length
     this%closure_length = min(2.0_wp, 0.25_wp*this%period)
-    ! Within the first layer there is no liquid, and the formula would oscillate without bounds.
+    ! At separations smaller than the first layer there is no liquid, and the formula would
+    ! oscillate with unlimited amplitude.
     this%smallest_gap = 0
     call accept_law(deck, 'structural', 'amplitude', 'decay_length', this, law)
   end subroutine read_law
 
-  !> exp(-gap), finite at any gap, and 0 where it is negligible: an oscillation that went on for
-  !> ever would have no integral.
+  !> exp(-gap), limited to finite values, and 0 where it is negligible: an oscillation that never
+  !> ended could not be integrated numerically.
   elemental real(wp) function decay(gap)
     real(wp), intent(in) :: gap
 
@@ -77,7 +79,7 @@ contains
       case (of_pressure)
         value = -cos(k*gap + phase)*decay(gap)
       case (of_slope)
-        ! cos x + k sin x, as one cosine.
+        ! The sum cos x + k sin x, written as one cosine.
         value = sqrt(1 + k**2)*cos(k*gap + (phase - atan(k)))*decay(gap)
       case default
         value = (k*sin(k*gap + phase) - cos(k*gap + phase))*decay(gap)/(1 + k**2)

@@ -1,4 +1,5 @@
-!> A force law from a file of gaps and pressures, or energies per area, measured or computed.
+!> A force law from a file of gaps and pressures, or of gaps and energies per area, measured or
+!> computed.
 module tabulated
   use kinds, only: wp
   use failure, only: failure_t
@@ -15,13 +16,13 @@ module tabulated
   public :: keys, read_law
 
   type, extends(force_law_t) :: tabulated_t
-    !> The table, the table of every second point, and the error of the table over the difference of
-    !> these two.
+    !> fine: the table. coarse: the table of every second point. share: ratio of the error of the
+    !> table to the difference of these two.
     type(force_table_t) :: fine, coarse
     real(wp) :: share = 1
-    !> Change of the energy of the tail if it fell as the last points do.
+    !> Change of the energy of the tail if the pressure fell as the last points do.
     real(wp) :: tail_error = 0
-    !> Errors of pressure and energy at the points that follow from the noise of the points.
+    !> Errors of pressure and energy at the points due to the noise of the points.
     real(wp), allocatable :: noise(:, :)
   contains
     procedure :: evaluate
@@ -30,16 +31,16 @@ module tabulated
   end type tabulated_t
 
   integer, parameter :: fewest = 8
-  !> Error that noise is likely not to exceed, in standard deviations.
+  !> Number of standard deviations that an error due to noise is unlikely to exceed.
   real(wp), parameter :: likely = 2
-  !> The tail is compared with the points from this fraction of the last gap on; least power of a
-  !> pressure that falls, less one.
+  !> The tail is compared with the points beyond this fraction of the last gap. Smallest amount by
+  !> which the power of a falling pressure exceeds one.
   real(wp), parameter :: end_of_lever = 0.8_wp, nearly_none = 0.01_wp
-  !> Relative error of a table's pressure, over the accuracy, that a path does not feel; and the
-  !> smallest error for which integrals in pieces between the points are worth their time.
+  !> Relative error of a table's pressure, relative to the accuracy, that has no effect on a path;
+  !> and the smallest error for which splitting integrals at the points is worth the time.
   real(wp), parameter :: unnoticed = 1.0_wp/30, least = 1.0e-6_wp
-  !> The error of a spline decreases as the fourth power of the distance of points, that of slopes
-  !> that are monotone as the second power at an extremum.
+  !> The error of a spline decreases as the fourth power of the distance of points. With monotone
+  !> slopes it decreases as the second power at an extremum.
   real(wp), parameter :: share_of_spline = 1.0_wp/15, share_of_monotone = 1.0_wp/3
 
   !> The rows of &tabulated.
@@ -61,7 +62,7 @@ module tabulated
 
 contains
 
-  !> The law of its group.
+  !> Reads the law from its group.
   subroutine read_law(deck, law)
     type(deck_t), intent(inout) :: deck
     class(force_law_t), allocatable, intent(out) :: law
@@ -109,7 +110,7 @@ contains
     table%place = table%place(size(table%place):1:-1)
   end subroutine put_in_order
 
-  !> Makes the law of an ordered table, in units of its first gap and its largest number.
+  !> Makes the law of an ordered table, in units of its first gap and of its largest value.
   subroutine take_table(deck, table, this)
     type(deck_t), intent(inout) :: deck
     type(data_table_t), intent(inout) :: table
@@ -144,7 +145,7 @@ contains
     end do
     this%fine = new_force_table(g, value, quantity == 'energy', exponent, decay_length, &
       interpolation == 'spline')
-    ! Both tables have the first and the last point.
+    ! Both tables contain the first and the last point.
     i = 2 + mod(n, 2)
     this%coarse = new_force_table([g(1), g(i:n:2)], [value(1), value(i:n:2)], &
       quantity == 'energy', exponent, decay_length, interpolation == 'spline')
@@ -170,7 +171,8 @@ contains
       end if
     end function fall
 
-    !> From two gaps and their pressures, the last points of the table.
+    !> The error of the tail, from two gaps and their pressures, the latter being the last points of
+    !> the table.
     pure real(wp) function tail_error_of(gap, pressure) result(error)
       real(wp), intent(in) :: gap(2), pressure(2)
       real(wp) :: seen
@@ -186,7 +188,7 @@ contains
       end if
     end function tail_error_of
 
-    !> Sets the errors by noise. Numbers times their inverse tail are smooth.
+    !> Sets the errors due to noise. The values divided by their tail vary smoothly.
     subroutine take_noise()
       real(wp) :: tail(n), noise(n), beyond
 
@@ -195,7 +197,7 @@ contains
         noise = likely*tail*noise_of(table%u, value/tail)
         allocate (this%noise(2, n))
         if (table%of_energy) then
-          ! The pressure is the slope.
+          ! The pressure is the slope of the given energies.
           this%noise(2, :) = noise
           this%noise(1, :n - 1) = noise(:n - 1)/(g(2:) - g(:n - 1))
           this%noise(1, n) = this%noise(1, n - 1)
@@ -207,8 +209,8 @@ contains
       end associate
     end subroutine take_noise
 
-    !> Finds the points about which the error of the table is not small. At the others the
-    !> derivatives jump by so little that the nodes of a mesh need not know.
+    !> Finds the points near which the error of the table is not small. At other points the
+    !> derivatives jump so little that a mesh need not resolve them.
     subroutine find_kinks()
       real(wp), dimension(size(this%breaks) - 1) :: middle
       real(wp) :: error(2, size(middle)), accuracy
@@ -226,14 +228,14 @@ contains
       if (size(this%kinks) == 0) deallocate (this%kinks)
     end subroutine find_kinks
 
-    !> Sets the scales of the repulsion, which is a power before the first point.
+    !> Sets the scales of the repulsion, which is a power of the gap before the first point.
     subroutine take_scales()
       if (.not. this%fine%power > 0) then
         call deck%mistake('tabulated', 'file', 'the force does not grow towards the first gap, ' &
           // 'so that it cannot be continued to smaller ones')
         return
       end if
-      ! For the ninth power the last two are the numbers of the Lennard-Jones law.
+      ! For the ninth power the last two numbers equal those of the Lennard-Jones law.
       this%smallest_gap = max(nearest_power, 10.0_wp**(-110/(this%fine%power + 1)))
       this%repulsion_length = length_of_power/max(this%fine%power, 1.0_wp)
       this%closure_fraction = min(usual_closure, closure_of_power/this%fine%power)
@@ -254,7 +256,7 @@ contains
     value = quantity_of(self%fine, quantity, max(gap, self%smallest_gap))
   end subroutine evaluate
 
-  !> The error of the interpolation, that of the tail, and that by the noise of the points.
+  !> The sum of the errors due to interpolation, to the tail, and to the noise of the points.
   pure function table_error(self, gap) result(value)
     class(tabulated_t), intent(in) :: self
     real(wp), intent(in) :: gap(:)
@@ -269,8 +271,8 @@ contains
     end do
   end function table_error
 
-  !> From the table of every second point: for smooth laws its additional error is a known multiple
-  !> of the error of the whole table.
+  !> The error of interpolation, from the table of every second point. For smooth laws the
+  !> additional error of that table is a known multiple of the error of the whole table.
   pure function error_between(self, gap) result(value)
     class(tabulated_t), intent(in) :: self
     real(wp), intent(in) :: gap(:)
@@ -283,7 +285,7 @@ contains
     value = self%share*abs(value)
   end function error_between
 
-  !> A quantity of a table at a gap.
+  !> A quantity at a gap, from one of the tables.
   elemental real(wp) function quantity_of(table, quantity, gap) result(value)
     type(force_table_t), intent(in) :: table
     integer, intent(in) :: quantity

@@ -12,7 +12,7 @@ module van_der_waals
   public :: keys, read_law
 
   type, extends(force_law_t) :: van_der_waals_t
-    !> c in units of 1/length; 0: not retarded.
+    !> c in units of 1/length; 0 without retardation.
     real(wp) :: retardation = 0
   contains
     procedure :: evaluate
@@ -33,7 +33,7 @@ module van_der_waals
 
 contains
 
-  !> The law of its group. It has no characteristic length.
+  !> Reads the law from its group. The law has no characteristic length.
   subroutine read_law(deck, law)
     type(deck_t), intent(inout) :: deck
     class(force_law_t), allocatable, intent(out) :: law

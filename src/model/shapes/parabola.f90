@@ -1,5 +1,5 @@
-!> The gap r^2/(2R) of spheres near their points of contact, which is the paper's, and the shape of
-!> decks without &shape.
+!> The gap r^2/(2R) of spheres near their point of contact. It is the gap of the paper, and the
+!> shape of decks without &shape.
 module parabola
   use kinds, only: wp, pi
   use deck, only: deck_t
@@ -29,7 +29,8 @@ module parabola
 
 contains
 
-  !> Reads kind = 'parabola', or no &shape. length: the law's [m], which does not matter.
+  !> Reads kind = 'parabola', or a deck without &shape. length: the law's [m], which is not needed
+  !> here.
   subroutine read_shape(deck, length, shape)
     type(deck_t), intent(inout) :: deck
     real(wp), intent(in) :: length
@@ -40,7 +41,7 @@ contains
     if (.not. allocated(deck%error)) allocate (shape, source=new_parabola(radius))
   end subroutine read_shape
 
-  !> radius: R [m].
+  !> Makes the parabola. radius: R [m].
   pure type(parabola_t) function new_parabola(radius) result(shape)
     real(wp), intent(in) :: radius
 
@@ -83,7 +84,7 @@ contains
     change = 0.5_wp*c*x**2
   end function unlike_scaling
 
-  !> (4).
+  !> The indentation (4).
   elemental real(wp) function indentation(self, a)
     class(parabola_t), intent(in) :: self
     real(wp), intent(in) :: a
@@ -91,7 +92,7 @@ contains
     indentation = a**2
   end function indentation
 
-  !> (5).
+  !> The load integral (5).
   elemental real(wp) function indentation_load(self, a) result(load)
     class(parabola_t), intent(in) :: self
     real(wp), intent(in) :: a

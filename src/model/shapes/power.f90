@@ -1,5 +1,5 @@
-!> The gap B r^n. The lateral unit is the position at which it is half the law's length, so that the
-!> dimensionless gap is r^n/2; for n = 2 it is the parabola itself.
+!> The gap B r^n. The lateral unit is the position at which the gap is half the law's length L, so
+!> that the dimensionless gap is r^n/2; for n = 2 it is the parabola itself.
 module power
   use kinds, only: wp, pi
   use deck, only: deck_t
@@ -13,7 +13,7 @@ module power
 
   type, extends(shape_t) :: power_t
     real(wp), private :: kappa = 2
-    !> n if it is an integer, else 0, since products are faster than powers.
+    !> n if it is an integer, otherwise 0; products are computed faster than general powers.
     integer, private :: whole = 0
   contains
     procedure :: height
@@ -61,8 +61,8 @@ contains
     end if
   end subroutine read_shape
 
-  !> The shape from n, the logarithm of B [m^(1-n)] and the law's length [m]; fails, with the given
-  !> key in the message, if its unit is out of range.
+  !> Makes the shape from n, the logarithm of B [m^(1-n)] and the law's length [m]. It fails, with
+  !> the given key in the message, if the lateral unit is out of range.
   subroutine take_power(deck, key, n, log_b, length, shape)
     type(deck_t), intent(inout) :: deck
     character(len=*), intent(in) :: key
@@ -111,7 +111,7 @@ contains
     r = (2*height)**(1/self%exponent)
   end function position_of
 
-  !> kappa B a^n, kappa = sqrt(pi) Gamma(n/2 + 1)/Gamma((n + 1)/2).
+  !> The indentation kappa B a^n, kappa = sqrt(pi) Gamma(n/2 + 1)/Gamma((n + 1)/2).
   elemental real(wp) function indentation(self, a)
     class(power_t), intent(in) :: self
     real(wp), intent(in) :: a
@@ -119,7 +119,7 @@ contains
     indentation = 0.5_wp*self%kappa*a**self%exponent
   end function indentation
 
-  !> n/(n + 1) times a q(a).
+  !> The load integral, n/(n + 1) times a q(a).
   elemental real(wp) function indentation_load(self, a) result(load)
     class(power_t), intent(in) :: self
     real(wp), intent(in) :: a

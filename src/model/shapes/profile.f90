@@ -1,6 +1,7 @@
-!> A shape from a file of positions and heights: a cubic spline of continuous curvature, flat on the
-!> axis, which continues beyond the last point as a parabola. Where the spline through a convex body
-!> is not convex, as beside a straight flank, it is replaced by convex pieces of continuous slope.
+!> A shape from a file of positions and heights. It is a cubic spline of continuous curvature that
+!> is flat on the axis, and continues beyond the last point as a parabola. If the spline through a
+!> convex body is not convex, as beside a straight flank, it is replaced by convex pieces of
+!> continuous slope.
 module profile
   use kinds, only: wp, pi
   use failure, only: failure_t
@@ -16,8 +17,9 @@ module profile
   public :: keys, read_shape
 
   type, extends(shape_t) :: profile_t
-    !> Beginnings of the pieces, and the end of the last one; for each piece the height and its
-    !> derivatives at its beginning, over 0!, 1!, 2! and 3!, and those at the end.
+    !> at: the beginnings of the pieces, and the end of the last one. taylor: for each piece the
+    !> height and its first three derivatives at its beginning, divided by 0!, 1!, 2! and 3!; the
+    !> last column has those at the end.
     real(wp), allocatable :: at(:), taylor(:, :)
   contains
     procedure :: height
@@ -25,15 +27,15 @@ module profile
     procedure :: rough_indentation
   end type profile_t
 
-  !> Smallest number of points of a profile, and number of those of a rough quadrature.
+  !> Smallest number of points of a profile; number of points of a rough quadrature.
   integer, parameter :: fewest = 5, points = 12
-  !> Largest curvature of the wrong sign, over the largest curvature, which may come from the digits
-  !> of a table, or from a spline through a body that is flat at its tip.
+  !> Largest curvature of the wrong sign, relative to the largest curvature, that is tolerated. It
+  !> may be due to the rounding of a table, or to a spline through a body that is flat at its tip.
   real(wp), parameter :: straight = 0.02_wp
-  !> Relative difference of the slopes between points below which a flank is straight.
+  !> Relative difference of the slopes between points below which a flank counts as straight.
   real(wp), parameter :: same_slope = 1.0e-9_wp
-  !> Smallest difference of a slope from those of the chords beside it, over the difference of
-  !> these.
+  !> Smallest difference between a slope and those of the adjacent chords, relative to the
+  !> difference of these.
   real(wp), parameter :: least_bend = 0.1_wp
 
   !> The row of a profile in &shape.
@@ -67,7 +69,7 @@ contains
     if (.not. allocated(deck%error)) allocate (shape, source=this)
   end subroutine read_shape
 
-  !> Fails if positions do not start at 0 and grow, or if heights do not grow with them.
+  !> Fails if positions do not begin at 0 and increase, or if heights do not increase with them.
   subroutine check_points(table, error)
     type(data_table_t), intent(inout) :: table
     type(failure_t), allocatable, intent(inout) :: error
@@ -99,7 +101,8 @@ contains
     n = size(table%place)
     last = table%value(n, 1)
     this%at = table%value(:, 1)/last
-    ! The spline is flat at its right end, so that it is made for the mirrored profile.
+    ! The spline procedure makes splines that are flat at their right end; therefore the profile is
+    ! mirrored.
     mirrored = spline(-this%at(n:1:-1), (table%value(n:1:-1, 2) - table%value(1, 2))/length)
     allocate (this%taylor(0:3, n))
     do i = 1, n - 1
@@ -129,7 +132,8 @@ contains
     this%known_to = this%at(n)
   end subroutine take_points
 
-  !> The first piece that begins with a curvature of the wrong sign, or falls; 0: there is none.
+  !> The first piece that begins with a curvature of the wrong sign, or in which the height falls; 0
+  !> if there is none.
   pure integer function first_hollow(this) result(i)
     type(profile_t), intent(in) :: this
 
@@ -142,7 +146,7 @@ contains
     i = 0
   end function first_hollow
 
-  !> Whether the slopes between points never decrease, and grow beside the axis, where the body is
+  !> Whether the slopes between points never decrease, and increase near the axis, where the body is
   !> flat.
   pure logical function are_convex(r, f)
     real(wp), intent(in) :: r(:), f(:)
@@ -155,9 +159,10 @@ contains
       all(slope(2:) > (1 - same_slope)*slope(:n - 2))
   end function are_convex
 
-  !> Replaces the pieces between the points of a convex profile by convex ones: by a cubic where the
-  !> one with the slopes at its ends is convex, else by two parabolas (Schumaker, SIAM J. Numer.
-  !> Anal. 20, 853 (1983)). The slopes are those of the spline, between those of the next chords.
+  !> Replaces the pieces between the points of a convex profile by convex ones. A piece becomes the
+  !> cubic with the given slopes at its ends if this cubic is convex, otherwise two parabolas
+  !> (Schumaker, SIAM J. Numer. Anal. 20, 853 (1983)). The slopes are those of the spline, limited
+  !> to values between those of the adjacent chords.
   subroutine make_convex(this)
     type(profile_t), intent(inout) :: this
     real(wp), allocatable :: at(:), taylor(:, :)
@@ -173,7 +178,7 @@ contains
       slope(i) = min(max(slope(i), chord(i - 1) + apart), chord(i) - apart)
     end do
     slope(n) = max(slope(n), 2*chord(n - 1) - slope(n - 1))
-    ! Two neighbouring chords of equal slope are a straight flank, with this slope at its ends.
+    ! Two adjacent chords of equal slope are a straight flank; its ends have this slope too.
     do i = 2, n - 2
       if (chord(i + 1) - chord(i) < same_slope*chord(i)) slope(i:i + 2) = chord(i)
     end do
@@ -189,7 +194,7 @@ contains
         call add(this%at(i), [this%taylor(0, i), slope(i), (2*below - above)/width, &
           (above - below)/width**2])
       else
-        ! The slope is that of the chord where the parabolas meet.
+        ! Where the parabolas meet, the slope is that of the chord.
         part = width*above/(below + above)
         call add(this%at(i), [this%taylor(0, i), slope(i), 0.5_wp*below/part, 0.0_wp])
         call add(this%at(i) + part, [this%taylor(0, i) + part*(slope(i) + 0.5_wp*below), &
@@ -214,8 +219,8 @@ contains
 
   end subroutine make_convex
 
-  !> A cubic of the distance from its left end as a cubic of the distance from its right end, which
-  !> is `width` away, to the left.
+  !> Expands a cubic, given as a polynomial of the distance from its left end, in powers of the
+  !> distance to the left of its right end. width: the distance of the ends.
   pure function expanded_at_end(cubic, width) result(taylor)
     real(wp), intent(in) :: cubic(0:3), width
     real(wp) :: taylor(0:3)
@@ -248,7 +253,8 @@ contains
     end associate
   end function slope
 
-  !> By the fewest points that suffice, without regard to the pieces.
+  !> The indentation with the fewest points that suffice, without splitting at the ends of the
+  !> pieces.
   pure function rough_indentation(self, a) result(indentation)
     class(profile_t), intent(in) :: self
     real(wp), intent(in) :: a(:)

@@ -10,7 +10,7 @@ module rounded_punch
   public :: keys, read_shape
 
   type, extends(shape_t) :: rounded_punch_t
-    !> b in lateral units, which are those of the parabola with the rim's radius.
+    !> The radius b in lateral units, which are those of the parabola with the rim's radius R.
     real(wp), private :: flat = 0
   contains
     procedure :: height

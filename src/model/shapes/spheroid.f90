@@ -1,6 +1,6 @@
-!> The end of a spheroid, b - b sqrt(1 - r^2/a^2) with the radius R = a^2/b on the axis. In
-!> dimensionless form it is (1 - sqrt(1 - kappa r^2))/kappa, kappa = L/b, and near the axis the
-!> parabola. Beyond 0.98 a it continues as a straight line, where no force may act.
+!> The end of a spheroid, b - b sqrt(1 - r^2/a^2), whose radius of curvature on the axis is R =
+!> a^2/b. In dimensionless form it is (1 - sqrt(1 - kappa r^2))/kappa, kappa = L/b; near the axis it
+!> is the parabola. Beyond 0.98 a it continues as a straight line, on which no force may act.
 module spheroid
   use kinds, only: wp
   use text, only: brief
@@ -21,9 +21,9 @@ module spheroid
     procedure :: indentation
   end type spheroid_t
 
-  !> Radius of the end of the body over the radius of the equator.
+  !> Radius at which the body ends, relative to the radius of the equator.
   real(wp), parameter :: reaching = 0.98_wp
-  !> Smallest half-axis in lengths of the law.
+  !> Smallest half-axis in lengths L of the law.
   real(wp), parameter :: smallest = 5
 
   !> The row of a spheroid in &shape.
@@ -47,8 +47,8 @@ contains
     call take_spheroid(deck, 'semi_axis', radius, semi_axis, length, shape)
   end subroutine read_shape
 
-  !> The shape from R, b and the law's length, all [m]; fails, with the given key in the message, if
-  !> the body is hardly larger than this length.
+  !> Makes the shape from R, b and the law's length, all in [m]. It fails, with the given key in the
+  !> message, if the body is hardly larger than this length.
   subroutine take_spheroid(deck, key, radius, semi_axis, length, shape)
     type(deck_t), intent(inout) :: deck
     character(len=*), intent(in) :: key
@@ -97,7 +97,8 @@ contains
     r = sqrt(inside*(2 - self%kappa*inside)) + (height - inside)/self%slope(self%ends)
   end function position_of
 
-  !> In closed form: the part within the end, up to e a, and the straight line beyond.
+  !> The closed form, the sum of the part inside the end of the body, up to e a, and of the straight
+  !> line beyond.
   elemental real(wp) function indentation(self, a)
     class(spheroid_t), intent(in) :: self
     real(wp), intent(in) :: a
