@@ -1,12 +1,13 @@
 !> The classical theories of elastic contact: Hertz, JKR, DMT. Maugis-Dugdale theory is in `maugis`.
-!> The theories that `&classical` shows have their names in decks and tables here.
+!> Here are the names that the theories of `&classical` have in decks and tables.
 !>
-!> SI units and the paper's conventions: `radius` is R of h0(r) = h0 + r^2/(2R), `y` the stiffness
-!> E/(1-nu^2) of two identical bodies (twice the composite modulus E*), `gamma` the surface energy,
-!> the work of separating unit area, and `a` the contact radius. Loads are positive in compression;
-!> `displacement` is delta = h(0) - h0. Each theory has one state for each contact radius, the best
-!> parameter of its curves; a load or displacement may have no state or two. Arguments must be
-!> positive and finite. Where no equilibrium exists the result is NaN.
+!> Units are SI, and conventions are the paper's. `radius` is R of h0(r) = h0 + r^2/(2R). `y` is the
+!> plane-strain modulus E/(1-nu^2) of two identical bodies (twice the reduced modulus E*). `gamma`
+!> is the work of adhesion, and `a` the contact radius. Loads are positive in compression;
+!> `displacement` is delta = h(0) - h0. Each theory has exactly one state for each contact radius,
+!> which is therefore the best parameter of its curves; at a load or displacement there may be none,
+!> one or two states. Arguments must be positive and finite. If no equilibrium exists, the result is
+!> NaN.
 module classical
   use kinds, only: wp, pi, nan
   implicit none
@@ -23,7 +24,7 @@ module classical
     pietrement_troyon = 6
   character(len=*), parameter :: theories(*) = [character(len=17) :: 'hertz', 'jkr', 'dmt', &
     'maugis_dugdale', 'carpick', 'pietrement_troyon']
-  !> Theories shown by default; theories that hold for any convex shape and for layers.
+  !> Whether a theory is shown by default; whether it holds for any convex shape and for layers.
   logical, parameter :: usual(*) = [.true., .true., .true., .true., .false., .false.]
   logical, parameter :: convex(*) = [.true., .true., .false., .false., .false., .false.]
 
@@ -51,7 +52,7 @@ contains
     if (load < 0) a = nan
   end function hertz_radius_at_load
 
-  !> Hertz contact radius [m] at a displacement [m], (4); NaN where the bodies do not touch.
+  !> Hertz contact radius [m] at a displacement [m], (4); NaN if the bodies do not touch.
   elemental real(wp) function hertz_radius_at_displacement(displacement, radius) result(a)
     real(wp), intent(in) :: displacement, radius
 
@@ -59,7 +60,7 @@ contains
     if (displacement >= 0) a = sqrt(radius*displacement)
   end function hertz_radius_at_displacement
 
-  !> Hertz load [N] at a displacement [m], (6); zero where the bodies do not touch.
+  !> Hertz load [N] at a displacement [m], (6); zero if the bodies do not touch.
   elemental real(wp) function hertz_load_at_displacement(displacement, radius, y) result(load)
     real(wp), intent(in) :: displacement, radius, y
     real(wp) :: overlap
@@ -103,7 +104,7 @@ contains
     displacement = hertz_displacement(a, radius) - sqrt(4*pi*gamma*a/y)
   end function jkr_displacement
 
-  !> JKR contact radius [m] at a fixed load [N], (10), of the stable state. NaN beyond the pull-off.
+  !> JKR contact radius [m] of the stable state at a fixed load [N], (10). NaN beyond the pull-off.
   elemental real(wp) function jkr_radius_at_load(load, radius, y, gamma) result(a)
     real(wp), intent(in) :: load, radius, y, gamma
     real(wp) :: adhesion, inner
@@ -113,12 +114,12 @@ contains
     if (inner < -4*epsilon(inner)*adhesion**2) then
       a = nan
     else
-      ! At the pull-off rounding may leave a small negative number.
+      ! At the pull-off a rounding error may make this number slightly negative.
       a = cube_root(1.5_wp*radius/y *(load + adhesion + sqrt(max(inner, 0.0_wp))))
     end if
   end function jkr_radius_at_load
 
-  !> JKR contact radius [m] at a fixed displacement [m], of the stable state: the larger root of
+  !> JKR contact radius [m] of the stable state at a fixed displacement [m]: the larger root of
   !> (11). NaN beyond the pull-off.
   elemental real(wp) function jkr_radius_at_displacement(displacement, radius, y, gamma) result(a)
     real(wp), intent(in) :: displacement, radius, y, gamma
@@ -144,7 +145,7 @@ contains
     a = fold*((s + sqrt(max(8/s - z, 0.0_wp)))/2)**2
   end function jkr_radius_at_displacement
 
-  !> JKR load [N] at a fixed displacement [m], the stable branch; NaN beyond the pull-off.
+  !> JKR load [N] at a fixed displacement [m], on the stable branch; NaN beyond the pull-off.
   elemental real(wp) function jkr_load_at_displacement(displacement, radius, y, gamma) result(load)
     real(wp), intent(in) :: displacement, radius, y, gamma
 
@@ -190,8 +191,8 @@ contains
     end if
   end function jkr_gap
 
-  !> DMT load [N] at a contact radius [m]: Hertz less the attraction 2 pi gamma R, (2). The
-  !> displacement is Hertz's.
+  !> DMT load [N] at a contact radius [m]: the Hertz load minus the attraction 2 pi gamma R, (2).
+  !> The displacement is that of Hertz theory.
   elemental real(wp) function dmt_load(a, radius, y, gamma) result(load)
     real(wp), intent(in) :: a, radius, y, gamma
 
@@ -205,8 +206,8 @@ contains
     a = hertz_radius_at_load(load - dmt_pull_off(radius, gamma), radius, y)
   end function dmt_radius_at_load
 
-  !> DMT load [N] at a displacement [m]; NaN if the bodies do not touch, since the theory has no
-  !> attraction across a gap.
+  !> DMT load [N] at a displacement [m]; NaN if the bodies do not touch, since the theory does not
+  !> include attraction across a gap.
   elemental real(wp) function dmt_load_at_displacement(displacement, radius, y, gamma) result(load)
     real(wp), intent(in) :: displacement, radius, y, gamma
 

@@ -1,12 +1,12 @@
-!> Contact of bodies of any convex shape: Hertz's theory, and that of Johnson, Kendall and Roberts
-!> with adhesion, both from the two integrals of a `shape`. In the units of
+!> Contact of bodies of any convex shape: the theory of Hertz, and that of Johnson, Kendall and
+!> Roberts with adhesion. Both follow from the two integrals of a `shape`. In the units of
 !> `dimensionless_problem`, with sigma = coupling*adhesion and gamma the work of adhesion,
 !>
 !>     delta = q(a) - sqrt(4 pi sigma a) ,
 !>     F = (1/coupling) Int_0^a [q(a) - q(x)] dx - sqrt(4 pi adhesion a^3/coupling) .
 !>
-!> For the parabola these are (10) and (11). The bodies are elastic and attract each other, unless
-!> a procedure says otherwise.
+!> For the parabola these are (10) and (11). Unless a procedure says otherwise, the bodies are
+!> elastic and attract each other.
 module convex_contact
   use kinds, only: wp, pi, nan
   use root_finding, only: bracket_t, root_search_t, new_root_search
@@ -17,15 +17,15 @@ module convex_contact
   public :: hertz_like_load, jkr_like_load, jkr_like_radius
   public :: jkr_like_pull_off, jkr_like_detachment, detachment_radius
 
-  !> Ratio of two contact radii: that at which adhesion balances the repulsion, and the smallest
-  !> that may be an extremum. Number of golden sections that give half of the digits of the radius,
-  !> and so all digits of the extremum.
+  !> Ratio of the contact radius at which adhesion balances the repulsion to the smallest one that
+  !> may be an extremum. Number of golden sections that determine half of the digits of the radius,
+  !> and therefore all digits of the extremum.
   real(wp), parameter :: widest_range = 1.0e4_wp
   integer, parameter :: sections = 45
 
 contains
 
-  !> Load at a contact radius without adhesion.
+  !> Load at a contact radius, without adhesion.
   elemental real(wp) function hertz_like_load(problem, a) result(load)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: a
@@ -33,7 +33,7 @@ contains
     load = problem%shape%indentation_load(a)/problem%coupling
   end function hertz_like_load
 
-  !> Load at a contact radius; the adhesion is the law's `work`.
+  !> Load at a contact radius, with the law's `work` as adhesion.
   elemental real(wp) function jkr_like_load(problem, a) result(load)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: a
@@ -49,8 +49,8 @@ contains
     displacement = shape%indentation(a) - sqrt(4*pi*sigma*a)
   end function jkr_like_displacement
 
-  !> Contact radius of the stable state at a displacement; NaN if there is none. narrowest: the
-  !> `detachment_radius`.
+  !> Contact radius of the stable state at a displacement; NaN if there is no such state. narrowest:
+  !> the `detachment_radius`.
   pure real(wp) function jkr_like_radius(shape, sigma, narrowest, displacement) result(a)
     class(shape_t), intent(in) :: shape
     real(wp), intent(in) :: sigma, narrowest, displacement
@@ -74,7 +74,8 @@ contains
     a = search%root
   end function jkr_like_radius
 
-  !> H0 at which bodies separate at fixed displacement: the largest -delta. 0 without adhesion.
+  !> The H0 at which bodies separate under fixed displacement, which is the largest -delta; 0
+  !> without adhesion.
   pure real(wp) function jkr_like_detachment(shape, sigma) result(h0)
     class(shape_t), intent(in) :: shape
     real(wp), intent(in) :: sigma
@@ -88,7 +89,7 @@ contains
     end if
   end function jkr_like_detachment
 
-  !> Contact radius at the detachment, by golden section in its logarithm; sigma > 0.
+  !> Contact radius at this separation, by golden section in its logarithm; sigma must be positive.
   pure real(wp) function detachment_radius(shape, sigma) result(a)
     class(shape_t), intent(in) :: shape
     real(wp), intent(in) :: sigma
@@ -104,14 +105,14 @@ contains
     a = exp(bracket%middle())
   end function detachment_radius
 
-  !> The smallest load, negative: the pull-off at fixed load.
+  !> The smallest load, which is negative: the pull-off at fixed load.
   pure real(wp) function jkr_like_pull_off(problem) result(load)
     type(problem_t), intent(in) :: problem
     type(bracket_t) :: bracket
     real(wp) :: widest
     integer :: i
 
-    ! Where delta is positive, the load is positive, or grows with a.
+    ! Where delta is positive, the load is positive, or increases with a.
     widest = 4*widest_at(problem%shape, problem%coupling*problem%law%work)
     bracket = bracket_t(log(widest/widest_range), log(widest))
     do i = 1, sections
@@ -120,7 +121,8 @@ contains
     load = jkr_like_load(problem, exp(bracket%middle()))
   end function jkr_like_pull_off
 
-  !> A contact radius at which the displacement is positive, at most twice the smallest one.
+  !> A contact radius at which the displacement is positive; it is at most twice the smallest such
+  !> radius.
   pure real(wp) function widest_at(shape, sigma) result(a)
     class(shape_t), intent(in) :: shape
     real(wp), intent(in) :: sigma

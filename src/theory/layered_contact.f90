@@ -1,6 +1,6 @@
-!> Contact of layered bodies of any convex shape: Hertz's theory, and that of Johnson, Kendall and
-!> Roberts with adhesion. In the units of `dimensionless_problem`, with q of the shape (`shape`) and
-!> L of the bodies (`layered_body`), a function phi on the contact obeys
+!> Contact of layered bodies of any convex shape: the theory of Hertz, and that of Johnson, Kendall
+!> and Roberts with adhesion. In the units of `dimensionless_problem`, with q of the shape (`shape`)
+!> and L of the bodies (`layered_body`), a function phi on the contact area obeys
 !>
 !>     phi(y) + Int_0^a M(x, y) phi(x) dx = delta - q(y),  F = (1/coupling) Int_0^a phi dx ,
 !>     M(x, y) = (2/pi) Int_0^inf (L(k) - 1) cos(k x) cos(k y) dk ,
@@ -20,20 +20,21 @@ module layered_contact
   private
   public :: layered_contact_t, new_layered_contact, has_layers, of_load, of_displacement
 
-  !> Quantities at a contact radius a: displacement over a^2 and load over a^3 are series.
+  !> The quantities that are series at a contact radius a: displacement over a^2, and load over a^3.
   integer, parameter :: of_displacement = 1, of_load = 2
   !> Degree of the series; ratio of the radius without displacement to the smallest radius.
   integer, parameter :: degree = 80
   real(wp), parameter :: span = 100
-  !> A minimum closer to the largest radius, as a part of it, does not count.
+  !> A minimum does not count if its radius exceeds this fraction of the largest radius.
   real(wp), parameter :: inside = 0.97_wp
-  !> Fewest nodes of the system; nodes for each thickness of the thinnest top layer in the contact
-  !> radius; largest contact radius in such thicknesses.
+  !> Smallest number of nodes of the system; number of nodes per thickness of the thinnest top layer
+  !> over the contact radius; largest contact radius in units of this thickness.
   integer, parameter :: fewest = 32, a_thickness = 4, widest = 40
-  !> Radii among which the smallest value is searched for, and golden sections about it.
+  !> Number of radii at which the smallest value is searched for; number of golden sections that
+  !> refine it.
   integer, parameter :: looks = 400, sections = 50
 
-  !> The series in ln a between two radii; (degree, theory, quantity).
+  !> The series in ln a between the radii `first` and `last`, (degree, theory, quantity).
   type :: layered_contact_t
     real(wp) :: first = 1, last = 1
     real(wp) :: series(0:degree, 2, 2) = 0
@@ -57,8 +58,8 @@ contains
     end select
   end function has_layers
 
-  !> Contacts of bodies with layers up to the displacement `largest` [m], or to the radius `widest`.
-  !> A negative `work` of the law counts as zero.
+  !> The contacts of layered bodies up to the displacement `largest` [m], or up to the radius
+  !> `widest`. If the `work` of the law is negative, it counts as zero.
   type(layered_contact_t) function new_layered_contact(problem, largest) result(contact)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: largest
@@ -93,7 +94,7 @@ contains
     end select
   end function new_layered_contact
 
-  !> Displacements and loads of both theories at a contact radius.
+  !> Displacements and loads in both theories at a contact radius.
   subroutine contact_at(problem, body, a, delta, force)
     type(problem_t), intent(in) :: problem
     type(layered_body_t), intent(in) :: body
@@ -109,7 +110,7 @@ contains
     call gauss_legendre(x, w)
     x = a*x
     w = a*w
-    ! The last row is the edge.
+    ! The last row belongs to the contact edge.
     call body%cosine_sums([x, a], x, sums)
     sums = sums/pi
     do j = 1, n
@@ -132,19 +133,19 @@ contains
     force = (delta*dot_product(w, of_one) - dot_product(w, of_shape))/problem%coupling
   end subroutine contact_at
 
-  !> Displacement or load at a contact radius within the span.
+  !> Displacement or load at a contact radius in the range of the series.
   elemental real(wp) function value_of(self, quantity, theory, a)
     class(layered_contact_t), intent(in) :: self
     integer, intent(in) :: quantity, theory
     real(wp), intent(in) :: a
 
-    ! Where ln a lies in the span, from -1 to 1.
+    ! The position of ln a in the range of the series, from -1 to 1.
     value_of = a**(1 + quantity)*series_value(self%series(:, theory, quantity), &
       2*log(a/self%first)/log(self%last/self%first) - 1)
   end function value_of
 
   !> Contact radius of the stable state at a displacement or at a load, of which one is given; NaN
-  !> if there is none within the span.
+  !> if the range of the series has no such state.
   pure real(wp) function radius_at(self, theory, displacement, load) result(a)
     class(layered_contact_t), intent(in) :: self
     integer, intent(in) :: theory
@@ -167,7 +168,8 @@ contains
     a = bracket%middle()
   end function radius_at
 
-  !> The smallest load of JKR theory, negative; NaN if it is beyond the span.
+  !> The smallest load of JKR theory, which is negative; NaN if it is outside the range of the
+  !> series.
   pure real(wp) function pull_off(self)
     class(layered_contact_t), intent(in) :: self
     real(wp) :: a
@@ -177,8 +179,8 @@ contains
     if (a < inside*self%last) pull_off = self%value_of(of_load, jkr, a)
   end function pull_off
 
-  !> Contact radius of the smallest displacement or load of JKR theory. On layers there may be
-  !> several minima, so that the search begins with radii over the whole span.
+  !> Contact radius of the smallest displacement or load of JKR theory. With layers there may be
+  !> several minima; therefore the search begins with radii over the whole range.
   pure real(wp) function least(self, quantity) result(a)
     type(layered_contact_t), intent(in) :: self
     integer, intent(in) :: quantity

@@ -1,7 +1,7 @@
-!> Maugis-Dugdale theory of adhesive contact: a constant tension, `strength`, acts across the gap
+!> Maugis-Dugdale theory of adhesive contact. A constant tension, `strength`, acts across the gap
 !> between the contact radius a and the outer radius c of the cohesive zone, and the gap at c is
-!> surface_energy/strength. It spans JKR (strong, short-ranged) and DMT (weak, long-ranged).
-!> D. Maugis, J. Colloid Interface Sci. 150, 243 (1992).
+!> surface_energy/strength. The theory includes the limits JKR (strong, short-ranged tension) and
+!> DMT (weak, long-ranged tension). D. Maugis, J. Colloid Interface Sci. 150, 243 (1992).
 !>
 !> Units and conventions are those of module classical. The theory is solved in Maugis' units, in
 !> which lambda is the only parameter:
@@ -16,7 +16,7 @@ module maugis
   private
   public :: lennard_jones_strength, maugis_units_t, maugis_units, maugis_t, new_maugis
 
-  !> The quantities whose smallest value is searched for.
+  !> The quantities whose minimum over the contact radius is computed.
   integer, parameter :: of_load = 1, of_displacement = 2
 
   !> Maugis' units [N, m, m], in which JKR theory has no parameter.
@@ -24,8 +24,8 @@ module maugis
     real(wp) :: load = 1, radius = 1, displacement = 1
   end type maugis_units_t
 
-  !> The theory of two bodies: its units, and Maugis' parameter lambda, DMT below about 0.1, JKR
-  !> above about 5.
+  !> The theory for two bodies: its units, and Maugis' parameter lambda. DMT theory holds for lambda
+  !> below about 0.1, JKR theory above about 5.
   type :: maugis_t
     type(maugis_units_t) :: unit
     real(wp) :: lambda = 0
@@ -69,8 +69,8 @@ contains
     theory%lambda = 2*strength*(9*radius/(4*pi*surface_energy*stiffness**2))**(1.0_wp/3.0_wp)
   end function new_maugis
 
-  !> Ratio m = c/a of cohesive zone to contact radius at a contact radius a > 0 [m]: the gap at c is
-  !> surface_energy/strength.
+  !> Ratio m = c/a of the outer radius of the cohesive zone to the contact radius a > 0 [m]. It
+  !> follows from the condition that the gap at c is surface_energy/strength.
   elemental real(wp) function edge_ratio(self, contact_radius) result(m)
     class(maugis_t), intent(in) :: self
     real(wp), intent(in) :: contact_radius
@@ -103,15 +103,16 @@ contains
       scaled(of_displacement, contact_radius/self%unit%radius, self%lambda)
   end function displacement
 
-  !> Load [N] at the pull-off under a fixed load, negative: the least load over all contact radii.
+  !> Load [N] at the pull-off under a fixed load, which is negative: the smallest load over all
+  !> contact radii.
   elemental real(wp) function pull_off(self)
     class(maugis_t), intent(in) :: self
 
     pull_off = self%unit%load*scaled(of_load, radius_of_least(of_load, self%lambda), self%lambda)
   end function pull_off
 
-  !> Contact radius [m] at a displacement [m], of the state that is stable at fixed displacement:
-  !> the largest contact radius. NaN below the smallest displacement of bodies in contact.
+  !> Contact radius [m] at a displacement [m], for the state that is stable at fixed displacement,
+  !> which has the largest contact radius. NaN below the smallest displacement of bodies in contact.
   elemental real(wp) function radius_at_displacement(self, displacement) result(contact_radius)
     class(maugis_t), intent(in) :: self
     real(wp), intent(in) :: displacement
@@ -120,7 +121,7 @@ contains
       stable_radius(of_displacement, displacement/self%unit%displacement, self%lambda)
   end function radius_at_displacement
 
-  !> Contact radius [m] at a load [N], of the stable state. NaN beyond the pull-off.
+  !> Contact radius [m] of the stable state at a load [N]. NaN beyond the pull-off.
   elemental real(wp) function radius_at_load(self, load) result(contact_radius)
     class(maugis_t), intent(in) :: self
     real(wp), intent(in) :: load
@@ -153,7 +154,7 @@ contains
     a = radius_of_least(quantity, lambda)
     least = scaled(quantity, a, lambda)
     if (.not. wanted >= least) return
-    ! From their smallest values on, both P and D grow with A.
+    ! Above their minima, P and D both increase with A.
     high = max(1.0_wp, 2*a)
     do while (scaled(quantity, high, lambda) < wanted)
       high = 2*high
@@ -166,14 +167,14 @@ contains
     radius = search%root
   end function stable_radius
 
-  !> The A of the smallest P (`of_load`) or D (`of_displacement`).
+  !> The A at which P (`of_load`) or D (`of_displacement`) is smallest.
   pure real(wp) function radius_of_least(quantity, lambda) result(a)
     integer, intent(in) :: quantity
     real(wp), intent(in) :: lambda
-    ! JKR's smallest load is at A = 1.5^(1/3) = 1.145 and its smallest displacement at (1/6)^(1/3);
-    ! those of a tension of longer range are at a smaller A.
+    ! In JKR theory the smallest load is at A = 1.5^(1/3) = 1.145, and the smallest displacement at
+    ! (1/6)^(1/3). With a tension of longer range, both are at a smaller A.
     real(wp), parameter :: a_max = 1.5_wp
-    ! The minimum is flat: half of the digits in A give all of them in the value.
+    ! The minimum is flat: half of the digits of A determine all digits of the value.
     integer, parameter :: sections = 44
     type(bracket_t) :: bracket
     integer :: i
@@ -192,7 +193,7 @@ contains
   elemental real(wp) function zone_width(a, lambda) result(t)
     real(wp), intent(in) :: a, lambda
     integer, parameter :: max_steps = 100
-    ! One more Newton step squares this error.
+    ! After this accuracy is reached, one more Newton step squares the error.
     real(wp), parameter :: close_enough = 1e-9_wp
     type(bracket_t) :: bracket
     real(wp) :: s, wide, narrow, total, excess
@@ -228,7 +229,7 @@ contains
     a = 2/(linear + sqrt(linear**2 + 4*quadratic))
   end function radius_at_zone_width
 
-  !> t + (m^2 - 2) atan(t): the part of the Hertz gap at c that the tension holds open.
+  !> t + (m^2 - 2) atan(t): the term of the gap at c that follows from the shape of the bodies.
   elemental real(wp) function profile_term(t) result(term)
     real(wp), intent(in) :: t
 
@@ -242,7 +243,8 @@ contains
     slope = 2*t*(t/(1 + t**2) + atan(t))
   end function profile_slope
 
-  !> t atan(t) - m + 1, the part of the gap at c that the tension closes, without cancellation.
+  !> t atan(t) - m + 1: the term of the gap at c that follows from the tension, computed without
+  !> cancellation.
   elemental real(wp) function tension_term(t) result(term)
     real(wp), intent(in) :: t
 
@@ -256,11 +258,12 @@ contains
     slope = atan(t) + t/(1 + t**2) - t/sqrt(1 + t**2)
   end function tension_slope
 
-  !> t - atan(t), for small t from the continued fraction of the arctangent.
+  !> t - atan(t). For small t it is computed from the continued fraction of the arctangent.
   elemental real(wp) function tangent_excess(t) result(excess)
     real(wp), intent(in) :: t
     real(wp) :: w
-    ! Above, the difference is accurate to a dozen units in the last place; below, eight terms are.
+    ! Above this t the difference is accurate to a dozen units in the last place; below it eight
+    ! terms of the fraction are.
     real(wp), parameter :: small = 0.25_wp
     integer, parameter :: terms = 8
     integer :: k

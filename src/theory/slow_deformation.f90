@@ -1,9 +1,9 @@
-!> Slowly varying deformation: u(r) = u(0) wherever the surfaces interact, (21) of the paper.
-!> Displacement (22) and load (23) then follow from the gap on the axis: for any law by quadrature,
-!> and in the paper's closed forms.
+!> The approximation of slowly varying deformation: u(r) = u(0) wherever the surfaces interact, (21)
+!> of the paper. Displacement (22) and load (23) then follow from the gap on the axis, for any law
+!> by quadrature, and for some laws in the paper's closed forms.
 !>
-!> Everything is in the units of `dimensionless_problem`. With c the coupling, delta = 2 sqrt(2) c
-!> J(h), where J is the integral of p(h')/sqrt(h' - h) over h' from h to infinity.
+!> All quantities are in the units of `dimensionless_problem`. With c the coupling, delta = 2
+!> sqrt(2) c J(h), where J is the integral of p(h')/sqrt(h' - h) over h' from h to infinity.
 module slow_deformation
   use kinds, only: wp, pi, nan
   use adaptive_quadrature, only: integral_t, new_integral, in_order
@@ -35,7 +35,8 @@ contains
     end select
   end function has_form
 
-  !> delta = h(0) - h0 at a gap on the axis: (22), (31), (35a) or (35b). NaN without such a form.
+  !> delta = h(0) - h0 at a gap on the axis: (22), (31), (35a) or (35b). NaN if the law has no such
+  !> form.
   elemental real(wp) function slow_displacement(problem, form, gap) result(delta)
     type(problem_t), intent(in) :: problem
     integer, intent(in) :: form
@@ -44,7 +45,8 @@ contains
     delta = response(problem, form, gap, .false.)
   end function slow_displacement
 
-  !> The derivative of the displacement by the gap; h0 = gap - delta folds where it is 1.
+  !> The derivative of the displacement by the gap. h0 = gap - delta has a fold where this
+  !> derivative is 1.
   elemental real(wp) function slow_slope(problem, form, gap) result(slope)
     type(problem_t), intent(in) :: problem
     integer, intent(in) :: form
@@ -54,7 +56,8 @@ contains
   end function slow_slope
 
   !> Load at a gap on the axis: Derjaguin's 2 pi E_s, (23), with the law's own energy for
-  !> `by_quadrature`, else (32), (36a) or (36b). Exact for rigid bodies. NaN without such a form.
+  !> `by_quadrature`, otherwise (32), (36a) or (36b). It is exact for rigid bodies. NaN if the law
+  !> has no such form.
   elemental real(wp) function slow_load(problem, form, gap) result(load)
     type(problem_t), intent(in) :: problem
     integer, intent(in) :: form
@@ -76,7 +79,7 @@ contains
     end select
   end function slow_load
 
-  !> 2 sqrt(2) c J(h) in this form, or with `of_slope` its derivative.
+  !> 2 sqrt(2) c J(h) in this form, or its derivative if `of_slope` is given.
   elemental real(wp) function response(problem, form, gap, of_slope)
     type(problem_t), intent(in) :: problem
     integer, intent(in) :: form
@@ -105,26 +108,28 @@ contains
     response = 2*sqrt(2.0_wp)*problem%coupling*integral
   end function response
 
-  !> J(h) by quadrature, or with `of_slope` the same integral of p', which is its derivative. With
-  !> h' = h + s^2 it is the integral of p(h + s^2) over all s. With s = scale sinh(t) the integrand
-  !> falls exponentially or faster for algebraic and exponential laws alike, and the trapezoidal
-  !> rule in t converges exponentially. If it does not, the law has a step, a kink or a short
-  !> period, and the integral is computed in pieces. The error is a few epsilon times the integral
-  !> of the integrand's magnitude.
+  !> J(h) by quadrature. With `of_slope` it is the same integral of p', which is the derivative.
+  !> With h' = h + s^2, J is the integral of p(h + s^2) over all s. With s = scale sinh(t) the
+  !> integrand falls exponentially or faster, both for algebraic and for exponential laws, so that
+  !> the trapezoidal rule in t converges exponentially. If it does not converge, the law has a step,
+  !> a kink or a short period, and the integral is computed in pieces. The error is a few epsilon
+  !> times the integral of the integrand's magnitude.
   pure real(wp) function axis_integral(problem, gap, of_slope) result(integral)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: gap
     logical, intent(in) :: of_slope
-    !> The rule has converged if halving the step changes the result by less than this.
+    !> The rule counts as converged if halving the step changes the result by less than this
+    !> fraction.
     real(wp), parameter :: agreement = 1.0e-13_wp
-    !> If a block of points contributes less than this part of the whole, the rest is negligible.
+    !> If a block of points contributes less than this fraction of the whole, further points are
+    !> negligible.
     real(wp), parameter :: negligible = 1.0e-18_wp
     integer, parameter :: block = 16, halvings = 5
     real(wp) :: scale, step, before, points, magnitude, more
     integer :: level
 
-    ! The law may be singular at a gap of 0, at s = i sqrt(gap); otherwise it varies over lengths
-    ! of order 1.
+    ! The law may be singular at a gap of 0, which is at s = i sqrt(gap); otherwise it varies over
+    ! lengths of order 1.
     scale = 1
     if (gap > 0) scale = sqrt(min(gap, 1.0_wp))
     step = 0.5_wp
@@ -163,10 +168,10 @@ contains
       end do
     end subroutine add_points
 
-    !> The integral in pieces that end at the breaks of the law.
+    !> The integral, computed in pieces that end at the breaks of the law.
     pure real(wp) function in_pieces()
-      !> Further ends of pieces. Beyond the last one the integrand is negligible, since it falls
-      !> as exp(-t) or faster.
+      !> Further ends of pieces. Beyond the last one the integrand is negligible, since it falls as
+      !> exp(-t) or faster.
       real(wp), parameter :: usual(*) = &
         [0.0_wp, 0.5_wp, 1.0_wp, 2.0_wp, 3.0_wp, 5.0_wp, 8.0_wp, 12.0_wp, 20.0_wp, 40.0_wp]
       type(integral_t) :: pieces
@@ -197,7 +202,7 @@ contains
 
   end function axis_integral
 
-  !> Factor of the repulsion in a closed form.
+  !> The factor that multiplies the repulsion in a closed form.
   elemental real(wp) function repulsion(law, form)
     type(lennard_jones_t), intent(in) :: law
     integer, intent(in) :: form
@@ -205,7 +210,7 @@ contains
     repulsion = merge(0.0_wp, law%repulsive, form == attraction_only)
   end function repulsion
 
-  !> I_m = pi (2m)!/(2 (2^m m!)^2) of (35), the integral of cos^2m over a quarter turn.
+  !> I_m = pi (2m)!/(2 (2^m m!)^2) of (35), the integral of cos^2m from 0 to pi/2.
   elemental real(wp) function cosine_integral(m) result(i)
     integer, intent(in) :: m
     integer :: k

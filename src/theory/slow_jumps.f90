@@ -1,7 +1,7 @@
-!> Gaps on the axis in the approximation of slowly varying deformation: the gap at an h0, and the
-!> gaps at which approaching bodies jump.
+!> Gaps on the axis in the approximation of slowly varying deformation: the gap at a given h0, and
+!> the gaps at which approaching bodies jump.
 !>
-!> Everything is in the units of `dimensionless_problem`.
+!> All quantities are in the units of `dimensionless_problem`.
 module slow_jumps
   use kinds, only: wp, pi, nan
   use root_finding, only: bracket_t
@@ -11,31 +11,33 @@ module slow_jumps
   private
   public :: slow_gap, at_h0, at_criterion, at_fold
 
-  !> Conditions on the gap: h0 has a value; the stability criterion (29), 2 p' u(0)/p = -1, which
-  !> approaching bodies violate beyond this gap; the fold of h0 = gap - delta, at which they lose
-  !> their equilibrium in the approximation itself.
+  !> Conditions on the gap. at_h0: h0 has a given value. at_criterion: the stability criterion (29),
+  !> 2 p' u(0)/p = -1, which approaching bodies violate at smaller gaps. at_fold: the fold of h0 =
+  !> gap - delta, at which the bodies lose their equilibrium within the approximation itself.
   integer, parameter :: at_h0 = 1, at_criterion = 2, at_fold = 3
 
-  !> A search: the form of the approximation, the condition, and h0 for `at_h0`.
+  !> A search: the form of the approximation, the condition, and the given h0 for `at_h0`.
   type :: search_t
     integer :: form = 0, condition = at_h0
     real(wp) :: h0 = 0
   end type search_t
 
-  !> Step of a search, as a fraction of the change of gap over which a law may be linearised, and
-  !> the largest number of steps: enough for a gap of the algebraic law to fall by 26 orders.
+  !> Step of a search, as a fraction of the change of gap over which a law may be linearised.
+  !> Largest number of steps, which suffices for a gap of the algebraic law to fall by 26 orders of
+  !> magnitude.
   real(wp), parameter :: search_step = 0.1_wp
   integer, parameter :: most_steps = 2000
-  !> Golden sections that give a maximum to half of its digits, since the curve is flat there.
+  !> Number of golden sections that determine half of the digits of a maximum's position, which
+  !> suffices since the curve is flat there.
   integer, parameter :: most_sections = 40
 
 contains
 
   !> The largest gap on the axis at which this form of the approximation meets the condition; NaN if
-  !> there is none. The search for an h0 ends at the gap `nearest`, that for a jump where the
-  !> attraction ends. With the attraction of Lennard-Jones alone p'/p = -3/h, and -delta =
-  !> C h^(-5/2) by (35b), so that (29) has the closed form (37), 3 C h^(-7/2) = 1; for the fold 5/2
-  !> replaces the 3. These do not tell whether the full law has a jump.
+  !> there is none. The search for an h0 ends at the gap `nearest`, and the search for a jump ends
+  !> where the attraction ends. With the attraction of Lennard-Jones alone p'/p = -3/h, and -delta =
+  !> C h^(-5/2) by (35b), so that (29) has the closed form (37), 3 C h^(-7/2) = 1. For the fold 5/2
+  !> replaces the 3. These closed forms do not show whether the full law has a jump.
   pure real(wp) function slow_gap(problem, form, condition, h0, nearest) result(gap)
     type(problem_t), intent(in) :: problem
     integer, intent(in) :: form, condition
@@ -54,8 +56,8 @@ contains
     end if
   end function slow_gap
 
-  !> The largest gap, not below `nearest`, at which the excess is zero; NaN if there is none. Far
-  !> away the excess is negative.
+  !> The largest gap, not smaller than `nearest`, at which the excess is zero; NaN if there is none.
+  !> At large gaps the excess is negative.
   pure real(wp) function largest_gap(problem, search, nearest) result(found)
     type(problem_t), intent(in) :: problem
     type(search_t), intent(in) :: search
@@ -69,7 +71,7 @@ contains
     if (.not. has_form(problem, search%form)) return
     if (search%condition /= at_h0 .and. .not. problem%coupling > 0) return
     gap = far_gap()
-    ! Towards smaller gaps, to the first change of sign.
+    ! Search towards smaller gaps, to the first change of sign.
     highest = -huge(1.0_wp)
     top = bracket_t(gap, gap)
     do step = 1, most_steps
@@ -86,7 +88,7 @@ contains
       end if
       gap = next
     end do
-    ! Between two steps the excess may have a maximum just above zero.
+    ! Between two steps the excess may have a positive maximum close to zero.
     next = top%high
     do step = 1, most_sections
       call top%keep_larger(excess(top%golden_points()))
@@ -98,8 +100,8 @@ contains
 
     !> A gap larger than all gaps at which the excess is zero.
     pure real(wp) function far_gap() result(gap)
-      !> At gaps above a few edge gaps, and once the excess is below `settled`, it falls to -1
-      !> monotonically.
+      !> At gaps larger than a few edge gaps, and once the excess is smaller than `settled`, the
+      !> excess falls monotonically to -1.
       real(wp), parameter :: edges = 4, settled = -0.999_wp
       real(wp) :: stride
       integer :: step
@@ -114,7 +116,8 @@ contains
       end do
     end function far_gap
 
-    !> Negative at gaps above the one that meets the condition, positive below.
+    !> The excess, which is negative at gaps above the one that meets the condition, and positive
+    !> below.
     elemental real(wp) function excess(gap)
       real(wp), intent(in) :: gap
       real(wp) :: pressure(1), slope(1)

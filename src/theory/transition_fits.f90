@@ -18,9 +18,9 @@ module transition_fits
   private
   public :: transition_fit_t, carpick_fit, pietrement_fit
 
-  !> A fit for two bodies: alpha (0 in DMT, 0.98 in JKR theory), pull-off [N], negative, contact
-  !> radius [m] without load, the displacement [m] of Hertz's theory at that radius, and the unit of
-  !> load [N]. States are stable at their load; NaN beyond the pull-off.
+  !> A fit for two bodies: alpha (0 in DMT, 0.98 in JKR theory), pull-off force [N], negative,
+  !> contact radius [m] without load, displacement [m] in Hertz theory at that radius, and unit of
+  !> load [N]. The states are stable at their load; results are NaN beyond the pull-off.
   type :: transition_fit_t
     real(wp) :: alpha = 0, pull_off = 0, radius = 0
     real(wp), private :: sunk = 0, no_load = 0
@@ -33,15 +33,16 @@ module transition_fits
 
   !> Scales of lambda and alpha in lambda = -0.924 ln(1 - 1.02 alpha), of both publications.
   real(wp), parameter :: lambda_scale = 0.924_wp, alpha_scale = 1.02_wp
-  !> Pull-off and radius without load of Carpick, Ogletree and Salmeron by lambda (`step_of`).
+  !> Coefficients of `step_of` for the pull-off force and the radius without load as functions of
+  !> lambda, by Carpick, Ogletree and Salmeron.
   real(wp), parameter :: carpick_pull_off(4) = [-1.75_wp, 0.25_wp, 4.04_wp, 1.4_wp], &
     carpick_radius(4) = [1.54_wp, 0.279_wp, 2.28_wp, 1.3_wp]
-  !> Coefficients of the powers of alpha from 0: Pietrement and Troyon's radius without load,
-  !> magnitude of the pull-off, and beta.
+  !> Coefficients of the powers of alpha, beginning with alpha^0, by Pietrement and Troyon: for the
+  !> radius without load, the magnitude of the pull-off force, and beta.
   real(wp), parameter :: radius_terms(*) = [1.264_wp, 0.950_wp, -1.365_wp, 1.417_wp, -0.451_wp], &
     pull_off_terms(*) = [2.0_wp, -0.767_wp, 0.267_wp], &
     beta_terms(*) = [0.0_wp, 0.429_wp, 0.235_wp, -0.683_wp, 0.516_wp]
-  !> Their S: factors and exponents of three powers of alpha.
+  !> Factors and exponents of the three powers of alpha in S, by Pietrement and Troyon.
   real(wp), parameter :: s_factors(*) = [-2.160_wp, 2.7531_wp, 0.073_wp], &
     s_exponents(*) = [0.019_wp, 0.064_wp, 1.919_wp]
 
@@ -78,7 +79,7 @@ contains
     fit%sunk = fit%sunk*width**2
   end function pietrement_fit
 
-  !> The sum of powers of x from 0, with the given coefficients.
+  !> The polynomial in x with the given coefficients, beginning with x^0.
   pure real(wp) function polynomial(terms, x) result(value)
     real(wp), intent(in) :: terms(:), x
     integer :: k
@@ -89,7 +90,7 @@ contains
     end do
   end function polynomial
 
-  !> A fit with the numbers of Maugis' units.
+  !> A fit with the units of a theory, which are Maugis' units.
   elemental type(transition_fit_t) function new_fit(theory) result(fit)
     type(maugis_t), intent(in) :: theory
 
@@ -97,7 +98,7 @@ contains
       theory%unit%load, theory%unit%radius, theory%unit%displacement, theory%unit%load)
   end function new_fit
 
-  !> z at a load [N]; NaN below the pull-off, and for a load that does not exist.
+  !> z at a load [N]; NaN below the pull-off force, and if the load is NaN.
   elemental real(wp) function state_at_load(self, load) result(z)
     class(transition_fit_t), intent(in) :: self
     real(wp), intent(in) :: load
