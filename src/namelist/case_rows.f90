@@ -1,5 +1,5 @@
-!> The rows of a file with a line of names, one after the other. Only a piece of the file is in
-!> memory, however many rows it has. Lines are as in `table_line`.
+!> Reads the rows of a file with a line of names, one after the other. Only a piece of the file is
+!> in memory, however many rows it has. Lines are as in `table_line`.
 module case_rows
   use, intrinsic :: iso_c_binding, only: c_int, c_long
   use kinds, only: wp, long
@@ -18,17 +18,17 @@ module case_rows
   private
   public :: case_rows_t
 
-  !> Largest number of bytes in memory.
+  !> Largest number of bytes of the file in memory.
   integer, parameter :: piece = 65536
   character(len=*), parameter :: return = achar(13), newline = new_line('a')
 
-  !> A file that is being read. An open one must not be copied.
+  !> A file that is being read. It must not be copied while it is open.
   type :: case_rows_t
     !> The names, blank-separated, in lower case.
     character(len=:), allocatable :: names
-    !> For each column the words that it may hold, as `words_of`.
+    !> For each column the words that it may hold, from `words_of`.
     character(len=80), allocatable :: words(:)
-    !> The column whose cells are texts, and the cell of the present row; 0 and '': none.
+    !> The column whose cells are texts, and the cell of the present row; 0 and '' if there is none.
     integer :: text_column = 0
     character(len=:), allocatable :: text
     !> Checksum of the lines read so far.
@@ -36,7 +36,7 @@ module case_rows
     character(len=:), allocatable, private :: file
     integer(c_int), private :: descriptor = -1
     character(len=piece), private :: buffer
-    !> Number of bytes in the buffer, and number of those that were made into lines.
+    !> Number of bytes in the buffer; number of those that have been made into lines.
     integer, private :: held = 0, used = 0
     !> The present line and its cells.
     type(source_t), private :: line
@@ -53,8 +53,9 @@ module case_rows
 
 contains
 
-  !> Opens a file and reads its line of names: the first line that is not a comment or, if it holds
-  !> numbers, the last comment before it. `deck` knows which names are keys that hold a word.
+  !> Opens a file and reads its line of names. This is the first line that is not a comment or, if
+  !> that line holds numbers, the last comment before it. deck: shows which names are keys that hold
+  !> a word.
   subroutine open_rows(self, file, deck, error)
     class(case_rows_t), intent(out) :: self
     character(len=*), intent(in) :: file
@@ -109,8 +110,8 @@ contains
     end do
   end subroutine open_rows
 
-  !> The values of the next row; a word counts as its number, a text as the number of the row.
-  !> found = .false. after the last row; the file is then closed. error: the mistake in the row,
+  !> The values of the next row. A word is replaced by its number, a text by the number of the row.
+  !> found = .false.: there are no more rows, and the file is closed. error: the mistake in the row,
   !> with file and line.
   subroutine next(self, values, found, error)
     class(case_rows_t), intent(inout) :: self
@@ -160,7 +161,7 @@ contains
     class(case_rows_t), intent(inout) :: self
     integer(c_int) :: status
 
-    ! The status does not matter, since nothing was written.
+    ! The status does not matter, since nothing has been written.
     if (self%descriptor >= 0) status = c_close(self%descriptor)
     self%descriptor = -1
   end subroutine close_rows
@@ -178,7 +179,7 @@ contains
     if (self%descriptor < 0) return
     length = line_length()
     if (length < 0) then
-      ! The rest of the buffer may be the beginning of a line.
+      ! What remains in the buffer may be the beginning of a line.
       self%held = self%held - self%used
       self%buffer(:self%held) = self%buffer(self%used + 1:self%used + self%held)
       self%used = 0
@@ -191,7 +192,7 @@ contains
       end if
       self%held = self%held + length
       length = line_length()
-      ! The rest is the last line, perhaps with a return.
+      ! What remains is the last line, perhaps with a carriage return.
       if (length < 0) length = index(self%buffer(:self%held) // return, return) - 1
       if (self%held == 0) return
     end if
@@ -201,7 +202,7 @@ contains
     end if
     bytes = self%buffer(self%used + 1:self%used + length)
     self%used = self%used + length
-    ! CR LF is one end of a line.
+    ! CR LF together are one end of a line.
     length = 1 + index(self%buffer(self%used + 1:min(self%held, self%used + 2)), return // newline)
     self%used = min(self%held, self%used + length)
     call take_source(self%file, bytes, self%line, error, lines_before=self%lines)
@@ -214,8 +215,8 @@ contains
 
   contains
 
-    !> Number of characters before the next line's end (LF, CR LF or CR) in the buffer; -1 if there
-    !> is none, or if the line feed of CR LF may follow the buffer.
+    !> Number of characters before the end of the next line (LF, CR LF or CR) in the buffer. It is
+    !> -1 if there is no such end, or if the LF of CR LF may be in the next piece of the file.
     integer function line_length()
       line_length = scan(self%buffer(self%used + 1:self%held), return // newline) - 1
       if (line_length < 0 .or. self%used + line_length + 1 < self%held) return

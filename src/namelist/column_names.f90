@@ -1,4 +1,4 @@
-!> Names of the columns of a table, and the columns that a deck asks for.
+!> Names of the columns of a table, and the columns that a deck refers to.
 module column_names
   use failure, only: failure_t
   use text, only: lower, quoted, clip, guess, counted, listed
@@ -15,8 +15,8 @@ module column_names
 
 contains
 
-  !> The names in a line above rows of so many columns. The separator is that of the rows, the
-  !> line's own, or any; a unit in brackets belongs to the name before it.
+  !> The names in a line above rows with this number of columns. The separator is that of the rows,
+  !> that of the line itself, or any. A unit in brackets belongs to the name before it.
   subroutine names_in(line, columns, separator, names)
     character(len=*), intent(in) :: line
     integer, intent(in) :: columns
@@ -38,7 +38,7 @@ contains
     end do
   end subroutine names_in
 
-  !> A name without single quotes about it.
+  !> A name without the single quotes around it.
   pure function unquoted(name)
     character(len=*), intent(in) :: name
     character(len=:), allocatable :: unquoted
@@ -66,7 +66,7 @@ contains
     cells = cells(:n)
   end subroutine join_brackets
 
-  !> A name with u for a micro sign of any code, and with single blanks.
+  !> A name in which every code of the micro sign is replaced by u, and several blanks by one.
   pure function plain_name(name) result(plain)
     character(len=*), intent(in) :: name
     character(len=longest_name) :: plain
@@ -92,9 +92,10 @@ contains
     end do
   end function plain_name
 
-  !> The columns `at` that a deck wants: by number, or by name in upper or lower case, with or
-  !> without the unit behind it; a minus before either turns the column's sign. error: a
-  !> column that does not exist, or of which there are several, at the position `named` of the file.
+  !> The columns `at` to which a deck refers by number, or by name in upper or lower case, with or
+  !> without the unit after it. A minus before either changes the sign of the column's values.
+  !> error: a column does not exist, or several columns have this name; its position is `named`,
+  !> that of the line of names.
   subroutine find_columns(source, named, names, wanted, at, turned, error)
     type(source_t), intent(in) :: source
     integer, intent(in) :: named

@@ -1,6 +1,6 @@
-!> A text file with a table of numbers, as measuring programs write it: comments after #, perhaps a
-!> line with the names of the columns, which may itself be a comment, then one row a line
-!> (`table_line`, `table_layout`).
+!> A text file with a table of numbers, as measuring programs write it. It has comments after #,
+!> then possibly a line with the names of the columns, which may itself be a comment, then one row
+!> per line (`table_line`, `table_layout`).
 module data_table
   use kinds, only: wp
   use checksums, only: checksum
@@ -19,18 +19,19 @@ module data_table
   private
   public :: data_table_t, style_t, take_data_table, largest_table, read_columns, plain_label
 
-  !> How a file is read. skip_lines: number of lines at its begin that do not count. of_instrument:
-  !> whether lines may stand before the names, words beside the numbers, and cells be empty.
-  !> labels: the wanted column whose cells are labels and not numbers; 0: none.
+  !> How a file is read. skip_lines: number of lines at its beginning to be ignored. of_instrument:
+  !> whether there may be lines before the names, words beside the numbers, and empty cells. labels:
+  !> the wanted column whose cells are labels and not numbers; 0 if there is none.
   type :: style_t
     integer :: skip_lines = 0, labels = 0
     logical :: of_instrument = .false.
   end type style_t
 
-  !> The columns asked for, value(row, column), the position of each row in the file's text, and the
-  !> number of columns in the file. missing(row, column): whether a cell has no value; the value is
-  !> 0. name, unit: of each wanted column, as in the file; blank if there is none. label: the
-  !> different labels; the value of the labels' column is an index of this list.
+  !> The wanted columns. value(row, column): their values; missing(row, column): whether a cell has
+  !> no value, in which case the value is 0. The position of each row in the file's text, and the
+  !> number of columns in the file. name, unit: those of each wanted column, as in the file; blank
+  !> if it has none. label: the different labels; the value in the labels' column is an index of
+  !> this list.
   type :: data_table_t
     integer :: columns = 0
     type(source_t) :: source
@@ -40,15 +41,15 @@ module data_table
     character(len=longest_name), allocatable :: name(:), unit(:), label(:)
   end type data_table_t
 
-  !> Largest number of bytes of a table, and of different labels.
+  !> Largest number of bytes of a table; largest number of different labels.
   integer, parameter :: largest_table = 64*2**20, most_labels = 64
   character(len=*), parameter :: newline = new_line('a')
 
 contains
 
   !> Reads the columns `wanted` of `file`: names from its header line, in upper or lower case, or
-  !> numbers counted from 1; a minus before either changes the column's sign. error: the mistake in
-  !> the file, with its line.
+  !> numbers counted from 1. A minus before either changes the sign of the column's values. error:
+  !> the mistake in the file, with its line.
   subroutine read_data_table(file, wanted, style, table, error)
     character(len=*), intent(in) :: file, wanted(:)
     type(style_t), intent(in) :: style
@@ -111,8 +112,8 @@ contains
 
   contains
 
-    !> The cells of the line at `first`. Lines that have another number of cells by the separator of
-    !> the first row are divided at any separator.
+    !> Finds the cells of the line at `first`. If the line has another number of cells by the
+    !> separator of the first row, it is divided at any separator.
     subroutine take_cells()
       line = uncommented(line_of(table%source, first))
       call split_at(line, layout%separator, cells)
@@ -151,7 +152,8 @@ contains
       end do
     end subroutine read_row
 
-    !> The index of a label in the list, which takes it up; numbers that are equal are one label.
+    !> The index of a label in the list, to which a new label is added. Numbers that are equal are
+    !> one label.
     subroutine take_label(cell, number, what)
       character(len=*), intent(in) :: cell
       real(wp), intent(out) :: number
@@ -175,7 +177,7 @@ contains
 
   end subroutine take_data_table
 
-  !> A label in lower case, or a number with no more digits than it needs.
+  !> A label in lower case; a number without superfluous digits.
   pure function plain_label(cell) result(label)
     character(len=*), intent(in) :: cell
     character(len=longest_name) :: label
@@ -187,7 +189,7 @@ contains
     if (.not. allocated(what)) label = brief(value)
   end function plain_label
 
-  !> Reads the file of two columns, with at least `fewest` rows, that a key of the deck names.
+  !> Reads a file of two columns, with at least `fewest` rows. A key of the deck names the file.
   subroutine read_columns(deck, group, key, fewest, table, error)
     type(deck_t), intent(inout) :: deck
     character(len=*), intent(in) :: group, key

@@ -1,7 +1,8 @@
-!> Any namelist file, read against a table of the groups and keys it may hold.
+!> Reads any namelist file, and compares it with a table of the groups and keys it may hold.
 !>
-!> `read_deck` finds every mistake within one key. The caller checks how keys go together, and
-!> reports with `mistake`, which adds file, line, group and key. The deck keeps all mistakes.
+!> `read_deck` finds every mistake within a single key. The caller checks whether keys are
+!> consistent with each other, and reports mistakes with `mistake`, which adds file, line, group and
+!> key. The deck keeps all mistakes.
 module deck
   use text, only: lower, brief, guess, listing, clip
   use deck_source, only: load_source, take_source
@@ -18,9 +19,9 @@ module deck
 
 contains
 
-  !> Reads `file` against the table `specs`, or `text` if it is given; `file` is then only a name
-  !> for messages. The deck's error lists the mistakes found, each as `FILE:LINE: &group: key "x":
-  !> what is wrong, what is allowed` with the line and a caret below.
+  !> Reads `file`, or `text` if it is given, and compares it with the table `specs`. If `text` is
+  !> given, `file` is only a name for messages. The deck's error lists the mistakes found, each as
+  !> `FILE:LINE: &group: key "x": what is wrong, what is allowed` with the line and a caret below.
   subroutine read_deck(file, specs, deck, text)
     character(len=*), intent(in) :: file
     type(key_spec), intent(in) :: specs(:)
@@ -57,7 +58,7 @@ contains
       end do
       do i = 1, found%n_entries
         associate (row => rows(found%entries(i)%group))
-          ! Keys of a group that is unknown, repeated or skipped are not checked.
+          ! Keys of a group that is unknown, repeated or ignored are not checked.
           if (row == 0) cycle
           if (deck%specs(row)%kind == ignored_group) cycle
           name = deck%source%part(found%entries(i)%name%first, found%entries(i)%name%last)
@@ -100,7 +101,8 @@ contains
       end if
     end subroutine open_group
 
-    !> Enters one assignment. what: its mistake, if there is one, at the position `at`.
+    !> Enters one assignment. what: the mistake in it, at the position `at`; not allocated if there
+    !> is none.
     subroutine take_entry(entry, group, at, what)
       type(deck_entry_t), intent(in) :: entry
       character(len=*), intent(in) :: group

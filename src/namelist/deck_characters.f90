@@ -1,4 +1,4 @@
-!> Characters of a deck: blanks and comments, names, and what is accepted outside comments.
+!> Characters of a deck: blanks and comments, names, and the characters accepted outside comments.
 module deck_characters
   use text, only: lower
   implicit none
@@ -49,7 +49,7 @@ contains
     plain = (iachar(c) >= 32 .and. iachar(c) <= 126) .or. iachar(c) == 9
   end function plain
 
-  !> Whether `text` can name a group or a key.
+  !> Whether `text` can be the name of a group or a key.
   pure logical function is_name(text)
     character(len=*), intent(in) :: text
 

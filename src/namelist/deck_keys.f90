@@ -8,7 +8,7 @@ module deck_keys
     logical_value, word_value, text_value, names_value, allowed, names_of, is_of, is_called, &
     keys_text
 
-  !> Kinds of row: a group, a group that is skipped, and seven kinds of key.
+  !> Kinds of row: a group, an ignored group, and seven kinds of key.
   integer, parameter :: group_row = 0, ignored_group = 1
   integer, parameter :: real_value = 2, real_list = 3, integer_value = 4
   integer, parameter :: logical_value = 5, word_value = 6, text_value = 7
@@ -23,21 +23,24 @@ module deck_keys
     character(len=8) :: unit = ''
     !> The value of a key that the deck does not give; blank if there is none.
     character(len=32) :: default = ''
-    !> Meaning of a blank default in words ("as in &loading"); shown, never read.
+    !> What a blank default means, in words ("as in &loading"); it is shown, but never read.
     character(len=48) :: otherwise = ''
-    !> Blank-separated words that a `word_value` may be; for a group, which has no words, a line of
-    !> a deck that works, which is shown and never read. (Each deck has a copy of the table: a
-    !> component of its own would cost 28 kB a deck.)
+    !> For a key of kind `word_value`: the blank-separated words that it may hold. A group has no
+    !> such words; for a group, the component has an example line of a deck, which is shown but
+    !> never read. (Each deck has a copy of the table; a separate component for the example would
+    !> cost 28 kB per deck.)
     character(len=80) :: choices = ''
-    !> The bounds of a number: `low` and `high` are allowed, `above` and `below` are not.
+    !> The bounds of a number. The values `low` and `high` are allowed; the values `above` and
+    !> `below` are not.
     real(wp) :: low = -huge(1.0_wp), high = huge(1.0_wp), above = -huge(1.0_wp), &
       below = huge(1.0_wp)
-    !> Largest number of values in a list, of numbers or names; of characters in a text.
+    !> Largest number of values in a list of numbers or names; largest number of characters in a
+    !> text.
     integer :: most = 1
     logical :: required = .false.
     !> For names: whether they may contain blanks.
     logical :: spaced = .false.
-    !> For a group: its defaults hold and are written even if the deck does not name it.
+    !> For a group: its defaults apply and are written even if the deck does not name it.
     logical :: always = .false.
     !> An earlier name of the key, which decks may use instead.
     character(len=24) :: former = ''
@@ -45,7 +48,7 @@ module deck_keys
 
 contains
 
-  !> The values that a key may have, in words.
+  !> A description of the values that a key may have.
   pure function allowed(spec) result(text)
     type(key_spec), intent(in) :: spec
     character(len=:), allocatable :: text
@@ -70,7 +73,7 @@ contains
     end select
   end function allowed
 
-  !> The bounds of a number with its unit: " > 0 m", " from 2 to 60", or nothing.
+  !> The bounds of a number with its unit: " > 0 m", " from 2 to 60", or an empty text.
   pure function bounds(spec) result(text)
     type(key_spec), intent(in) :: spec
     character(len=:), allocatable :: text
@@ -99,7 +102,7 @@ contains
     end if
   end function bounds
 
-  !> Whether a key may be left out, and its default, in words.
+  !> A text that says whether a key may be left out, and its default.
   pure function default_text(spec) result(text)
     type(key_spec), intent(in) :: spec
     character(len=:), allocatable :: text
@@ -115,8 +118,8 @@ contains
     end if
   end function default_text
 
-  !> The table as text: lines `&group`, meaning and example for each group, then two lines for each
-  !> of its keys.
+  !> The table as text. For each group there are lines with `&group`, meaning and example, then two
+  !> lines for each of its keys.
   pure function keys_text(specs) result(text)
     type(key_spec), intent(in) :: specs(:)
     character(len=:), allocatable :: text
@@ -145,8 +148,8 @@ contains
     end do
   end function keys_text
 
-  !> Whether a row has the key `name`, by its present or its former name. The row of a group has the
-  !> key ''.
+  !> Whether a row belongs to the key `name`, by its present or its former name. The row of a group
+  !> has the key ''.
   elemental logical function is_called(spec, name)
     type(key_spec), intent(in) :: spec
     character(len=*), intent(in) :: name
@@ -154,7 +157,7 @@ contains
     is_called = spec%key == name .or. (name /= '' .and. spec%former == name)
   end function is_called
 
-  !> Whether each row belongs to the group or key `name`, 'group' or 'group.key'.
+  !> For each row, whether it belongs to the group or key `name`, given as 'group' or 'group.key'.
   pure function is_of(specs, name) result(rows)
     type(key_spec), intent(in) :: specs(:)
     character(len=*), intent(in) :: name

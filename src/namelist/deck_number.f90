@@ -6,18 +6,18 @@ module deck_number
   private
   public :: parse_real, parse_integer, parse_logical
 
-  !> Decimal orders outside +-50 are refused: lengths, pressures and energies are far from these,
-  !> and products and quotients of six numbers stay finite.
+  !> Numbers whose decimal order is outside +-50 are refused. Lengths, pressures and energies are
+  !> far from these limits, and products and quotients of six numbers within them stay finite.
   integer, parameter :: largest_order = 50
-  !> An exponent that the digits of a token cannot balance.
+  !> An exponent so large that the digits of a token cannot compensate it.
   integer, parameter :: beyond = 1000000
-  !> A longer token has more digits than any double needs, and is a mistake.
+  !> A longer token than this has more digits than any double needs, and counts as a mistake.
   integer, parameter :: longest_number = 100
 
 contains
 
   !> Reads one real number: sign, digits with at most one point, exponent with `e` or `d`. what: the
-  !> mistake, if `token` is not such a number.
+  !> mistake if `token` is not such a number.
   pure subroutine parse_real(token, value, what)
     character(len=*), intent(in) :: token
     real(wp), intent(out) :: value
@@ -61,9 +61,9 @@ contains
     end if
     i = scan(small(:mark - 1), '123456789')
     if (i > 0) then
-      ! Clipped, since adding to the largest integer would overflow.
+      ! The sum is limited, since adding to the largest integer would overflow.
       order = max(-beyond, min(beyond, order))
-      ! The order of the first digit that is not zero.
+      ! The decimal order of the first digit that is not zero.
       point = index(small(:mark - 1) // '.', '.')
       order = order + merge(point - i - 1, point - i, i < point)
       if (abs(order) > largest_order) then
@@ -72,7 +72,7 @@ contains
         return
       end if
     else
-      ! A zero needs no exponent, and `read` fails on 0e999.
+      ! A zero needs no exponent; `read` would fail on 0e999.
       small = '0'
     end if
     read (small, *) value

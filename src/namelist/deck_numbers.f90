@@ -1,6 +1,6 @@
-!> The numbers of a deck by their names, "group.key" or "group.key(2)", which sweeps, sensitivities
-!> and fits vary. A sweep may also vary a word, by its number, from 1, among the words of its key,
-!> and a text, such as the name of a file.
+!> The numbers of a deck by their names, "group.key" or "group.key(2)". Sweeps, sensitivities and
+!> fits vary them. A sweep may also vary a word, represented by its number among the words of its
+!> key, counted from 1; and a text, such as the name of a file.
 module deck_numbers
   use kinds, only: wp
   use failure, only: failure_t, fail, bad_input
@@ -18,10 +18,11 @@ module deck_numbers
 
 contains
 
-  !> Row of the key `path` ("force.hamaker"), and the number of the list element that it names
-  !> ("hydration.pressure(2)"); 0: none. Fails if the table has no such key, if the key holds no
-  !> numbers or too few, or if the deck lacks its group. `error` then has no position in the file;
-  !> the caller adds it. words: whether the key may also hold words, or a text.
+  !> Finds the row of the key `path` ("force.hamaker") and the number of the list element in its
+  !> name ("hydration.pressure(2)"), which is 0 without one. It fails if the table has no such key,
+  !> if the key holds no numbers or too few, or if the deck lacks its group. `error` then has no
+  !> position in the file; the caller adds the position. words: whether the key may also hold words,
+  !> or a text.
   subroutine find_number(deck, path, row, term, error, words)
     type(deck_t), intent(in) :: deck
     character(len=*), intent(in) :: path
@@ -54,8 +55,8 @@ contains
     end if
   end subroutine find_number
 
-  !> ' (did you mean "x"?)' if one of the blank-separated `names` resembles `name`, or is `name`
-  !> with a group before it; else ''.
+  !> ' (did you mean "x"?)' if one of the blank-separated `names` resembles `name`, or equals `name`
+  !> preceded by a group; otherwise ''.
   pure function guess_number(name, names) result(text)
     character(len=*), intent(in) :: name, names
     character(len=:), allocatable :: text
@@ -70,7 +71,7 @@ contains
     end do
   end function guess_number
 
-  !> The key `path` with its present name, if it has a former one.
+  !> The key `path` with its present name, if `path` has a former name.
   pure function present_name(deck, path) result(name)
     type(deck_t), intent(in) :: deck
     character(len=*), intent(in) :: path
@@ -84,7 +85,7 @@ contains
     if (row > 0) name = path(:dot) // trim(deck%specs(row)%key) // path(ending:)
   end function present_name
 
-  !> Removes "(2)" from the end of a name; term = 0 if there is none.
+  !> Removes an index such as "(2)" from the end of a name. term: the index; 0 if there is none.
   subroutine take_off_term(name, term)
     character(len=:), allocatable, intent(inout) :: name
     integer, intent(out) :: term
@@ -98,8 +99,7 @@ contains
     name = name(:opens - 1)
   end subroutine take_off_term
 
-  !> The words that the key `path` may hold, blank-separated; '' if it is not a key that holds
-  !> words.
+  !> The words that the key `path` may hold, blank-separated; '' if it is no key that holds words.
   pure function words_of(deck, path) result(words)
     type(deck_t), intent(in) :: deck
     character(len=*), intent(in) :: path
@@ -126,7 +126,8 @@ contains
     if (holds_text) holds_text = deck%specs(row)%kind == text_value
   end function holds_text
 
-  !> The number of a word among the blank-separated `words`. what: the mistake, if it is not there.
+  !> The number of a word among the blank-separated `words`. what: the mistake if the word is not
+  !> among them.
   subroutine number_of_word(word, words, number, what)
     character(len=*), intent(in) :: word, words
     real(wp), intent(out) :: number
@@ -141,7 +142,7 @@ contains
       // '; allowed: ' // listing(trim(words), "'", "'")
   end subroutine number_of_word
 
-  !> Number of numbers that a key holds.
+  !> How many numbers a key holds.
   pure integer function terms_in(value)
     type(value_t), intent(in) :: value
 
@@ -149,7 +150,7 @@ contains
     if (allocated(value%reals)) terms_in = size(value%reals)
   end function terms_in
 
-  !> Blank-separated 'group.key' of all keys that hold numbers, in the groups in use.
+  !> Blank-separated names 'group.key' of all keys that hold numbers, in the groups in use.
   pure function numbers_of(deck) result(names)
     type(deck_t), intent(in) :: deck
     character(len=:), allocatable :: names
@@ -163,9 +164,9 @@ contains
     end do
   end function numbers_of
 
-  !> Gives the key `path` a new value, as if it came from the deck (for a word: its number; for a
-  !> list: this one value, or one of its elements). Fails as `find_number` does, and if the value is
-  !> out of range.
+  !> Gives the key `path` a new value, as if the deck had given it. A word is given by its number. A
+  !> list gets this single value, or one of its elements gets it. It fails as `find_number` does,
+  !> and if the value is out of range.
   subroutine set_number(deck, path, value, error)
     type(deck_t), intent(inout) :: deck
     character(len=*), intent(in) :: path
@@ -183,7 +184,7 @@ contains
     end if
     associate (spec => deck%specs(row), stored => deck%values(row))
       refused = outside(spec, value)
-      ! The steps of a range give integers only up to rounding.
+      ! The values of a range are integers only up to rounding errors.
       if (spec%kind == integer_value .and. .not. refused) &
         refused = abs(value - anint(value)) > sqrt(epsilon(value))*abs(value)
       if (refused) then
@@ -201,7 +202,7 @@ contains
     end associate
   end subroutine set_number
 
-  !> Gives the key `path`, which holds a text, a new one, as if it came from the deck.
+  !> Gives the key `path`, which holds a text, a new text, as if the deck had given it.
   subroutine set_text(deck, path, text, error)
     type(deck_t), intent(inout) :: deck
     character(len=*), intent(in) :: path, text

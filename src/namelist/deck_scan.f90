@@ -1,6 +1,6 @@
-!> Namelist grammar: finds the groups and assignments of a deck and their positions.
+!> The grammar of namelists: finds the groups and assignments of a deck, and their positions.
 !>
-!> The compiler's own namelist reader is not used: compiler note 9.
+!> The compiler's own namelist reader is not used because of compiler note 9.
 module deck_scan
   use failure, only: failure_t
   use text, only: lower
@@ -10,7 +10,7 @@ module deck_scan
   private
   public :: span_t, deck_entry_t, scan_t, scan_deck
 
-  !> A piece of the text: its first and last position.
+  !> A part of the text, given by its first and last position.
   type :: span_t
     integer :: first = 0
     integer :: last = -1
@@ -26,7 +26,7 @@ module deck_scan
   end type deck_entry_t
 
   !> The content of a deck in its order: names of groups without `&`, assignments, and values with
-  !> their quotes. The arrays are longer than their contents.
+  !> their quotes. The arrays may be longer than their contents.
   type :: scan_t
     integer :: n_groups = 0, n_entries = 0, n_items = 0
     type(span_t), allocatable :: groups(:)
@@ -36,14 +36,15 @@ module deck_scan
 
 contains
 
-  !> Splits the text into groups and assignments; fails at the first break of the grammar.
+  !> Splits the text into groups and assignments. It fails at the first error of grammar.
   subroutine scan_deck(source, found, error)
     type(source_t), intent(in) :: source
     type(scan_t), intent(out) :: found
     type(failure_t), allocatable, intent(out) :: error
     !> The present group, and the key whose values are being read.
     character(len=:), allocatable :: group, key
-    !> The position of the scanner, of the beginning of the present token, and of the group's `&`.
+    !> The present position, the position where the present token begins, and that of the group's
+    !> `&`.
     integer :: at, start, group_at
     !> Whether the group has an assignment already, and whether the last token was a comma.
     logical :: assigned, after_comma
@@ -118,7 +119,7 @@ contains
       end do
     end subroutine scan_group
 
-    !> After an `&` inside a group: the old end `&end`, or the beginning of another group.
+    !> Handles an `&` inside a group: the old end `&end`, or the beginning of another group.
     subroutine end_by_name()
       at = at + 1
       call take_word()
@@ -140,7 +141,7 @@ contains
       after_comma = .true.
     end subroutine take_comma
 
-    !> Checks that the assignment that ends here has a value; what: the mistake otherwise.
+    !> Checks that the assignment that ends here has a value. what: the mistake if it has none.
     subroutine close_entry(what)
       character(len=*), intent(in) :: what
 
@@ -150,7 +151,7 @@ contains
       end associate
     end subroutine close_entry
 
-    !> Begins an assignment to the key just read and moves behind its "=".
+    !> Begins an assignment to the key just read, and moves `at` behind its "=".
     subroutine open_entry()
       key = lower(present_thing())
       if (index(key, '(') > 0) then
@@ -229,7 +230,7 @@ contains
         'text right after a closing quote; a quote inside a string is written twice')
     end subroutine take_string
 
-    !> The beginning of the token just read.
+    !> The first characters of the token just read.
     pure function present_thing() result(text)
       character(len=:), allocatable :: text
 
@@ -245,7 +246,7 @@ contains
 
   end subroutine scan_deck
 
-  !> The mistake in text outside every group.
+  !> A description of the mistake that text stands outside every group.
   pure function stray(text, at, n_groups) result(what)
     character(len=*), intent(in) :: text
     integer, intent(in) :: at, n_groups

@@ -1,7 +1,7 @@
-!> The text of a deck as one string, and messages with a position in it.
+!> The text of a deck as one string, and messages that refer to a position in it.
 !>
-!> System calls read the files: a Fortran `open` ignores blanks at the end of a name and so opens
-!> another file.
+!> System calls read the files, since a Fortran `open` ignores blanks at the end of a name and so
+!> may open another file.
 module deck_source
   use, intrinsic :: iso_c_binding, only: c_int, c_long
   use failure, only: failure_t, fail, bad_input, file_trouble
@@ -12,17 +12,17 @@ module deck_source
   public :: source_t, load_source, take_source, open_file, unprintable, largest_deck
 
   character(len=*), parameter :: newline = new_line('a')
-  !> Largest size of a deck; ten thousand sweep values take a quarter of it.
+  !> Largest size of a deck [bytes]; ten thousand values of a sweep take a quarter of it.
   integer, parameter :: largest_deck = 1048576
 
-  !> A deck's text, with uniform line ends.
+  !> A deck's text, with uniform ends of lines.
   type :: source_t
     !> Name of the file, in printable characters.
     character(len=:), allocatable :: file
     character(len=:), allocatable :: text
-    !> Number of lines of the file before the text, if the text is a piece of it.
+    !> Number of lines that the file has before the text, if the text is a part of the file.
     integer :: lines_before = 0
-    !> The folder of the file, up to the last slash, where files named in the deck are searched for.
+    !> The folder of the file, up to the last slash. Files named in the deck are searched for there.
     character(len=:), allocatable :: folder
   contains
     procedure :: part
@@ -65,7 +65,7 @@ contains
     end if
   end subroutine load_source
 
-  !> Opens a file for reading; how: as in `c_library`.
+  !> Opens a file for reading. how: one of the modes in `c_library`.
   subroutine open_file(file, how, descriptor, error)
     character(len=*), intent(in) :: file
     integer(c_int), intent(in) :: how
@@ -82,8 +82,9 @@ contains
     call fail(error, file_trouble, printable(file) // ': ' // reason)
   end subroutine open_file
 
-  !> Takes the bytes of a deck; `name` is its name in messages, and lines_before the number of lines
-  !> of the file before these bytes. Fails if there are more than `most` bytes, or not plain text.
+  !> Takes the bytes of a deck. name: the name of the deck in messages. lines_before: the number of
+  !> lines that the file has before these bytes. It fails if there are more than `most` bytes, or if
+  !> they are not plain text.
   subroutine take_source(name, bytes, source, error, most, lines_before)
     character(len=*), intent(in) :: name, bytes
     type(source_t), intent(out) :: source
@@ -107,8 +108,8 @@ contains
     if (n > 0) call source%complain(n, 'a NUL byte, which plain text does not have', error)
   end subroutine take_source
 
-  !> Makes every line end (LF, CR LF or CR) a single line feed and drops a byte-order mark. Text in
-  !> UTF-16, which a mark or zero bytes show, becomes UTF-8.
+  !> Replaces every end of a line (LF, CR LF or CR) by a single line feed and removes a byte-order
+  !> mark. Text in UTF-16, recognised by a mark or by zero bytes, is converted to UTF-8.
   pure recursive subroutine straighten(bytes, text)
     character(len=*), intent(in) :: bytes
     character(len=:), allocatable, intent(out) :: text
@@ -139,8 +140,8 @@ contains
     text = text(:n)
   end subroutine straighten
 
-  !> Position (0 or 1) of the high byte in the pairs of bytes of text in UTF-16; -1 if a text does
-  !> not begin so: with a byte-order mark, or with pairs of a character and a zero byte.
+  !> Position (0 or 1) of the high byte in the pairs of bytes of a text in UTF-16. It is -1 if the
+  !> text begins neither with a byte-order mark nor with pairs of a character and a zero byte.
   pure integer function high_byte_of_16(bytes) result(high)
     character(len=*), intent(in) :: bytes
     integer, parameter :: enough = 8
@@ -157,8 +158,8 @@ contains
     if (all(is_zero(1::2)) .and. .not. any(is_zero(2::2))) high = 0
   end function high_byte_of_16
 
-  !> UTF-8 for text in UTF-16; high: the position of the high byte in each pair. Characters outside
-  !> the basic plane become question marks.
+  !> Converts text in UTF-16 to UTF-8. high: the position of the high byte in each pair. Characters
+  !> outside the basic plane become question marks.
   pure function narrowed(bytes, high) result(text)
     character(len=*), intent(in) :: bytes
     integer, intent(in) :: high
@@ -196,7 +197,7 @@ contains
     text = self%text(first:last)
   end function part
 
-  !> Number of the line with the position `at` of the text.
+  !> Number of the line that contains the position `at` of the text.
   pure integer function line_at(self, at)
     class(source_t), intent(in) :: self
     integer, intent(in) :: at
@@ -208,8 +209,8 @@ contains
     end do
   end function line_at
 
-  !> Adds `FILE:LINE: &group: key "key": what`, the line itself and a caret below position `at` to
-  !> `error`, which may hold earlier mistakes. `group` and `key` may be blank.
+  !> Adds `FILE:LINE: &group: key "key": what` to `error`, with the line itself and a caret below
+  !> position `at`. `error` may already contain other mistakes. `group` and `key` may be blank.
   pure subroutine complain(self, at, what, error, group, key)
     class(source_t), intent(in) :: self
     integer, intent(in) :: at
@@ -232,12 +233,12 @@ contains
     end if
   end subroutine complain
 
-  !> The line around position `at`, numbered, with a caret in the line below it.
+  !> The line that contains position `at`, with its number, and a caret in the line below it.
   pure function excerpt(text, at, number) result(lines)
     character(len=*), intent(in) :: text, number
     integer, intent(in) :: at
     character(len=:), allocatable :: lines
-    !> Number of characters of a long line that are shown, and of those before the caret.
+    !> Number of characters of a long line that are shown; number of those before the caret.
     integer, parameter :: width = 90, lead = 60
     character(len=:), allocatable :: shown
     integer :: first, last, caret, i
@@ -253,7 +254,7 @@ contains
       if (iachar(shown(i:i)) == 9) shown(i:i) = ' '
       if (iachar(shown(i:i)) < 32 .or. iachar(shown(i:i)) == 127) shown(i:i) = '?'
     end do
-    ! A character of several bytes takes one column.
+    ! A character of several bytes is shown in one column.
     caret = 0
     do i = first, at - 1
       if (iand(iachar(text(i:i)), 192) /= 128) caret = caret + 1
@@ -262,8 +263,8 @@ contains
             newline // '    ' // repeat(' ', len(number)) // ' | ' // repeat(' ', caret) // '^'
   end function excerpt
 
-  !> Names the character at the beginning of a text, which is not accepted in a group, and its
-  !> replacement for those that word processors write: quotes, minus, blank.
+  !> The name of the character at the beginning of a text, which is not accepted in a group. For
+  !> characters that word processors write (quotes, minus, blank) the replacement is added.
   pure function unprintable(text) result(what)
     character(len=*), intent(in) :: text
     character(len=:), allocatable :: what
@@ -291,7 +292,8 @@ contains
     what = what // '; only comments may hold such characters'
   end function unprintable
 
-  !> Number of bytes of the UTF-8 character at the beginning of a text; 0 if it is not one.
+  !> Number of bytes of the UTF-8 character at the beginning of a text; 0 if there is no such
+  !> character.
   pure integer function bytes_of(text)
     character(len=*), intent(in) :: text
     integer :: i

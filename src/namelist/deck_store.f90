@@ -1,4 +1,4 @@
-!> A deck in memory: the value of each key, its position in the file, and the deck written out.
+!> A deck in memory: the value of each key, its position in the file, and the deck as text.
 module deck_store
   use kinds, only: wp, long
   use failure, only: failure_t
@@ -16,8 +16,8 @@ module deck_store
     type(source_t) :: source
     type(key_spec), allocatable :: specs(:)
     type(value_t), allocatable :: values(:)
-    !> Whether runs of this deck vary its numbers. `resolved` then writes defaults that follow other
-    !> keys as comments, so that they follow them in runs of what it writes, too.
+    !> Whether runs of this deck vary its numbers. `resolved` then writes defaults that depend on
+    !> other keys as comments, so that runs of the written deck derive them again.
     logical :: varied = .false.
     !> The mistakes found so far.
     type(failure_t), allocatable :: error
@@ -25,16 +25,17 @@ module deck_store
     procedure :: has_group
     procedure :: is_set
     procedure, private :: get_real, get_reals, get_integer, get_logical, get_text
-    !> `call deck%get(group, key, value)`: the value in the deck, or the default. Without either a
-    !> scalar keeps its value, a list becomes empty and a text ''. `value` is a real, an allocatable
-    !> list of reals, an integer, a logical or an allocatable text, as the table says.
+    !> `call deck%get(group, key, value)`: the value in the deck, or the default. If there is
+    !> neither, a scalar keeps its value, a list becomes empty and a text ''. `value` is a real, an
+    !> allocatable list of reals, an integer, a logical or an allocatable text, according to the
+    !> table.
     generic :: get => get_real, get_reals, get_integer, get_logical, get_text
     procedure, private :: assume_real, assume_reals, assume_text
-    !> `call deck%assume(group, key, value)`: the default of a key that follows from other keys;
-    !> `resolved` writes it, and a value in the deck has precedence.
+    !> `call deck%assume(group, key, value)`: sets the default of a key that depends on other keys.
+    !> `resolved` writes this default; a value in the deck has precedence.
     generic :: assume => assume_real, assume_reals, assume_text
     procedure, private :: get_optional_real, get_optional_integer
-    !> The same for a scalar that is allocated only if the key has a value.
+    !> The same as `get` for a scalar that is allocated only if the key has a value.
     generic :: get_optional => get_optional_real, get_optional_integer
     procedure :: path_of
     procedure :: placed
@@ -59,7 +60,8 @@ contains
     has_group = self%is_set(group, '')
   end function has_group
 
-  !> Whether the deck itself, not a default, gives the key a value or, for '', opens the group.
+  !> Whether the deck itself, and not a default, gives the key a value; for the key '', whether the
+  !> deck opens the group.
   pure logical function is_set(self, group, key)
     class(deck_t), intent(in) :: self
     character(len=*), intent(in) :: group, key
@@ -70,8 +72,8 @@ contains
     if (row > 0) is_set = self%values(row)%status == given
   end function is_set
 
-  !> Position of the key in the text; if the deck does not give the key, or `key` is '', position of
-  !> the group; 0 if the deck gives neither.
+  !> Position of the key in the text. If the deck does not give the key, or if `key` is '', the
+  !> position of the group; 0 if the deck gives neither.
   pure integer function place(self, group, key)
     class(deck_t), intent(in) :: self
     character(len=*), intent(in) :: group, key
@@ -94,7 +96,7 @@ contains
       self%name_in_deck(group, key))
   end subroutine mistake
 
-  !> The name by which the deck gives a key: its present or its former one.
+  !> The name that the deck uses for a key: its present or its former one.
   pure function name_in_deck(self, group, key) result(name)
     class(deck_t), intent(in) :: self
     character(len=*), intent(in) :: group, key
@@ -220,7 +222,7 @@ contains
     path = self%placed(path)
   end function path_of
 
-  !> A path of the deck: a relative one begins at the folder of the deck.
+  !> A path of the deck. A relative path begins at the folder of the deck.
   pure function placed(self, path)
     class(deck_t), intent(in) :: self
     character(len=*), intent(in) :: path
@@ -230,8 +232,9 @@ contains
     if (.not. is_absolute(path)) placed = self%source%folder // path
   end function placed
 
-  !> Notes the checksum of the file that a key names. `resolved` writes it, so that a deck with a
-  !> changed file counts as another deck, and the absolute path, which also holds in other folders.
+  !> Stores the checksum of the file that a key names, and the file's absolute path, which is also
+  !> valid in other folders. `resolved` writes both, so that a deck with a changed file counts as
+  !> another deck.
   subroutine note_file(self, group, key, digest)
     class(deck_t), intent(inout) :: self
     character(len=*), intent(in) :: group, key
@@ -241,12 +244,12 @@ contains
 
     row = self%row_of(group, key)
     path = whole_path(self%path_of(group, key))
-    ! A path that a deck cannot hold is not replaced.
+    ! If a deck cannot hold the absolute path, the path is not replaced.
     if (len(path) <= self%specs(row)%most .and. plain(path) == path) self%values(row)%text = path
     call self%note_checksum(group, key, digest)
   end subroutine note_file
 
-  !> Notes a checksum of what a key names.
+  !> Stores a checksum of what a key names.
   subroutine note_checksum(self, group, key, digest)
     class(deck_t), intent(inout) :: self
     character(len=*), intent(in) :: group, key
@@ -257,7 +260,7 @@ contains
     self%values(self%row_of(group, key))%remark = 'checksum ' // number
   end subroutine note_checksum
 
-  !> Whether the deck has a group or its defaults always hold.
+  !> Whether the deck has a group, or the group's defaults always apply.
   pure logical function in_use(self, group)
     class(deck_t), intent(in) :: self
     character(len=*), intent(in) :: group
@@ -277,7 +280,7 @@ contains
   end subroutine drop_group
 
   !> The deck as read, with defaults, as text that can be read again. It has the groups that the
-  !> deck names and those whose defaults always hold.
+  !> deck names, and the groups whose defaults always apply.
   pure function resolved(self) result(text)
     class(deck_t), intent(in) :: self
     character(len=:), allocatable :: text
@@ -298,7 +301,7 @@ contains
     end do
   end function resolved
 
-  !> Row of a key that has a value, or 0.
+  !> Row of a key that has a value; 0 if the key has none.
   pure integer function held(self, group, key) result(row)
     class(deck_t), intent(in) :: self
     character(len=*), intent(in) :: group, key
@@ -308,7 +311,7 @@ contains
     if (self%values(row)%status == unset) row = 0
   end function held
 
-  !> Row of a key to which the deck itself gives no value; 0 if it gives one.
+  !> Row of a key to which the deck itself gives no value; 0 if the deck gives one.
   pure integer function silent(self, group, key) result(row)
     class(deck_t), intent(in) :: self
     character(len=*), intent(in) :: group, key
@@ -318,8 +321,8 @@ contains
     if (self%values(row)%status == given) row = 0
   end function silent
 
-  !> Row of `group` and `key`, present or former, in the table, or of the group itself if `key` is
-  !> ''; 0 if none.
+  !> Row of `group` and `key` (present or former name) in the table, or of the group itself if `key`
+  !> is ''; 0 if there is no such row.
   pure integer function row_of(self, group, key)
     class(deck_t), intent(in) :: self
     character(len=*), intent(in) :: group, key

@@ -1,5 +1,5 @@
-!> One key's value: made from the tokens of an assignment, checked against the key's row of the
-!> table, and written as text.
+!> The value of one key: it is made from the tokens of an assignment, checked against the key's row
+!> of the table, and written as text.
 module deck_values
   use kinds, only: wp
   use text, only: lower, quoted, unquoted, brief, full, guess, clip, word_count, word_of, &
@@ -15,28 +15,28 @@ module deck_values
   private
   public :: value_t, unset, assumed, following, given, interpret, convert, outside, assignment_text
 
-  !> Source of a value: none, the table, other keys of the deck, the deck itself.
+  !> Source of a value: there is none, the table, other keys of the deck, the deck itself.
   integer, parameter :: unset = 0, assumed = 1, following = 2, given = 3
-  !> The value of one key. Only the component of the key's kind is used; names are in `text`, with
-  !> blanks between them. For the row of a group, `at` is the position of the group in the deck.
+  !> The value of one key. Only the component for the key's kind is used; names are in `text`,
+  !> separated by blanks. For the row of a group, `at` is the position of the group in the deck.
   type :: value_t
     integer :: status = unset
     integer :: at = 0
-    !> The name by which the deck gives the key, if it does.
+    !> The name that the deck uses for the key, if the deck gives it.
     character(len=:), allocatable :: name
     real(wp), allocatable :: reals(:)
     integer :: whole = 0
     logical :: flag = .false.
     character(len=:), allocatable :: text
-    !> Checksum of the file that the value names, as a comment behind the value; not allocated if
-    !> no file was read.
+    !> Checksum of the file that the value names, written as a comment after the value; not
+    !> allocated if no file was read.
     character(len=:), allocatable :: remark
   end type value_t
 
 contains
 
-  !> Turns the items of an assignment into a value of the kind of `spec`. what: the mistake, if
-  !> there is one, at the position `at`.
+  !> Converts the items of an assignment to a value of the kind of `spec`. what: the mistake, at the
+  !> position `at`; not allocated if there is none.
   subroutine interpret(source, spec, items, value, at, what)
     type(source_t), intent(in) :: source
     type(key_spec), intent(in) :: spec
@@ -78,7 +78,7 @@ contains
 
   contains
 
-    !> What item i was probably meant to be, where a number is expected.
+    !> A suggestion for item i, which should be a number and is not.
     pure function slip(i) result(advice)
       integer, intent(in) :: i
       character(len=:), allocatable :: advice, before, token
@@ -97,7 +97,7 @@ contains
 
   end subroutine interpret
 
-  !> Whether a token is a word or name of digits, for which quotes are optional.
+  !> Whether a token is a word or a name that consists of digits, for which quotes are optional.
   pure logical function is_number(spec, token)
     type(key_spec), intent(in) :: spec
     character(len=*), intent(in) :: token
@@ -106,8 +106,8 @@ contains
       verify(token, '0123456789') == 0
   end function is_number
 
-  !> Converts one token, without quotes, and checks it against the bounds of `spec`. Elements of a
-  !> list, and names, are appended.
+  !> Converts one token, without quotes, and checks it against the bounds of `spec`. An element of a
+  !> list, or a name, is appended to the value.
   subroutine convert(spec, token, value, what)
     type(key_spec), intent(in) :: spec
     character(len=*), intent(in) :: token
@@ -118,7 +118,7 @@ contains
 
     select case (spec%kind)
     case (real_value, real_list)
-      ! A repeat count, which other namelist writers use: 3*1.0.
+      ! A repeat count such as 3*1.0, which other namelist writers use.
       star = index(token, '*')
       times = 1
       if (star > 0) call parse_integer(token(:star - 1), times, what)
@@ -163,7 +163,7 @@ contains
     end select
   end subroutine convert
 
-  !> Whether `x` is outside the bounds of `spec`; true for NaN.
+  !> Whether `x` is outside the bounds of `spec`; NaN counts as outside.
   pure logical function outside(spec, x)
     type(key_spec), intent(in) :: spec
     real(wp), intent(in) :: x
@@ -171,7 +171,7 @@ contains
     outside = .not. (x >= spec%low .and. x <= spec%high .and. x > spec%above .and. x < spec%below)
   end function outside
 
-  !> One assignment as in a deck; a long list takes several lines.
+  !> An assignment as text for a deck; a long list takes several lines.
   pure function assignment_text(spec, value) result(text)
     type(key_spec), intent(in) :: spec
     type(value_t), intent(in) :: value

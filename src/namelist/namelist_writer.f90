@@ -12,8 +12,8 @@ module namelist_writer
     character(len=:), allocatable :: text
   end type line_t
 
-  !> assignment_of(key, value): the lines `  key = value` with their ends, or '' if the value is not
-  !> allocated. Reals read back as the same numbers.
+  !> assignment_of(key, value): the lines ` key = value` with their ends, or '' if the value is not
+  !> allocated. Reals are written with enough digits to give the same numbers when they are read.
   interface assignment_of
     module procedure :: of_reals, of_counts, of_logical, of_text, of_lines
   end interface assignment_of
@@ -97,8 +97,8 @@ contains
     literal = quoted(trim(clean))
   end function literal
 
-  !> Adds an item to the assignment to the key, `text`, which is '' before the first item; on a new
-  !> line if the line is full. column: the last column of the line.
+  !> Appends an item to `text`, the assignment to the key, which is '' before the first item. If the
+  !> line is full, a new line begins. column: the last column of the line.
   pure subroutine add_item(key, item, text, column)
     character(len=*), intent(in) :: key, item
     character(len=:), allocatable, intent(inout) :: text

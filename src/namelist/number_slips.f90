@@ -1,5 +1,5 @@
-!> What stands for a number in a deck and is none: a number with its unit, with a decimal comma, or
-!> with a blank in it. Numbers of a deck have no units.
+!> Recognises texts that stand for a number in a deck but are none: a number with its unit, with a
+!> decimal comma, or with a blank in it. Numbers of a deck have no units.
 module number_slips
   use kinds, only: wp
   use text, only: clip, lower
@@ -15,8 +15,9 @@ module number_slips
 
 contains
 
-  !> Advice on `token` after the number `before`, which may be empty: then the number begins the
-  !> token. unit: that of the key. Empty if there is no number, or nothing but a number.
+  !> Advice on `token`, which follows the number `before`; if `before` is empty, the number is at
+  !> the beginning of the token. unit: the unit of the key. Empty if there is no number, or nothing
+  !> but a number.
   pure function unit_slip(before, token, unit) result(advice)
     character(len=*), intent(in) :: before, token, unit
     character(len=:), allocatable :: advice, number, word
@@ -34,7 +35,8 @@ contains
     end if
   end function unit_slip
 
-  !> Advice on the two numbers that a comma without blanks makes of one; empty if they are not such.
+  !> Advice on two numbers that may be one number with a decimal comma, without a blank after the
+  !> comma; otherwise empty.
   pure function comma_slip(one, other) result(advice)
     character(len=*), intent(in) :: one, other
     character(len=:), allocatable :: advice
@@ -45,8 +47,8 @@ contains
     advice = 'a comma separates values; the decimal sign is a point: ' // clip(one // '.' // other)
   end function comma_slip
 
-  !> '; write 1.5e-6' for 1.5 um, if that is a number with the unit of the key, or with a prefix
-  !> before it; otherwise empty.
+  !> '; write 1.5e-6' for 1.5 um, if this is a number with the unit of the key, possibly with a
+  !> prefix; otherwise empty.
   pure function written(number, word, unit) result(text)
     character(len=*), intent(in) :: number, word, unit
     character(len=:), allocatable :: text
@@ -62,7 +64,8 @@ contains
     end if
   end function written
 
-  !> Divides a token after the longest number at its beginning.
+  !> Divides a token after the longest number at its beginning into this number and the remaining
+  !> word.
   pure subroutine divide(token, number, word)
     character(len=*), intent(in) :: token
     character(len=:), allocatable, intent(out) :: number, word

@@ -15,13 +15,14 @@ module table_layout
   private
   public :: layout_t, find_layout, next_line, line_of, is_missing, is_header
 
-  !> Rows that follow the first one with as many cells, where lines stand before the names: so many
-  !> lines of numbers are no part of a heading.
+  !> Number of rows with as many cells that must follow the first row, if other lines may stand
+  !> before the names. So many lines of numbers are not part of a heading.
   integer, parameter :: confirming = 3
   character(len=*), parameter :: newline = new_line('a'), digits = '0123456789'
 
-  !> first: the position of the first row; 0 if there is none. named: that of the line of names, or
-  !> of the first row. separator: of cells, ' ' for any. unit: as the file writes it, or blank.
+  !> first: the position of the first row; 0 if there is none. named: the position of the line of
+  !> names, or of the first row. separator: the separator of cells, ' ' for any. unit: as the file
+  !> writes it, or blank.
   type :: layout_t
     integer :: first = 0, columns = 0, named = 0
     character :: separator = ' '
@@ -30,8 +31,8 @@ module table_layout
 
 contains
 
-  !> Finds the layout of a table. skip: number of lines at the begin of the file that do not count.
-  !> of_instrument: whether lines may stand before the names, and words beside the numbers.
+  !> Finds the layout of a table. skip: number of lines at the beginning of the file to be ignored.
+  !> of_instrument: whether there may be lines before the names, and words beside the numbers.
   !> by_name: whether columns are chosen by their names. error: the mistake, with its line.
   subroutine find_layout(source, skip, of_instrument, by_name, layout, error)
     type(source_t), intent(in) :: source
@@ -55,7 +56,8 @@ contains
       if (here%columns > 0) then
         if (lines == 0 .or. .not. of_instrument) exit
         if (is_confirmed(here, next, likely%first > 0)) then
-          ! A line between two parts of one table has a mistake, and does not begin the table.
+          ! A wrong line between two parts of a table is a mistake, and not the beginning of the
+          ! table.
           if (likely%columns == here%columns) at = 0
           exit
         end if
@@ -77,8 +79,9 @@ contains
 
   contains
 
-    !> The line at `at` as the first row of a table, with columns = 0 if it cannot be one. Its cells
-    !> are numbers; in an instrument's file there may be words beside two numbers.
+    !> Examines whether the line at `at` can be the first row of a table; columns = 0 if not. The
+    !> cells of a row are numbers; in an instrument's file there may be words beside at least two
+    !> numbers.
     subroutine look_at(at, row)
       integer, intent(in) :: at
       type(layout_t), intent(out) :: row
@@ -99,7 +102,7 @@ contains
       row%columns = 0
     end subroutine look_at
 
-    !> A line that cannot be a row but stands where one is expected.
+    !> The layout for a line that stands where a row is expected although it cannot be one.
     type(layout_t) function whole_line(at) result(row)
       integer, intent(in) :: at
 
@@ -108,8 +111,8 @@ contains
       row%columns = cells_at(at, row%separator)
     end function whole_line
 
-    !> Whether the lines from the position `after` on have as many cells as a row. Another row came
-    !> before: then one line at least must follow.
+    !> Whether the lines from the position `after` on have as many cells as a row. If another row
+    !> (`another`) came before, at least one line must follow.
     logical function is_confirmed(row, after, another) result(confirmed)
       type(layout_t), intent(in) :: row
       integer, intent(in) :: after
@@ -135,8 +138,8 @@ contains
       n = size(cells)
     end function cells_at
 
-    !> Takes the names from the line above the first row, or from the last comment there; between
-    !> the names and the rows a line may have the units.
+    !> Takes the names from the line above the first row, or from the last comment there. Between
+    !> the names and the rows there may be a line with the units.
     subroutine find_names()
       character(len=longest_name), allocatable :: upper(:)
       integer :: k
@@ -168,7 +171,7 @@ contains
       if (size(layout%unit) /= layout%columns) layout%unit = layout%name
     end subroutine find_names
 
-    !> Objects to a line above the rows that is not one of names.
+    !> Refuses a line above the rows that is not a line of names.
     subroutine check_names()
       type(span_t), allocatable :: cells(:)
       character(len=:), allocatable :: line, what
@@ -200,7 +203,7 @@ contains
 
   end subroutine find_layout
 
-  !> Counts the cells of a line that are numbers, and those that are empty or not a number (NaN).
+  !> Counts the cells of a line that are numbers, and those without a value.
   pure subroutine count_cells(line, cells, numbers, missing)
     character(len=*), intent(in) :: line
     type(span_t), intent(in) :: cells(:)
@@ -221,7 +224,8 @@ contains
     end do
   end subroutine count_cells
 
-  !> Whether a cell says that there is no value.
+  !> Whether a cell has no value. Such a cell is empty, or it has NaN, an infinity, or a text such
+  !> as n/a.
   pure logical function is_missing(cell)
     character(len=*), intent(in) :: cell
 
@@ -230,7 +234,7 @@ contains
       '-', '--']) .or. any(cell == excel_errors)
   end function is_missing
 
-  !> Whether a line of a table has names: no cell is a number.
+  !> Whether a line of a table is a line of names: no cell is a number.
   pure logical function is_header(line, cells)
     character(len=*), intent(in) :: line
     type(span_t), intent(in) :: cells(:)
@@ -240,7 +244,7 @@ contains
     is_header = numbers == 0
   end function is_header
 
-  !> Finds the next line with cells at or after the position `next`, which is moved behind it. at:
+  !> Finds the next line with cells at or after the position `next`, and moves `next` behind it. at:
   !> the position of the line; 0 if there is none. comment: the position of the last comment before
   !> the line, unchanged if there is none.
   subroutine next_line(source, next, at, comment)
@@ -261,7 +265,7 @@ contains
     at = 0
   end subroutine next_line
 
-  !> The position behind the first `n` lines of a text.
+  !> The position after the first `n` lines of a text.
   pure integer function after_lines(source, n) result(at)
     type(source_t), intent(in) :: source
     integer, intent(in) :: n
@@ -275,7 +279,7 @@ contains
     end do
   end function after_lines
 
-  !> The line at a position.
+  !> The line that begins at a position.
   pure function line_of(source, at) result(line)
     type(source_t), intent(in) :: source
     integer, intent(in) :: at

@@ -1,6 +1,6 @@
-!> One line of a table: its comment, and its cells, which blanks, tabs, commas or semicolons
-!> separate and which may stand in double quotes. In a line with semicolons, tabs or blanks between
-!> cells, a comma within a number is a decimal comma.
+!> One line of a table: its comment, and its cells. Blanks, tabs, commas or semicolons separate the
+!> cells, which may be in double quotes. If semicolons, tabs or blanks separate the cells, a comma
+!> within a number is a decimal comma.
 module table_line
   use text, only: counted, replaced
   use deck_scan, only: span_t
@@ -13,7 +13,7 @@ module table_line
   !> Separators of cells: blank and tab; comma and semicolon.
   character, parameter :: tab = achar(9)
   character(len=*), parameter :: blanks = ' ' // tab, marks = ',;', between = blanks // marks
-  !> What a spreadsheet writes for a number that does not exist.
+  !> Texts that spreadsheets write for a number that does not exist.
   character(len=*), parameter :: excel_errors(*) = [character(len=7) :: '#N/A', '#NUM!', &
     '#DIV/0!', '#VALUE!', '#NAME?', '#REF!', '#NULL!']
 
@@ -27,7 +27,7 @@ contains
     text = line(:comment_in(line) - 1)
   end function uncommented
 
-  !> Where the comment of a line begins, or the line's length + 1 without one.
+  !> The position where the comment of a line begins; the line's length + 1 without a comment.
   pure integer function comment_in(line) result(at)
     character(len=*), intent(in) :: line
     integer :: k
@@ -42,8 +42,7 @@ contains
     at = len(line) + 1
   end function comment_in
 
-  !> Replaces the sign of minus of typesetters and blanks that do not break, in UTF-8, by those of
-  !> ASCII.
+  !> Replaces typographic minus signs and non-breaking blanks in UTF-8 by those of ASCII.
   pure subroutine plain_signs(text)
     character(len=:), allocatable, intent(inout) :: text
     character(len=*), parameter :: minus = char(226) // char(136) // char(146), &
@@ -70,7 +69,7 @@ contains
     text = plain(:n)
   end subroutine plain_signs
 
-  !> The first line of `lines`, with blanks for its comment marks.
+  !> The first line of `lines`, in which blanks replace the comment marks.
   pure function after_mark(lines) result(line)
     character(len=*), intent(in) :: lines
     character(len=:), allocatable :: line
@@ -81,8 +80,8 @@ contains
     line = replaced(lines(:i), '#', ' ')
   end function after_mark
 
-  !> Replaces decimal commas by points: commas between digits in lines with other separators of
-  !> cells. Comments stay, and say nothing about the line.
+  !> Replaces decimal commas by points. Decimal commas are commas between digits in lines with other
+  !> separators of cells. Comments are neither changed nor taken into account.
   pure subroutine point_decimals(text)
     character(len=*), intent(inout) :: text
     character(len=:), allocatable :: line
@@ -103,8 +102,8 @@ contains
     end do
   end subroutine point_decimals
 
-  !> Whether commas between digits are decimal commas: semicolons or tabs separate the cells, or
-  !> blanks do and no comma stands elsewhere. line: without blanks at its ends.
+  !> Whether commas between digits are decimal commas. They are if semicolons or tabs separate the
+  !> cells, or if blanks do and there is no other comma. line: without blanks at its ends.
   pure logical function has_decimal_commas(line) result(has)
     character(len=*), intent(in) :: line
     integer :: i
@@ -126,8 +125,8 @@ contains
       scan(line(i + 1:i + 1), digits) > 0
   end function between_digits
 
-  !> The character that separates the cells of a line: a semicolon, else a comma, else a tab, else a
-  !> blank.
+  !> The character that separates the cells of a line: a semicolon, otherwise a comma, otherwise a
+  !> tab, otherwise a blank.
   pure character function separator_of(line) result(separator)
     character(len=*), intent(in) :: line
     character(len=*), parameter :: known = ';,' // tab
@@ -140,7 +139,7 @@ contains
   end function separator_of
 
   !> The cells of a line between `separator`s, without blanks at their ends and without their double
-  !> quotes; an empty cell has last < first. The separator ' ' means `split`.
+  !> quotes. An empty cell has last < first. For the separator ' ' the procedure `split` is used.
   subroutine split_at(line, separator, cells)
     character(len=*), intent(in) :: line
     character, intent(in) :: separator
@@ -187,8 +186,8 @@ contains
 
   end subroutine split_at
 
-  !> The cells of a line up to the last that is not empty, without their double quotes. A comma or
-  !> semicolon after another, or before the first cell, is that of an empty cell.
+  !> The cells of a line up to the last one that is not empty, without their double quotes. A comma
+  !> or semicolon that follows another one, or precedes the first cell, marks an empty cell.
   subroutine split(line, cells)
     character(len=*), intent(in) :: line
     type(span_t), allocatable, intent(out) :: cells(:)
@@ -216,7 +215,7 @@ contains
 
   contains
 
-    !> Number of characters between the quotes of a cell; -1 if it does not stand in quotes.
+    !> Number of characters between the quotes of a cell; -1 if the cell is not in quotes.
     pure integer function quoted_length(rest) result(length)
       character(len=*), intent(in) :: rest
 
@@ -228,7 +227,7 @@ contains
       end if
     end function quoted_length
 
-    !> The first position from `at` on that is no blank.
+    !> The first position from `at` on that has no blank.
     pure integer function after_blanks(at)
       integer, intent(in) :: at
 
@@ -238,7 +237,7 @@ contains
 
   end subroutine split
 
-  !> Whether the last cell of a line is empty: nothing, or nothing in quotes, after a separator.
+  !> Whether the last cell of a line is empty: nothing, or empty quotes, after a separator.
   pure logical function ends_empty(line)
     character(len=*), intent(in) :: line
     character(len=:), allocatable :: text
@@ -250,7 +249,7 @@ contains
     if (last > 1) ends_empty = scan(text(last:last), marks) > 0 .or. text(last - 1:last) == '""'
   end function ends_empty
 
-  !> What is wrong with a line that has not the expected number of columns.
+  !> A message about a line that does not have the expected number of columns.
   pure function miscount(line, found, expected) result(what)
     character(len=*), intent(in) :: line
     integer, intent(in) :: found, expected
@@ -260,7 +259,7 @@ contains
     if (found < expected .and. ends_empty(line)) what = what // '; the last cell is empty'
   end function miscount
 
-  !> '1 column where 3 columns are expected'.
+  !> The text '1 column where 3 columns are expected', with these numbers.
   pure function columns_where(found, expected) result(what)
     integer, intent(in) :: found, expected
     character(len=:), allocatable :: what
