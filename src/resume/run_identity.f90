@@ -1,5 +1,6 @@
-!> The identity of a run, a text with all that its numbers depend on, and the difference of two
-!> identities: only a run of the same identity can continue an interrupted run.
+!> The identity of a run, and the difference of two identities. The identity is a text with
+!> everything on which the numbers of the run depend. Only a run with the same identity can continue
+!> an interrupted run.
 module run_identity
   use, intrinsic :: iso_c_binding, only: c_int
   use kinds, only: wp
@@ -13,13 +14,13 @@ module run_identity
   public :: identity_of, difference_between, find_finished
 
   character(len=1), parameter :: nl = new_line('a')
-  !> The beginnings of the lines before the deck.
+  !> The first words of the lines that stand before the deck.
   character(len=*), parameter :: program_line = 'program: ', libraries_line = 'libraries: '
 
 contains
 
-  !> The identity of a run of `deck`, the text of a resolved deck, in this program. Each case of a
-  !> sweep has one thread, so that the number of threads does not matter.
+  !> The identity of a run of `deck`, the text of a resolved deck, by this program. It does not
+  !> contain the number of threads, since each case of a sweep has one thread.
   function identity_of(deck) result(text)
     character(len=*), intent(in) :: deck
     character(len=:), allocatable :: text
@@ -28,7 +29,7 @@ contains
       libraries_line // compiler // ', ' // blas_in_use() // ', ' // options // nl // deck
   end function identity_of
 
-  !> The first difference between two identities, with advice.
+  !> The first difference between two identities, as text with advice.
   function difference_between(then, now) result(text)
     character(len=*), intent(in) :: then, now
     character(len=:), allocatable :: text
@@ -57,7 +58,8 @@ contains
     text = text // ', or start over without --resume'
   end function difference_between
 
-  !> The difference of two decks: one has the line `old` in a group, the other, `now`, has `new`.
+  !> The difference of two decks as text: in a group, one deck has the line `old`, the other (`now`)
+  !> has the line `new`.
   function change(group, old, new, now) result(text)
     character(len=*), intent(in) :: group, old, new, now
     character(len=:), allocatable :: text
@@ -77,7 +79,7 @@ contains
     end if
   end function change
 
-  !> The value of an assignment with as few digits as possible.
+  !> The value of an assignment, written with as few digits as possible.
   function value(text) result(short)
     character(len=*), intent(in) :: text
     character(len=:), allocatable :: short
@@ -89,7 +91,8 @@ contains
     if (.not. allocated(what)) short = brief(number)
   end function value
 
-  !> The line of a text that begins at i; i moves to the next line. Empty at the end of the text.
+  !> The line of a text that begins at i; i moves to the next line. The line is empty at the end of
+  !> the text.
   subroutine next_line(text, i, line)
     character(len=*), intent(in) :: text
     integer, intent(inout) :: i
@@ -103,8 +106,8 @@ contains
     i = i + length + 1
   end subroutine next_line
 
-  !> The library of the linear algebra; for OpenBLAS with the kind of processor, on which last
-  !> digits depend.
+  !> The library of the linear algebra. For OpenBLAS it includes the type of processor, which
+  !> affects the last digits of results.
   function blas_in_use() result(text)
     character(len=:), allocatable :: text
     character(len=256) :: config
@@ -114,8 +117,9 @@ contains
     if (text == '') text = blas
   end function blas_in_use
 
-  !> A number that distinguishes programs of the same version: the first digits of the linker's
-  !> checksum of the program, which `readelf -n` shows. The same sources give the same number.
+  !> A number that distinguishes builds of the same version: the first digits of the linker's
+  !> checksum of the program, which `readelf -n` shows. Builds from the same sources have the same
+  !> number.
   function build_number() result(text)
     character(len=:), allocatable :: text
     character(len=16) :: digits
@@ -126,7 +130,8 @@ contains
   end function build_number
 
   !> Whether the folder's summary is that of the deck `resolved` (as text) by this version of the
-  !> program; a run writes the summary last. converged: whether the run converged.
+  !> program. The summary is sufficient, since a run writes it last. converged: whether the run
+  !> converged.
   subroutine find_finished(folder, resolved, finished, converged)
     character(len=*), intent(in) :: folder, resolved
     logical, intent(out) :: finished, converged
@@ -139,7 +144,7 @@ contains
     if (.not. allocated(text)) return
     start = len(text) - len(resolved)
     if (start < 1) return
-    ! The groups of results, then the deck.
+    ! In the summary the groups of results come first, then the deck.
     finished = text(start + 1:) == resolved .and. &
       index(text(:start), nl // '  version = ''' // version // '''' // nl) > 0
     converged = finished .and. index(text(:start), nl // '  converged = .true.' // nl) > 0
