@@ -1,6 +1,6 @@
-!> The system calls for files, terminal and process, by way of `posix.c` and `beyond_posix.c`, or of
-!> `windows.c`, and their error messages.
-!> A negative status is a failure, for `check_status`. Paths and names end with `nul`.
+!> The system calls for files, terminal and process, and their error messages. They are called
+!> through `posix.c` and `beyond_posix.c`, or through `windows.c`. A negative status is a failure,
+!> which `check_status` reports. Paths and names end with `nul`.
 module c_library
   use, intrinsic :: iso_c_binding, only: c_char, c_double, c_int, c_long, nul => c_null_char
   use failure, only: failure_t, fail, file_trouble
@@ -13,27 +13,28 @@ module c_library
     c_openblas_end_threads, c_openblas_config, c_build_id, explain, check_status, nul, as_input, &
     as_output, as_kept_output, as_folder, as_data, not_there, locked_elsewhere, not_regular
 
-  !> How a path is opened: a file of any kind for reading; a regular file for reading and writing,
-  !> created or emptied; the same, unchanged; a folder; a regular file for reading.
+  !> How a path is opened. as_input: a file of any kind, for reading. as_output: a regular file, for
+  !> reading and writing, created or emptied. as_kept_output: the same, but its contents are kept.
+  !> as_folder: a folder. as_data: a regular file, for reading.
   integer(c_int), parameter :: as_input = 1, as_output = 2, as_kept_output = 3, as_folder = 4, &
     as_data = 5
 
-  !> Failures with advice or treatment of their own.
+  !> Failures for which there is advice or a treatment of its own.
   integer(c_int), parameter :: too_large = 1, disk_full = 2, in_the_way = 3, not_there = 4, &
     locked_elsewhere = 5
-  !> Minus the status of a name that is a link, a pipe or a device where a file is needed.
+  !> Minus this number is the status if a name is a link, a pipe or a device where a file is needed.
   integer(c_int), parameter :: not_regular = 100000
 
   interface
-    !> The file descriptor.
+    !> Opens a file or folder; returns its descriptor.
     integer(c_int) function c_open(path, how) bind(c, name='snapin_open')
       import :: c_char, c_int
       character(kind=c_char), intent(in) :: path(*)
       integer(c_int), value :: how
     end function c_open
 
-    !> Number of bytes read; fewer than `count` only at the end of the file. A pipe that no program
-    !> opens for writing within two seconds is a failure.
+    !> Reads bytes; returns their number, which is smaller than `count` only at the end of the file.
+    !> It is a failure if no program opens a pipe for writing within two seconds.
     integer(c_long) function c_read(descriptor, bytes, count) bind(c, name='snapin_read')
       import :: c_char, c_int, c_long
       integer(c_int), value :: descriptor
@@ -49,20 +50,21 @@ module c_library
       integer(c_long), value :: count
     end function c_write
 
-    !> Waits until a file, or the names in a folder, are on the disk.
+    !> Waits until a file, or the names in a folder, have been written to the disk.
     integer(c_int) function c_sync(descriptor) bind(c, name='snapin_sync')
       import :: c_int
       integer(c_int), value :: descriptor
     end function c_sync
 
-    !> Waits until the names in the subfolder `name` are on the disk.
+    !> Waits until the names in the subfolder `name` have been written to the disk.
     integer(c_int) function c_sync_in(folder, name) bind(c, name='snapin_sync_in')
       import :: c_char, c_int
       integer(c_int), value :: folder
       character(kind=c_char), intent(in) :: name(*)
     end function c_sync_in
 
-    !> Waits until the names in the folder above `folder`, its own among them, are on the disk.
+    !> Waits until the names in the folder above `folder`, among them that of `folder`, have been
+    !> written to the disk.
     integer(c_int) function c_sync_above(folder) bind(c, name='snapin_sync_above')
       import :: c_int
       integer(c_int), value :: folder
@@ -79,14 +81,14 @@ module c_library
       integer(c_int), value :: descriptor
     end function c_size
 
-    !> Ends a file after `length` bytes and moves to `place` [bytes from the start].
+    !> Truncates a file after `length` bytes and moves to `place` [bytes from the beginning].
     integer(c_int) function c_cut(descriptor, length, place) bind(c, name='snapin_cut')
       import :: c_int, c_long
       integer(c_int), value :: descriptor
       integer(c_long), value :: length, place
     end function c_cut
 
-    !> Sets where the next reading begins [bytes from the start].
+    !> Sets the position where the next reading begins [bytes from the beginning].
     integer(c_int) function c_seek(descriptor, place) bind(c, name='snapin_seek')
       import :: c_int, c_long
       integer(c_int), value :: descriptor
@@ -98,34 +100,35 @@ module c_library
       character(kind=c_char), intent(in) :: path(*)
     end function c_make_folder
 
-    !> Absolute path of the current folder; blank if it is not known.
+    !> Absolute path of the current folder; blank if it cannot be found.
     subroutine c_current_folder(path, size) bind(c, name='snapin_current_folder')
       import :: c_char, c_int
       character(kind=c_char), intent(out) :: path(*)
       integer(c_int), value :: size
     end subroutine c_current_folder
 
-    !> Absolute path of this program's file; blank if it is not known.
+    !> Absolute path of this program's file; blank if it cannot be found.
     subroutine c_own_path(path, size) bind(c, name='snapin_own_path')
       import :: c_char, c_int
       character(kind=c_char), intent(out) :: path(*)
       integer(c_int), value :: size
     end subroutine c_own_path
 
-    !> 1 if a path does not depend on the current folder.
+    !> 1 if a path does not depend on the current folder, otherwise 0.
     pure integer(c_int) function c_is_absolute(path) bind(c, name='snapin_is_absolute')
       import :: c_char, c_int
       character(kind=c_char), intent(in) :: path(*)
     end function c_is_absolute
 
-    !> Gives a path slashes for whatever separates folders on this system.
+    !> Replaces the characters that separate folders on this system by slashes.
     subroutine c_use_slashes(path, size) bind(c, name='snapin_use_slashes')
       import :: c_char, c_int
       character(kind=c_char), intent(inout) :: path(*)
       integer(c_int), value :: size
     end subroutine c_use_slashes
 
-    !> Locks a folder without waiting; fails as `locked_elsewhere` if another process has locked it.
+    !> Locks a folder without waiting. It fails with `locked_elsewhere` if another process has
+    !> locked the folder.
     integer(c_int) function c_lock(folder) bind(c, name='snapin_lock')
       import :: c_int
       integer(c_int), value :: folder
@@ -138,7 +141,8 @@ module c_library
       character(kind=c_char), intent(in) :: name(*)
     end function c_kind
 
-    !> 1 if both paths lead to the same file or folder, 0 if they do not, or there is none.
+    !> 1 if both paths lead to the same file or folder; 0 if they do not, or if a path leads
+    !> nowhere.
     integer(c_int) function c_same_file(path, other) bind(c, name='snapin_same_file')
       import :: c_char, c_int
       character(kind=c_char), intent(in) :: path(*), other(*)
@@ -164,8 +168,8 @@ module c_library
       character(kind=c_char), intent(in) :: name(*)
     end function c_remove_folder
 
-    !> Reads at most `count` bytes from the start of a file of a folder; the number of bytes read.
-    !> Nothing but a regular file is opened.
+    !> Reads at most `count` bytes from the beginning of a file in a folder; returns their number.
+    !> Only a regular file is opened.
     integer(c_int) function c_beginning(folder, name, bytes, count) bind(c, name='snapin_beginning')
       import :: c_char, c_int
       integer(c_int), value :: folder, count
@@ -179,13 +183,13 @@ module c_library
       character(kind=c_char), intent(in) :: path(*)
     end function c_free_disk
 
-    !> 1 if the descriptor is a terminal.
+    !> 1 if the descriptor is that of a terminal, otherwise 0.
     integer(c_int) function c_is_terminal(descriptor) bind(c, name='snapin_is_terminal')
       import :: c_int
       integer(c_int), value :: descriptor
     end function c_is_terminal
 
-    !> Makes failures to write an error of the file instead of signals that end the process.
+    !> Makes failures to write an error of the file instead of a signal that ends the process.
     subroutine c_prepare() bind(c, name='snapin_prepare')
     end subroutine c_prepare
 
@@ -199,25 +203,27 @@ module c_library
       integer(c_int), value :: microseconds
     end subroutine c_pause
 
-    !> 1 if the linear algebra is OpenBLAS, which then gets `count` threads; 0 keeps their number.
+    !> 1 if the linear algebra is OpenBLAS, otherwise 0. OpenBLAS is given `count` threads; if
+    !> `count` is 0, their number is kept.
     integer(c_int) function c_openblas_threads(count) bind(c, name='snapin_openblas_threads')
       import :: c_int
       integer(c_int), value :: count
     end function c_openblas_threads
 
-    !> Ends OpenBLAS's threads; setting more than one starts them again. No other thread may be
-    !> computing with OpenBLAS.
+    !> Ends the threads of OpenBLAS; setting more than one thread starts them again. Meanwhile no
+    !> other thread may compute with OpenBLAS.
     subroutine c_openblas_end_threads() bind(c, name='snapin_openblas_end_threads')
     end subroutine c_openblas_end_threads
 
-    !> OpenBLAS's description of itself; blank for another library.
+    !> The description that OpenBLAS gives of itself; blank for another library.
     subroutine c_openblas_config(text, size) bind(c, name='snapin_openblas_config')
       import :: c_char, c_int
       character(kind=c_char), intent(out) :: text(*)
       integer(c_int), value :: size
     end subroutine c_openblas_config
 
-    !> The first digits of the linker's id of this program or library; blank if there is none.
+    !> The first digits of the id that the linker gave this program or library; blank if there is
+    !> none.
     subroutine c_build_id(text, size) bind(c, name='snapin_build_id')
       import :: c_char, c_int
       character(kind=c_char), intent(out) :: text(*)
@@ -233,7 +239,7 @@ module c_library
 
 contains
 
-  !> The sort of a failure, or 0 for others, and the system's message.
+  !> Finds the kind of a failure, 0 for kinds without advice, and the system's message.
   subroutine explain(status, sort, reason)
     integer(c_int), intent(in) :: status
     integer(c_int), intent(out) :: sort
@@ -244,7 +250,7 @@ contains
     reason = trim(text)
   end subroutine explain
 
-  !> Fails with `what`, the system's message and advice if the status is a failure.
+  !> If the status is a failure, fails with `what`, the system's message and advice.
   subroutine check_status(what, status, error)
     character(len=*), intent(in) :: what
     integer(c_int), intent(in) :: status

@@ -14,7 +14,7 @@ module clock
 
 contains
 
-  !> Wall-clock seconds from an arbitrary origin.
+  !> Time of the wall clock [s] from an arbitrary origin.
   real(wp) function seconds()
     integer(long) :: count, rate
 
@@ -22,8 +22,8 @@ contains
     seconds = real(count, wp)/real(rate, wp)
   end function seconds
 
-  !> Seconds that a processor has worked for this thread. On an idle machine they pass like elapsed
-  !> ones; other work does not count.
+  !> Time [s] that a processor has worked for this thread. On an idle machine this equals the
+  !> elapsed time; on a busy machine other work is not counted.
   real(wp) function thread_seconds()
     thread_seconds = real(c_thread_seconds(), wp)
   end function thread_seconds

@@ -1,4 +1,4 @@
-!> The files that a pattern with *, ? or [...] stands for, and sizes of files.
+!> The files that a pattern with *, ? or [...] matches, and sizes of files.
 module file_names
   use, intrinsic :: iso_c_binding, only: c_char, c_long, nul => c_null_char
   use kinds, only: long
@@ -7,8 +7,8 @@ module file_names
   public :: names_like, is_pattern, bytes_of
 
   interface
-    !> Writes the names of the files that a pattern matches, each with `nul` behind it, into `names`
-    !> as far as they fit; the number of bytes that all of them need. Names are in the order of
+    !> Writes the names of the files that a pattern matches into `names`, each followed by `nul`, as
+    !> far as they fit. Returns the number of bytes that all of them need. The names are sorted by
     !> their bytes.
     integer(c_long) function c_names_like(pattern, names, size) bind(c, name='snapin_names_like')
       import :: c_char, c_long
@@ -17,7 +17,7 @@ module file_names
       integer(c_long), value :: size
     end function c_names_like
 
-    !> Number of bytes of a file; -1 if there is none.
+    !> Number of bytes of a file; -1 if there is no such file.
     integer(c_long) function c_bytes_of(path) bind(c, name='snapin_bytes_of')
       import :: c_char, c_long
       character(kind=c_char), intent(in) :: path(*)
@@ -33,7 +33,7 @@ contains
     is_pattern = scan(name, '*?[') > 0
   end function is_pattern
 
-  !> The names of the files that a pattern matches, each with `nul` behind it.
+  !> The names of the files that a pattern matches, each followed by `nul`.
   subroutine names_like(pattern, names)
     character(len=*), intent(in) :: pattern
     character(len=:), allocatable, intent(out) :: names
@@ -44,12 +44,12 @@ contains
       allocate (character(len=needed) :: names)
       needed = c_names_like(pattern // nul, names, int(len(names), c_long))
       if (needed == len(names)) return
-      ! Files may come between the two calls.
+      ! Further files may appear between the two calls.
       deallocate (names)
     end do
   end subroutine names_like
 
-  !> Number of bytes of a file; -1 if there is none.
+  !> Number of bytes of a file; -1 if there is no such file.
   integer(long) function bytes_of(path)
     character(len=*), intent(in) :: path
 

@@ -1,4 +1,4 @@
-!> Folders, small files read whole, and the standard streams.
+!> Folders, small files that are read as a whole, and the standard streams.
 module files
   use, intrinsic :: iso_c_binding, only: c_int, c_long
   use kinds, only: wp, long
@@ -20,7 +20,7 @@ module files
 contains
 
   !> Creates the folder `path` and its parents if they do not exist. The names of the parents are
-  !> synchronised to the disk at once, since other runs may rely on them; the name of `path` is not.
+  !> written to the disk at once, since other runs may rely on them. The name of `path` is not.
   subroutine make_folder(path, error)
     character(len=*), intent(in) :: path
     type(failure_t), allocatable, intent(out) :: error
@@ -36,14 +36,15 @@ contains
       status = c_make_folder(path(:i) // nul)
       if (status == 0 .and. i < len(path)) call sync_names(path(:i), .false., status)
       if (status == 0) cycle
-      ! Another process may have created it meanwhile.
+      ! Another process may have created the folder meanwhile.
       if (file_exists(path(:i) // '/.')) cycle
       call check_status('cannot make the folder ' // path(:i), status, error)
       return
     end do
   end subroutine make_folder
 
-  !> Waits until the name of the folder `path` and, with `inside`, the names in it are on the disk.
+  !> Waits until the name of the folder `path` has been written to the disk; with `inside`, also the
+  !> names in it.
   subroutine sync_names(path, inside, status)
     character(len=*), intent(in) :: path
     logical, intent(in) :: inside
@@ -58,7 +59,7 @@ contains
     closed = c_close(folder)
   end subroutine sync_names
 
-  !> The absolute path of `path`, or `path` itself if the current folder is not known.
+  !> The absolute path of `path`, or `path` itself if the current folder cannot be found.
   function whole_path(path) result(whole)
     character(len=*), intent(in) :: path
     character(len=:), allocatable :: whole
@@ -77,7 +78,7 @@ contains
     is_absolute = c_is_absolute(path // nul) == 1
   end function is_absolute
 
-  !> A path of the command line, with slashes on every system.
+  !> A path from the command line, with slashes on every system.
   function with_slashes(path) result(same)
     character(len=*), intent(in) :: path
     character(len=len(path)) :: same
@@ -86,14 +87,14 @@ contains
     call c_use_slashes(same, len(same, kind=c_int))
   end function with_slashes
 
-  !> Whether both paths lead to the same file, by whatever names and links.
+  !> Whether both paths lead to the same file, possibly by different names and links.
   logical function same_file(path, other)
     character(len=*), intent(in) :: path, other
 
     same_file = c_same_file(path // nul, other // nul) == 1
   end function same_file
 
-  !> Path of this program's file; blank if it is not known.
+  !> Path of this program's file; blank if it cannot be found.
   function own_path() result(path)
     character(len=4096) :: path
 
@@ -117,7 +118,7 @@ contains
     if (status /= 0) deallocate (text)
   end subroutine read_file
 
-  !> Standard input, of which no more than `most` bytes are read: it may have no end.
+  !> The text of standard input, at most `most` bytes, since standard input may have no end.
   function read_standard_input(most) result(text)
     integer, intent(in) :: most
     character(len=:), allocatable :: text
@@ -135,8 +136,8 @@ contains
     inquire (file=path, exist=file_exists)
   end function file_exists
 
-  !> Number of bytes that may still be written below a path, whose last folders need not exist; huge
-  !> if it is not known.
+  !> Number of bytes that may still be written below a path; huge if it is not known. The last
+  !> folders of the path need not exist.
   real(wp) function free_disk(path)
     character(len=*), intent(in) :: path
 
@@ -148,7 +149,7 @@ contains
     is_terminal = c_is_terminal(standard_error) == 1
   end function is_terminal
 
-  !> Writes `text` to standard output, for readers: without control sequences that names may hold.
+  !> Writes `text` to standard output, without control sequences that names may contain.
   subroutine write_stdout(text, error)
     character(len=*), intent(in) :: text
     type(failure_t), allocatable, intent(out) :: error
@@ -162,7 +163,8 @@ contains
   end subroutine write_stdout
 
   !> Writes `text` and the end of a line to standard error, without control sequences that names and
-  !> files may hold. A failure to write, such as a full disk behind a redirection, is ignored.
+  !> files may contain. If writing fails, for example because a redirection leads to a full disk,
+  !> the failure is ignored.
   subroutine write_stderr(text)
     character(len=*), intent(in) :: text
     integer(c_int) :: sent

@@ -1,6 +1,6 @@
-!> One run at a time in a folder of results. The kernel locks the folder itself: the lock ends with
-!> the process, however that ends, and leaves no file. All operations act on this very folder, even
-!> if another one has taken its name meanwhile.
+!> A lock that allows one run at a time in a folder of results. The kernel locks the folder itself.
+!> The lock ends with the process, however the process ends, and leaves no file. All operations act
+!> on this folder, even if another folder has taken its name meanwhile.
 module folder_lock
   use, intrinsic :: iso_c_binding, only: c_int
   use failure, only: failure_t, fail, file_trouble
@@ -11,7 +11,7 @@ module folder_lock
   private
   public :: folder_lock_t
 
-  !> A lock must not be copied while it is held.
+  !> A lock, which must not be copied while it is held.
   type :: folder_lock_t
     private
     integer(c_int) :: folder = -1
@@ -35,9 +35,9 @@ module folder_lock
 
 contains
 
-  !> Locks the folder `path`. Fails if another run has locked it, or if the folder cannot be opened.
-  !> A network file system without locks gives no lock and no error, since otherwise no run could
-  !> work there.
+  !> Locks the folder `path`. It fails if another run has locked the folder, or if the folder cannot
+  !> be opened. On a network file system without locks there is neither a lock nor an error, since
+  !> otherwise no run could work there.
   subroutine take(self, path, error)
     class(folder_lock_t), intent(inout) :: self
     character(len=*), intent(in) :: path
@@ -84,8 +84,8 @@ contains
     path = self%path // '/' // name
   end function path_of
 
-  !> Whether the folder has a file `name`. .true. if the system cannot say; using the file then
-  !> fails.
+  !> Whether the folder has a file `name`. The result is .true. if the system cannot tell; using the
+  !> file then fails.
   logical function contains_file(self, name) result(found)
     class(folder_lock_t), intent(in) :: self
     character(len=*), intent(in) :: name
@@ -103,8 +103,9 @@ contains
     found = c_kind(self%folder, name // nul) == 2
   end function contains_folder
 
-  !> Reads the first bytes of the file `name`, as many as it has and `text` can take. A negative
-  !> length is a failure: -not_regular if this is not a file but a link, a pipe or the like.
+  !> Reads the first bytes of the file `name`, as many as the file has and `text` can hold. A
+  !> negative length is a failure; it is -not_regular if `name` is not a file but a link, a pipe or
+  !> a device.
   subroutine read_beginning(self, name, text, length)
     class(folder_lock_t), intent(in) :: self
     character(len=*), intent(in) :: name
@@ -114,7 +115,7 @@ contains
     length = c_beginning(self%folder, name // nul, text, len(text, kind=c_int))
   end subroutine read_beginning
 
-  !> Renames the file `from` to `to` in one step, replacing a file of that name.
+  !> Renames the file `from` to `to` in a single step. A file with the name `to` is replaced.
   subroutine rename_file(self, from, to, error)
     class(folder_lock_t), intent(in) :: self
     character(len=*), intent(in) :: from, to
@@ -134,7 +135,7 @@ contains
       error)
   end subroutine remove_file
 
-  !> Removes the folder `name` if nothing is in it.
+  !> Removes the folder `name` if it is empty.
   subroutine remove_folder(self, name)
     class(folder_lock_t), intent(in) :: self
     character(len=*), intent(in) :: name
@@ -143,8 +144,8 @@ contains
     status = c_remove_folder(self%folder, name // nul)
   end subroutine remove_folder
 
-  !> Waits until files created, renamed and removed in the folder, or in its subfolder `name`, are
-  !> so on the disk.
+  !> Waits until all files created, renamed and removed in the folder, or in its subfolder `name`,
+  !> have been written to the disk.
   subroutine sync(self, error, name)
     class(folder_lock_t), intent(in) :: self
     type(failure_t), allocatable, intent(out) :: error
@@ -158,7 +159,7 @@ contains
     end if
   end subroutine sync
 
-  !> Waits until the folder's own name is on the disk.
+  !> Waits until the folder's own name has been written to the disk.
   subroutine sync_above(self, error)
     class(folder_lock_t), intent(in) :: self
     type(failure_t), allocatable, intent(out) :: error

@@ -1,5 +1,6 @@
-!> A team of processes that are forked from this one and compute for it. A fit makes strings, which
-!> threads may not do at the same time (compiler note 4); processes may.
+!> A team of processes that are forked from this one and compute for it. They are needed because a
+!> fit makes strings, which threads may not do at the same time (compiler note 4), while processes
+!> may.
 module forks
   use, intrinsic :: iso_c_binding, only: c_int, c_long
   use kinds, only: long
@@ -11,11 +12,12 @@ module forks
   private
   public :: forked_team_t, can_fork
 
-  !> Largest number of processes; also in `forks.c`.
+  !> Largest number of processes; the same number stands in `forks.c`.
   integer, parameter :: most_forks = 1024
 
-  !> rank: 0 of the process that forks, 1 and so on of the forked ones. The descriptors are those of
-  !> the pipes to process 0, or from and to each other process.
+  !> rank: 0 for the process that forks, 1, 2, ... for the forked ones. reading, writing: the
+  !> descriptors of the pipes from and to process 0; in process 0, those from and to each other
+  !> process.
   type, extends(team_t) :: forked_team_t
     integer(c_int), allocatable, private :: reading(:), writing(:), child(:)
   contains
@@ -26,19 +28,20 @@ module forks
   end type forked_team_t
 
   interface
-    !> 1 if the system can fork processes.
+    !> 1 if the system can fork processes, otherwise 0.
     integer(c_int) function c_can_fork() bind(c, name='snapin_can_fork')
       import :: c_int
     end function c_can_fork
 
-    !> Forks a process, in which the result is 0 and no other file is open than the standard
-    !> streams; otherwise the result is its number. reading, writing: the pipes between both.
+    !> Forks a process. In the new process the result is 0, and no file is open except the standard
+    !> streams; otherwise the result is the number of the new process. reading, writing: the pipes
+    !> between the two.
     integer(c_int) function c_fork(reading, writing) bind(c, name='snapin_fork')
       import :: c_int
       integer(c_int), intent(out) :: reading, writing
     end function c_fork
 
-    !> Waits until one of the descriptors can be read, and returns its index from 0.
+    !> Waits until one of the descriptors has data to read; returns its index, counted from 0.
     integer(c_int) function c_ready(reading, count) bind(c, name='snapin_ready')
       import :: c_int
       integer(c_int), intent(in) :: reading(*)
@@ -99,13 +102,13 @@ contains
 
     words(1) = record%held
     words(2:) = record%words(:record%held)
-    ! The end of the other process shows as it is received from.
+    ! If the other process has ended, this is noticed when the next record is received.
     status = c_write(self%writing(max(1, to)), bytes_of(words), &
       int(storage_size(words)/8*size(words), c_long))
   end subroutine send
 
-  !> Waits for a record from any process. from = -1: a process is gone, or this one is not needed
-  !> any more.
+  !> Waits for a record from any process. from = -1: a process has ended, or this process is no
+  !> longer needed.
   subroutine receive(self, record, from)
     class(forked_team_t), intent(inout) :: self
     type(byte_record_t), intent(inout) :: record
@@ -129,7 +132,7 @@ contains
     from = merge(i, 0, self%rank == 0)
   end subroutine receive
 
-  !> Ends a forked process; in the other one, ends the forked processes and waits for them.
+  !> In a forked process, ends it. In process 0, ends the forked processes and waits for them.
   subroutine leave(self)
     class(forked_team_t), intent(inout) :: self
     integer(c_int) :: closed
@@ -146,7 +149,7 @@ contains
     self%workers = 0
   end subroutine leave
 
-  !> Words as bytes.
+  !> Words converted to bytes.
   pure function bytes_of(words) result(bytes)
     integer(long), intent(in) :: words(:)
     character(len=storage_size(words)/8*size(words)) :: bytes

@@ -1,11 +1,11 @@
 !> A file to which a run appends its results, so that another run can continue after an
 !> interruption.
 !>
-!> A journal begins with a text that identifies its owner; records follow (`journal_frame`), with
-!> the time since the run began. Records are collected and written several times a second. A last
-!> record that is not complete, since the run was killed, is cut off. Every few seconds the journal
-!> is synchronised to the disk, the first time with its name, so that a power failure costs only the
-!> last seconds. System calls write it for the reason given in `text_file`.
+!> A journal begins with a text that identifies its owner. Records follow (`journal_frame`), each
+!> with the time since the run began. Records are collected and written several times a second. An
+!> incomplete last record, left by a run that was killed, is removed. Every few seconds the journal
+!> is synchronised to the disk, the first time together with its name, so that a power failure loses
+!> only the last seconds. System calls write it for the reason given in `text_file`.
 module journal
   use, intrinsic :: iso_c_binding, only: c_char, c_int, c_long, c_loc, c_f_pointer
   use kinds, only: wp, long
@@ -21,25 +21,26 @@ module journal
   private
   public :: journal_t
 
-  !> A journal must not be copied while it is open. After the first error, which is kept in
+  !> A journal, which must not be copied while it is open. After the first error, which is kept in
   !> `trouble`, nothing more is written.
   type :: journal_t
     type(failure_t), allocatable :: trouble
-    !> Complete records of an earlier run, and the time [s] that the run took to the last of them.
+    !> inherited: number of complete records of an earlier run; the time [s] of that run at the last
+    !> of them.
     integer :: inherited = 0
     real(wp) :: earlier = 0
     character(len=:), allocatable, private :: path
     integer(c_int), private :: descriptor = -1
-    !> Records of the earlier run that `next` has not returned yet.
+    !> Number of records of the earlier run that `next` has not returned yet.
     integer, private :: waiting = 0
     !> Number of words in the file when it was opened.
     integer(long), private :: room = 0
-    !> Words to be written are gathered(:held).
+    !> The words to be written are gathered(:held).
     integer(long), allocatable, private :: gathered(:)
     integer, private :: held = 0
-    !> Times [s] of opening, of the last writing and of the last synchronisation.
+    !> Times [s] of opening, of the last writing, and of the last synchronisation.
     real(wp), private :: began = 0, handed = 0, synced = 0
-    !> Whether the journal's name is on the disk.
+    !> Whether the journal's name has been written to the disk.
     logical, private :: named = .false.
   contains
     procedure :: begin
@@ -54,10 +55,11 @@ module journal
     procedure, private :: hand_over
   end type journal_t
 
-  !> Largest loss in a power failure, in seconds of work. Synchronising takes a hundredth of it.
+  !> Computing time [s] that a power failure can lose at most. Synchronisation takes a hundredth of
+  !> it.
   real(wp), parameter :: sync_interval = 2
-  !> Largest loss when a run is killed, in seconds of work, and largest number of collected words.
-  !> Most runs end before they write any.
+  !> Computing time [s] that is lost at most if a run is killed; largest number of collected words.
+  !> Most runs end before they write any words.
   real(wp), parameter :: hand_interval = 0.05_wp
   integer, parameter :: most_gathered = 98304
 
@@ -81,7 +83,7 @@ contains
 
   !> Opens the journal `path` of an earlier run: `next` returns its records, then `append` adds
   !> more. If its owner is not `owner`, the journal is left closed and unchanged, and `other` is its
-  !> owner. A journal without a complete heading is begun anew.
+  !> owner. A journal without a complete heading is begun again.
   subroutine go_on(self, path, owner, other, error)
     class(journal_t), intent(inout) :: self
     character(len=*), intent(in) :: path, owner
@@ -117,7 +119,7 @@ contains
     if (allocated(error)) call self%close()
   end subroutine go_on
 
-  !> Opens the file and starts the clocks.
+  !> Opens the file and sets the times of the journal to the present.
   subroutine start(self, path, how, error)
     class(journal_t), intent(inout) :: self
     character(len=*), intent(in) :: path
@@ -141,8 +143,8 @@ contains
     is_open = self%descriptor >= 0
   end function is_open
 
-  !> The next record of the earlier run. found = .false. after the last one; then `append` may
-  !> begin.
+  !> The next record of the earlier run. found = .false.: there are no more records, and `append`
+  !> may be called.
   subroutine next(self, record, found)
     class(journal_t), intent(inout) :: self
     type(byte_record_t), intent(inout) :: record
@@ -154,7 +156,7 @@ contains
     whole = 0
     call read_frame(self%descriptor, self%room, record, self%earlier, whole, found)
     self%waiting = self%waiting - 1
-    ! `go_on` has read this record before.
+    ! `go_on` has already read this record successfully.
     if (found) return
     call fail(self%trouble, file_trouble, 'cannot read ' // self%path)
     call self%close()
@@ -186,8 +188,8 @@ contains
     if (self%held > most_gathered .or. now - self%handed > hand_interval) call self%hand_over(now)
   end subroutine append
 
-  !> Writes the collected records, so that they survive this process, and synchronises the file if
-  !> `sync_interval` has passed. now: the time [s].
+  !> Writes the collected records, so that they are kept if this process ends, and synchronises the
+  !> file if `sync_interval` has passed. now: the time [s].
   subroutine hand_over(self, now)
     class(journal_t), intent(inout), target :: self
     real(wp), intent(in) :: now
@@ -211,8 +213,8 @@ contains
     call let_go(self)
   end subroutine hand_over
 
-  !> Waits until the journal is on the disk, the first time with its name and those of its folder
-  !> and of the folder above.
+  !> Waits until the journal has been written to the disk; the first time also its name, and the
+  !> names of its folder and of the folder above.
   subroutine put_on_disk(self, status)
     class(journal_t), intent(inout) :: self
     integer(c_int), intent(out) :: status
@@ -236,18 +238,18 @@ contains
     call let_go(self)
   end subroutine close_journal
 
-  !> Closes the journal, if it is open, without the records collected last.
+  !> Closes the journal, if it is open, without writing the records collected last.
   subroutine let_go(self)
     class(journal_t), intent(inout) :: self
     integer(c_int) :: status
 
     if (.not. self%is_open()) return
-    ! A failure loses only the records that were not synchronised.
+    ! If closing fails, only records that were not synchronised are lost.
     status = c_close(self%descriptor)
     self%descriptor = -1
   end subroutine let_go
 
-  !> Empties the journal and closes it, so that no run goes on from its records.
+  !> Empties the journal and closes it, so that no run can continue from its records.
   subroutine discard(self)
     class(journal_t), intent(inout) :: self
     integer(c_int) :: status

@@ -1,5 +1,5 @@
-!> The frame of a record in a journal: before its words are their number, the checksum of all other
-!> words, and a time.
+!> The frame of a record in a journal. Before the words of the record stand their number, the
+!> checksum of all other words, and a time.
 module journal_frame
   use, intrinsic :: iso_c_binding, only: c_int, c_long
   use kinds, only: wp, long
@@ -10,14 +10,14 @@ module journal_frame
   private
   public :: frame_words, word_bytes, read_frame
 
-  !> Number of words of a frame, and of bytes of a word.
+  !> Number of words in a frame; number of bytes in a word.
   integer, parameter :: frame_words = 3, word_bytes = storage_size(0_long)/8
 
 contains
 
-  !> Reads the record at the present position of a file of at most `most` words, and its time [s];
-  !> adds its bytes to `whole`. found = .false. at the end of the file, or if the record is not
-  !> complete.
+  !> Reads the record at the present position of a file, and its time [s], and adds its bytes to
+  !> `whole`. most: largest number of words in the record. found = .false.: the file ends here, or
+  !> the record is not complete.
   subroutine read_frame(descriptor, most, record, time, whole, found)
     integer(c_int), intent(in) :: descriptor
     integer(long), intent(in) :: most
@@ -43,7 +43,7 @@ contains
     found = .true.
   end subroutine read_frame
 
-  !> Reads words; .false. if the file ends before.
+  !> Reads words; the result is .false. if the file ends before all are read.
   logical function read_words(descriptor, words) result(complete)
     integer(c_int), intent(in) :: descriptor
     integer(long), intent(out) :: words(:)

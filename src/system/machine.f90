@@ -1,6 +1,6 @@
-!> What the machine has: the available memory, if the system reports it, and the number of threads
-!> of the linear algebra. For small matrices, and on a busy machine, more threads are slower than
-!> one; and with one, results do not depend on the number of threads.
+!> Properties of the machine: the available memory, if the system reports it, and the number of
+!> threads for the linear algebra. For small matrices, and on a busy machine, several threads are
+!> slower than one. With one thread, results do not depend on the number of available threads.
 module machine
   use, intrinsic :: iso_c_binding, only: c_int, c_long
   use kinds, only: wp
@@ -11,21 +11,22 @@ module machine
   private
   public :: available_memory, begin_with_one_thread, use_threads_for, thread_count, blas_buffers
 
-  !> Smallest number that means no limit [bytes].
+  !> Numbers of bytes from this one on mean that there is no limit.
   real(wp), parameter :: no_limit = 1.0e18_wp
 
-  !> Order of the matrix above which threads are faster even on a busy machine.
+  !> Order of a matrix above which several threads are faster even on a busy machine.
   integer, parameter :: worthwhile = 2500
   !> Address space [bytes] that OpenBLAS 0.3 maps for each thread that calls it, for matrices of any
-  !> size; address space of each further thread for its stack and `malloc`. Most of it is never
-  !> used.
+  !> size. Address space [bytes] that each further thread needs for its stack and `malloc`. Most of
+  !> both is never used.
   real(wp), parameter :: of_buffer = 136.0e6_wp, of_thread = 76.0e6_wp
 
 contains
 
-  !> Number of bytes that may still be allocated: the smallest of the machine's free memory, the
-  !> process's limit of address space (`ulimit -v`) less `mapped` bytes that will be mapped and
-  !> never used, and the limit of its control group. Huge if none is known.
+  !> Number of bytes that may still be allocated. It is the smallest of three: the machine's free
+  !> memory; the limit of the process's control group; the process's limit of address space (`ulimit
+  !> -v`) minus `mapped` bytes, which will be mapped and never used. It is huge if no limit is
+  !> known.
   real(wp) function available_memory(mapped) result(bytes)
     real(wp), intent(in) :: mapped
     real(wp), parameter :: kilo = 1024
@@ -35,7 +36,7 @@ contains
     limit = number_after('/proc/self/limits', 'Max address space', huge(1.0_wp))
     if (limit < no_limit) bytes = min(bytes, &
       limit - kilo*number_after('/proc/self/status', 'VmSize:', 0.0_wp) - mapped)
-    ! Control groups, version 2 and version 1.
+    ! Control groups of version 2 and of version 1.
     limit = number_after('/sys/fs/cgroup/memory.max', '', huge(1.0_wp))
     if (limit < no_limit) bytes = min(bytes, &
       limit - number_after('/sys/fs/cgroup/memory.current', '', 0.0_wp))
@@ -45,9 +46,9 @@ contains
     bytes = max(bytes, 0.0_wp)
   end function available_memory
 
-  !> The number behind `name` at the beginning of a line of a small file; `otherwise` if there is
-  !> none ("max", "unlimited", no such line or file). Fortran's `open` would load the system's
-  !> messages for each missing file.
+  !> The number after `name` at the beginning of a line in a small file. It is `otherwise` if there
+  !> is no number ("max", "unlimited", no such line or file). The file is read without Fortran's
+  !> `open`, which would load the system's messages for each missing file.
   real(wp) function number_after(file, name, otherwise) result(number)
     character(len=*), intent(in) :: file, name
     real(wp), intent(in) :: otherwise
@@ -69,9 +70,10 @@ contains
     if (status /= 0) number = otherwise
   end function number_after
 
-  !> Called once at the start of a program. OpenBLAS starts one thread for each further core when it
-  !> is loaded, and each of them spins for some 25 ms, as long as a short run takes. This procedure
-  !> ends them; `use_threads_for` starts them for large matrices.
+  !> Ends the threads that OpenBLAS starts when it is loaded, one for each further core. Each of
+  !> them keeps a core busy for some 25 ms, as long as a short run takes. This procedure must be
+  !> called once when a program starts; `use_threads_for` starts the threads again for large
+  !> matrices.
   subroutine begin_with_one_thread()
     integer(c_int) :: known
 
@@ -80,7 +82,7 @@ contains
   end subroutine begin_with_one_thread
 
   !> Sets the number of threads for matrices of the given order, if the library is OpenBLAS. In a
-  !> parallel region, where several cases run at once, each case has one thread.
+  !> parallel region, where several cases are computed at once, each case has one thread.
   subroutine use_threads_for(order)
     integer, intent(in) :: order
     integer(c_int) :: count, known
@@ -92,8 +94,8 @@ contains
     known = c_openblas_threads(count)
   end subroutine use_threads_for
 
-  !> Address space [bytes] that threads and linear algebra map for matrices of the given order in
-  !> `cases` cases at once. OpenBLAS tries for ever if it does not get its share.
+  !> Address space [bytes] that threads and linear algebra map for matrices of the given order if
+  !> `cases` cases are computed at once. If OpenBLAS cannot map its part, it never stops trying.
   real(wp) function blas_buffers(order, cases) result(bytes)
     integer, intent(in) :: order, cases
 

@@ -1,6 +1,7 @@
-!> Progress of a run on standard error: a live line on a terminal, otherwise a line now and then,
-!> with the time so far and, if steps are counted, the estimated remaining time. A thread writes it
-!> (`heartbeat.c`), so that the line is updated during long steps.
+!> Progress of a run on standard error. On a terminal there is one line that changes, otherwise a
+!> new line from time to time. A line shows the elapsed time and, if steps are counted, the
+!> estimated remaining time. A separate thread writes it (`heartbeat.c`), so that the line also
+!> changes during long steps.
 module progress
   use, intrinsic :: iso_c_binding, only: c_char, c_double, c_int, c_long, c_ptr, c_null_ptr, &
     c_associated, nul => c_null_char
@@ -11,7 +12,8 @@ module progress
   private
   public :: progress_t, duration
 
-  !> Does nothing until started. All text is plain ASCII. Must not be copied after the start.
+  !> The progress of a run, which shows nothing until it is started. All text is plain ASCII. It
+  !> must not be copied after the start.
   type :: progress_t
     private
     type(c_ptr) :: heartbeat = c_null_ptr
@@ -24,7 +26,7 @@ module progress
   end type progress_t
 
   interface
-    !> Begins to write lines that begin with a name; null if no thread can be started.
+    !> Starts a thread that writes lines beginning with a name; null if no thread can be started.
     type(c_ptr) function begin_progress(name, total, live) bind(c, name='snapin_begin_progress')
       import :: c_char, c_int, c_long, c_ptr
       character(kind=c_char), intent(in) :: name(*)
@@ -32,8 +34,8 @@ module progress
       integer(c_int), value :: live
     end function begin_progress
 
-    !> Sets the label of the present work. counted: number of steps done; given: 1 if an earlier run
-    !> did them, -1 for a part of a step; failed: number of failed steps.
+    !> Sets the label of the present work. counted: number of steps to count. given: 1 if an earlier
+    !> run completed them, -1 for a part of a step. failed: number of failed steps.
     subroutine show_progress(heartbeat, label, counted, given, failed) &
         bind(c, name='snapin_progress')
       import :: c_char, c_int, c_ptr
@@ -42,7 +44,7 @@ module progress
       integer(c_int), value :: counted, given, failed
     end subroutine show_progress
 
-    !> Ends the lines: the live line disappears; other lines get a last one.
+    !> Ends the output: the line on a terminal disappears; elsewhere a last line is written.
     subroutine end_progress(heartbeat) bind(c, name='snapin_end_progress')
       import :: c_ptr
       type(c_ptr), value :: heartbeat
@@ -58,8 +60,8 @@ module progress
 
 contains
 
-  !> Begins. total: the number of steps to come, 0 if it is not known; `name`, such as the deck's
-  !> stem, begins every line; quiet: nothing is ever written.
+  !> Starts the output. total: the number of steps, 0 if it is not known. name: the beginning of
+  !> every line, such as the name of the deck. quiet: nothing is written.
   subroutine start(self, total, name, quiet)
     class(progress_t), intent(inout) :: self
     integer, intent(in) :: total
@@ -70,8 +72,8 @@ contains
       int(max(total, 0), c_long), merge(1_c_int, 0_c_int, is_terminal()))
   end subroutine start
 
-  !> Counts one step of `label` (a branch). failed: the step failed; given: an earlier run did it,
-  !> so that it does not count in the estimated time.
+  !> Counts one step of `label` (a branch). failed: the step failed. given: an earlier run completed
+  !> the step, so that it does not enter the estimate of time.
   subroutine step(self, label, failed, given)
     class(progress_t), intent(inout) :: self
     character(len=*), intent(in) :: label
@@ -94,7 +96,7 @@ contains
     if (c_associated(self%heartbeat)) call show_progress(self%heartbeat, label // nul, 0, 0, 0)
   end subroutine note
 
-  !> Shows the label of a part of a step. Several threads may call it at once.
+  !> Shows the label of a part of a step. Several threads may call this procedure at the same time.
   subroutine detail(self, label)
     class(progress_t), intent(inout) :: self
     character(len=*), intent(in) :: label
@@ -112,7 +114,7 @@ contains
     self%heartbeat = c_null_ptr
   end subroutine finish
 
-  !> A time [s] to about two digits, with its unit.
+  !> A time [s] as text with about two digits and a unit.
   function duration(time) result(text)
     real(wp), intent(in) :: time
     character(len=:), allocatable :: text

@@ -1,14 +1,14 @@
-!> The files of a folder of results: their names, how to recognise a file that a run has written,
-!> and how the files of a run replace older ones.
+!> The files of a folder of results: their names, how to recognise a file written by a run, and how
+!> the files of a run replace older ones.
 !>
-!> A run writes into the folder `unfinished` within the folder of results; an interrupted run leaves
-!> its rows and its journal there. When all files are complete and on the disk, the old summary is
-!> removed, then the tables are replaced, and the new summary comes last. So the tables in a folder
-!> with a summary are one set, at every moment and after a power failure: each of these steps is on
-!> the disk before the next.
+!> A run writes into the folder `unfinished` within the folder of results; if it is interrupted, its
+!> rows and its journal stay there. When all files are complete and on the disk, the old summary is
+!> removed, then the tables are replaced, and finally the new summary is put in place. Each of these
+!> steps is on the disk before the next one begins. Therefore all tables in a folder with a summary
+!> belong to one run, at every moment and after a power failure.
 !>
-!> The folder may have files of others. A file that no run has written is never replaced or removed,
-!> whatever its name.
+!> The folder may also contain files of other origin. A file that no run has written is never
+!> replaced or removed, whatever its name is.
 module publication
   use failure, only: failure_t, fail, file_trouble
   use c_library, only: not_regular
@@ -25,22 +25,22 @@ module publication
     'device_jumps.csv', 'fixed_load.csv', 'table.csv', 'sensitivity.csv', &
     'curve_sensitivity.csv', 'fit.csv', fit_name, 'sweep.csv', 'costs.csv', &
     summary_name]
-  !> The folder with the files of a run that has not ended, and the name of its journal.
+  !> The folder with the files of an unfinished run, and the name of its journal.
   character(len=*), parameter :: unfinished = 'unfinished', journal_name = unfinished // '/journal'
 
   character(len=1), parameter :: nl = new_line('a')
-  !> How files of runs begin: tables; the fit; the journal, after four words of eight bytes. A
-  !> summary has the group &summary, after lines of comment.
+  !> The first characters of files that runs write: of tables; of the fit; of the journal, after
+  !> four words of eight bytes. A summary has the group &summary, after lines of comment.
   character(len=*), parameter :: of_table = '# title:', of_fit = '! A fit by snapin', &
     of_journal = 'program: ', of_summary = '&summary'
   integer, parameter :: words_before = 32
-  !> Number of bytes in which the beginning of a file is looked for.
+  !> Number of bytes at the beginning of a file that are examined.
   integer, parameter :: enough = 4096
 
 contains
 
-  !> Fails if something in the folder has the name of a result, and no run has written it. `error`
-  !> names it and says what to do.
+  !> Fails if something in the folder has the name of a result although no run has written it.
+  !> `error` gives this name and advice.
   subroutine check_names(folder, error)
     type(folder_lock_t), intent(in) :: folder
     type(failure_t), allocatable, intent(out) :: error
@@ -50,7 +50,7 @@ contains
       call check_file(folder, trim(result_files(i)), .false., error)
       if (allocated(error)) return
     end do
-    ! Another run may just make it.
+    ! Another run may be creating the folder at this moment.
     if (folder%contains_file(unfinished)) then
       call check_file(folder, unfinished, .false., error)
       if (.not. allocated(error) .and. folder%contains_file(unfinished)) &
@@ -64,8 +64,8 @@ contains
     end if
   end subroutine check_names
 
-  !> Fails if there is a file `name` that no run has written; if an interrupted run may have written
-  !> it (`cut`), its beginning may be incomplete.
+  !> Fails if there is a file `name` that no run has written. If an interrupted run may have written
+  !> the file (`cut`), its first characters may be incomplete.
   subroutine check_file(folder, name, cut, error)
     type(folder_lock_t), intent(in) :: folder
     character(len=*), intent(in) :: name
@@ -78,7 +78,7 @@ contains
       call refuse(folder, name, 'is a folder', error)
     else if (folder%contains_file(name)) then
       call folder%read_beginning(name, text, length)
-      ! Another run may just have moved its file.
+      ! Another run may have moved its file at this moment.
       if (.not. folder%contains_file(name)) return
       if (length == -not_regular) then
         call refuse(folder, name, 'is not a file but a link, a pipe or a device', error)
@@ -99,8 +99,8 @@ contains
       'of a result; move it away, or choose another folder')
   end subroutine refuse
 
-  !> Whether a run has written the file `name` that begins with `text`. An empty file is of a run
-  !> only if it may be `cut`.
+  !> Whether a run has written the file `name`, whose first bytes are `text`. An empty file counts
+  !> as one of a run only if it may be incomplete (`cut`).
   pure logical function is_of_run(name, text, cut)
     character(len=*), intent(in) :: name, text
     logical, intent(in) :: cut
@@ -111,18 +111,19 @@ contains
     case (fit_name)
       is_of_run = begins(text, of_fit, cut)
     case ('journal')
-      ! The first word is a small number, so that its last bytes are zero.
+      ! The first word is a small number; therefore its last bytes are zero.
       is_of_run = .false.
       if (len(text) >= 8) is_of_run = text(5:8) == repeat(achar(0), 4) .and. &
         begins(text(min(words_before, len(text)) + 1:), of_journal, cut)
     case default
       is_of_run = begins(text, of_table, cut)
     end select
-    ! A power failure may leave zeros.
+    ! A power failure may leave bytes that are zero.
     if (cut .and. verify(text, achar(0)) == 0) is_of_run = .true.
   end function is_of_run
 
-  !> Whether `text` begins with `mark` or, if it may be `cut`, is the beginning of the mark.
+  !> Whether `text` begins with `mark` or, if it may be incomplete (`cut`), is the beginning of
+  !> `mark`.
   pure logical function begins(text, mark, cut)
     character(len=*), intent(in) :: text, mark
     logical, intent(in) :: cut
@@ -131,7 +132,8 @@ contains
     if (cut .and. len(text) < len(mark)) begins = index(mark, text) == 1
   end function begins
 
-  !> Removes what an interrupted run has left. Files of others stay, with their folder.
+  !> Removes the files that an interrupted run has left. Files of other origin stay, and so does
+  !> their folder.
   subroutine clear_unfinished(folder, error)
     type(folder_lock_t), intent(in) :: folder
     type(failure_t), allocatable, intent(out) :: error
@@ -146,9 +148,9 @@ contains
     if (.not. allocated(error)) call folder%remove_folder(unfinished)
   end subroutine clear_unfinished
 
-  !> Gives the complete files of the run that are marked in `new` (one for each of `result_files`,
-  !> the summary among them) their place. Files of an earlier run are removed. If that fails,
-  !> `error` says what the folder then holds.
+  !> Puts those complete files of the run in place that are marked in `new` (one element for each of
+  !> `result_files`; the summary must be among them). Other files of an earlier run are removed. If
+  !> this fails, `error` says what the folder then contains.
   subroutine publish(folder, new, error)
     type(folder_lock_t), intent(in) :: folder
     logical, intent(in) :: new(:)
@@ -167,7 +169,7 @@ contains
     call folder%sync(error)
     do i = 1, size(new)
       if (allocated(error)) exit
-      ! The other files must be in place before the summary.
+      ! All other files must be in place on the disk before the summary.
       if (i == size(new)) call folder%sync(error)
       if (.not. allocated(error)) call replace(folder, trim(result_files(i)), new(i), error)
     end do
@@ -181,11 +183,11 @@ contains
       error%message = 'the new results are in place, but may not be on the disk: ' // error%message
       return
     end if
-    ! What cannot be removed does no harm.
+    ! Files that cannot be removed do no harm.
     call clear_unfinished(folder, ignored)
   end subroutine publish
 
-  !> Puts the new file `name` in place, or removes the old one if there is no new one.
+  !> Puts the new file `name` in place; if there is no new one, removes the old file.
   subroutine replace(folder, name, is_new, error)
     type(folder_lock_t), intent(in) :: folder
     character(len=*), intent(in) :: name

@@ -13,7 +13,7 @@ module teams
   end type team_t
 
   abstract interface
-    !> Sends a record to a process that receives.
+    !> Sends a record to a process that waits for one.
     subroutine send_record(self, record, to)
       import :: team_t, byte_record_t
       class(team_t), intent(in) :: self
@@ -21,7 +21,8 @@ module teams
       integer, intent(in) :: to
     end subroutine send_record
 
-    !> Waits for a record from any process, whose number is `from`; -1: one is gone.
+    !> Waits for a record from any process. from: the number of this process; -1 if a process has
+    !> ended.
     subroutine receive_record(self, record, from)
       import :: team_t, byte_record_t
       class(team_t), intent(inout) :: self

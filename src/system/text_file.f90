@@ -1,6 +1,6 @@
-!> Text files whose write errors are reported.
+!> Text files. Errors in writing them are reported.
 !>
-!> System calls write them, because Fortran's units do not report a full disk: compiler note 6.
+!> System calls write the files, because Fortran's units do not report a full disk: compiler note 6.
 module text_file
   use, intrinsic :: iso_c_binding, only: c_int, c_long
   use kinds, only: wp
@@ -12,20 +12,20 @@ module text_file
   private
   public :: output_t, plain
 
-  !> Longest delay [s] of the visible contents of a file.
+  !> Longest time [s] after which written text becomes visible in the file.
   real(wp), parameter :: show_interval = 0.1_wp
 
-  !> A text file that is being written. Write errors are reported by `flush` or `close` at the
+  !> A text file that is being written. An error in writing is reported by `flush` or `close` at the
   !> latest. The first error closes the file; its procedures then do nothing. It must not be copied
   !> while it is open.
   type :: output_t
     private
     integer(c_int) :: descriptor = -1
-    !> Whether it is part of a stream of several files, in which each piece follows a line with the
-    !> file's name and the number of bytes.
+    !> Whether the file is part of a stream of several files, in which a line with the file's name
+    !> and the number of bytes precedes each piece.
     logical :: streamed = .false.
     character(len=:), allocatable :: path
-    !> Text to be written is buffer(:held).
+    !> The text still to be written is buffer(:held).
     character(len=8192) :: buffer
     integer :: held = 0
     !> Time of the last writing [s].
@@ -44,8 +44,8 @@ module text_file
 
 contains
 
-  !> Creates or empties the file `path` and opens it. Fails if it is not a regular file, but a link
-  !> or a pipe. stream: the descriptor of a stream that the file becomes part of.
+  !> Creates or empties the file `path` and opens it. It fails if `path` is not a regular file but a
+  !> link or a pipe. stream: the descriptor of a stream that the file becomes part of.
   subroutine open_output(self, path, error, stream)
     class(output_t), intent(inout) :: self
     character(len=*), intent(in) :: path
@@ -98,7 +98,7 @@ contains
     call self%put(text // new_line('a'), error)
   end subroutine line
 
-  !> Writes `text` as one piece of a stream, also if it is empty, and ends the file.
+  !> Writes `text` as one piece of a stream, even if it is empty, and ends the file.
   subroutine piece(self, text, error)
     class(output_t), intent(inout) :: self
     character(len=*), intent(in) :: text
@@ -108,7 +108,7 @@ contains
     self%descriptor = -1
   end subroutine piece
 
-  !> Writes the text collected so far, so that it survives this process.
+  !> Writes the text collected so far, so that it is kept if this process ends.
   subroutine flush_output(self, error)
     class(output_t), intent(inout) :: self
     type(failure_t), allocatable, intent(out) :: error
@@ -122,7 +122,7 @@ contains
     call self%hand_over(self%buffer(:held), error)
   end subroutine flush_output
 
-  !> Flushes for users who watch the file, at most once every `show_interval`.
+  !> Writes the collected text for users who watch the file, at most once per `show_interval`.
   subroutine show(self, error)
     class(output_t), intent(inout) :: self
     type(failure_t), allocatable, intent(out) :: error
@@ -131,7 +131,7 @@ contains
     if (seconds() - self%handed > show_interval) call self%flush(error)
   end subroutine show
 
-  !> Waits until the file is on the disk and closes it, if it is open.
+  !> Waits until the file has been written to the disk and closes it, if it is open.
   subroutine close_output(self, error)
     class(output_t), intent(inout) :: self
     type(failure_t), allocatable, intent(out) :: error
@@ -170,7 +170,8 @@ contains
     self%descriptor = -1
   end subroutine hand_over
 
-  !> `text` as one line of plain ASCII: white space becomes blanks, other characters question marks.
+  !> `text` as one line of plain ASCII. White space is replaced by blanks, other characters by
+  !> question marks.
   pure function plain(text) result(clean)
     character(len=*), intent(in) :: text
     character(len=:), allocatable :: clean
@@ -181,7 +182,7 @@ contains
     do i = 1, len(text)
       code = ichar(text(i:i))
       if (code < 0) code = code + 256
-      ! Continuation bytes of a UTF-8 character.
+      ! Skip the continuation bytes of a UTF-8 character.
       if (code >= 128 .and. code < 192) cycle
       n = n + 1
       buffer(n:n) = text(i:i)
