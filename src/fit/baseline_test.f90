@@ -40,8 +40,9 @@ module baseline_test
   !> derivatives.
   real(wp), parameter :: rounding = 1.0e-4_wp
   !> Ripples have from one to `most_periods` periods over the travel, and at least `fewest_samples`
-  !> samples in a period. Number of trials for each of these, number of sections that refine the
-  !> best one, and number of samples for the search.
+  !> samples in a period. The search tries `oversampling` values for each number of periods, and
+  !> refines the best one by `sections` golden sections. With fewer samples than `enough` there is
+  !> no search.
   integer, parameter :: most_periods = 64, fewest_samples = 5, oversampling = 4, sections = 16, &
     enough = 40
   !> Largest change of the phase of a ripple over the travel that is neglected.

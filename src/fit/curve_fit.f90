@@ -21,9 +21,9 @@ module curve_fit
   !> each comparison. Number of sections that locate a minimum to a hundredth of the distance
   !> between two contact points; the search continues from there.
   integer, parameter :: tried = 160, tried_apart = 40, samples = 250, sections = 11
-  !> Largest numbers of contact points kept for each candidate, of searches from the best
-  !> candidates, of restarts from smaller residuals found with the errors, and of rounds in which
-  !> noise, outliers and jumps are determined again.
+  !> Largest numbers. most_points: of contact points kept for each candidate. most_fits: of searches
+  !> from the best candidates. most_looks: of restarts from smaller residuals that were found with
+  !> the errors. most_rounds: of rounds in which noise, outliers and jumps are determined again.
   integer, parameter :: most_points = 2, most_fits = 8, most_looks = 3, most_rounds = 8
   !> The search ends when this number of searches has led to the same minimum. Relative differences
   !> between sums of squares: below `same` they are equal, above `apart` they belong to different
@@ -78,7 +78,7 @@ contains
   contains
 
     !> Examines the residuals some standard errors away from the best values. If smaller residuals
-    !> are found there, the search goes on from them.
+    !> are found there, the search continues from them.
     subroutine examine()
       type(fitted_t) :: other
       real(wp), allocatable :: better(:)

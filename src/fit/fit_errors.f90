@@ -40,7 +40,7 @@ module fit_errors
     type(lack_t) :: lack = lack_t()
     !> At all samples: the model with its baseline, the residual, the baseline.
     real(wp), allocatable :: model(:), residual(:), baseline(:)
-    !> Position of the base at which the model jumps in and out; NaN without a jump.
+    !> Positions of the base at which the model has its snap-in and snap-off; NaN without a jump.
     real(wp) :: jump_z(2) = 0
     !> Derivatives of the residuals by the fitted numbers, and the covariance of these.
     real(wp), allocatable :: by_fitted(:, :), covariance(:, :)

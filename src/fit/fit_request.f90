@@ -12,9 +12,10 @@ module fit_request
     is_at_end, is_beyond
   public :: of_position, of_separation, of_load, of_segment, of_radius
 
-  !> The quantity of a column of the file: the position of the base of the spring; the separation of
-  !> the bodies (h0 plus a constant); the load, or the signal that measures the load; the segment;
-  !> the contact radius.
+  !> The quantity of a column of the file. of_position: the position of the base of the spring.
+  !> of_separation: the separation of the bodies (h0 plus a constant). of_load: the load, or the
+  !> signal that measures the load. of_segment: the label of the segment. of_radius: the contact
+  !> radius.
   integer, parameter :: of_position = 1, of_separation = 2, of_load = 3, of_segment = 4, &
     of_radius = 5
 

@@ -1,6 +1,10 @@
 !> The prediction of a model for bodies that a spring moves towards each other and back. Along each
 !> stable branch, load and contact radius are functions of the position of the spring's base, with
 !> derivatives by the unknowns of the model. All quantities are in SI units.
+!>
+!> On each panel of a branch, h0, load and the square of the contact radius are Hermite polynomials
+!> of a coordinate x through nodes. The nodes of a computed path are its points. Newton's method
+!> finds the x of a given position h0 - load/stiffness, or of a given -load.
 module force_model
   use kinds, only: wp
   use interpolation, only: interval_of, hermite_t, hermite_through, polynomial_weights, &

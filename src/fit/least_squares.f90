@@ -53,8 +53,8 @@ module least_squares
   end interface
 
   !> The search ends if a step lowers the sum of squares by less than a change of x by this fraction
-  !> of a standard error would (a change by one standard error changes the sum by its mean square).
-  !> Along a badly determined combination of x further steps could still go farther.
+  !> of a standard error would lower it. (A change by one standard error changes the sum by its mean
+  !> square.) Along a badly determined combination of x further steps could still go farther.
   real(wp), parameter :: of_error = 1.0e-3_wp
   !> The search also ends at this relative change of x; length of the first step.
   real(wp), parameter :: nearer = 1.0e-10_wp, first_step = 0.3_wp

@@ -11,9 +11,10 @@ module measured_checks
   private
   public :: check_measured, open_end, find_saturated
 
-  !> Limits: a signal in standard deviations of the noise; the fraction of the travel that counts as
-  !> an end; the slope of an end in contact, in units of that of the spring; the number of standard
-  !> errors that makes a statement certain; the fraction that counts as the main part of a sum.
+  !> Limits. stands_out: a signal in standard deviations of the noise. nearest_part: the fraction of
+  !> the travel that counts as an end. steep: the slope of an end in contact, in units of that of
+  !> the spring. surely: the number of standard errors that makes a statement certain. most_part:
+  !> the fraction that counts as the main part of a sum.
   real(wp), parameter :: stands_out = 8, nearest_part = 0.05_wp, steep = 0.2_wp, surely = 5, &
     most_part = 0.5_wp
   integer, parameter :: parts = nint(1/nearest_part)

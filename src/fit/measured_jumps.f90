@@ -25,13 +25,14 @@ module measured_jumps
     real(wp) :: z = 0, uncertainty = 0, change = 0
   end type measured_jump_t
 
-  !> Smallest change over the change due to the spring; smallest remaining change over the noise;
-  !> largest number of steps of a jump that an amplifier has smoothed.
+  !> Limits of a jump. steep: smallest ratio of its change to the change due to the spring. seen:
+  !> smallest ratio of the remaining change to the noise. most_steps: largest number of steps of a
+  !> jump that an amplifier has smoothed.
   real(wp), parameter :: steep = 3, seen = 8
   integer, parameter :: most_steps = 6
 
   !> Largest number of samples within a smoothed jump. A sample is within the jump, or an outlier,
-  !> if it is farther from both branches than this part of the jump and this many standard
+  !> if it is farther from both branches than `off_part` of the jump and than `off` standard
   !> deviations. For a single sample both are equally likely; each further neighbour favours the
   !> jump by `together`, in squares of standard deviations.
   integer, parameter :: most_within = 6
@@ -86,7 +87,7 @@ contains
       width = 2*width
     end do
     if (k == 0) return
-    ! The jump is searched near the middle of the samples that were compared.
+    ! The jump lies near the middle of the samples that were compared.
     first = k - width/2
     last = k + 1 + width/2
     do while (width == 1 .and. first > 1 .and. last - first < most_steps)

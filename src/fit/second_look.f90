@@ -1,5 +1,5 @@
-!> Analysis of the residuals of a fit: a test for systematic misfit by means over blocks of samples,
-!> and new estimates of noise, outliers and snap positions, which residuals show better than the
+!> Analysis of the residuals of a fit. Means over blocks of samples test for systematic misfit.
+!> Noise, outliers and snap positions are estimated again, since residuals show them better than the
 !> curve itself.
 module second_look
   use kinds, only: wp

@@ -9,9 +9,9 @@ module wider_errors
   private
   public :: widen
 
-  !> Number of standard errors out to which the residuals are examined; relative deficit of the rise
-  !> of the sum of squares that is tolerated; largest number of steps of one examination; number of
-  !> corrections of the other unknowns in a step.
+  !> out_to: number of standard errors out to which the residuals are examined. lacking: relative
+  !> deficit of the rise of the sum of squares that is tolerated. most_steps: largest number of
+  !> steps of one examination. corrections: number of corrections of the other unknowns in a step.
   real(wp), parameter :: out_to = 3, lacking = 0.2_wp
   integer, parameter :: most_steps = 6, corrections = 3
 

@@ -1,12 +1,13 @@
-!> The dimensionless problem. With gaps in units of the law's length L, lateral positions in the
-!> unit of the shape, sqrt(R L), and pressures in the law's unit, equations (14) to (18) of the
-!> paper become, as in (38),
+!> The dimensionless problem. Gaps are in units of the law's length L, lateral positions in the unit
+!> of the shape, sqrt(R L), and pressures in the law's unit. Equations (14) to (18) of the paper
+!> then become, as in (38),
 !>
 !>     H(rho) = H0 + f(rho) + 2 coupling Int P(H) k rho' drho' ,
 !>
-!> with f(rho) = rho^2/2 for the paper's parabola and one parameter, coupling = (1-nu^2)/E sqrt(R/L)
-!> pressure_unit: sigma (40) for the Lennard-Jones law, Lambda (39) at h0 = 0 for the exponential
-!> law, 0 for rigid bodies. For other shapes R is defined by their lateral unit, sqrt(R L).
+!> with f(rho) = rho^2/2 for the paper's parabola. The only parameter is the coupling
+!> (1-nu^2)/E sqrt(R/L) pressure_unit. It is sigma (40) for the Lennard-Jones law, Lambda (39) at
+!> h0 = 0 for the exponential law, 0 for rigid bodies. For other shapes R is defined by their
+!> lateral unit, sqrt(R L).
 module dimensionless_problem
   use kinds, only: wp, pi
   use force_law, only: force_law_t, whole_step, of_pressure

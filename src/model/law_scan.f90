@@ -97,9 +97,9 @@ contains
   end subroutine find_scales
 
   !> Sets adhesion and work of a law without an equilibrium separation, whose attraction ends at a
-  !> gap, or nowhere. The work of adhesion is the energy at contact. It would be infinite for a
-  !> singular law; then work is 0, and adhesion is only a scale, the energy at a gap of one length,
-  !> or at half the gap where the attraction ends.
+  !> gap, or nowhere. The work of adhesion is the energy at contact. For a singular law this energy
+  !> would be infinite. In this case work is 0, and adhesion is only a scale: the energy at a gap of
+  !> one length, or at half the gap where the attraction ends.
   subroutine find_adhesion_without_rest(law, ends)
     class(force_law_t), intent(inout) :: law
     real(wp), intent(in) :: ends
@@ -173,7 +173,7 @@ contains
   end function next_zero
 
   !> A zero of the pressure or of its slope (`quantity`), between two gaps at which the signs
-  !> differ. Bisection goes on to rounding accuracy, since all scales depend on the result.
+  !> differ. It is bisected to rounding accuracy, since all scales depend on the result.
   real(wp) function zero_between(law, from, to, quantity) result(middle)
     class(force_law_t), intent(in) :: law
     real(wp), intent(in) :: from, to

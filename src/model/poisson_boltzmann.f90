@@ -7,12 +7,12 @@
 !> field vanishes nowhere between the surfaces.
 !>
 !> A surface regulates its charge with a parameter p, where p = 1 is constant charge and p = 0
-!> constant potential. It obeys p (s - s0) + (1 - p) cosh(y0/2) (y - y0) = 0, where s is the slope
-!> of y towards the surface, and y0 and s0 = 2 sinh(y0/2) are the values of the isolated surface.
-!> The charge of the inner layer is then linear in the potential, and p = C_D/(C_D + C_I) is the
-!> share of the diffuse layer's capacity cosh(y0/2) (the constant regulation approximation, J. Phys.
-!> Chem. B 108, 19467, 2004). On this line y = y0 + p t and s = s0 - (1 - p) cosh(y0/2) t. The
-!> values of t at the two surfaces are the unknowns.
+!> constant potential. It obeys p (s - s0) + (1 - p) cosh(y0/2) (y - y0) = 0. Here s is the slope of
+!> y towards the surface; y0 and s0 = 2 sinh(y0/2) are the values of the isolated surface. The
+!> charge of the inner layer is then linear in the potential, and p = C_D/(C_D + C_I) is the share
+!> of the diffuse layer's capacity cosh(y0/2) (the constant regulation approximation, J. Phys. Chem.
+!> B 108, 19467, 2004). On this line y = y0 + p t and s = s0 - (1 - p) cosh(y0/2) t. The values of t
+!> at the two surfaces are the unknowns.
 module poisson_boltzmann
   use kinds, only: wp
   use special_functions, only: carlson_rf

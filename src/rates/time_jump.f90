@@ -15,8 +15,8 @@ module time_jump
   private
   public :: step_along
 
-  !> First, longest and shortest step of the coordinate; ratios of a step to the step before it, if
-  !> that step had a solution and if it had none; largest number of steps along a path.
+  !> First, longest and shortest step of the coordinate. Factors by which a step is longer after a
+  !> solution, and shorter after a failure. Largest number of steps along a path.
   real(wp), parameter :: first = 0.01_wp, longest = 0.15_wp, shortest = 1.0e-6_wp, &
     longer = 1.5_wp, shorter = 0.4_wp
   integer, parameter :: most_steps = 1000

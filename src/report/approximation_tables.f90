@@ -23,9 +23,10 @@ module approximation_tables
     real(wp) :: gap = 0, h0 = 0, displacement = 0, load = 0
   end type slow_state_t
 
-  !> The jumps of approaching bodies, in the order of the rows: by the stability criterion (29); by
-  !> (37), which is (29) for the attraction of Lennard-Jones alone; at the fold of h0 by (35b); and
-  !> at the fold of h0 by (35a), or by (22) for a law without closed form.
+  !> The jumps of approaching bodies, in the order of the rows. The first is that of the stability
+  !> criterion (29). The second is that of (37), which is (29) for the attraction of Lennard-Jones
+  !> alone. The third is the fold of h0 by (35b). The fourth is the fold of h0 by (35a), or by (22)
+  !> for a law without closed form.
   integer, parameter :: of_criterion = 1, of_equation_37 = 2, of_attraction = 3, of_fold = 4
 
   !> Names of the curves, in the order of the forms.

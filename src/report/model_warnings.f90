@@ -45,9 +45,9 @@ contains
       rounded(range_of(problem)) // ' m; lengths of a deck are in m: 5 um are 5e-6')
   end subroutine judge_law
 
-  !> Sets and checks the error of the well's depth and of the largest tension that interpolation of
-  !> a table causes. The pull-off force of rigid and of very soft bodies is proportional to the
-  !> depth; for other bodies it depends on depth and largest tension.
+  !> Sets and checks the relative error that the interpolation of a table causes in the depth of the
+  !> well and in the largest tension. The pull-off force of rigid and of very soft bodies is
+  !> proportional to the depth; for other bodies it depends on depth and largest tension.
   subroutine take_table_error(problem, summary)
     type(problem_t), intent(in) :: problem
     type(summary_t), intent(inout) :: summary

@@ -18,9 +18,10 @@ module transition_fits
   private
   public :: transition_fit_t, carpick_fit, pietrement_fit
 
-  !> A fit for two bodies: alpha (0 in DMT, 0.98 in JKR theory), pull-off force [N], negative,
-  !> contact radius [m] without load, displacement [m] in Hertz theory at that radius, and unit of
-  !> load [N]. The states are stable at their load; results are NaN beyond the pull-off.
+  !> A fit for two bodies. alpha: 0 in DMT, 0.98 in JKR theory. pull_off: the pull-off force [N],
+  !> negative. radius: the contact radius [m] without load. sunk: the displacement [m] in Hertz
+  !> theory at that radius. no_load: the unit of load [N]. The states are stable at their load;
+  !> results are NaN beyond the pull-off.
   type :: transition_fit_t
     real(wp) :: alpha = 0, pull_off = 0, radius = 0
     real(wp), private :: sunk = 0, no_load = 0
