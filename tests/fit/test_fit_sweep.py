@@ -93,6 +93,19 @@ def test_what_cannot_be_read_or_fitted_is_a_row_with_the_reason(swept):
     assert (swept["converged"][:COUNT] == 1).all()
 
 
+def test_the_first_warning_of_a_fit_is_in_its_row(folder):
+    """The same curve with the deck's spring constant and with one a tenth larger."""
+    (folder / "springs.csv").write_text(
+        "measurement.file,measurement.spring_constant\n"
+        f'"curve_0.csv",{SPRING}\n"curve_0.csv",{1.1 * SPRING}\n')
+    run(deck(folder, {"file": "springs.csv"}), folder, "springs")
+    right, wrong = table(folder, "springs")
+    assert right["verdict"] == "described" and right["warning"] == ""
+    assert wrong["verdict"] == "not_described"
+    # That a value ends at the edge of the search comes before what the residuals say.
+    assert f"{STRENGTH} ends at" in wrong["warning"]
+
+
 @pytest.mark.parametrize("threads", [2, 4])
 def test_the_bytes_do_not_depend_on_how_many_are_made_at_once(folder, swept, threads):
     one = (folder / "files/sweep.csv").read_bytes()
