@@ -54,6 +54,7 @@ def write_files(folder):
         delimiter=",", header="z [m],force [N],segment", comments="")
 
 
+@pytest.mark.slow
 def test_every_example_works(snapin, examples, tmp_path):
     write_files(tmp_path)
     for group in examples:

@@ -58,6 +58,7 @@ def test_a_tension_in_the_last_row_is_no_pull_off(snapin, tmp_path):
         "max_tension is no pull-off", "") and " theory" not in text
 
 
+@pytest.mark.slow
 def test_the_pull_off_of_a_noisy_table_has_the_error_of_its_points(snapin, tmp_path):
     """The line had the error of the calculation alone, ten million times smaller."""
     gap = np.geomspace(0.4e-9, 5e-9, 200)
