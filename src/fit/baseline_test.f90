@@ -185,11 +185,7 @@ contains
     real(wp), allocatable, intent(out) :: amplitude(:)
     type(bracket_t) :: bracket
     type(lacking_t) :: there
-    ! The whitened directions that the baseline and the unknowns explain, and the residuals without
-    ! them; all at the samples that count.
-    real(wp) :: known(size(data%sample), size(data%basis, 2) + size(tangent%basis, 2)), &
-      left(size(data%sample)), travel, points(2), best
-    logical :: beside(size(data%sample))
+    real(wp) :: travel, points(2), best
     integer :: samples(2), i, last
 
     period = 0
@@ -200,13 +196,6 @@ contains
       samples = [count(inward), count(.not. inward)]
     end associate
     last = min(most_periods, minval(samples, samples > 0)/fewest_samples)
-    beside = [(data%is_beside(data%sample(i)), i=1, size(data%sample))]
-    associate (n => size(data%sample), m => size(data%basis, 2))
-      known(:, :m) = data%basis
-      known(:, m + 1:) = tangent%basis(:n, :)
-      left = tangent%residual(:n) - matmul(tangent%basis(:n, :), matmul(tangent%residual, &
-        tangent%basis))
-    end associate
     best = -1
     do i = oversampling, oversampling*last
       gain = gain_at(real(i, wp)/oversampling)
@@ -227,39 +216,13 @@ contains
 
   contains
 
-    !> The `gain` that `explained` would find, b.G^-1.b. The vector b has the inner products of the
-    !> waves with the remaining residuals. The matrix G has the inner products of the waves with
-    !> each other, after projection onto the complement of the known directions.
     real(wp) function gain_at(periods)
       real(wp), intent(in) :: periods
-      real(wp), allocatable :: all_waves(:, :), wave(:, :), part(:), of_known(:, :), &
-        square(:, :), whole(:)
-      integer :: j, k
+      type(lacking_t) :: there
 
-      all_waves = waves_of(data%measured%z, data%measured%inward, travel/periods)
-      wave = all_waves(data%sample, :)
-      do k = 1, size(wave, 2)
-        where (beside) wave(:, k) = 0
-      end do
-      call data%whiten_columns(wave)
-      part = matmul(left, wave)
-      of_known = matmul(transpose(known), wave)
-      square = matmul(transpose(wave), wave)
-      gain_at = 0
-      whole = [(square(k, k), k=1, size(part))]
-      square = square - matmul(transpose(of_known), of_known)
-      ! Gaussian elimination, column by column. A wave that the known directions explain completely
-      ! adds nothing.
-      do k = 1, size(part)
-        if (.not. square(k, k) > rounding**2*whole(k)) cycle
-        gain_at = gain_at + part(k)**2/square(k, k)
-        do j = k + 1, size(part)
-          associate (share => square(j, k)/square(k, k))
-            part(j) = part(j) - share*part(k)
-            square(j:, j) = square(j:, j) - share*square(j:, k)
-          end associate
-        end do
-      end do
+      there = explained(data, tangent, waves_of(data%measured%z, data%measured%inward, &
+        travel/periods))
+      gain_at = there%gain
     end function gain_at
 
   end subroutine find_period

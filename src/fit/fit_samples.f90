@@ -30,8 +30,7 @@ module fit_samples
     integer, allocatable :: sample(:), way(:), side(:), run(:)
     !> The columns of the baseline at all samples. The whitened columns at the samples that count
     !> are the product of an orthonormal basis and a triangular matrix.
-    real(wp), allocatable, private :: column(:, :), triangle(:, :)
-    real(wp), allocatable :: basis(:, :)
+    real(wp), allocatable, private :: column(:, :), basis(:, :), triangle(:, :)
     !> For each sample that counts: the factor by which the residual is multiplied so that its noise
     !> is that of the signal.
     real(wp), allocatable, private :: weight(:)
@@ -40,7 +39,7 @@ module fit_samples
     procedure :: keep_way
     procedure :: is_beside
     procedure :: baseline_numbers
-    procedure :: whiten_columns
+    procedure, private :: whiten_columns
     procedure :: clean
     procedure :: baseline_under
     procedure :: amplitudes_under
