@@ -33,7 +33,7 @@ module preflight
   !> Approximate number of nodes of a mesh.
   real(wp), parameter :: of_mesh = 200
   !> Size of results [bytes] above which they are announced and the free disk space is checked.
-  real(wp), parameter :: large = 1.0e8_wp
+  real(wp), parameter :: large = 1.0e8_wp, gigabyte = 1.0e9_wp
 
 contains
 
@@ -207,7 +207,7 @@ contains
     character(len=:), allocatable :: text
     character(len=24) :: buffer
 
-    write (buffer, '(f0.2, a)') bytes/10.0_wp**9, ' GB'
+    write (buffer, '(f0.2, a)') bytes/gigabyte, ' GB'
     text = trim(buffer)
     if (text(1:1) == '.') text = '0'//text
   end function gigabytes

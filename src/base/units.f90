@@ -9,7 +9,8 @@ module units
   public :: find_unit, unit_in, split_unit, is_unit_cell, with_unit
 
   character(len=*), parameter :: prefixes = 'munp', bases = 'mNV'
-  integer, parameter :: powers(*) = [-3, -6, -9, -12], power_of_angstrom = -10
+  integer, parameter :: powers(*) = [-3, -6, -9, -12]
+  real(wp), parameter :: angstrom_in_m = 1.0e-10_wp
   !> The sign of Angstrom in UTF-8, of two code points, and in Latin-1; brackets about a unit.
   character(len=*), parameter :: angstrom(*) = [character(len=8) :: 'Angstrom', 'angstrom', &
     char(195) // char(133), char(226) // char(132) // char(171), char(197)], &
@@ -30,7 +31,7 @@ contains
     base = ' '
     unit = trim(adjustl(text))
     if (any(unit == angstrom) .and. len(unit) > 0) then
-      factor = 10.0_wp**power_of_angstrom
+      factor = angstrom_in_m
       base = 'm'
       return
     end if

@@ -20,6 +20,9 @@ module classical_model
   !> Number of contact radii at which the position is computed to find its maximum; ratio of the
   !> smallest of these radii to the largest; number of sections that refine the maximum.
   integer, parameter :: tried = 400, sections = 60
+  !> These radii grow as i**2, with i from 0 to `tried`; `first` stands for the i of the first one,
+  !> which is not 0.
+  real(wp), parameter :: first = 0.01_wp
 
   !> The unknowns are the work of adhesion w [J/m^2] and the plane-strain modulus (`stiffness`)
   !> [Pa]. If one of them is not fitted, its value is `work` or `stiffness`. radius [m]: the radius
@@ -164,7 +167,7 @@ contains
     real(wp) :: at(0:tried), position(0:tried), points(2)
     integer :: i
 
-    at = [(widest*(max(real(i, wp), 0.01_wp)/tried)**2, i=0, tried)]
+    at = [(widest*(max(real(i, wp), first)/tried)**2, i=0, tried)]
     position = [(position_at(at(i)), i=0, tried)]
     i = maxloc(position, 1) - 1
     bracket = bracket_t(at(max(i - 1, 0)), at(min(i + 1, tried)))

@@ -20,6 +20,8 @@ module curve_index
 
   !> Number of bytes that are read at once. The lines before the rows must fit into the first piece.
   integer, parameter :: piece = 2**20
+  !> Largest number of a curve.
+  real(wp), parameter :: largest_number = 1.0e9_wp
   character(len=*), parameter :: newline = new_line('a')
 
   !> number: the number of each curve, in the order of the file. digest: checksum of the file.
@@ -187,8 +189,8 @@ contains
       label = line(first:last)
       call parse_real(label, value, what)
       if (.not. allocated(what)) then
-        if (abs(value - anint(value)) > 0 .or. abs(value) > 1.0e9_wp) what = quoted(label) // &
-          ' is not a whole number'
+        if (abs(value - anint(value)) > 0 .or. abs(value) > largest_number) &
+          what = quoted(label) // ' is not a whole number'
       end if
       if (.not. allocated(what)) then
         if (any(self%number(:n) == nint(value))) what = 'the rows of curve ' // &

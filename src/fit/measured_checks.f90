@@ -14,9 +14,10 @@ module measured_checks
   !> Limits. stands_out: a signal in standard deviations of the noise. nearest_part: the fraction of
   !> the travel that counts as an end. steep: the slope of an end in contact, in units of that of
   !> the spring. surely: the number of standard errors that makes a statement certain. most_part:
-  !> the fraction that counts as the main part of a sum.
+  !> the fraction that counts as the main part of a sum. hardly: the fraction of a certain signal
+  !> that counts as none.
   real(wp), parameter :: stands_out = 8, nearest_part = 0.05_wp, steep = 0.2_wp, surely = 5, &
-    most_part = 0.5_wp
+    most_part = 0.5_wp, hardly = 0.2_wp
   integer, parameter :: parts = nint(1/nearest_part)
 
 contains
@@ -105,7 +106,7 @@ contains
           'on the way out (by ' // rounded(-sum(between)/size(between)) // ' on average, of a ' // &
           'signal with errors of ' // rounded(sure/surely) // '): the rows of the file are in ' // &
           'reverse order, or approach and retract are exchanged in the third column'
-      else if (sum(taken) < 0.2_wp*sure .and. slope(2) > steep*stiffness + surely*slope_error(2) &
+      else if (sum(taken) < hardly*sure .and. slope(2) > steep*stiffness + surely*slope_error(2) &
         .and. abs(slope(1)) + surely*slope_error(1) < slope(2)/4) then
         trouble = 'the bodies press on each other at the largest distance of the base, where the ' &
           // 'signal has a slope of ' // rounded(slope(2)/stiffness) // ' of that of the spring: ' &

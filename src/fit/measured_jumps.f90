@@ -37,6 +37,10 @@ module measured_jumps
   !> jump by `together`, in squares of standard deviations.
   integer, parameter :: most_within = 6
   real(wp), parameter :: off_part = 0.2_wp, off = 4, together = 4
+  !> Places of a jump whose cost exceeds the least one by more than `no_chance` do not count. The
+  !> chance of a place grows with the distance of its two samples, which counts as at least
+  !> `least_step` of the typical distance.
+  real(wp), parameter :: no_chance = 200, least_step = 0.1_wp
   !> The side of a sample is known if the other side has a smaller probability than `doubtful` (a
   !> normal number exceeds `normal_end` standard deviations with this probability). The position of
   !> the jump is known if the fraction of doubtful samples is smaller than `known_part`.
@@ -156,13 +160,13 @@ contains
     one_side = [ahead(n), behind(1)]
     least = min(minval(cost), minval(one_side))
     cost = cost - least
-    one_side = exp(-0.5_wp*min(one_side - least, 200.0_wp))*typical
+    one_side = exp(-0.5_wp*min(one_side - least, no_chance))*typical
     leaves = 0
     arrives = 0
     do m = 0, most_within
       do i = 1, n - 1 - m
-        if (cost(i, m) > 200) cycle
-        associate (chance => exp(-0.5_wp*cost(i, m))*max(abs(z(i + 1) - z(i)), 0.1_wp*typical))
+        if (cost(i, m) > no_chance) cycle
+        associate (chance => exp(-0.5_wp*cost(i, m))*max(abs(z(i + 1) - z(i)), least_step*typical))
           leaves(i) = leaves(i) + chance
           arrives(i + 1 + m) = arrives(i + 1 + m) + chance
         end associate

@@ -35,6 +35,9 @@ module second_look
   !> noise far from contact must differ from the noise elsewhere.
   integer, parameter :: enough = 50
   real(wp), parameter :: differs = 4
+  !> The look is settled if the noise changes by less than `same_noise` of itself, and the place of
+  !> each jump by at most `same_jump` of its uncertainty.
+  real(wp), parameter :: same_noise = 0.01_wp, same_jump = 0.1_wp
 
 contains
 
@@ -160,12 +163,12 @@ contains
         data%side < 0)
       settled = settled .and. all(usable .eqv. data%measured%usable)
       if (.not. data%noise_is_given) call renew_noise(curve, left)
-      settled = settled .and. abs(data%noise%deviation - deviation) < 0.01_wp*deviation
+      settled = settled .and. abs(data%noise%deviation - deviation) < same_noise*deviation
       do way = 1, 2
         if (curve%response%way(way)%main == 0 .or. .not. any(data%way == way)) cycle
         jump = jump_by_model(curve, value, baseline, left, way)
         settled = settled .and. jump%before == data%jump(way)%before .and. jump%after == &
-          data%jump(way)%after .and. abs(jump%z - data%jump(way)%z) <= 0.1_wp*jump%uncertainty
+          data%jump(way)%after .and. abs(jump%z - data%jump(way)%z) <= same_jump*jump%uncertainty
         data%jump(way) = jump
       end do
     end associate

@@ -14,6 +14,8 @@ module wider_errors
   !> steps of one examination. corrections: number of corrections of the other unknowns in a step.
   real(wp), parameter :: out_to = 3, lacking = 0.2_wp
   integer, parameter :: most_steps = 6, corrections = 3
+  !> Largest change of an unknown by its bounds that is only rounding, over its whole change.
+  real(wp), parameter :: rounding = 1.0e-9_wp
 
 contains
 
@@ -98,7 +100,7 @@ contains
         rise = huge(rise)
         do k = 0, corrections
           trial = within_bounds(unknown, now)
-          found = abs(fitted_of(unknown(j), trial(j)) - now(j)) <= 1.0e-9_wp*abs(far)
+          found = abs(fitted_of(unknown(j), trial(j)) - now(j)) <= rounding*abs(far)
           if (found) call residuals%residuals_of(trial, residual, found)
           if (.not. found) exit
           next = sum(residual**2) - fitted%chi_squared

@@ -46,10 +46,9 @@ def test_a_module_is_named_like_its_file():
 
 
 def test_a_number_in_a_formula_has_a_name():
-    """Except for coefficients (`house.is_plain`). Some thresholds of the fits still lack one."""
+    """Except for coefficients (`house.is_plain`)."""
     _, unnamed = house.constants()
-    assert not [f"{path.name}:{line}: {text}" for path, line, text in unnamed
-                if house.room_of(path.stem) != "fit"]
+    assert not [f"{path.name}:{line}: {text}" for path, line, text in unnamed]
 
 
 def test_every_name_of_a_type_has_one_meaning():
