@@ -5,7 +5,7 @@ module barriers
   use undeformed, only: load_undeformed
   implicit none
   private
-  public :: pass_barrier, ratio
+  public :: pass_barrier, trial_ratio
 
   !> A drive stops before a barrier if the bodies have a larger slope than this at the edge of the
   !> contact that overcomes the barrier. The slope is then no longer small, and paths through such
@@ -15,7 +15,8 @@ module barriers
   !> gaps. Numbers of contact radii (lateral units) and of gaps between undeformed bodies at which
   !> loads are evaluated, the ratio of successive values, and the smallest radius.
   integer, parameter :: gaps = 600, radii = 400, distances = 200
-  real(wp), parameter :: gap_ratio = 1.02_wp, ratio = 1.1_wp, smallest_radius = 1/ratio**60
+  real(wp), parameter :: gap_ratio = 1.02_wp, trial_ratio = 1.1_wp, &
+    smallest_radius = 1/trial_ratio**60
 
 contains
 
@@ -47,7 +48,7 @@ contains
         load = max(load, hertz)
         return
       end if
-      c = ratio*c
+      c = trial_ratio*c
     end do
     ! The pressure under a cone does not grow with the contact.
   end subroutine pass_barrier
@@ -64,7 +65,7 @@ contains
     if (.not. gap > 0) return
     do step = 1, distances
       load = max(load, load_undeformed(problem, gap))
-      gap = ratio*gap
+      gap = trial_ratio*gap
     end do
   end function largest_repulsion
 

@@ -13,7 +13,7 @@ module branch_end
   use fixed_branch, only: expected_at, is_expected, is_pinned, change
   use branch_tangent, only: branch_tangent_t, tangent_at, joins, passing
   use solver_options, only: solver_options_t
-  use stepper, only: stepper_t, branch_point_t, remember, exact
+  use stepper, only: stepper_t, branch_point_t, remember, error_of_h0
   implicit none
   private
   public :: follow, branch_end_t, arrived, at_fold, lost
@@ -235,7 +235,7 @@ contains
       way = trial%tangent%h0/bend
       if (trial%tangent%h0 > 0) low = trial
       if (.not. trial%tangent%h0 > 0) high = trial
-      if (0.5_wp*abs(trial%tangent%h0*way) < exact) exit
+      if (0.5_wp*abs(trial%tangent%h0*way) < error_of_h0) exit
     end do
     ! The branch may pass h0 before its fold.
     if ((trial%state%h0 - h0)*sense >= 0) then
@@ -247,7 +247,7 @@ contains
     found%fold = trial%state
     found%fold_h0 = trial%state%h0 + 0.5_wp*sense*trial%tangent%h0*way
     found%fold_load = trial%state%load + sense*trial%tangent%load*way
-    found%uncertainty = max(exact, 0.5_wp*abs(trial%tangent%h0*way)) + trial%state%residual
+    found%uncertainty = max(error_of_h0, 0.5_wp*abs(trial%tangent%h0*way)) + trial%state%residual
   end subroutine find_fold
 
   !> The state at a Q between two points, as a guess: by Hermite's cubics.

@@ -3,7 +3,7 @@
 module path_demand
   use kinds, only: wp, pi
   use dimensionless_problem, only: problem_t, coupling_over, yielding_gap
-  use barriers, only: pass_barrier, ratio
+  use barriers, only: pass_barrier, trial_ratio
   use contact_scales, only: beyond_contact
   use convex_contact, only: jkr_like_pull_off
   use undeformed, only: load_undeformed
@@ -51,10 +51,10 @@ contains
     if (.not. problem%law%adhesion > 0) return
     most = load_undeformed(problem, from)
     do k = 1, tried
-      load = load_undeformed(problem, from*ratio**k)
+      load = load_undeformed(problem, from*trial_ratio**k)
       if (.not. load < min(most, 0.0_wp)) cycle
       most = load
-      h0 = from*ratio**(k + 1)
+      h0 = from*trial_ratio**(k + 1)
     end do
   end function beyond_pull
 
@@ -164,7 +164,7 @@ contains
       do i = 1, size(request%device%stiffness)
         associate (k => request%device%stiffness(i))
           if (k > 0) farthest = max(farthest, beyond_contact(problem) + &
-            ratio*largest_pull(problem)*problem%load/(k*problem%length))
+            trial_ratio*largest_pull(problem)*problem%load/(k*problem%length))
         end associate
       end do
     end if
@@ -183,9 +183,9 @@ contains
 
     gap = 1
     do step = 1, 400
-      if (max(abs(load_undeformed(problem, gap)), abs(load_undeformed(problem, ratio*gap)), &
-        abs(load_undeformed(problem, ratio**2*gap))) < abs(load)) exit
-      gap = ratio*gap
+      if (max(abs(load_undeformed(problem, gap)), abs(load_undeformed(problem, trial_ratio*gap)), &
+        abs(load_undeformed(problem, trial_ratio**2*gap))) < abs(load)) exit
+      gap = trial_ratio*gap
     end do
   end function gap_of_load
 
@@ -207,7 +207,7 @@ contains
       if (law%rest_gap > 0) well = law%separation_of(law%rest_gap)
       ! If the law attracts in contact, the tension has no limit at small gaps, which are omitted.
       do step = merge(0, -tried/2, law%falls_below > 0), tried/2
-        tension = max(tension, -load_undeformed(problem, law%gap_of(well*ratio**step)))
+        tension = max(tension, -load_undeformed(problem, law%gap_of(well*trial_ratio**step)))
       end do
     end associate
   end function largest_pull
@@ -223,8 +223,8 @@ contains
     do while (position(c) > wanted)
       c = 2*c
     end do
-    do while (c > smallest .and. position(c/ratio) < wanted)
-      c = c/ratio
+    do while (c > smallest .and. position(c/trial_ratio) < wanted)
+      c = c/trial_ratio
     end do
     h0 = h0_at(c)
     h0 = h0 - margin*(1 + abs(h0))

@@ -8,7 +8,7 @@ module reported_numbers
   use reported_place, only: quantities, of_load, of_profile, least, rounding
   implicit none
   private
-  public :: number_t, run_numbers_t, judge, differentiate, margin, chance, chance_on_grids, &
+  public :: number_t, run_numbers_t, judge, differentiate, safety_factor, chance, chance_on_grids, &
     largest_error, largest_of, of_table, name_length
 
   integer, parameter :: name_length = 24
@@ -42,7 +42,7 @@ module reported_numbers
 
   !> Safety factor of the differences, for the error of the other run (a tenth or less on a finer
   !> mesh) and for differences that are small by chance.
-  real(wp), parameter :: margin = 3
+  real(wp), parameter :: safety_factor = 3
   !> Kinds of quantities whose relative errors are alike: 1 h0 and displacements, 2 loads and
   !> energies, 3 radii, 4 profiles.
   integer, parameter :: kind_of(quantities) = [1, 2, 1, 2, 3, 3, 2, 1, 2, 2, 4]
@@ -130,10 +130,10 @@ contains
       ! Every place of a number has a load.
       if (ieee_is_nan(a(of_load)) .neqv. ieee_is_nan(b(of_load))) number%known = .false.
       where (.not. (ieee_is_nan(a) .and. ieee_is_nan(b))) number%error = number%error + &
-        margin*other%part*abs(a - b)
+        safety_factor*other%part*abs(a - b)
     end associate
     if (number%compared(of_profile)) number%error(of_profile) = number%error(of_profile) + &
-      margin*profile_difference(number, other%number(k))
+      safety_factor*profile_difference(number, other%number(k))
   end subroutine compare
 
   !> The index of the same number, by name and element, of another run; 0: it has none.

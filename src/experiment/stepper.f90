@@ -13,13 +13,13 @@ module stepper
   implicit none
   private
   public :: stepper_t, known_path_t, branch_point_t, step_result_t, extreme_t, memory, &
-    remember, move_to, exact
+    remember, move_to, error_of_h0
 
   !> Number of states for the extrapolation in h0.
   integer, parameter :: memory = 4
   !> Largest error of the h0 of a fold or of the largest tension on a mesh fixed in space, relative
   !> or in the law's lengths.
-  real(wp), parameter :: exact = 1.0e-9_wp
+  real(wp), parameter :: error_of_h0 = 1.0e-9_wp
   !> Rounding errors of the values of h0 of an experiment, relative to 1 or to h0.
   real(wp), parameter :: rounding = 1.0e-12_wp
 

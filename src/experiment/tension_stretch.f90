@@ -6,7 +6,7 @@ module tension_stretch
   use branch_tangent, only: find_load_slope
   use root_finding, only: root_search_t, new_root_search
   use largest_tension, only: lower
-  use stepper, only: stepper_t, branch_point_t, step_result_t, exact
+  use stepper, only: stepper_t, branch_point_t, step_result_t, error_of_h0
   use reported_place, only: place_t, place_of_state, place_without_state, of_h0
   implicit none
   private
@@ -129,8 +129,8 @@ contains
     do round = 1, most_halvings
       if (.not. abs(slope) > 0) exit
       ! Between such close steps rounding hides any extremum.
-      if (.not. abs(bound - best%state%h0) > max(enough*width, exact*max(1.0_wp, abs(bound)))) &
-        exit
+      if (.not. abs(bound - best%state%h0) > max(enough*width, &
+        error_of_h0*max(1.0_wp, abs(bound)))) exit
       trial = best
       call steps%step_to(0.5_wp*(best%state%h0 + bound), trial, event)
       if (leaps(event) .or. .not. event%converged) then
@@ -183,7 +183,7 @@ contains
       if (leaps(event) .or. .not. event%converged) exit
       call find_load_slope(steps, trial%state, slope)
       if (abs(trial%state%h0 - last) > 0) bend = (slope - last_slope)/(trial%state%h0 - last)
-      if (abs(slope) <= max(exact, steps%options%tolerance)*abs(bend)) exit
+      if (abs(slope) <= max(error_of_h0, steps%options%tolerance)*abs(bend)) exit
       call search%note(trial%state%h0, slope)
       last = trial%state%h0
       last_slope = slope

@@ -9,7 +9,7 @@ module stability_records
   use contact_state, only: state_t
   use equilibrium, only: cost_t
   use records, only: observer_t, record_t, stable_yes, stable_no, stable_unasked
-  use reported_numbers, only: margin
+  use reported_numbers, only: safety_factor
   use text, only: counted
   use summary, only: summary_t
   use stability, only: smallest_eigenvalue, unknown
@@ -109,7 +109,7 @@ contains
     of_states = 0
     if (present(off)) of_states = min(off*self%by_h0, sqrt(off)*self%by_gap)
     if (self%criterion_error >= 0) &
-      call summary%set('criterion_28_error', margin*self%criterion_error + of_states)
+      call summary%set('criterion_28_error', safety_factor*self%criterion_error + of_states)
     if (self%uncertain > 0) call summary%warn('the smallest eigenvalue of '// &
       counted(self%uncertain, 'state')//' could not be verified and is NaN')
     if (self%contradicted > 0) call summary%warn('the eigenvalue of '// &
