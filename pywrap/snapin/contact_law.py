@@ -20,9 +20,10 @@ class ContactLaw:
     """Load, contact radius, stiffness and energy of two spheres over h0, the gap that they would
     have without deformation, in SI units.
 
-    `radius` is R, 1/R = 1/R1 + 1/R2; `reduced_modulus` is E, 1/E = (1-nu1^2)/E1 + (1-nu2^2)/E2;
-    `z0` is the length of the force law, for the law 9-3 the gap of zero force. `table` has the
-    coefficients of another force, as `tools/contact_law.py --deck` writes them.
+    `radius` is R, 1/R = 1/R1 + 1/R2; `reduced_modulus` is `E*`, where
+    `1/E* = (1-nu1^2)/E1 + (1-nu2^2)/E2`; `z0` is the length of the force law, for the law 9-3 the
+    gap of zero force. `table` has the coefficients of another force, as
+    `tools/contact_law.py --deck` writes them.
 
     `load`, `contact_radius`, `stiffness` and `energy` take h0 and whether the bodies were in
     contact before, for all h0 or for each, and return arrays. Where the bodies cannot be in this
