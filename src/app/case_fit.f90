@@ -19,7 +19,7 @@ module case_fit
   use problem_numbers, only: describe_problem
   use fit_errors, only: within_95
   use fit_run, only: fit_outcome_t
-  use fit_doubts, only: doubts_of
+  use fit_warnings, only: doubts_of
   use joint_fit, only: joint_curve_t, joint_fit_t, fit_jointly
   use fit_columns, only: count_of_fit, endings, derived, described, warned, not_described, &
     refused, unreadable

@@ -12,7 +12,7 @@ module number_rates
   use experiment, only: run_again
   use experiment_result, only: experiment_result_t
   use reported_numbers, only: run_numbers_t, differentiate
-  use listener, only: listener_t
+  use progress_observer, only: progress_observer_t
   implicit none
   private
   public :: rate_numbers
@@ -30,9 +30,9 @@ module number_rates
 contains
 
   !> Sets the derivatives of the numbers of an outcome, and adds the cost of the runs.
-  subroutine rate_numbers(scene, listener, outcome)
+  subroutine rate_numbers(scene, observer, outcome)
     type(scene_t), intent(in) :: scene
-    class(listener_t), intent(inout) :: listener
+    class(progress_observer_t), intent(inout) :: observer
     type(experiment_result_t), intent(inout) :: outcome
     type(scene_t), allocatable :: variant(:)
     type(experiment_result_t) :: other
@@ -46,7 +46,7 @@ contains
     if (.not. allocated(outcome%places%number)) return
     do j = 1, size(scene%varied)
       cost = outcome%cost
-      call listener%hear('differentiating by ' // scene%varied(j)%parameter%name)
+      call observer%hear('differentiating by ' // scene%varied(j)%parameter%name)
       call pose_variants(scene, j, offset, variant)
       outcome%differentiated = outcome%differentiated .and. allocated(variant)
       if (.not. allocated(variant)) cycle

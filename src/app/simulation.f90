@@ -42,7 +42,7 @@ module simulation
   use fit_run, only: fit_outcome_t
   use fit_columns, only: verdicts
   use measured_fit, only: fit_measured
-  use fit_doubts, only: doubts_of
+  use fit_warnings, only: doubts_of
   use fit_rows, only: write_fit_rows, fit_text, report_joint
   use fit_words, only: words_of_fit
   use joint_fit, only: joint_fit_t

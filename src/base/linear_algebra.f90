@@ -2,7 +2,7 @@
 module linear_algebra
   use kinds, only: wp
   use lapack, only: dgetrf, dgetrs, dgtsv, dgeev, dgesvd
-  use rough_lu, only: rough_lu_t
+  use single_precision_lu, only: single_precision_lu_t
   implicit none
   private
   public :: factorisation_t, factorise, solve, determinant_sign, claim_buffers, eigenvalues, &
@@ -13,7 +13,7 @@ module linear_algebra
   type :: factorisation_t
     real(wp), allocatable :: lu(:, :)
     integer, allocatable :: pivot(:)
-    type(rough_lu_t) :: rough
+    type(single_precision_lu_t) :: rough
     logical :: is_rough = .false.
     !> .false. if there are no factors, or the matrix was singular.
     logical :: valid = .false.

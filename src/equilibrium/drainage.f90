@@ -19,8 +19,8 @@ module drainage
   use kinds, only: wp
   use discretisation, only: discretisation_t
   use running_integrals, only: running_integrals_t, new_running_integrals
-  use carried_values, only: carried_t, new_carried
-  use besides, only: besides_t
+  use advected_values, only: advected_t, new_advected
+  use earlier_deformation, only: earlier_deformation_t
   implicit none
   private
   public :: fluid_t, drainage_t, earlier_t, rate_weights, farthest_pole
@@ -47,7 +47,7 @@ module drainage
     real(wp) :: weight = 0
     !> The two earlier states. (The array is allocatable: compiler note 11.)
     type(earlier_t), allocatable :: earlier(:)
-    type(besides_t), private :: known
+    type(earlier_deformation_t), private :: known
   contains
     procedure :: lay_out
     procedure :: place
@@ -118,7 +118,7 @@ contains
     integer, intent(in) :: mesh
     real(wp), intent(in) :: scale
     real(wp), dimension(grids(mesh)%nodes) :: value, growth
-    type(carried_t) :: carried
+    type(advected_t) :: carried
     integer :: i, k
 
     value = 0
@@ -127,7 +127,7 @@ contains
       associate (past => self%earlier(k), x => grids(mesh)%x)
         if (.not. abs(past%weight) > 0) cycle
         associate (from => grids(past%mesh), ratio => scale/past%scale)
-          carried = new_carried(from, past%raised, ratio > 1)
+          carried = new_advected(from, past%raised, ratio > 1)
           do i = 1, size(value)
             value(i) = value(i) + past%weight*carried%at(from, ratio*x(i))
             growth(i) = growth(i) + past%weight/(2*apart)* &
@@ -136,7 +136,7 @@ contains
         end associate
       end associate
     end do
-    self%known = besides_t(scale, value, growth)
+    self%known = earlier_deformation_t(scale, value, growth)
   end subroutine place
 
   !> The rate [1/s] of the gaps; raised: the gaps minus the shape.

@@ -7,12 +7,12 @@
 !> is prescribed. If it is not H0 at a fixed scale, there is one more unknown (H0 or c) and one more
 !> equation (for the gap on the axis or at the contact edge). Behind a spring H0 follows from the
 !> position of its base and the load. In viscoelastic bodies the deformation due to earlier
-!> pressures (`besides`) adds to the gap, and the pressure of a fluid between the bodies
+!> pressures (`earlier_deformation`) adds to the gap, and the pressure of a fluid between the bodies
 !> (`drainage`) adds to P(H).
 module equilibrium
   use kinds, only: wp, pi, long
   use dimensionless_problem, only: problem_t, coupling_over
-  use beyond_mesh, only: load_beyond
+  use far_field, only: load_beyond
   use discretisation, only: axis_row, centre_row, first_node
   use contact_scales, only: largest_floor
   use contact_state, only: state_t, load_reach, gap_at_end, far_gap
@@ -21,7 +21,7 @@ module equilibrium
     h0_is_prescribed, node_count, unpack
   use elastic_operator, only: elastic_operator_t
   use represented_pressure, only: pressure_on
-  use besides, only: besides_t
+  use earlier_deformation, only: earlier_deformation_t
   use drainage, only: drainage_t
   implicit none
   private
@@ -53,7 +53,7 @@ module equilibrium
     type(mesh_family_t) :: meshes
     type(cost_t) :: cost
     type(elastic_operator_t) :: operator
-    type(besides_t), allocatable :: besides
+    type(earlier_deformation_t), allocatable :: earlier
     type(drainage_t), allocatable :: drainage
     !> If allocated, (nodes): a control at_h0 prescribes H0 - sum(along*gap), the coordinate of a
     !> curve of equilibria that has folds of H0.
@@ -147,7 +147,7 @@ contains
       ! The deformation, equation (14): the rise of the gap is -2 u.
       columns = acting_columns(state%pressure)
       call equations%operator%deform(problem, grid, state%scale, columns, state%pressure, rise)
-      if (allocated(equations%besides)) rise = rise + equations%besides%at_scale(state%scale)
+      if (allocated(equations%earlier)) rise = rise + equations%earlier%at_scale(state%scale)
       cost%operator_products = cost%operator_products + 1
       cost%operator_columns = cost%operator_columns + columns
       ! The given gap less the separation of equation (17).

@@ -7,7 +7,7 @@ module jacobian
   use discretisation, only: discretisation_t, axis_row, centre_row, first_node
   use linear_algebra, only: factorisation_t, factorise
   use elastic_operator, only: elastic_operator_t
-  use besides, only: besides_t
+  use earlier_deformation, only: earlier_deformation_t
   use contact_state, only: state_t
   use represented_pressure, only: pressure_slope_t, slope_on
   use controls, only: control_t, at_h0, at_axis_gap, at_edge_radius, at_h0_with_edge, &
@@ -33,7 +33,7 @@ contains
     associate (grid => equations%meshes%grid(control%mesh), problem => equations%problem)
       call fill(problem, grid, equations%operator, equations%meshes%locked_gap( &
         control%mesh), control, state, factors, equations%cost, shift)
-      if (allocated(equations%besides)) call add_besides(equations%besides, control, state, &
+      if (allocated(equations%earlier)) call add_earlier(equations%earlier, control, state, &
         factors%lu)
       if (h0_is_prescribed(control) .and. control%compliance > 0) &
         call add_spring(equations, control, state, factors%lu)
@@ -47,20 +47,20 @@ contains
 
   !> Corrects the derivative by the scale for viscoelastic bodies: the rise due to earlier pressures
   !> is part of the gaps in `scale_derivative`, but is not proportional to the scale.
-  subroutine add_besides(besides, control, state, lu)
-    type(besides_t), intent(in) :: besides
+  subroutine add_earlier(earlier, control, state, lu)
+    type(earlier_deformation_t), intent(in) :: earlier
     type(control_t), intent(in) :: control
     type(state_t), intent(in) :: state
     real(wp), intent(inout) :: lu(:, :)
-    real(wp) :: change(size(besides%value))
+    real(wp) :: change(size(earlier%value))
     integer :: n
 
     if (control%kind /= at_h0_with_edge) return
     n = size(state%gap)
-    change = (besides%growth - besides%at_scale(state%scale))/state%scale
+    change = (earlier%growth - earlier%at_scale(state%scale))/state%scale
     lu(:n, n + 1) = lu(:n, n + 1) - change(first_node:)
     lu(n + 1, n + 1) = lu(n + 1, n + 1) + change(centre_row)
-  end subroutine add_besides
+  end subroutine add_earlier
 
   !> Adds the spring's part: H0 depends on the load, and therefore on gaps and scale.
   subroutine add_spring(equations, control, state, lu)

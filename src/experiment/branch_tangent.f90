@@ -7,7 +7,7 @@
 !> of dh0/dQ.
 module branch_tangent
   use kinds, only: wp, pi, nan
-  use beyond_mesh, only: load_slope_beyond
+  use far_field, only: load_slope_beyond
   use contact_state, only: state_t, gap_at_end, load_reach
   use controls, only: control_t
   use jacobian, only: control_derivative

@@ -34,7 +34,7 @@ module experiment_result
     logical :: differentiated = .true.
     !> Largest estimated relative error of the reported numbers.
     real(wp), allocatable :: error_estimate
-    !> Largest part of the load that the nodes of the path's meshes miss (`mending`).
+    !> Largest part of the load that the nodes of the path's meshes miss (`mesh_refinement`).
     real(wp) :: left_out = 0
     type(cost_t) :: cost
     integer :: nodes = 0

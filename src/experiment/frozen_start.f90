@@ -8,7 +8,7 @@ module frozen_start
   use records, only: record_t
   use time_instant, only: instant_t
   use time_stepper, only: time_stepper_t
-  use rest, only: begin_at_rest
+  use relaxed_start, only: begin_at_rest
   implicit none
   private
   public :: effect_of_start

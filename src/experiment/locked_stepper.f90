@@ -4,7 +4,7 @@
 !> is one state for every h0.
 module locked_stepper
   use kinds, only: wp
-  use listener, only: listener_t
+  use progress_observer, only: progress_observer_t
   use dimensionless_problem, only: calm_gap
   use contact_state, only: state_t, undeformed_state
   use arc, only: between
@@ -36,14 +36,14 @@ module locked_stepper
     !> Traces the path from h0_high, or from where the bodies hardly deform, until it is stable at
     !> h0_low. into_contact: until the bodies are also in contact, at ends_at. accuracy, demand: see
     !> `trace`. With `demand` the points define a smooth curve. To be called before the first step.
-    !> The listener receives messages about the progress.
-    subroutine find_the_path(self, h0_high, h0_low, ends_at, into_contact, accuracy, listener, &
+    !> The observer receives messages about the progress.
+    subroutine find_the_path(self, h0_high, h0_low, ends_at, into_contact, accuracy, observer, &
       demand)
-      import :: locked_stepper_t, listener_t, demand_t, wp
+      import :: locked_stepper_t, progress_observer_t, demand_t, wp
       class(locked_stepper_t), intent(inout) :: self
       real(wp), intent(in) :: h0_high, h0_low, ends_at, accuracy
       logical, intent(in) :: into_contact
-      class(listener_t), intent(inout) :: listener
+      class(progress_observer_t), intent(inout) :: observer
       type(demand_t), intent(in), optional :: demand
     end subroutine find_the_path
   end interface
@@ -96,11 +96,11 @@ contains
   end subroutine attempt
 
   !> There is no path with unstable states, and h0 determines each state.
-  subroutine find_path(self, h0_high, h0_low, ends_at, into_contact, accuracy, listener, demand)
+  subroutine find_path(self, h0_high, h0_low, ends_at, into_contact, accuracy, observer, demand)
     class(unique_stepper_t), intent(inout) :: self
     real(wp), intent(in) :: h0_high, h0_low, ends_at, accuracy
     logical, intent(in) :: into_contact
-    class(listener_t), intent(inout) :: listener
+    class(progress_observer_t), intent(inout) :: observer
     type(demand_t), intent(in), optional :: demand
   end subroutine find_path
 

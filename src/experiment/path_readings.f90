@@ -3,7 +3,7 @@
 module path_readings
   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_positive_inf
   use kinds, only: wp
-  use listener, only: listener_t
+  use progress_observer, only: progress_observer_t
   use experiment_request, only: request_t
   use path_sensitivity, only: rate_t
   use driven_pieces, only: drive_t, through_spring
@@ -44,14 +44,14 @@ module path_readings
 contains
 
   !> Evaluates the requested experiments on the path of `steps`.
-  subroutine read_path(request, steps, listener, readings)
+  subroutine read_path(request, steps, observer, readings)
     class(request_t), intent(in) :: request
     class(stepper_t), intent(inout) :: steps
-    class(listener_t), intent(inout) :: listener
+    class(progress_observer_t), intent(inout) :: observer
     type(path_readings_t), allocatable, intent(out) :: readings
 
     allocate (readings)
-    call listener%hear('reading the path')
+    call observer%hear('reading the path')
     associate (path => steps%known%path)
       readings%solved = path%held > 1
       allocate (readings%node(0))

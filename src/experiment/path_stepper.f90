@@ -7,7 +7,7 @@
 !> steps. Near a fold the state is found by a search along the path.
 module path_stepper
   use kinds, only: wp
-  use listener, only: listener_t
+  use progress_observer, only: progress_observer_t
   use contact_state, only: state_t
   use locked_stepper, only: locked_stepper_t
   use path_coordinate, only: coordinate_of
@@ -46,11 +46,11 @@ module path_stepper
 
 contains
 
-  subroutine find_path(self, h0_high, h0_low, ends_at, into_contact, accuracy, listener, demand)
+  subroutine find_path(self, h0_high, h0_low, ends_at, into_contact, accuracy, observer, demand)
     class(path_stepper_t), intent(inout) :: self
     real(wp), intent(in) :: h0_high, h0_low, ends_at, accuracy
     logical, intent(in) :: into_contact
-    class(listener_t), intent(inout) :: listener
+    class(progress_observer_t), intent(inout) :: observer
     type(demand_t), intent(in), optional :: demand
     type(known_path_t) :: nothing
     type(branch_point_t) :: position
@@ -60,7 +60,7 @@ contains
     call self%operator%forget()
     call self%begin_afar(h0_high, position, event)
     if (.not. event%ending%early()) then
-      call trace(self%solver_t, position%state, h0_low, into_contact, accuracy, listener, &
+      call trace(self%solver_t, position%state, h0_low, into_contact, accuracy, observer, &
         self%known, demand, ends_at)
       associate (path => self%known%path, stable => self%known%stable)
         call find_pieces(self%solver_t, path, drive_t(of_h0), stable)

@@ -2,7 +2,7 @@
 !> SI units.
 module records
   use kinds, only: wp
-  use listener, only: listener_t
+  use progress_observer, only: progress_observer_t
   use dimensionless_problem, only: problem_t, spacing_over_neck
   use discretisation, only: discretisation_t
   use contact_state, only: state_t, contact_radius_of
@@ -43,7 +43,7 @@ module records
 
   !> Receives records as they are computed. This one ignores them, for runs that need only the
   !> summary; extensions keep them.
-  type, extends(listener_t) :: observer_t
+  type, extends(progress_observer_t) :: observer_t
   contains
     procedure :: take
   end type observer_t

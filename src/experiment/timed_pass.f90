@@ -4,13 +4,13 @@
 module timed_pass
   use kinds, only: wp, pi
   use mesh_plan, only: contact
-  use listener, only: listener_t
+  use progress_observer, only: progress_observer_t
   use motion, only: motion_t, names_of_ways
   use time_instant, only: instant_t
   use time_stepper, only: time_stepper_t
   use time_jump, only: step_along
-  use rest, only: begin_at_rest, load_at_rest, longest_step
-  use drained_way, only: step_drained, longer, safety, remainder
+  use relaxed_start, only: begin_at_rest, load_at_rest, longest_step
+  use squeeze_film_steps, only: step_drained, longer, safety, remainder
   use timed_record, only: pass_t, accept, take_row, note, lose, most_steps, &
     of_tension, of_end_h0, of_end_load, of_end_displacement, of_dissipation
   implicit none
@@ -37,10 +37,10 @@ module timed_pass
 contains
 
   !> One pass. It chooses its steps, or halves those of the previous pass if there is one.
-  subroutine go_through(before, steps, listener, now)
+  subroutine go_through(before, steps, observer, now)
     type(pass_t), intent(in) :: before
     type(time_stepper_t), intent(inout) :: steps
-    class(listener_t), intent(inout) :: listener
+    class(progress_observer_t), intent(inout) :: observer
     type(pass_t), intent(inout) :: now
     integer :: way
 
@@ -229,7 +229,7 @@ contains
 
       write (so_far, '(a, i0, a, i0, a)') 'drive, pass ', now%number, ': ', &
         nint(100*(now%began + now%at%time)/(now%drive%began(3) + now%drive%lasts(3))), ' %'
-      call listener%hear(trim(so_far))
+      call observer%hear(trim(so_far))
     end subroutine tell
 
   end subroutine go_through

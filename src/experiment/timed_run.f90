@@ -19,7 +19,7 @@ module timed_run
   use path_demand, only: h0_in_contact
   use motion, only: new_motion, names_of_ways
   use time_stepper, only: time_stepper_t
-  use material, only: new_material
+  use memory_mesh, only: new_memory_mesh
   use solver_options, only: tightened
   use drainage, only: farthest_pole
   use frozen_start, only: effect_of_start
@@ -239,7 +239,7 @@ contains
         of_memory%panel_order = of_memory%panel_order + over_order + pass
         of_memory%nodes = most_nodes
         grid = fixed_mesh(of_memory, relaxed)
-        steps%material = new_material(grid, count(abs(grid%panel%right - grid%panel%left - &
+        steps%material = new_memory_mesh(grid, count(abs(grid%panel%right - grid%panel%left - &
           grid%panel(1)%right) <= sqrt(epsilon(1.0_wp))*grid%panel(1)%right), &
           left_out*request%numerics%accuracy)
         steps%cost%kernel_entries = steps%cost%kernel_entries + steps%material%kernel_entries()

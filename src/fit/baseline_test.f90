@@ -2,14 +2,14 @@
 !> ripple. Each is a direction in the space of the residuals r. Let g be the unit vector of this
 !> direction without the components that the unknowns and the present baseline explain. The part
 !> would then lower chi squared by (g.r)^2 and move the unknowns by known amounts. No further fit is
-!> needed (as in `held_numbers`).
+!> needed (as in `fixed_parameter_test`).
 module baseline_test
   use kinds, only: wp
   use root_finding, only: bracket_t
   use noise, only: white_noise
   use baseline, only: waves_of, ways_in, scaled
   use fit_samples, only: fit_samples_t, orthonormalise, solve_triangle
-  use second_look, only: chance_of, renew_noise
+  use residual_analysis, only: chance_of, renew_noise
   use curve_residuals, only: curve_residuals_t
   implicit none
   private

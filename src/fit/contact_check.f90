@@ -4,7 +4,7 @@ module contact_check
   use text, only: counted, rounded
   use measured_curve, only: measured_curve_t
   use noise, only: noise_t, white_noise, rough_deviation
-  use second_look, only: lack_t, lack_in
+  use residual_analysis, only: lack_t, lack_in
   implicit none
   private
   public :: check_contact

@@ -8,7 +8,7 @@ module curve_fit
   use curve_residuals, only: curve_residuals_t
   use root_finding, only: bracket_t
   use noise, only: white_noise
-  use second_look, only: look_again
+  use residual_analysis, only: look_again
   use baseline_test, only: settle_ripple
   use fit_errors, only: fitted_t, judge
   use wider_errors, only: widen

@@ -5,7 +5,7 @@ module fit_errors
   use fit_request, only: unknown_t, value_by_fitted
   use fit_residuals, only: fit_residuals_t
   use curve_residuals, only: curve_residuals_t
-  use second_look, only: lack_t, lack_in
+  use residual_analysis, only: lack_t, lack_in
   implicit none
   private
   public :: fitted_t, judge, find_errors, examine_curve, set_deviations, bounded, least_effect, &

@@ -7,7 +7,7 @@ module fit_refusals
   use modelled_curve, only: modelled_curve_t
   use measured_loads, only: other_order
   use fit_errors, only: fitted_t, least_effect
-  use second_look, only: chance_of, rarely
+  use residual_analysis, only: chance_of, rarely
   use fit_alternatives, only: contact_slope
   implicit none
   private

@@ -4,7 +4,7 @@ module fit_run
   use kinds, only: wp
   use text, only: rounded
   use failure, only: failure_t
-  use listener, only: listener_t
+  use progress_observer, only: progress_observer_t
   use dimensionless_problem, only: problem_t
   use variation, only: problem_family_t
   use experiment_request, only: numerics_t
@@ -18,14 +18,14 @@ module fit_run
   use turn_rest, only: leave_out_rest
   use noise, only: white_noise, rounding_of, rough_deviation
   use fit_starts, only: character_t, character_of, starts_like
-  use mending, only: too_much
+  use mesh_refinement, only: too_much
   use force_model, only: force_model_t
   use curve_models, only: curve_models_t
   use modelled_curve, only: modelled_curve_t, beyond, level_of
   use curve_residuals, only: curve_residuals_t
   use curve_fit, only: fit_curve
   use fit_errors, only: fitted_t, least_effect
-  use held_numbers, only: held_t, test_held
+  use fixed_parameter_test, only: held_t, test_held
   use baseline_test, only: lacking_t, test_baseline
   use fit_alternatives, only: alternative_t, find_alternative
   use fit_refusals, only: check_fit
@@ -71,7 +71,7 @@ contains
   !> the deck's values. theories: whether the classical theories are fitted too. like: values of the
   !> unknowns for a similar curve; if a search from these values describes the data, no other search
   !> follows.
-  subroutine run_fit(measured, fit, numerics, family, wider, problem, theories, listener, outcome, &
+  subroutine run_fit(measured, fit, numerics, family, wider, problem, theories, observer, outcome, &
     like)
     type(measured_curve_t), intent(in) :: measured
     type(fit_t), intent(in) :: fit
@@ -79,7 +79,7 @@ contains
     class(problem_family_t), intent(in) :: family, wider
     type(problem_t), intent(in) :: problem
     logical, intent(in) :: theories
-    class(listener_t), intent(inout) :: listener
+    class(progress_observer_t), intent(inout) :: observer
     type(fit_outcome_t), intent(out) :: outcome
     real(wp), intent(in), optional :: like(:)
     type(curve_models_t), target :: models
@@ -91,7 +91,7 @@ contains
 
     call take_curve(outcome%trouble)
     if (allocated(outcome%trouble)) return
-    call listener%hear('fitting the path')
+    call observer%hear('fitting the path')
     call models%set(family, numerics, problem%law%adhesion > 0, measured%has(of_radius), model)
     suggestion = ''
     if (.not. is_like()) then
@@ -106,12 +106,12 @@ contains
     call residuals%curve%use_model(model)
     call examine_fit(residuals, fit, family, wider, outcome)
     if (.not. outcome%fitted%lack%is_noise()) then
-      call listener%hear('looking for what is wrong')
+      call observer%hear('analysing the residuals')
       call find_alternative(family, problem, curve, model, asked_most(outcome%held) == &
         'measurement.spring_constant', outcome%fitted, outcome%alternative)
     end if
     if (.not. (theories .and. allocated(outcome%problem))) return
-    call listener%hear('fitting classical theories')
+    call observer%hear('fitting classical theories')
     call fit_theories(curve, outcome%fitted, family, outcome%problem, outcome%theory)
 
   contains

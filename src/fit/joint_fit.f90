@@ -4,7 +4,7 @@
 module joint_fit
   use kinds, only: wp
   use text, only: counted, rounded
-  use listener, only: listener_t
+  use progress_observer, only: progress_observer_t
   use variation, only: problem_family_t
   use experiment_request, only: numerics_t
   use fit_request, only: fit_t, unknown_t, of_radius
@@ -15,7 +15,7 @@ module joint_fit
   use joint_search, only: search_all, agree
   use fit_errors, only: fitted_t, find_errors, examine_curve, least_effect
   use wider_errors, only: widen
-  use mending, only: too_much
+  use mesh_refinement, only: too_much
   use fit_run, only: fit_outcome_t, examine_fit
   implicit none
   private
@@ -53,9 +53,9 @@ module joint_fit
 contains
 
   !> Fits the curves that take part together.
-  subroutine fit_jointly(curves, listener, joint)
+  subroutine fit_jointly(curves, observer, joint)
     type(joint_curve_t), intent(inout), target :: curves(:)
-    class(listener_t), intent(inout) :: listener
+    class(progress_observer_t), intent(inout) :: observer
     type(joint_fit_t), intent(out) :: joint
     type(joint_residuals_t) :: residuals
     type(fitted_t) :: fitted
@@ -70,7 +70,7 @@ contains
       joint%trouble = 'the model describes none of the curves alone'
       return
     end if
-    call listener%hear('fitting the curves together')
+    call observer%hear('fitting the curves together')
     call gather(curves, taking, residuals, joint%alone)
     n = count(residuals%unknown%shared)
     joint%spared = n*(size(taking) - 1)

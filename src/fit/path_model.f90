@@ -4,7 +4,7 @@
 module path_model
   use kinds, only: wp
   use failure, only: failure_t
-  use listener, only: listener_t
+  use progress_observer, only: progress_observer_t
   use dimensionless_problem, only: problem_t, contact_level_of
   use contact_state, only: radius_of_gap
   use discretisation, only: discretisation_t
@@ -70,7 +70,8 @@ module path_model
     !> kept until another one has derivatives.
     type(trial_t), private :: trial(2)
     integer, private :: last = 1
-    !> The fraction of the load that is missing on the meshes of the trial solved last (`mending`).
+    !> The fraction of the load that is missing on the meshes of the trial solved last
+    !> (`mesh_refinement`).
     real(wp) :: left_out = 0
   contains
     procedure :: respond
@@ -162,7 +163,7 @@ contains
     type(demand_t) :: demand
     type(problem_t) :: problem
     type(choice_t) :: chosen
-    type(listener_t) :: silent
+    type(progress_observer_t) :: silent
     type(failure_t), allocatable :: error
     real(wp), allocatable :: anywhere
 

@@ -11,7 +11,7 @@ module edge_locked
   use mesh_plan, only: new_mesh_plan, approach, contact
   use mesh_family, only: mesh_family_t
   use law_panels, only: about_front, about_edge
-  use seen_gaps, only: seen_gaps_t
+  use computed_gaps, only: computed_gaps_t
   implicit none
   private
   public :: new_mesh_family, shape_for
@@ -59,7 +59,7 @@ contains
     type(mesh_family_t), intent(in) :: meshes
     type(problem_t), intent(in) :: problem
     integer, intent(in) :: mesh
-    type(seen_gaps_t), intent(in), optional :: seen
+    type(computed_gaps_t), intent(in), optional :: seen
     integer :: about
 
     if (meshes%is_about_axis(mesh)) then

@@ -2,7 +2,7 @@
 !> positions between the edge and infinity a general rule does not know.
 !>
 !> The pressure is evaluated for predicted gaps (`predicted_gaps`) or, once there is a path, for
-!> computed ones (`seen_gaps`). A panel in z on which the last Legendre coefficients of this
+!> computed ones (`computed_gaps`). A panel in z on which the last Legendre coefficients of this
 !> pressure are not small gets more nodes or is halved, whichever takes fewer nodes (`left_out`).
 module law_panels
   use kinds, only: wp
@@ -11,7 +11,7 @@ module law_panels
   use local_nodes, only: local_nodes_t, gauss_nodes
   use mapped_shape, only: mapped_shape_t
   use predicted_gaps, only: axis_gaps, between, predicted_gap
-  use seen_gaps, only: seen_gaps_t
+  use computed_gaps, only: computed_gaps_t
   use represented_pressure, only: panel_pressure
   use step_front, only: step_height
   implicit none
@@ -53,7 +53,7 @@ contains
     real(wp), intent(in) :: low, high, density, digits
     real(wp), allocatable, intent(inout) :: length(:)
     integer, allocatable, intent(out) :: order(:)
-    type(seen_gaps_t), intent(in), optional :: seen
+    type(computed_gaps_t), intent(in), optional :: seen
     !> Number of places on a panel at which a step is tried.
     integer, parameter :: places = 5
     real(wp), allocatable :: given(:), parameter(:), load(:)

@@ -8,7 +8,7 @@
 !> next. If a step of the pressure pulls the bodies together, further meshes between the approach
 !> and contact are locked to the front of the step (`step_front`) in the same way. While the path is
 !> traced, meshes may be inserted before contact, about the axis or locked to the edge of an outer
-!> contact (`further_meshes`).
+!> contact (`mesh_insertion`).
 module mesh_plan
   use kinds, only: wp
   use dimensionless_problem, only: problem_t

@@ -6,7 +6,7 @@ module mesh_rule
   use dimensionless_problem, only: problem_t, calm_gap, adhesion_strength, coupling_over
   use contact_scales, only: smallest_feature, cohesive_width
   use law_panels, only: fit_panels, nodes_on, about_axis, about_front, about_edge
-  use seen_gaps, only: seen_gaps_t
+  use computed_gaps, only: computed_gaps_t
   use shape_panels, only: panels_for, has_flat_face
   use step_front, only: front_leads, first_front, front_width
   use mapped_shape, only: mapped_shape_t
@@ -69,7 +69,7 @@ contains
   type(mapped_shape_t) function approach_shape(problem, h0_high, widest, digits, seen) result(shape)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: h0_high, widest, digits
-    type(seen_gaps_t), intent(in), optional :: seen
+    type(computed_gaps_t), intent(in), optional :: seen
     real(wp) :: density, reach, feature, edges(2)
 
     density = density_for(density_before, digits)* &
@@ -107,7 +107,7 @@ contains
     type(problem_t), intent(in) :: problem
     integer, intent(in) :: about
     real(wp), intent(in) :: low, high, level, digits
-    type(seen_gaps_t), intent(in), optional :: seen
+    type(computed_gaps_t), intent(in), optional :: seen
     real(wp) :: inner, outer, farthest, reach, repulsion
 
     inner = density_for(density_about_edge, digits)
@@ -162,7 +162,7 @@ contains
     type(mapped_shape_t), intent(inout) :: shape
     integer, intent(in) :: about, side
     real(wp), intent(in) :: z_length, density, digits, low, high
-    type(seen_gaps_t), intent(in), optional :: seen
+    type(computed_gaps_t), intent(in), optional :: seen
     real(wp), allocatable :: lengths(:)
     integer, allocatable :: orders(:)
     real(wp) :: digits_to_fit

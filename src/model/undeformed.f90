@@ -8,7 +8,7 @@ module undeformed
   use adaptive_quadrature, only: integral_t, new_integral, rule_nodes, in_order
   use dimensionless_problem, only: problem_t
   use force_law, only: of_pressure, of_slope, of_energy
-  use beyond_mesh, only: energy_density, falls_slowly, farthest
+  use far_field, only: energy_density, falls_slowly, farthest
   implicit none
   private
   public :: measured_t, measured_load, measured_slope

@@ -13,7 +13,7 @@ module arc
   use path_coordinate, only: path_control
   use path_point, only: path_point_t
   use path_tangent, only: tangent_along
-  use moved_gaps, only: moved_outside, move_with_edge
+  use edge_predictor, only: moved_outside, move_with_edge
   implicit none
   private
   public :: arc_t, between, most_points

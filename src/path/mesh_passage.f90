@@ -6,7 +6,7 @@ module mesh_passage
   use solver, only: solver_t
   use next_mesh, only: radius_for, lay_out_next
   use path_coordinate, only: path_control, coordinate_of
-  use mending, only: left_in_state
+  use mesh_refinement, only: left_in_state
   use arc, only: arc_t
   use continuation, only: continuation_t, add_with_tangent
   implicit none

@@ -7,7 +7,7 @@ module next_mesh
   use equilibrium, only: equations_t
   use edge_locked, only: shape_for
   use mapped_shape, only: mapped_shape_t
-  use seen_gaps, only: seen_gaps_t
+  use computed_gaps, only: computed_gaps_t
   use arc, only: arc_t
   implicit none
   private
@@ -84,7 +84,7 @@ contains
     type(equations_t), intent(in), target :: equations
     type(arc_t), intent(in) :: arc
     integer, intent(in) :: i
-    type(seen_gaps_t) :: seen
+    type(computed_gaps_t) :: seen
     real(wp), allocatable :: gap(:), change(:)
     real(wp) :: load, radius, high
     integer :: to, k

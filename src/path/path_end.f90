@@ -36,7 +36,7 @@ module path_end
 
   !> Largest ratio of the change of the axis gap to that of h0 in an outer contact: at least nine
   !> tenths of the approach go into the deformation of the bodies. (Whether meshes are locked to the
-  !> edge of an outer contact is another question, which the cost decides: `further_meshes`.)
+  !> edge of an outer contact is another question, which the cost decides: `mesh_insertion`.)
   real(wp), parameter :: resting = 0.1_wp
   !> Number of parts of an interval of the path; Q is evaluated at the ends of each part.
   integer, parameter :: looks = 4

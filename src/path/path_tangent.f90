@@ -3,7 +3,7 @@
 !> state. These belong to a Jacobian nearby, so the solution is improved by iterative refinement.
 module path_tangent
   use kinds, only: wp, pi
-  use beyond_mesh, only: load_slope_beyond
+  use far_field, only: load_slope_beyond
   use represented_pressure, only: pressure_slope_t, slope_on
   use contact_state, only: state_t, load_reach, gap_at_end
   use path_point, only: path_point_t, tangent_t

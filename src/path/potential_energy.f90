@@ -4,7 +4,7 @@
 !> difference between its ends, so no integral along the path is needed.
 module potential_energy
   use kinds, only: wp, pi
-  use beyond_mesh, only: energy_density, falls_slowly
+  use far_field, only: energy_density, falls_slowly
   use dimensionless_problem, only: calm_gap
   use undeformed, only: energy_undeformed
   use contact_state, only: state_t

@@ -2,7 +2,7 @@
 !> states become points of the path.
 module tracing
   use kinds, only: wp
-  use listener, only: listener_t
+  use progress_observer, only: progress_observer_t
   use contact_state, only: state_t, undeformed_state
   use equilibrium, only: equations_t
   use solver, only: solver_t
@@ -16,8 +16,8 @@ module tracing
   use traced_path, only: traced_path_t, tracing_t
   use path_end, only: demand_t, touches, outer_end, astray, collapsed
   use path_growth, only: append, add_extrema
-  use further_meshes, only: further_mesh_t, further_mesh
-  use mending, only: mender_t, new_mender, left_on_path, left_in_state
+  use mesh_insertion, only: inserted_mesh_t, inserted_mesh
+  use mesh_refinement, only: mesh_refiner_t, new_mesh_refiner, left_on_path, left_in_state
   implicit none
   private
   public :: trace
@@ -28,7 +28,7 @@ module tracing
   !> of the mesh, since later states would be useless. Number of steps between these checks.
   real(wp), parameter :: most_adrift = 0.1_wp
   integer, parameter :: steps_a_check = 8
-  !> Number of steps between messages to the listener: a message takes a tenth of the time of a
+  !> Number of steps between messages to the observer: a message takes a tenth of the time of a
   !> step.
   integer, parameter :: steps_a_message = 8
   !> Largest residual of points that define a smooth curve, in the law's lengths; for other points
@@ -44,19 +44,19 @@ contains
   !> at h0_end (at h0_low if h0_end is absent) is enough. Meshes that miss too much of the load for
   !> the accuracy are refined. demand: if present, the path goes as far as the demand says, and its
   !> points are close enough for a smooth curve.
-  subroutine trace(solver, start, h0_low, into_contact, accuracy, listener, known, demand, h0_end)
+  subroutine trace(solver, start, h0_low, into_contact, accuracy, observer, known, demand, h0_end)
     class(solver_t), intent(inout) :: solver
     type(state_t), intent(in) :: start
     real(wp), intent(in) :: h0_low, accuracy
     logical, intent(in) :: into_contact
-    class(listener_t), intent(inout) :: listener
+    class(progress_observer_t), intent(inout) :: observer
     class(tracing_t), intent(inout) :: known
     type(demand_t), intent(in), optional :: demand
     real(wp), intent(in), optional :: h0_end
     type(continuation_t) :: walker
-    type(mender_t) :: mender
+    type(mesh_refiner_t) :: mender
     character(len=40) :: so_far
-    type(further_mesh_t) :: further
+    type(inserted_mesh_t) :: further
     logical :: lost, blind, finished, mended, adrift, leaving
     type(ending_t) :: going_on
     real(wp) :: tolerance, contact_at
@@ -75,7 +75,7 @@ contains
     if (present(demand)) call walker%follow_closely(demand%looser)
     call walker%take(solver, start, approach, lost)
     if (lost) known%ending%cause = path_lost
-    mender = new_mender(accuracy, solver%problem%law)
+    mender = new_mesh_refiner(accuracy, solver%problem%law)
     walker%most = mender%most
     do while (.not. (known%ending%early() .or. finished))
       call extend(known%path, walker, solver, lost)
@@ -83,13 +83,13 @@ contains
       steps = steps + 1
       if (mod(steps, steps_a_message) == 0) then
         write (so_far, '(a, i0, a)') 'tracing the path: ', known%path%held, ' states'
-        call listener%hear(trim(so_far))
+        call observer%hear(trim(so_far))
       end if
       mended = .false.
       if (.not. lost) then
-        further = further_mesh_t()
+        further = inserted_mesh_t()
         if (.not. walker%stuck) &
-          further = further_mesh(solver%equations_t, walker%arc_t, accuracy)
+          further = inserted_mesh(solver%equations_t, walker%arc_t, accuracy)
         adrift = mod(steps, steps_a_check) == 0
         if (adrift) adrift = left_in_state(solver%equations_t, walker%mesh, &
           walker%point(walker%held)%state) > most_adrift

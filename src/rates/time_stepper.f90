@@ -11,13 +11,13 @@ module time_stepper
   use anderson, only: solve_anderson
   use solver_options, only: rescue_of
   use time_instant, only: instant_t, extrapolate
-  use remembering, only: remembering_t
+  use step_history, only: step_history_t
   implicit none
   private
   public :: time_stepper_t, expected_scale
 
   !> Computes the instants of a drive one after the other.
-  type, extends(remembering_t) :: time_stepper_t
+  type, extends(step_history_t) :: time_stepper_t
     !> The largest change of the path's coordinate in a step. A larger change means a jump, or that
     !> shorter steps are needed.
     real(wp) :: farthest = 0.3_wp

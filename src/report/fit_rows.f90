@@ -12,12 +12,12 @@ module fit_rows
   use fit_request, only: unknown_t, of_radius
   use measured_jumps, only: measured_jump_t
   use fit_errors, only: fitted_t, within_95
-  use held_numbers, only: held_t
+  use fixed_parameter_test, only: held_t
   use baseline_test, only: lacking_t
   use fit_alternatives, only: alternative_t
   use fit_run, only: fit_outcome_t
   use joint_fit, only: joint_fit_t
-  use fit_doubts, only: doubts_of
+  use fit_warnings, only: doubts_of
   implicit none
   private
   public :: write_fit_rows, fit_text, report_joint

@@ -8,7 +8,7 @@ module quality_warnings
   use records, only: quality_t
   use summary, only: summary_t
   use scene_groups, only: scene_t
-  use mending, only: too_much
+  use mesh_refinement, only: too_much
   use solver_options, only: usual_tolerance
   use model_warnings, only: judge_model
   use experiment_result, only: experiment_result_t

@@ -13,7 +13,7 @@ MODULES = {
     # layers
     "layered_body", "layered_surface", "mesh_waves", "scene_layers", "wave_transforms",
     # bodies in time, and a fluid between them
-    "running_integrals", "carried_values", "drainage", "drained_way", "frozen_start",
+    "running_integrals", "advected_values", "drainage", "squeeze_film_steps", "frozen_start",
     "timed_pass", "timed_record", "timed_run", "rate_groups", "rate_entries",
     # theories of others, and fits
     "theory_groups", "classical_rows", "regime_rows", "approximation_tables", "fit_group",
@@ -48,7 +48,7 @@ SEAMS = {
     "result_folder": {"run_identity"},
     # one kind of run more
     "simulation": {
-        "approximation_tables", "classical_rows", "fit_columns", "fit_doubts", "fit_rows",
+        "approximation_tables", "classical_rows", "fit_columns", "fit_warnings", "fit_rows",
         "fit_run", "fit_words", "joint_fit", "measured_fit", "ranks",
         "run_identity"},
     "sweeps": {"case_fit", "curve_index", "forks", "joint_fit", "ranks"},

@@ -1,21 +1,21 @@
 !> The receiver of messages about the progress of long work.
-module listener
+module progress_observer
   implicit none
   private
-  public :: listener_t
+  public :: progress_observer_t
 
   !> Ignores the messages; extensions show them.
-  type :: listener_t
+  type :: progress_observer_t
   contains
     procedure :: hear
-  end type listener_t
+  end type progress_observer_t
 
 contains
 
   !> Receives a short description of the present activity.
   subroutine hear(self, what)
-    class(listener_t), intent(inout) :: self
+    class(progress_observer_t), intent(inout) :: self
     character(len=*), intent(in) :: what
   end subroutine hear
 
-end module listener
+end module progress_observer

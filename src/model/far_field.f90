@@ -1,7 +1,7 @@
 !> Forces beyond the end of a mesh, where the deformation hardly varies: from the position r0 on,
 !> the gap is H(r) = H(r0) + f(r) - f(r0). For the parabola r dr = dH, so that the integrals are the
 !> law's own, Derjaguin's (23). For other shapes they are computed as integrals over r0/r.
-module beyond_mesh
+module far_field
   use kinds, only: wp
   use force_law, only: of_pressure, of_energy
   use dimensionless_problem, only: problem_t
@@ -86,4 +86,4 @@ contains
     rule%weight = weight*(from/x)**2/x
   end function rule_beyond
 
-end module beyond_mesh
+end module far_field

@@ -3,14 +3,14 @@
 !> neighbour. If it is used repeatedly, this is an extrapolation whose errors grow without bound.
 !> With the neighbour's value at the common end, the polynomial is a collocation of the flow through
 !> the mesh, which is stable.
-module carried_values
+module advected_values
   use kinds, only: wp
   use discretisation, only: discretisation_t
   implicit none
   private
-  public :: carried_t, new_carried
+  public :: advected_t, new_advected
 
-  type :: carried_t
+  type :: advected_t
     private
     real(wp), allocatable :: value(:)
     !> For each panel, the neighbour's value at the common end minus the panel's own; whether the
@@ -19,16 +19,16 @@ module carried_values
     logical :: outward = .true.
   contains
     procedure :: at
-  end type carried_t
+  end type advected_t
 
 contains
 
   !> Values at the nodes of a mesh, for a mesh that has moved outward or inward.
-  pure function new_carried(grid, value, outward) result(carried)
+  pure function new_advected(grid, value, outward) result(carried)
     type(discretisation_t), intent(in) :: grid
     real(wp), intent(in) :: value(:)
     logical, intent(in) :: outward
-    type(carried_t) :: carried
+    type(advected_t) :: carried
     integer :: k, next
 
     carried%value = value
@@ -52,12 +52,12 @@ contains
       end associate
     end function end_of
 
-  end function new_carried
+  end function new_advected
 
   !> The value at a position: the panel's polynomial plus a multiple of P_n, which is zero at the
   !> nodes, so that the sum has the neighbour's value at the common end.
   pure real(wp) function at(self, grid, x)
-    class(carried_t), intent(in) :: self
+    class(advected_t), intent(in) :: self
     type(discretisation_t), intent(in) :: grid
     real(wp), intent(in) :: x
     real(wp) :: s
@@ -88,4 +88,4 @@ contains
     end do
   end function legendre
 
-end module carried_values
+end module advected_values

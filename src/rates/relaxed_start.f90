@@ -1,5 +1,5 @@
 !> The initial state of a drive in time: relaxed bodies after a slow approach from a large distance.
-module rest
+module relaxed_start
   use kinds, only: wp
   use dimensionless_problem, only: calm_gap
   use contact_state, only: state_t, undeformed_state, regrid
@@ -31,7 +31,7 @@ contains
     type(drainage_t), allocatable :: fluid
     real(wp) :: far, next, step
 
-    if (allocated(steps%besides)) deallocate (steps%besides)
+    if (allocated(steps%earlier)) deallocate (steps%earlier)
     ! A fluid at rest exerts no pressure.
     if (allocated(steps%drainage)) call move_alloc(steps%drainage, fluid)
     steps%problem%coupling = steps%instant*steps%creep%relaxed()
@@ -119,4 +119,4 @@ contains
     at%position = position
   end subroutine solve_relaxed
 
-end module rest
+end module relaxed_start

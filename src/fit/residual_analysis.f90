@@ -1,7 +1,7 @@
 !> Analysis of the residuals of a fit. Means over blocks of samples test for systematic misfit.
 !> Noise, outliers and snap positions are estimated again, since residuals show them better than the
 !> curve itself.
-module second_look
+module residual_analysis
   use kinds, only: wp
   use noise, only: noise_t, noise_of, white_noise, noise_of_steps, noise_of_residuals, &
     contradicts, normal_median, whiten
@@ -308,4 +308,4 @@ contains
     end associate
   end function jump_by_model
 
-end module second_look
+end module residual_analysis

@@ -3,7 +3,7 @@
 !> mesh. If the nodes miss too much of the pressure of these gaps, the mesh is laid out anew for the
 !> computed gaps, and the path is traced again from its entry into that mesh. Gaps are smoother than
 !> pressures, so the gaps on a mesh that is too coarse are accurate enough to lay out a finer one.
-module mending
+module mesh_refinement
   use kinds, only: wp
   use force_law, only: force_law_t
   use dimensionless_problem, only: problem_t
@@ -14,13 +14,13 @@ module mending
   use mapped_shape, only: mapped_shape_t
   use represented_pressure, only: pressure_on
   use law_panels, only: left_out
-  use seen_gaps, only: seen_gaps_t
+  use computed_gaps, only: computed_gaps_t
   use contact_state, only: state_t, gaps_at, felt_load, radius_of_gap, radius_of_step
   use equilibrium, only: equations_t
   use traced_path, only: traced_path_t
   implicit none
   private
-  public :: mender_t, new_mender, left_on_path, left_in_state, too_much
+  public :: mesh_refiner_t, new_mesh_refiner, left_on_path, left_in_state, too_much
 
   !> Tolerated quadrature error, over the accuracy, if meshes cannot be refined (for oscillating
   !> laws `left_out` is only an upper bound of it). If t is the relative size of the last Legendre
@@ -28,7 +28,7 @@ module mending
   !> times t^2.
   real(wp), parameter :: too_much = 30
 
-  type :: mender_t
+  type :: mesh_refiner_t
     !> Part of the load that the nodes may miss.
     real(wp) :: most = 0
     !> Number of refinements of each mesh.
@@ -39,7 +39,7 @@ module mending
     integer, allocatable :: nodes(:)
   contains
     procedure :: mend
-  end type mender_t
+  end type mesh_refiner_t
 
   !> Part of the load, over the accuracy, that nodes may miss under a law with a step.
   real(wp), parameter :: of_steps = 0.1_wp
@@ -64,7 +64,7 @@ contains
   !> full, while only a part of their error affects the load. Errors due to a step of the law change
   !> quickly as the step passes from node to node; therefore they change the position of an extremum
   !> of the load more than the load itself.
-  pure type(mender_t) function new_mender(accuracy, law) result(mender)
+  pure type(mesh_refiner_t) function new_mesh_refiner(accuracy, law) result(mender)
     real(wp), intent(in) :: accuracy
     class(force_law_t), intent(in) :: law
 
@@ -72,13 +72,13 @@ contains
     if (law%step_width > 0) mender%most = of_steps*accuracy
     if (law%period > 0) mender%most = too_much*accuracy
     allocate (mender%rounds(0), mender%left(0), mender%nodes(0))
-  end function new_mender
+  end function new_mesh_refiner
 
   !> Refines a mesh whose end the path has reached, or on which the path is lost, if the nodes miss
   !> too much of the load. leaving: the path passes to the next mesh; its newest state then counts
   !> for that mesh only. mended: the path has to be traced again from its entry into the mesh.
   subroutine mend(self, equations, path, mesh, leaving, lost, mended)
-    class(mender_t), intent(inout) :: self
+    class(mesh_refiner_t), intent(inout) :: self
     type(equations_t), intent(inout) :: equations
     type(traced_path_t), intent(in) :: path
     integer, intent(in) :: mesh
@@ -150,7 +150,7 @@ contains
     integer, intent(in) :: mesh
     real(wp), intent(in) :: most
     type(mapped_shape_t) :: shape
-    type(seen_gaps_t) :: seen
+    type(computed_gaps_t) :: seen
     real(wp) :: radius
     integer :: i, k, states
 
@@ -259,4 +259,4 @@ contains
     end do
   end function left_of
 
-end module mending
+end module mesh_refinement

@@ -6,27 +6,27 @@
 !> have left a deformation. The memory belongs to the material and is stored on a mesh fixed in
 !> space. Pressures are interpolated to this mesh; the deformation due to the memory, which is
 !> smoother, is interpolated from it.
-module remembering
+module step_history
   use kinds, only: wp, pi
-  use besides, only: rise_at
+  use earlier_deformation, only: rise_at
   use drainage, only: earlier_t, rate_weights
   use discretisation, only: first_node
   use potential_energy, only: energy_of_surface
   use creep, only: creep_t
-  use material, only: material_t
+  use memory_mesh, only: memory_mesh_t
   use solver, only: solver_t
   use time_instant, only: instant_t
   implicit none
   private
-  public :: remembering_t
+  public :: step_history_t
 
   !> instant: the coupling of the bodies without delayed deformation. compliance: the compliance of
   !> the spring of the drive; 0 without a spring.
-  type, extends(solver_t) :: remembering_t
+  type, extends(solver_t) :: step_history_t
     type(creep_t) :: creep
     real(wp) :: instant = 0, compliance = 0
     !> The mesh fixed in space, of scale 1; it is not set for elastic bodies.
-    type(material_t) :: material
+    type(memory_mesh_t) :: material
     !> Quantities of a step. left: the memories without the contribution of the present pressure.
     !> left_rise: the rise of the gap due to each of these memories. present: the coefficients of
     !> the present pressure in the memories. risen: the rise of the gap due to `left`.
@@ -44,7 +44,7 @@ module remembering
     procedure, private :: prepare_fluid
     procedure, private :: remember_fluid
     procedure, private :: note_pressure
-  end type remembering_t
+  end type step_history_t
 
   !> Number of steps after a turn over which gaps are taken to change linearly with time.
   integer, parameter :: calming = 4
@@ -55,7 +55,7 @@ contains
 
   !> Makes the equations of a step from an instant to a later time.
   subroutine prepare(self, from, time)
-    class(remembering_t), intent(inout) :: self
+    class(step_history_t), intent(inout) :: self
     type(instant_t), intent(in) :: from
     real(wp), intent(in) :: time
     real(wp), dimension(size(self%creep%time)) :: kept, past
@@ -80,7 +80,7 @@ contains
   !> Computes the memories and the data of the fluid at the end of a step, and the energy dissipated
   !> in the step.
   subroutine remember(self, from, to)
-    class(remembering_t), intent(inout) :: self
+    class(step_history_t), intent(inout) :: self
     type(instant_t), intent(in) :: from
     type(instant_t), intent(inout) :: to
     integer :: k
@@ -103,12 +103,12 @@ contains
   !> Interpolates the rise of the gap due to the memory, and the earlier gaps for the fluid, to the
   !> nodes of a mesh whose scale is about `scale`.
   subroutine place_rise(self, mesh, scale)
-    class(remembering_t), intent(inout) :: self
+    class(step_history_t), intent(inout) :: self
     integer, intent(in) :: mesh
     real(wp), intent(in) :: scale
 
     if (allocated(self%drainage)) call self%drainage%place(self%meshes%grid, mesh, scale)
-    if (size(self%creep%share) > 0) self%besides = rise_at(self%material%discretisation_t, &
+    if (size(self%creep%share) > 0) self%earlier = rise_at(self%material%discretisation_t, &
       self%risen, self%meshes%grid(mesh), scale)
   end subroutine place_rise
 
@@ -116,7 +116,7 @@ contains
   !> parabola in time through the present gaps and those of the last two instants; it is the slope
   !> of a line if only one earlier instant exists.
   subroutine prepare_fluid(self, from, time)
-    class(remembering_t), intent(inout) :: self
+    class(step_history_t), intent(inout) :: self
     type(instant_t), intent(in) :: from
     real(wp), intent(in) :: time
     real(wp) :: weights(3)
@@ -151,7 +151,7 @@ contains
   !> Computes the suction and the power of the fluid at the end of a step, and the energy dissipated
   !> in the step.
   subroutine remember_fluid(self, from, to)
-    class(remembering_t), intent(in) :: self
+    class(step_history_t), intent(in) :: self
     type(instant_t), intent(in) :: from
     type(instant_t), intent(inout) :: to
     real(wp), dimension(size(to%state%gap)) :: pressure, rate
@@ -171,7 +171,7 @@ contains
 
   !> Sets the internal variables of an instant to the values in relaxed bodies under its pressure.
   subroutine set_memory(self, at)
-    class(remembering_t), intent(in) :: self
+    class(step_history_t), intent(in) :: self
     type(instant_t), intent(inout) :: at
 
     call self%note_pressure(at)
@@ -182,7 +182,7 @@ contains
   !> Stores the pressure of an instant at the nodes of the material's mesh, and the rise due to this
   !> pressure. For elastic bodies both are empty.
   subroutine note_pressure(self, at)
-    class(remembering_t), intent(in) :: self
+    class(step_history_t), intent(in) :: self
     type(instant_t), intent(inout) :: at
 
     if (size(self%creep%time) == 0) then
@@ -196,7 +196,7 @@ contains
 
   !> The energy stored in bodies, surface force and spring, in units of load times length.
   real(wp) function energy(self, at)
-    class(remembering_t), intent(inout) :: self
+    class(step_history_t), intent(inout) :: self
     type(instant_t), intent(in) :: at
     real(wp), allocatable :: rise(:)
     integer :: k
@@ -215,4 +215,4 @@ contains
     end do
   end function energy
 
-end module remembering
+end module step_history

@@ -3,7 +3,7 @@
 !> pressure. A law with several minima of its energy has metastable contact in a secondary minimum,
 !> whose edge is where the tension outside the minimum is largest. While this edge moves faster than
 !> the axis, meshes are locked to it.
-module further_meshes
+module mesh_insertion
   use kinds, only: wp
   use force_law, only: force_law_t
   use contact_state, only: radius_of_gap
@@ -11,17 +11,17 @@ module further_meshes
   use mesh_plan, only: band_of_waves
   use arc, only: arc_t
   use path_coordinate, only: axis_coordinate
-  use mending, only: left_in_state
+  use mesh_refinement, only: left_in_state
   implicit none
   private
-  public :: further_mesh_t, further_mesh
+  public :: inserted_mesh_t, inserted_mesh
 
   !> Whether a mesh is to be inserted, the gap to which it is locked (0: about the axis), and its
   !> reach (`mesh_plan_t`).
-  type :: further_mesh_t
+  type :: inserted_mesh_t
     logical :: wanted = .false.
     real(wp) :: locked = 0, reach(2) = 0
-  end type further_mesh_t
+  end type inserted_mesh_t
 
   !> The next mesh is locked to the edge of an outer contact if the logarithm of the edge's radius
   !> changes this many times faster than the coordinate on the axis. In the opposite case the next
@@ -43,7 +43,7 @@ contains
 
   !> The mesh on which the path should continue, if it should leave the mesh of the arc. most: part
   !> of the load that the nodes may miss.
-  pure type(further_mesh_t) function further_mesh(equations, arc, most) result(further)
+  pure type(inserted_mesh_t) function inserted_mesh(equations, arc, most) result(further)
     type(equations_t), intent(in) :: equations
     type(arc_t), intent(in) :: arc
     real(wp), intent(in) :: most
@@ -82,7 +82,7 @@ contains
         further%reach = [max(meshes%reach(1, 1), deeper*abs(arc%point(arc%held)%state%h0)), 0.0_wp]
       end if
     end associate
-  end function further_mesh
+  end function inserted_mesh
 
   !> The smallest of the law's gaps at outer edges that is larger than a given gap; 0: there is
   !> none, or the bodies are in contact.
@@ -97,4 +97,4 @@ contains
     if (k <= size(law%outer_edges)) edge = law%outer_edges(k)
   end function edge_beyond
 
-end module further_meshes
+end module mesh_insertion

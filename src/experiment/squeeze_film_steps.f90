@@ -1,7 +1,7 @@
 !> Time steps over one segment of a drive (approach, dwell or retract) with a squeeze film between
 !> the bodies. The fluid resists every motion, so that no motion is instantaneous: the time steps
 !> resolve snap-in and snap-off.
-module drained_way
+module squeeze_film_steps
   use kinds, only: wp, pi
   use mesh_plan, only: approach
   use next_mesh, only: radius_for
@@ -152,4 +152,4 @@ contains
 
   end function moved
 
-end module drained_way
+end module squeeze_film_steps

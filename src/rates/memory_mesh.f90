@@ -3,18 +3,18 @@
 !> pressures is computed on it. Fine panels resolve the contact edge wherever it may pass. Away from
 !> the edge a pressure is smooth; there it is represented on long panels, each of which replaces
 !> several fine panels.
-module material
+module memory_mesh
   use kinds, only: wp
   use discretisation, only: discretisation_t
   use local_nodes, only: local_nodes_t, gauss_nodes
   use matrix_products, only: multiply
   implicit none
   private
-  public :: material_t, new_material
+  public :: memory_mesh_t, new_memory_mesh
 
   !> The nodes of the fine mesh are first those inside long panels, in order, then those of the
   !> panels farther out.
-  type, extends(discretisation_t) :: material_t
+  type, extends(discretisation_t) :: memory_mesh_t
     !> Long panels: their number, the number of fine nodes in each, their length, and the nodes of a
     !> long panel (`own`).
     integer :: long = 0, inside = 0
@@ -30,7 +30,7 @@ module material
     real(wp) :: lacking = 0
   contains
     procedure :: take
-  end type material_t
+  end type memory_mesh_t
 
   !> Number of fine panels that a long panel replaces; number of nodes by which a long panel exceeds
   !> a fine panel.
@@ -41,12 +41,12 @@ module material
 contains
 
   !> Makes the mesh from `grid`, whose first `equal` panels from the axis have the same length, and
-  !> adds long panels. lacking: as in `material_t`.
-  function new_material(grid, equal, lacking) result(material)
+  !> adds long panels. lacking: as in `memory_mesh_t`.
+  function new_memory_mesh(grid, equal, lacking) result(material)
     type(discretisation_t), intent(in) :: grid
     integer, intent(in) :: equal
     real(wp), intent(in) :: lacking
-    type(material_t) :: material
+    type(memory_mesh_t) :: material
     integer :: order, k, n
 
     material%discretisation_t = grid
@@ -64,13 +64,13 @@ contains
       material%smooth_kernel(:, (k - 1)*n + 1:k*n) = matmul( &
         grid%kernel(:, (k - 1)*material%inside + 1:k*material%inside), material%spread)
     end do
-  end function new_material
+  end function new_memory_mesh
 
   !> Interpolates the pressure of another mesh, with its scale, to the nodes of this mesh
   !> (`values`), and computes the rise of the gap due to this pressure for the rows of the kernel
   !> (`rise`).
   subroutine take(self, grid, scale, pressure, values, rise)
-    class(material_t), intent(in) :: self
+    class(memory_mesh_t), intent(in) :: self
     type(discretisation_t), intent(in) :: grid
     real(wp), intent(in) :: scale, pressure(:)
     real(wp), allocatable, intent(out) :: values(:), rise(:)
@@ -147,4 +147,4 @@ contains
 
   end subroutine take
 
-end module material
+end module memory_mesh

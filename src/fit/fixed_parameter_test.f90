@@ -3,7 +3,7 @@
 !> is the unit vector of the remaining part. If the value held fixed is right, g.r is a standard
 !> normal number (the score test; Rao, 1948). The test needs no further fit, and detects a small
 !> deviation that is common to all samples.
-module held_numbers
+module fixed_parameter_test
   use kinds, only: wp
   use fit_request, only: unknown_t, of_model, of_contact_point, of_sensitivity, of_spring, &
     of_position
@@ -139,4 +139,4 @@ contains
 
   end subroutine add_held
 
-end module held_numbers
+end module fixed_parameter_test

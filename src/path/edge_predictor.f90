@@ -1,6 +1,6 @@
 !> Predictor in coordinates attached to the contact edge: at a constant distance from the edge, gaps
 !> are smooth functions of the path's coordinate while the edge passes many nodes.
-module moved_gaps
+module edge_predictor
   use kinds, only: wp
   use shape, only: shape_t
   use dimensionless_problem, only: problem_t
@@ -128,4 +128,4 @@ contains
       grid%interpolate_all(value + change, at + step))
   end function mean_beside
 
-end module moved_gaps
+end module edge_predictor

@@ -2,12 +2,12 @@
 !> correct the errors of such factors. From a hundred rows on the factorisation takes a third to a
 !> half less time than in double precision. It is done here for matrices with up to a few hundred
 !> rows, for which LAPACK's bookkeeping takes as long as its arithmetic.
-module rough_lu
+module single_precision_lu
   use kinds, only: wp, sp
   use lapack, only: sgetrf, sgetrs
   implicit none
   private
-  public :: rough_lu_t
+  public :: single_precision_lu_t
 
   !> The largest number of rows for which this is faster than LAPACK.
   integer, parameter :: most_rows = 320
@@ -17,21 +17,21 @@ module rough_lu
 
   !> The factors of a matrix: lu and pivot have the form of SGETRF. lower, upper: the inverses of
   !> the triangles of each square of `panel` rows on the diagonal.
-  type :: rough_lu_t
+  type :: single_precision_lu_t
     private
     real(sp), allocatable :: lu(:, :), lower(:, :, :), upper(:, :, :)
     integer, allocatable :: pivot(:)
   contains
     procedure :: factorise
     procedure :: solve
-  end type rough_lu_t
+  end type single_precision_lu_t
 
 contains
 
   !> Makes the factors of a square matrix. regular = .false. if a pivot has no inverse in single
   !> precision, or elements are too large for it; the factors are then undefined.
   subroutine factorise(self, matrix, regular)
-    class(rough_lu_t), intent(inout) :: self
+    class(single_precision_lu_t), intent(inout) :: self
     real(wp), intent(in) :: matrix(:, :)
     logical, intent(out) :: regular
     integer :: rows, j, info
@@ -170,7 +170,7 @@ contains
   !> Overwrites b with the solution. Its number of accurate digits is that of single precision, less
   !> the decimal logarithm of the matrix's condition number.
   subroutine solve(self, b)
-    class(rough_lu_t), intent(in) :: self
+    class(single_precision_lu_t), intent(in) :: self
     real(wp), intent(inout) :: b(:)
     real(sp) :: x(size(self%lu, 1)), y(panel)
     real(wp) :: unit
@@ -202,4 +202,4 @@ contains
     b = unit*x(:size(b))
   end subroutine solve
 
-end module rough_lu
+end module single_precision_lu

@@ -1,14 +1,14 @@
 !> Warnings about a fit: a model that does not describe the data, unknowns that are correlated or
 !> not determined, bounds that decide a value.
-module fit_doubts
+module fit_warnings
   use kinds, only: wp
   use text, only: brief, rounded, rounded_to
   use namelist_writer, only: line_t
   use fit_request, only: unknown_t, of_spring, fitted_of, is_at_end, farthest_off
-  use second_look, only: lack_t, hardly_ever, rarely
+  use residual_analysis, only: lack_t, hardly_ever, rarely
   use fit_errors, only: fitted_t
   use measured_curve, only: measured_curve_t
-  use held_numbers, only: held_t
+  use fixed_parameter_test, only: held_t
   use fit_run, only: fit_outcome_t
   use fit_alternatives, only: contact_slope
   use measured_checks, only: open_end, find_saturated
@@ -279,4 +279,4 @@ contains
 
   end function doubts_of
 
-end module fit_doubts
+end module fit_warnings

@@ -1,7 +1,7 @@
 !> Gaps of computed states on one mesh, used to lay out another mesh. About the contact edge, or the
 !> front of a step, the gap changes little in shape while the contact grows: the gaps of a state,
 !> moved to other radii, approximate those of other states.
-module seen_gaps
+module computed_gaps
   use kinds, only: wp
   use interpolation, only: fading
   use shape, only: shape_t
@@ -9,9 +9,9 @@ module seen_gaps
   use shape_panels, only: kinks_at_ends
   implicit none
   private
-  public :: seen_gaps_t
+  public :: computed_gaps_t
 
-  type :: seen_gaps_t
+  type :: computed_gaps_t
     !> The mesh of the states, the number of states, their gaps minus the heights of the shape,
     !> (nodes, states), their scales, and their loads.
     type(discretisation_t), pointer, private :: grid => null()
@@ -34,7 +34,7 @@ module seen_gaps
     procedure :: edges
     procedure :: gap
     procedure :: load
-  end type seen_gaps_t
+  end type computed_gaps_t
 
   !> A state whose gaps are moved to other radii (lateral units). state: its number. from: the
   !> radius of the gap to which the new mesh is locked or, if the new mesh is about the axis, of the
@@ -55,7 +55,7 @@ contains
   !> Makes room for states on a mesh; the mesh must exist as long as this object. most: see the
   !> type.
   subroutine begin_on(self, grid, states, most)
-    class(seen_gaps_t), intent(out) :: self
+    class(computed_gaps_t), intent(out) :: self
     type(discretisation_t), intent(in), target :: grid
     integer, intent(in) :: states
     real(wp), intent(in) :: most
@@ -69,7 +69,7 @@ contains
 
   !> Adds a state: its gaps, scale, H0, and the load to which its errors are relative.
   pure subroutine add(self, shape, gap, scale, h0, load)
-    class(seen_gaps_t), intent(inout) :: self
+    class(computed_gaps_t), intent(inout) :: self
     class(shape_t), intent(in) :: shape
     real(wp), intent(in) :: gap(:), scale, h0, load
 
@@ -84,7 +84,7 @@ contains
   !> moves to radii from low to high. step: the radius of a step of the pressure in this state; 0:
   !> there is none.
   pure subroutine try(self, from, low, high, step)
-    class(seen_gaps_t), intent(inout) :: self
+    class(computed_gaps_t), intent(inout) :: self
     real(wp), intent(in) :: from, low, high, step
 
     self%moved = [self%moved, moved_t(self%held, from, min(low, high), high, step)]
@@ -93,7 +93,7 @@ contains
   !> Notes that the newest state is to be tried on a mesh about the axis, with its gaps moved. The
   !> edge moves from its own radius `edge` (0: there is no edge) to radii up to `high`.
   pure subroutine try_about_axis(self, edge, high)
-    class(seen_gaps_t), intent(inout) :: self
+    class(computed_gaps_t), intent(inout) :: self
     real(wp), intent(in) :: edge, high
 
     if (edge > 0) then
@@ -105,7 +105,7 @@ contains
 
   !> Number of states to be tried, each at one or more radii.
   pure integer function tried(self)
-    class(seen_gaps_t), intent(in) :: self
+    class(computed_gaps_t), intent(in) :: self
 
     tried = size(self%moved)
   end function tried
@@ -113,7 +113,7 @@ contains
   !> The least and the largest tried radius of the edge on a mesh about the axis; 0 if any state has
   !> no edge: the mesh must then resolve the axis.
   pure function edges(self)
-    class(seen_gaps_t), intent(in) :: self
+    class(computed_gaps_t), intent(in) :: self
     real(wp) :: edges(2)
 
     edges = 0
@@ -124,7 +124,7 @@ contains
   !> largest one, and radii between them. If the pressure has a step, the latter put the step at the
   !> given offsets from the centre of the mesh; otherwise they are in equal ratios.
   pure function radii(self, j, offset)
-    class(seen_gaps_t), intent(in) :: self
+    class(computed_gaps_t), intent(in) :: self
     integer, intent(in) :: j
     real(wp), intent(in) :: offset(:)
     real(wp), allocatable :: radii(:)
@@ -150,7 +150,7 @@ contains
   !> about the axis gaps at kinks of the shape, and beyond them as seen from the edge, stay in
   !> place, unless the edge is moved too near to the kink.
   pure function gap(self, shape, j, radius, offset)
-    class(seen_gaps_t), intent(in) :: self
+    class(computed_gaps_t), intent(in) :: self
     class(shape_t), intent(in) :: shape
     integer, intent(in) :: j
     real(wp), intent(in) :: radius, offset(:)
@@ -191,10 +191,10 @@ contains
 
   !> The load of the tried state number j.
   pure real(wp) function load(self, j)
-    class(seen_gaps_t), intent(in) :: self
+    class(computed_gaps_t), intent(in) :: self
     integer, intent(in) :: j
 
     load = self%on(self%moved(j)%state)
   end function load
 
-end module seen_gaps
+end module computed_gaps
