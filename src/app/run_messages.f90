@@ -5,10 +5,10 @@ module run_messages
   use text, only: counted, rounded
   use files, only: file_exists, own_path, whole_path, write_stderr
   use scene_groups, only: scene_t
-  use equilibrium, only: cost_t
   use summary, only: summary_t
   use namelist_writer, only: line_t
   use findings, only: findings_of
+  use equilibrium, only: cost_t
   implicit none
   private
   public :: destination_t, tell
