@@ -8,11 +8,13 @@ module contact_state
   use root_finding, only: root_search_t, new_root_search
   implicit none
   private
-  public :: state_t, undeformed_state, regrid, load_reach, gap_at_end, gap_at, gaps_at, &
+  public :: state_t, undeformed_state, too_near, regrid, load_reach, gap_at_end, gap_at, gaps_at, &
     radius_of_gap, radius_of_step, contact_radius_of, felt_load, far_gap
 
   !> At gaps above this value, in the law's lengths, forces do not depend on the last digits.
   real(wp), parameter :: far_gap = 1000
+  !> The smallest gap of a useful guess, relative to the smallest gap of the known state.
+  real(wp), parameter :: least_of_known = 0.5_wp
 
   type :: state_t
     real(wp), allocatable :: gap(:), pressure(:)
@@ -24,6 +26,7 @@ module contact_state
     integer :: iterations = 0
   contains
     procedure :: become
+    procedure :: of => weighted
   end type state_t
 
 contains
@@ -43,6 +46,14 @@ contains
     self%iterations = other%iterations
   end subroutine become
 
+  !> The combination weights(1) h0 + weights(2) load.
+  pure real(wp) function weighted(self, weights)
+    class(state_t), intent(in) :: self
+    real(wp), intent(in) :: weights(2)
+
+    weighted = dot_product(weights, [self%h0, self%load])
+  end function weighted
+
   !> The undeformed bodies at h0, on a mesh of the given scale.
   pure type(state_t) function undeformed_state(shape, grid, h0, scale) result(state)
     class(shape_t), intent(in) :: shape
@@ -55,6 +66,16 @@ contains
     state%gap = h0 + shape%height(scale*grid%x(:grid%nodes))
     allocate (state%pressure(grid%nodes), source=0.0_wp)
   end function undeformed_state
+
+  !> Whether guessed gaps are much smaller than those of a known state, so that the law may have no
+  !> pressure there, or an enormous one. Known gaps below zero do not limit the guess.
+  pure logical function too_near(guess, known)
+    real(wp), intent(in) :: guess(:), known(:)
+    real(wp) :: nearest
+
+    nearest = minval(known)
+    too_near = nearest > 0 .and. minval(guess) < least_of_known*nearest
+  end function too_near
 
   !> Radius of the end of a bounded mesh, lateral units.
   pure real(wp) function load_reach(grid, state)

@@ -8,7 +8,7 @@ module branch_end
   use kinds, only: wp
   use interpolation, only: hermite_t, hermite_through, hermite_weights
   use root_finding, only: bracket_t
-  use contact_state, only: state_t
+  use contact_state, only: state_t, too_near
   use controls, only: control_t
   use fixed_branch, only: expected_at, is_expected, is_pinned, change
   use branch_tangent, only: branch_tangent_t, tangent_at, joins, passing
@@ -133,7 +133,7 @@ contains
         expected = here%state
         expected%h0 = expected%h0 + sense*step*here%tangent%h0
         expected%gap = expected%gap + sense*step*here%tangent%gap
-        if (minval(expected%gap) < 0.5_wp*minval(here%state%gap)) expected = here%state
+        if (too_near(expected%gap, here%state%gap)) expected = here%state
       else
         if (just_beyond*step > abs(h0 - here%state%h0)) there%q = h0
         expected = expected_at(self, there%q, memory)
@@ -263,7 +263,7 @@ contains
       of_slope(1)*low%tangent%h0 + of_slope(2)*high%tangent%h0
     guess%state%gap = of_value(1)*low%state%gap + of_value(2)*high%state%gap + &
       of_slope(1)*low%tangent%gap + of_slope(2)*high%tangent%gap
-    if (minval(guess%state%gap) < 0.5_wp*minval(low%state%gap)) guess%state%gap = low%state%gap
+    if (too_near(guess%state%gap, low%state%gap)) guess%state%gap = low%state%gap
   end function guess_between
 
   !> The state at h0 between two points of a branch.

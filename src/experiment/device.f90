@@ -4,9 +4,9 @@
 module device
   use kinds, only: wp, nan
   use solver, only: solver_t
-  use path_point, only: path_point_t, of_h0
+  use path_point, only: path_point_t, h0_alone
   use traced_path, only: traced_path_t
-  use driven_pieces, only: drive_t, driven_pieces_t, jump_t, leg_t, walk_t, way_along
+  use driven_pieces, only: drive_t, driven_pieces_t, jump_t, leg_t, walk_t
   use piece_search, only: find_pieces, find_jumps, state_driven
   implicit none
   private
@@ -62,14 +62,14 @@ contains
     if (outermost > 0) call move_to(outermost, start)
     outermost = max(outermost, 1)
     if (allocated(finish)) then
-      call go(way_along(driven, outermost, .true., finish), finish)
+      call go(driven%way_along(outermost, .true., finish), finish)
     else
       call find_innermost(last)
-      call go(way_along(driven, outermost, .true., last, size(driven%piece)), last)
+      call go(driven%way_along(outermost, .true., last, size(driven%piece)), last)
     end if
     last = huge(last)
     if (allocated(start)) last = start
-    call go(way_along(driven, here, .false., last), last)
+    call go(driven%way_along(here, .false., last), last)
     driven%energy_lost = sum(driven%jumped%energy)
     driven%uncertainty = sum(driven%jumped%uncertainty)
     driven%caught = all(driven%jumped%landed)
@@ -130,7 +130,7 @@ contains
         at = -huge(at)
         if (.not. piece%last_turns) at = drive%position(piece%last)
         if (.not. (h0_end <= piece%first%state%h0 .and. h0_end >= piece%last%state%h0)) return
-        call state_driven(solver, path, drive_t(of_h0), piece, h0_end, there)
+        call state_driven(solver, path, drive_t(h0_alone), piece, h0_end, there)
         if (there%converged) at = max(drive%position(piece%last), drive%position(there))
       end associate
     end subroutine find_innermost

@@ -12,8 +12,8 @@ module experiment_result
   use reported_numbers, only: of_table
   use path_readings, only: path_readings_t
   use timed_record, only: timed_result_t
-  use path_point, only: path_point_t, h0_alone => of_h0, load_alone => of_load
-  use driven_pieces, only: jump_t, leg_t, walk_t, way_along
+  use path_point, only: path_point_t, h0_alone, load_alone
+  use driven_pieces, only: jump_t, leg_t, walk_t
   use piece_search, only: state_driven
   use device, only: driven_t, driven_leg_t, states_on
   use stepper, only: stepper_t, known_path_t
@@ -152,8 +152,8 @@ contains
     end if
     if (turned < 2) return
     ! A jump that ends beyond the piece in which the bodies turn belongs to another cycle.
-    inward = way_along(known%stable, 1, .true., until=turned)
-    outward = way_along(known%stable, turned, .false., until=1)
+    inward = known%stable%way_along(1, .true., until=turned)
+    outward = known%stable%way_along(turned, .false., until=1)
     if (.not. (inward%arrives .and. outward%arrives)) return
     allocate (fold(0))
     leg = [inward%leg, outward%leg]

@@ -3,7 +3,7 @@
 module largest_tension
   use kinds, only: wp
   use traced_path, only: traced_path_t
-  use driven_pieces, only: driven_pieces_t, jump_t, walk_t, way_along
+  use driven_pieces, only: driven_pieces_t, jump_t, walk_t
   use reported_place, only: place_t, point_of_path, of_load
   implicit none
   private
@@ -65,7 +65,7 @@ contains
     real(wp) :: begins, ends
     integer :: i
 
-    way = way_along(pieces, piece, to < pieces%piece(piece)%last%state%h0, to)
+    way = pieces%way_to(piece, to)
     begins = from
     do i = 1, size(way%leg)
       associate (leg => way%leg(i), stable => pieces%piece(way%leg(i)%piece))

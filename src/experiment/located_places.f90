@@ -8,7 +8,7 @@ module located_places
   use equilibrium, only: residual_floor
   use solver, only: solver_t
   use potential_energy, only: energy_of
-  use path_point, only: path_point_t, no_mesh, h0_alone => of_h0, load_alone => of_load
+  use path_point, only: path_point_t, no_mesh, h0_alone, load_alone
   use curve_states, only: solve_at
   use driven_pieces, only: jump_t
   use stepper, only: stepper_t

@@ -5,22 +5,20 @@
 module locked_stepper
   use kinds, only: wp
   use progress_observer, only: progress_observer_t
-  use dimensionless_problem, only: calm_gap
-  use contact_state, only: state_t, undeformed_state
+  use contact_state, only: state_t
   use arc, only: between
-  use mesh_plan, only: approach, contact
-  use path_coordinate, only: h0_control, scale_at
+  use path_coordinate, only: h0_control, begin_afar
   use ending, only: ending_t, nothing_afar, steps_lost
   use path_end, only: demand_t
   use stepper, only: stepper_t, branch_point_t, step_result_t, remember, move_to
   implicit none
   private
-  public :: locked_stepper_t, unique_stepper_t, far_away
+  public :: locked_stepper_t, unique_stepper_t
 
   type, abstract, extends(stepper_t) :: locked_stepper_t
   contains
     procedure(find_the_path), deferred :: find_path
-    procedure :: begin_afar
+    procedure :: solve_afar
     procedure :: attempt
   end type locked_stepper_t
 
@@ -58,31 +56,20 @@ contains
 
   !> A state at h0 or, if the bodies would be close to each other there, at a separation so large
   !> that they hardly deform.
-  subroutine begin_afar(self, h0, position, event)
+  subroutine solve_afar(self, h0, position, event)
     class(locked_stepper_t), intent(inout) :: self
     real(wp), intent(in) :: h0
     type(branch_point_t), intent(out) :: position
     type(step_result_t), intent(out) :: event
     type(state_t) :: state
-    real(wp) :: far
     integer :: mesh
 
-    mesh = merge(approach, contact, self%meshes%traceable)
-    far = max(h0, far_away(self))
-    state = undeformed_state(self%problem%shape, self%meshes%grid(mesh), far, &
-      scale_at(self%problem%shape, self%meshes, far))
-    call self%attempt(far, state, mesh, event)
+    call begin_afar(self%problem, self%meshes, h0, mesh, state)
+    call self%attempt(state%h0, state, mesh, event)
     if (.not. event%converged) &
       event%ending = ending_t(nothing_afar, state%iterations, state%residual)
     call remember(position, state, mesh, .false.)
-  end subroutine begin_afar
-
-  !> An H0 at which the bodies hardly deform, or at which the repulsion is negligible.
-  pure real(wp) function far_away(steps)
-    class(stepper_t), intent(in) :: steps
-
-    far_away = max(calm_gap(steps%problem), steps%meshes%level + 3)
-  end function far_away
+  end subroutine solve_afar
 
   !> Solves at h0 from the guess `state`.
   subroutine attempt(self, h0, state, mesh, event)
@@ -110,7 +97,7 @@ contains
     type(branch_point_t), intent(out) :: position
     type(step_result_t), intent(out) :: event
 
-    call self%begin_afar(h0, position, event)
+    call self%solve_afar(h0, position, event)
     if (event%ending%early()) return
     if (position%state%h0 > h0) call self%step_to(h0, position, event)
   end subroutine approach_to

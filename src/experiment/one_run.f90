@@ -12,10 +12,11 @@ module one_run
   use mesh_family, only: mesh_family_t
   use edge_locked, only: new_mesh_family
   use mesh_store, only: mesh_store_t
+  use path_coordinate, only: far_away
   use ending, only: path_lost
   use stepper, only: stepper_t, branch_point_t, step_result_t
   use fixed_branch, only: change, same_state
-  use locked_stepper, only: locked_stepper_t, far_away
+  use locked_stepper, only: locked_stepper_t
   use path_demand, only: path_start, demand_of
   use path_end, only: demand_t
   use path, only: follow_path
@@ -185,7 +186,8 @@ contains
       if (allocated(request%path%h0_start) .or. request%reads_path()) then
         start = law%gap_of(path_start(request, steps%problem))
         ! The path may have been traced farther than the part that is shown.
-        if (.not. allocated(request%path%h0_start)) start = max(start, far_away(steps))
+        if (.not. allocated(request%path%h0_start)) start = max(start, far_away(steps%problem, &
+          steps%meshes))
       end if
       ! A start that is not allocated counts as absent.
       call follow_path(steps, law%gap_of(request%path%h0_end), profiles, rows, observer, &
@@ -202,7 +204,7 @@ contains
     type(h0_schedule_t) :: plan
     type(branch_point_t) :: position
 
-    plan = path_plan(request, steps%problem%law, far_away(steps))
+    plan = path_plan(request, steps%problem%law, far_away(steps%problem, steps%meshes))
     if (.not. rows) plan = thinned(plan, plan%h0(:0))
     if (allocated(outcome%stepped_path)) deallocate (outcome%stepped_path)
     allocate (outcome%stepped_path)

@@ -7,6 +7,7 @@ module path_demand
   use contact_scales, only: beyond_contact
   use convex_contact, only: jkr_like_pull_off
   use undeformed, only: load_undeformed
+  use path_point, only: load_alone
   use path_end, only: demand_t
   use experiment_request, only: request_t
   implicit none
@@ -90,7 +91,7 @@ contains
     demand = demand_of(request, problem)
     high = max(high, min(demand%farthest, yielding_gap(problem, no_yielding)))
     do i = 1, size(demand%until)
-      low = min(low, h0_in_contact(problem, demand%by_h0(i), demand%by_load(i), demand%until(i)))
+      low = min(low, h0_in_contact(problem, demand%weights(:, i), demand%until(i)))
     end do
   end subroutine range_of
 
@@ -103,13 +104,12 @@ contains
     integer :: i
 
     demand%farthest = farthest_wanted(request, problem)
-    demand%by_h0 = [real(wp) ::]
-    demand%by_load = [real(wp) ::]
+    allocate (demand%weights(2, 0))
     demand%until = [real(wp) ::]
     demand%closes = [logical ::]
     if (allocated(request%fixed_loads)) then
       do i = 1, size(request%fixed_loads)
-        call add(0.0_wp, 1.0_wp, -max(request%fixed_loads(i)/problem%load, 0.0_wp), .false.)
+        call add(-load_alone, -max(request%fixed_loads(i)/problem%load, 0.0_wp), .false.)
       end do
     end if
     if (.not. allocated(request%device)) return
@@ -120,7 +120,7 @@ contains
         if (device%stiffness(i) > 0) then
           call add_spring(problem%load/(device%stiffness(i)*problem%length))
         else if (closes) then
-          call add(0.0_wp, 1.0_wp, -load_before, .true.)
+          call add(-load_alone, -load_before, .true.)
         end if
       end do
     end associate
@@ -133,18 +133,17 @@ contains
       real(wp), intent(in) :: softness
 
       if (allocated(request%device%z_end)) then
-        call add(1.0_wp, softness, problem%law%gap_of(request%device%z_end), .false.)
+        call add([1.0_wp, -softness], problem%law%gap_of(request%device%z_end), .false.)
       else if (closes) then
-        call add(1.0_wp, softness, h0_behind - softness*load_before, .true.)
+        call add([1.0_wp, -softness], h0_behind - softness*load_before, .true.)
       end if
     end subroutine add_spring
 
-    subroutine add(by_h0, by_load, until, closes)
-      real(wp), intent(in) :: by_h0, by_load, until
+    subroutine add(weights, until, closes)
+      real(wp), intent(in) :: weights(2), until
       logical, intent(in) :: closes
 
-      demand%by_h0 = [demand%by_h0, by_h0]
-      demand%by_load = [demand%by_load, by_load]
+      demand%weights = reshape([demand%weights, weights], [2, size(demand%until) + 1])
       demand%until = [demand%until, until]
       demand%closes = [demand%closes, closes]
     end subroutine add
@@ -212,11 +211,11 @@ contains
     end associate
   end function largest_pull
 
-  !> An h0 below that at which Q = a h0 - b load has the value `wanted` in contact, by JKR theory
-  !> (10), (11).
-  pure real(wp) function h0_in_contact(problem, a, b, wanted) result(h0)
+  !> An h0 below that at which Q = weights(1) h0 + weights(2) load has the value `wanted` in contact,
+  !> by JKR theory (10), (11).
+  pure real(wp) function h0_in_contact(problem, weights, wanted) result(h0)
     type(problem_t), intent(in) :: problem
-    real(wp), intent(in) :: a, b, wanted
+    real(wp), intent(in) :: weights(2), wanted
     real(wp) :: c
 
     c = 1
@@ -242,7 +241,7 @@ contains
       real(wp), intent(in) :: radius
 
       associate (coupling => coupling_over(problem, radius))
-        position = a*h0_at(radius) - b*(problem%shape%indentation_load(radius)/coupling - &
+        position = weights(1)*h0_at(radius) + weights(2)*(problem%shape%indentation_load(radius)/coupling - &
           sqrt(4*pi*problem%law%adhesion*radius**3/coupling))
       end associate
     end function position

@@ -7,7 +7,7 @@ module path_readings
   use experiment_request, only: request_t
   use path_sensitivity, only: rate_t
   use driven_pieces, only: drive_t, through_spring
-  use path_point, only: path_point_t, of_load
+  use path_point, only: path_point_t, load_alone
   use curve_states, only: read_points, states_where
   use dimensionless_problem, only: problem_t
   use records, only: quality_t
@@ -93,7 +93,7 @@ contains
       allocate (readings%loaded(0), readings%load_of(0))
       readings%load = load
       do i = 1, size(load)
-        call states_where(steps%solver_t, steps%known%path, of_load, load(i), states, solved)
+        call states_where(steps%solver_t, steps%known%path, load_alone, load(i), states, solved)
         call cover(states, steps%problem, readings%quality)
         readings%solved = readings%solved .and. solved
         readings%loaded = [readings%loaded, states]

@@ -15,7 +15,7 @@ module path_stepper
   use path_span, only: path_span_t, new_path_span
   use prediction, only: missed_t, expect
   use path_end, only: demand_t
-  use path_point, only: path_point_t, of_h0
+  use path_point, only: path_point_t, h0_alone
   use tracing, only: trace
   use driven_pieces, only: drive_t, jump_t, walk_t
   use piece_search, only: find_pieces, find_jumps
@@ -58,12 +58,12 @@ contains
 
     self%known = nothing
     call self%operator%forget()
-    call self%begin_afar(h0_high, position, event)
+    call self%solve_afar(h0_high, position, event)
     if (.not. event%ending%early()) then
       call trace(self%solver_t, position%state, h0_low, into_contact, accuracy, observer, &
         self%known, demand, ends_at)
       associate (path => self%known%path, stable => self%known%stable)
-        call find_pieces(self%solver_t, path, drive_t(of_h0), stable)
+        call find_pieces(self%solver_t, path, drive_t(h0_alone), stable)
         ! The part beyond the last stable piece was traced only to find the end of this piece.
         if (size(stable%piece) > 0) path%last = stable%piece(size(stable%piece))%last%interval + 1
         call find_jumps(self%solver_t, path, stable)
@@ -101,7 +101,7 @@ contains
 
     if (size(self%known%stable%piece) == 0) event%ending = self%known%ending
     if (event%ending%early()) return
-    way = self%known%way_to(position%piece, h0)
+    way = self%known%stable%way_to(position%piece, h0)
     do i = 1, size(way%leg)
       if (way%leg(i)%jumps) call self%jump_with(self%known%stable%jump_from(way%leg(i)%piece, &
         way%leg(i)%inward), position, event)

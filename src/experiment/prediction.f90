@@ -6,7 +6,7 @@ module prediction
   use dimensionless_problem, only: problem_t
   use discretisation, only: discretisation_t
   use interpolation, only: polynomial_weights
-  use contact_state, only: state_t, radius_of_gap
+  use contact_state, only: state_t, radius_of_gap, too_near
   use solver, only: solver_t
   use arc, only: between
   use path_coordinate, only: coordinate_of
@@ -77,8 +77,7 @@ contains
           min(mesh%x(i)*radius(k)/c, mesh%x(mesh%nodes)))
       end do
     end do
-    if (minval(expected%gap) < 0.5_wp*minval(position%state%gap)) &
-      expected = extrapolated(position, h0)
+    if (too_near(expected%gap, position%state%gap)) expected = extrapolated(position, h0)
   end function moved_with_edge
 
   !> Removes the errors of another span.

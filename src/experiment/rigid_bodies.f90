@@ -16,6 +16,7 @@ module rigid_bodies
   use records, only: observer_t, record_t, stable_yes, stable_unasked
   use experiment_request, only: request_t
   use experiment_result, only: experiment_result_t
+  use largest_tension, only: lower
   use stepped_branch, only: branch_t, compare_ends, enter_ends
   use h0_schedule, only: h0_schedule_t, path_plan
   use loading_cycle, only: branches_t, run_cycle
@@ -169,19 +170,18 @@ contains
     pure subroutine find_largest_tension(h0, load, branch)
       real(wp), intent(in) :: h0(:), load(:)
       type(branch_t), intent(inout) :: branch
-      type(place_t) :: found, of_rows
+      type(place_t) :: found
       real(wp), allocatable :: gap(:)
       integer :: k, i
 
       gap = gaps_between(problem%law, minval(h0), maxval(h0))
       k = minloc([(load_undeformed(problem, gap(i)), i=1, size(gap))], 1)
       found = lowest_about(gap(k), gap(max(1, k - 1)), gap(min(size(gap), k + 1)))
+      call lower(branch%lowest, found)
       k = minloc(load, 1)
       if (load(k) < found%at(of_load) - found%left(of_load)) then
-        of_rows = lowest_about(h0(k), h0(max(1, k - 1)), h0(min(size(h0), k + 1)))
-        if (of_rows%at(of_load) < found%at(of_load)) found = of_rows
+        call lower(branch%lowest, lowest_about(h0(k), h0(max(1, k - 1)), h0(min(size(h0), k + 1))))
       end if
-      if (found%at(of_load) < 0) branch%lowest = found
     end subroutine find_largest_tension
 
     !> The lowest load near the state at h0, between two values of h0 with higher loads, one of

@@ -24,10 +24,9 @@ module stepped_branch
     logical :: lowest_first = .false., lowest_last = .false.
     !> Whether the tension grows towards neighbouring states that did not converge.
     logical :: lowest_beside_lost = .false.
-    !> The first jump: h0 and the load just before it; and the uncertainty of h0 if the path is not
+    !> The first jump: h0 and the load just before it, and the uncertainty of h0 if the path is not
     !> known.
     type(place_t), allocatable :: jump
-    real(wp) :: jump_uncertainty = 0
     !> The last equilibrium, which is a converged state.
     type(place_t), allocatable :: finish
     !> The stable pieces of the path on which the branch begins and ends; 0 if they are not known.
@@ -146,7 +145,6 @@ contains
         branch%jump = place_without_state(event%jump_h0, event%jump_load)
         branch%jump%point = event%fold
         branch%jump%left(of_h0) = event%jump_uncertainty
-        branch%jump_uncertainty = event%jump_uncertainty
       end if
       branch%ending = event%ending
       if (event%ending%early()) return

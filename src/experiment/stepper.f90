@@ -7,9 +7,9 @@ module stepper
   use contact_state, only: state_t
   use solver, only: solver_t
   use ending, only: ending_t
-  use path_point, only: of_h0
+  use path_point, only: h0_alone
   use traced_path, only: tracing_t
-  use driven_pieces, only: driven_pieces_t, walk_t, way_along, interval_with
+  use driven_pieces, only: driven_pieces_t, interval_with
   implicit none
   private
   public :: stepper_t, known_path_t, branch_point_t, step_result_t, extreme_t, memory, &
@@ -68,7 +68,6 @@ module stepper
   type, extends(tracing_t) :: known_path_t
     type(driven_pieces_t) :: stable
   contains
-    procedure :: way_to
     procedure :: interval_at
   end type known_path_t
 
@@ -104,22 +103,13 @@ module stepper
 
 contains
 
-  !> The legs at prescribed h0 from a stable piece to an h0.
-  pure type(walk_t) function way_to(self, piece, h0) result(way)
-    class(known_path_t), intent(in) :: self
-    integer, intent(in) :: piece
-    real(wp), intent(in) :: h0
-
-    way = way_along(self%stable, piece, h0 < self%stable%piece(piece)%last%state%h0, h0)
-  end function way_to
-
   !> The interval on a mesh in which a stable piece reaches h0.
   pure integer function interval_at(self, piece, h0) result(i)
     class(known_path_t), intent(in) :: self
     integer, intent(in) :: piece
     real(wp), intent(in) :: h0
 
-    i = max(interval_with(self%path, self%stable%piece(piece), of_h0, h0), self%path%undeformed + 1)
+    i = max(interval_with(self%path, self%stable%piece(piece), h0_alone, h0), self%path%undeformed + 1)
   end function interval_at
 
   !> The mesh of a position's state.

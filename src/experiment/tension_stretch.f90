@@ -2,7 +2,7 @@
 !> between its steps are solved.
 module tension_stretch
   use kinds, only: wp
-  use path_point, only: load_alone => of_load
+  use path_point, only: load_alone
   use branch_tangent, only: find_load_slope
   use root_finding, only: root_search_t, new_root_search
   use largest_tension, only: lower

@@ -84,7 +84,7 @@ contains
     ! With a spring the lowest h0 is that of the contact with the spring's load.
     low = minval(blank%drive%position)
     if (allocated(request%drive%stiffness)) low = &
-      h0_in_contact(relaxed_problem(), 1.0_wp, steps%compliance, low)
+      h0_in_contact(relaxed_problem(), [1.0_wp, -steps%compliance], low)
     whole = 0
     do pass = 1, most_passes
       before = blank
@@ -273,7 +273,7 @@ contains
       at_rest%meshes%grows = .false.
       ! The pieces of the path and the jumps between them, which `find_path` solves too, are not
       ! needed.
-      call at_rest%begin_afar(high, afar, event)
+      call at_rest%solve_afar(high, afar, event)
       if (.not. event%ending%early()) call trace(at_rest%solver_t, afar%state, low, .true., &
         request%numerics%accuracy, observer, traced)
       steps%meshes = at_rest%meshes

@@ -6,7 +6,7 @@ module arc
     most_hermite_nodes, find_nodes_about
   use dimensionless_problem, only: problem_t
   use discretisation, only: discretisation_t
-  use contact_state, only: state_t
+  use contact_state, only: state_t, too_near
   use solver, only: solver_t
   use solver_options, only: tightened
   use mesh_plan, only: approach
@@ -265,16 +265,13 @@ contains
   end function between
 
   !> Gives an expected state its extrapolated gaps, H0 and scale. So far it has those of the nearest
-  !> known state, and keeps them if an extrapolated gap is below half of the smallest known one, as
-  !> the law may have no pressure there. The extrapolated gaps are passed in the array of the
-  !> pressures, which are computed later.
+  !> known state, and keeps them if the extrapolated gaps are `too_near`. The extrapolated gaps are
+  !> passed in the array of the pressures, which are computed later.
   pure subroutine take_if_sound(h0, scale, expected)
     real(wp), intent(in) :: h0, scale
     type(state_t), intent(inout) :: expected
-    real(wp) :: nearest
 
-    nearest = minval(expected%gap)
-    if (.not. (nearest > 0 .and. minval(expected%pressure) < 0.5_wp*nearest)) then
+    if (.not. too_near(expected%pressure, expected%gap)) then
       expected%gap = expected%pressure
       expected%h0 = h0
       if (scale > 0.5_wp*expected%scale) expected%scale = scale
@@ -293,7 +290,7 @@ contains
     do j = 1, n
       associate (point => self%point(nodes(j)))
         at(j) = point%coordinate
-        value(j) = dot_product(weights, [point%state%h0, point%state%load])
+        value(j) = point%state%of(weights)
         slope(j) = point%tangent%of(weights)
       end associate
     end do

@@ -12,7 +12,7 @@ module curve_states
   use path_extrema, only: find_extrema, may_turn
   use path_search, only: find_place
   use path_point, only: path_point_t, no_mesh
-  use traced_path, only: traced_path_t
+  use traced_path, only: traced_path_t, undeformed_at
   use path_span, only: path_span_t, new_path_span
   use potential_energy, only: energy_of
   use undeformed, only: load_undeformed, load_slope_undeformed, energy_undeformed
@@ -58,7 +58,7 @@ contains
     integer :: k
 
     if (path%point(i)%mesh == no_mesh) then
-      found = undeformed_at(solver%problem, i, x)
+      found = undeformed_after(solver%problem, i, x)
       return
     end if
     do k = i, min(i + 1, path%held)
@@ -73,22 +73,16 @@ contains
   end subroutine solve_at
 
   !> The state of undeformed bodies at the coordinate x after point i, with its energy.
-  pure type(path_point_t) function undeformed_at(problem, i, x) result(point)
+  pure type(path_point_t) function undeformed_after(problem, i, x) result(point)
     type(problem_t), intent(in) :: problem
     integer, intent(in) :: i
     real(wp), intent(in) :: x
 
+    point = undeformed_at(problem, exp(-x))
     point%interval = i
     point%coordinate = x
-    associate (h0 => exp(-x))
-      point%state%h0 = h0
-      point%state%axis_gap = h0
-      point%state%load = load_undeformed(problem, h0)
-      point%tangent%h0 = -h0
-      point%tangent%load = -h0*load_slope_undeformed(problem, h0)
-      point%energy = energy_undeformed(problem, h0)
-    end associate
-  end function undeformed_at
+    point%energy = energy_undeformed(problem, exp(-x))
+  end function undeformed_after
 
   !> Completes an equilibrium after point i that was solved on a mesh.
   subroutine finish(solver, path, i, converged, point)
@@ -132,7 +126,7 @@ contains
         x = search%place()
         call search%note(x, beyond(x))
       end do
-      found = undeformed_at(solver%problem, i, search%root)
+      found = undeformed_after(solver%problem, i, search%root)
       return
     end if
     span = new_path_span(path, i)
@@ -236,7 +230,7 @@ contains
         at = search%place()
         call search%note(at, slope(at))
       end do
-      turn = undeformed_at(problem, i, search%root)
+      turn = undeformed_after(problem, i, search%root)
       turns = [turns, turn]
     end do
 

@@ -15,7 +15,7 @@ module driven_pieces
   use path_point, only: path_point_t, part_of
   implicit none
   private
-  public :: driven_pieces_t, driven_piece_t, jump_t, leg_t, walk_t, way_along, interval_with
+  public :: driven_pieces_t, driven_piece_t, jump_t, leg_t, walk_t, interval_with
   public :: drive_t, through_spring
 
   !> Weights of h0 and load in Q (`path_point`).
@@ -65,6 +65,8 @@ module driven_pieces
     procedure :: jump_from
     procedure :: jump_over
     procedure :: piece_with
+    procedure :: way_along
+    procedure :: way_to
   end type driven_pieces_t
 
   !> The motion along one stable piece. jumps: the motion goes to the end of the piece, where Q
@@ -101,7 +103,7 @@ contains
     class(drive_t), intent(in) :: self
     type(path_point_t), intent(in) :: point
 
-    position = self%weights(1)*point%state%h0 + self%weights(2)*point%state%load
+    position = point%state%of(self%weights)
   end function position
 
   !> Energy of bodies and spring, or of bodies and dead load. At fixed Q equilibria are stationary
@@ -188,9 +190,7 @@ contains
 
     do i = piece%first%interval, piece%last%interval - 1
       if (.not. path%point(i)%leads_on) cycle
-      associate (end => path%point(i + 1)%state)
-        if (dot_product(weights, [end%h0, end%load]) <= wanted) return
-      end associate
+      if (path%point(i + 1)%state%of(weights) <= wanted) return
     end do
   end function interval_with
 
@@ -252,5 +252,14 @@ contains
       if (leg%piece == 0) return
     end do
   end function way_along
+
+  !> The legs from a piece to a position of the drive, inward or outward.
+  pure type(walk_t) function way_to(pieces, from, position) result(walk)
+    class(driven_pieces_t), intent(in) :: pieces
+    integer, intent(in) :: from
+    real(wp), intent(in) :: position
+
+    walk = pieces%way_along(from, position < pieces%drive%position(pieces%piece(from)%last), position)
+  end function way_to
 
 end module driven_pieces

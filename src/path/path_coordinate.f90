@@ -3,22 +3,26 @@
 !> H_eq the equilibrium separation. At H_a < H_eq, to which flat faces may be pressed, s continues
 !> with the same slope and curvature and becomes linear in H_a. On other meshes s is the logarithm
 !> of the radius to which they are locked (`mesh_plan`). The module also has the controls that
-!> prescribe s or h0 on a mesh.
+!> prescribe s or h0 on a mesh, and the state from which bodies approach.
 module path_coordinate
   use kinds, only: wp
   use force_law, only: force_law_t
-  use dimensionless_problem, only: problem_t
-  use contact_state, only: state_t
+  use dimensionless_problem, only: problem_t, calm_gap
+  use contact_state, only: state_t, undeformed_state
   use shape, only: shape_t
   use controls, only: control_t, at_axis_gap, at_edge_radius, at_h0_with_edge
   use contact_scales, only: hertz_scale
+  use mesh_plan, only: approach, contact
   use mesh_family, only: mesh_family_t
   implicit none
   private
-  public :: path_control, h0_control, scale_at, coordinate_of, axis_coordinate, axis_gap_rate
+  public :: path_control, h0_control, scale_at, far_away, begin_afar, coordinate_of, &
+    axis_coordinate, axis_gap_rate
 
   !> The singular gap of the logarithm, over the equilibrium separation.
   real(wp), parameter :: singular = 0.9_wp
+  !> Lengths of the law between the level of a mesh and negligible repulsion.
+  integer, parameter :: lengths_apart = 3
 
 contains
 
@@ -61,6 +65,30 @@ contains
     scale_at = 1
     if (.not. meshes%traceable) scale_at = hertz_scale(shape, meshes%level, h0)
   end function scale_at
+
+  !> An H0 at which the bodies hardly deform, or at which the repulsion is negligible: a few lengths
+  !> of the law beyond the level of meshes without a path.
+  pure real(wp) function far_away(problem, meshes)
+    type(problem_t), intent(in) :: problem
+    type(mesh_family_t), intent(in) :: meshes
+
+    far_away = max(calm_gap(problem), meshes%level + lengths_apart)
+  end function far_away
+
+  !> Undeformed bodies at the larger of h0 and `far_away`, and their mesh.
+  pure subroutine begin_afar(problem, meshes, h0, mesh, state)
+    type(problem_t), intent(in) :: problem
+    type(mesh_family_t), intent(in) :: meshes
+    real(wp), intent(in) :: h0
+    integer, intent(out) :: mesh
+    type(state_t), intent(out) :: state
+
+    mesh = merge(approach, contact, meshes%traceable)
+    associate (far => max(h0, far_away(problem, meshes)))
+      state = undeformed_state(problem%shape, meshes%grid(mesh), far, &
+        scale_at(problem%shape, meshes, far))
+    end associate
+  end subroutine begin_afar
 
   !> The coordinate of a state; the inverse of `path_control`.
   pure real(wp) function coordinate_of(problem, meshes, mesh, state) result(s)

@@ -22,13 +22,13 @@ module path_end
   public :: demand_t, touches, outer_end, astray, collapsed
 
   !> What a path must contain. It begins with undeformed bodies at h0 = `farthest`. At its end Q =
-  !> by_h0*h0 - by_load*load is at most `until`, for each element of the arrays. If `closes`, the
+  !> weights(1, k) h0 + weights(2, k) load is at most until(k) for each k. If `closes(k)`, the
   !> bodies are also in contact within all barriers at the end, and Q is below all its earlier
   !> values, so that every jump ends on the path. looser: factor by which the errors of the curve
   !> through the points may be larger than with the closest points (`continuation`).
   type :: demand_t
     real(wp) :: farthest = 0, looser = 1
-    real(wp), allocatable :: by_h0(:), by_load(:), until(:)
+    real(wp), allocatable :: weights(:, :), until(:)
     logical, allocatable :: closes(:)
   contains
     procedure :: is_met
@@ -53,10 +53,10 @@ contains
     integer :: k
 
     associate (last => path%point(path%held))
-      is_met = all(self%by_h0*last%state%h0 - self%by_load*last%state%load <= self%until)
+      is_met = all([(last%state%of(self%weights(:, k)) <= self%until(k), k=1, size(self%until))])
       if (is_met .and. any(self%closes)) is_met = touches(equations, last)
       do k = 1, size(self%closes)
-        if (is_met .and. self%closes(k)) is_met = is_lowest([self%by_h0(k), -self%by_load(k)])
+        if (is_met .and. self%closes(k)) is_met = is_lowest(self%weights(:, k))
       end do
     end associate
 
@@ -69,9 +69,7 @@ contains
       real(wp) :: ends(2), at_end
       integer :: i, j
 
-      associate (state => path%point(path%held)%state)
-        at_end = dot_product(weights, [state%h0, state%load])
-      end associate
+      at_end = path%point(path%held)%state%of(weights)
       is_lowest = .true.
       do i = path%undeformed + 1, path%held - 1
         if (.not. path%point(i)%leads_on) cycle

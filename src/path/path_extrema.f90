@@ -78,8 +78,8 @@ contains
       real(wp) :: value(2), slope(2)
       integer :: j
 
-      associate (x => near%point(i:i + 1)%coordinate, states => near%point(i:i + 1)%state)
-        value = [(dot_product(weights, [states(j)%h0, states(j)%load]), j=1, 2)]
+      associate (x => near%point(i:i + 1)%coordinate)
+        value = [(near%point(j)%state%of(weights), j=i, i + 1)]
         slope = [(near%point(j)%tangent%of(weights), j=i, i + 1)]
         call look(near%curve(weights, x(1) + 0.5_wp*(x(2) - x(1))), x, slope, error, &
           turns, doubt, s)

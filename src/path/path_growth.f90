@@ -10,7 +10,7 @@ module path_growth
   use kinds, only: wp
   use solver, only: solver_t
   use arc, only: arc_t
-  use path_point, only: path_point_t, of_h0, of_load
+  use path_point, only: path_point_t, h0_alone, load_alone
   use path_extrema, only: find_extrema
   use traced_path, only: traced_path_t
   implicit none
@@ -62,8 +62,8 @@ contains
         no_load*solver%problem%law%adhesion)) cycle
       if (n < 2) return
       call find_extrema(solver, arc, arc%point(n - 1:n)%coordinate, &
-        merge(of_h0, of_load, folds), extrema, lost)
-      maximum = .not. arc%point(n - 1)%tangent%of(merge(of_h0, of_load, folds)) < 0
+        merge(h0_alone, load_alone, folds), extrema, lost)
+      maximum = .not. arc%point(n - 1)%tangent%of(merge(h0_alone, load_alone, folds)) < 0
       do k = 1, size(extrema)
         call put(path, extrema(k), folds, maximum)
         maximum = .not. maximum

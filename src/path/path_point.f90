@@ -4,11 +4,11 @@ module path_point
   use contact_state, only: state_t
   implicit none
   private
-  public :: path_point_t, tangent_t, part_of, no_mesh, of_h0, of_load
+  public :: path_point_t, tangent_t, part_of, no_mesh, h0_alone, load_alone
 
   !> Weights of h0 and load in a combination Q = weights(1) h0 + weights(2) load: h0 itself, the
   !> load, or the position of a spring's base (`driven_pieces`).
-  real(wp), parameter :: of_h0(2) = [1, 0], of_load(2) = [0, 1]
+  real(wp), parameter :: h0_alone(2) = [1, 0], load_alone(2) = [0, 1]
 
   !> The mesh number of undeformed bodies; their coordinate on the path is -log(h0).
   integer, parameter :: no_mesh = 0

@@ -118,7 +118,7 @@ contains
       type(path_point_t), intent(in) :: tried
 
       if (present(wanted)) then
-        off = dot_product(weights, [tried%state%h0, tried%state%load]) - wanted
+        off = tried%state%of(weights) - wanted
       else
         off = tried%tangent%of(weights)
       end if

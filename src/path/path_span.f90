@@ -8,7 +8,7 @@ module path_span
   use equilibrium, only: holds, residual_floor
   use solver, only: solver_t
   use path_coordinate, only: coordinate_of, h0_control
-  use path_point, only: path_point_t, of_h0, of_load
+  use path_point, only: path_point_t, h0_alone, load_alone
   use arc, only: arc_t
   use path_search, only: find_place, place_on
   use traced_path, only: traced_path_t
@@ -47,8 +47,8 @@ contains
     call path%add_to(i, span)
     middle = 0.5_wp*sum(span%ends)
     call span%support(middle, span%nodes, span%fitted)
-    span%h0_curve = span%curve(of_h0, middle)
-    span%load_curve = span%curve(of_load, middle)
+    span%h0_curve = span%curve(h0_alone, middle)
+    span%load_curve = span%curve(load_alone, middle)
   end function new_path_span
 
   !> The coordinate between the ends at which the polynomial has the value H0.
@@ -87,7 +87,7 @@ contains
     type(path_point_t), intent(out) :: point
     logical :: found
 
-    call find_place(solver, self%arc_t, self%ends, of_h0, point, found, h0)
+    call find_place(solver, self%arc_t, self%ends, h0_alone, point, found, h0)
     point%interval = self%interval
     associate (state => point%state)
       if (abs(state%h0 - h0) > max(solver%options%tolerance, &

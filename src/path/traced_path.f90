@@ -12,7 +12,7 @@ module traced_path
   use ending, only: ending_t
   implicit none
   private
-  public :: traced_path_t, tracing_t
+  public :: traced_path_t, tracing_t, undeformed_at
 
   type :: traced_path_t
     integer :: held = 0
@@ -86,14 +86,8 @@ contains
       all_points(n + 2:) = self%point(:self%held)
       do i = 0, n
         associate (point => all_points(i + 1))
-          point%mesh = no_mesh
+          point = undeformed_at(problem, h0*(farthest/h0)**(1 - real(i, wp)/n))
           point%leads_on = i < n
-          point%state%h0 = h0*(farthest/h0)**(1 - real(i, wp)/n)
-          point%state%load = load_undeformed(problem, point%state%h0)
-          point%state%axis_gap = point%state%h0
-          point%coordinate = -log(point%state%h0)
-          point%tangent%h0 = -point%state%h0
-          point%tangent%load = -point%state%h0*load_slope_undeformed(problem, point%state%h0)
         end associate
       end do
     end associate
@@ -101,6 +95,20 @@ contains
     self%undeformed = n + 1
     self%held = self%held + self%undeformed
   end subroutine begin_undeformed
+
+  !> The point of the path for undeformed bodies at h0.
+  pure type(path_point_t) function undeformed_at(problem, h0) result(point)
+    type(problem_t), intent(in) :: problem
+    real(wp), intent(in) :: h0
+
+    point%mesh = no_mesh
+    point%coordinate = -log(h0)
+    point%state%h0 = h0
+    point%state%axis_gap = h0
+    point%state%load = load_undeformed(problem, h0)
+    point%tangent%h0 = -h0
+    point%tangent%load = -h0*load_slope_undeformed(problem, h0)
+  end function undeformed_at
 
   !> Number of unstable modes of the i-th point; at a fold, of its more unstable side.
   pure integer function modes_at(self, i)

@@ -1,11 +1,9 @@
 !> The initial state of a drive in time: relaxed bodies after a slow approach from a large distance.
 module relaxed_start
   use kinds, only: wp
-  use dimensionless_problem, only: calm_gap
-  use contact_state, only: state_t, undeformed_state, regrid
+  use contact_state, only: state_t, regrid
   use controls, only: control_t
-  use mesh_plan, only: approach, contact
-  use path_coordinate, only: coordinate_of, scale_at
+  use path_coordinate, only: coordinate_of, begin_afar
   use drainage, only: drainage_t
   use time_instant, only: instant_t
   use time_stepper, only: time_stepper_t
@@ -29,18 +27,15 @@ contains
     logical, intent(out) :: found
     type(state_t) :: state
     type(drainage_t), allocatable :: fluid
-    real(wp) :: far, next, step
+    real(wp) :: next, step
 
     if (allocated(steps%earlier)) deallocate (steps%earlier)
     ! A fluid at rest exerts no pressure.
     if (allocated(steps%drainage)) call move_alloc(steps%drainage, fluid)
     steps%problem%coupling = steps%instant*steps%creep%relaxed()
-    at%mesh = merge(approach, contact, steps%meshes%traceable)
-    far = max(position, calm_gap(steps%problem), steps%meshes%level + 3)
-    state = undeformed_state(steps%problem%shape, steps%meshes%grid(at%mesh), far, &
-      scale_at(steps%problem%shape, steps%meshes, far))
-    at%position = far
-    call solve_relaxed(steps, far, state, at, found)
+    call begin_afar(steps%problem, steps%meshes, position, at%mesh, state)
+    at%position = state%h0
+    call solve_relaxed(steps, at%position, state, at, found)
     step = 1
     do while (found .and. at%position > position)
       next = max(position, at%position - step*longest_step(steps, at))

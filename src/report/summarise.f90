@@ -113,7 +113,7 @@ contains
       if (allocated(outcome%stepped_path)) call tell_trouble('path', outcome%stepped_path)
       if (allocated(outcome%loading)) then
         call tell_trouble('loading', outcome%loading)
-        if (outcome%loading%jump_uncertainty > 0) call tell_uncertainty('jump_in')
+        call tell_uncertainty('jump_in', outcome%loading)
       end if
       if (.not. allocated(outcome%unloading)) return
       call summary%set('unload_from', scene%unloading%from)
@@ -122,18 +122,21 @@ contains
       end do
       do k = 1, size(outcome%unloading)
         if (.not. allocated(outcome%unloading(k)%jump)) cycle
-        if (outcome%unloading(k)%jump_uncertainty > 0) call tell_uncertainty('jump_out')
+        call tell_uncertainty('jump_out', outcome%unloading(k))
         exit
       end do
     end subroutine tell_branches
 
     !> Adds the uncertainty of a jump that does not start from a computed fold. The error of its h0
     !> has two parts: the bracket between two states, and the error of the grid.
-    subroutine tell_uncertainty(name)
+    subroutine tell_uncertainty(name, branch)
       character(len=*), intent(in) :: name
+      type(branch_t), intent(in) :: branch
       type(place_t) :: place
       type(readings_t) :: found
 
+      if (.not. allocated(branch%jump)) return
+      if (.not. branch%jump%left(of_h0) > 0) return
       place = outcome%places%place_of(name)
       if (place%turns()) return
       found = read_numbers(outcome%places, problem, name, of_h0)
