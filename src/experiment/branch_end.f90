@@ -12,23 +12,15 @@ module branch_end
   use controls, only: control_t
   use fixed_branch, only: expected_at, is_expected, is_pinned, change
   use branch_tangent, only: branch_tangent_t, tangent_at, joins, passing
+  use reported_place, only: place_t, place_without_state, of_h0
   use solver_options, only: solver_options_t
   use stepper, only: stepper_t, branch_point_t, remember, error_of_h0
   implicit none
   private
-  public :: follow, branch_end_t, arrived, at_fold, lost
+  public :: follow, arrived, at_fold
 
   !> How `follow` ends: at h0, at a fold before it, or undecided.
   integer, parameter :: lost = 0, arrived = 1, at_fold = 2
-
-  !> The end of `follow`. state: the state at h0, or the last stable state before the fold. fold:
-  !> the state nearest to the fold, on either side of it. Then h0 and load of the fold, and the
-  !> uncertainty of its h0.
-  type :: branch_end_t
-    integer :: outcome = lost
-    type(state_t) :: state, fold
-    real(wp) :: fold_h0 = 0, fold_load = 0, uncertainty = 0
-  end type branch_end_t
 
   !> A state of the curve, its tangent, and its Q.
   type :: point_t
@@ -62,19 +54,24 @@ module branch_end
 
 contains
 
-  !> Follows the branch of the position, whose state is an equilibrium, towards h0.
-  subroutine follow(self, options, h0, position, found)
+  !> Follows the branch of the position, whose state is an equilibrium, towards h0. last: the state
+  !> at h0, or the last stable state before the fold. fold: h0 and load of the fold, with the
+  !> uncertainty of its h0. nearest: the state nearest to the fold, on either side of it.
+  subroutine follow(self, options, h0, position, outcome, last, fold, nearest)
     class(stepper_t), intent(inout) :: self
     type(solver_options_t), intent(in) :: options
     real(wp), intent(in) :: h0
     type(branch_point_t), intent(in) :: position
-    type(branch_end_t), intent(out) :: found
+    integer, intent(out) :: outcome
+    type(state_t), intent(out) :: last, nearest
+    type(place_t), intent(out) :: fold
     type(branch_point_t) :: memory
     type(point_t) :: here, there
     real(wp) :: sense, step, dip
     logical :: good
     integer :: states
 
+    outcome = lost
     memory = position
     here%state = position%state
     call tangent_at(self, control_t(value=here%state%h0), here%state, here%tangent)
@@ -82,8 +79,11 @@ contains
     sense = sign(1.0_wp, h0 - here%state%h0)
     if (.not. here%tangent%stable) then
       ! Within the tolerance the state is at the end of its branch.
-      found = branch_end_t(at_fold, here%state, here%state, here%state%h0, here%state%load, &
-        options%tolerance)
+      outcome = at_fold
+      last = here%state
+      nearest = here%state
+      fold = place_without_state(here%state%h0, here%state%load)
+      fold%left(of_h0) = options%tolerance
       return
     end if
     step = first_step*abs(h0 - here%state%h0)/here%tangent%h0
@@ -95,7 +95,7 @@ contains
         cycle
       end if
       if (there%tangent%h0 <= 0) then
-        call find_fold(self, options, h0, sense, here, there, found)
+        call find_fold(self, options, h0, sense, here, there, outcome, last, fold, nearest)
         return
       end if
       dip = lowest_within(here, there)
@@ -104,7 +104,7 @@ contains
         cycle
       end if
       if ((there%state%h0 - h0)*sense >= 0) then
-        call arrive(self, options, h0, sense, here, there, found)
+        call arrive(self, options, h0, sense, here, there, outcome, last)
         return
       end if
       call remember(memory, there%state, 1, .false.)
@@ -211,13 +211,15 @@ contains
     end associate
   end function slope_between
 
-  !> The fold between two points, of which the second is beyond it.
-  subroutine find_fold(self, options, h0, sense, first, second, found)
+  !> The fold between two points, of which the second is beyond it. Results: see `follow`.
+  subroutine find_fold(self, options, h0, sense, first, second, outcome, last, fold, nearest)
     class(stepper_t), intent(inout) :: self
     type(solver_options_t), intent(in) :: options
     real(wp), intent(in) :: h0, sense
     type(point_t), intent(in) :: first, second
-    type(branch_end_t), intent(inout) :: found
+    integer, intent(inout) :: outcome
+    type(state_t), intent(inout) :: last, nearest
+    type(place_t), intent(inout) :: fold
     type(point_t) :: low, high, trial
     real(wp) :: slope(3), part, bend, way
     logical :: good
@@ -239,15 +241,15 @@ contains
     end do
     ! The branch may pass h0 before its fold.
     if ((trial%state%h0 - h0)*sense >= 0) then
-      call arrive(self, options, h0, sense, first, trial, found)
+      call arrive(self, options, h0, sense, first, trial, outcome, last)
       return
     end if
-    found%outcome = at_fold
-    found%state = low%state
-    found%fold = trial%state
-    found%fold_h0 = trial%state%h0 + 0.5_wp*sense*trial%tangent%h0*way
-    found%fold_load = trial%state%load + sense*trial%tangent%load*way
-    found%uncertainty = max(error_of_h0, 0.5_wp*abs(trial%tangent%h0*way)) + trial%state%residual
+    outcome = at_fold
+    last = low%state
+    nearest = trial%state
+    fold = place_without_state(trial%state%h0 + 0.5_wp*sense*trial%tangent%h0*way, &
+      trial%state%load + sense*trial%tangent%load*way)
+    fold%left(of_h0) = max(error_of_h0, 0.5_wp*abs(trial%tangent%h0*way)) + trial%state%residual
   end subroutine find_fold
 
   !> The state at a Q between two points, as a guess: by Hermite's cubics.
@@ -266,19 +268,20 @@ contains
     if (too_near(guess%state%gap, low%state%gap)) guess%state%gap = low%state%gap
   end function guess_between
 
-  !> The state at h0 between two points of a branch.
-  subroutine arrive(self, options, h0, sense, first, second, found)
+  !> The state at h0 between two points of a branch. Results: see `follow`.
+  subroutine arrive(self, options, h0, sense, first, second, outcome, last)
     class(stepper_t), intent(inout) :: self
     type(solver_options_t), intent(in) :: options
     real(wp), intent(in) :: h0, sense
     type(point_t), intent(in) :: first, second
-    type(branch_end_t), intent(inout) :: found
+    integer, intent(inout) :: outcome
+    type(state_t), intent(inout) :: last
     type(hermite_t) :: h0_of
     type(bracket_t) :: bracket
     type(point_t) :: guess
     logical :: good
 
-    found%state = second%state
+    last = second%state
     good = abs(second%state%h0 - h0) <= 0
     if (.not. good) then
       h0_of = hermite_through([first%q, second%q], [first%state%h0, second%state%h0], &
@@ -288,12 +291,12 @@ contains
         call bracket%narrow((h0_of%value(bracket%middle()) - h0)*sense < 0)
       end do
       guess = guess_between(first, second, bracket%middle())
-      found%state = guess%state
+      last = guess%state
       call self%frozen%forget()
-      call self%correct(control_t(value=h0), found%state, good, options)
-      if (good) good = change(guess%state, found%state) <= beside
+      call self%correct(control_t(value=h0), last, good, options)
+      if (good) good = change(guess%state, last) <= beside
     end if
-    if (good) found%outcome = arrived
+    if (good) outcome = arrived
   end subroutine arrive
 
 end module branch_end

@@ -9,12 +9,13 @@ module fixed_motion
   use controls, only: control_t
   use fixed_branch, only: expected_at, is_expected, is_pinned, change
   use branch_tangent, only: branch_tangent_t, tangent_at, has_factors_at, joins
-  use branch_end, only: follow, branch_end_t, arrived, at_fold
+  use branch_end, only: follow, arrived, at_fold
   use ending, only: beyond_rounding, no_equilibrium
   use potential_energy, only: energy_of
+  use reported_place, only: place_t, of_h0, of_load
   use relaxation, only: relax
   use solver_options, only: solver_options_t
-  use stepper, only: stepper_t, branch_point_t, step_result_t, extreme_t, remember, move_to
+  use stepper, only: stepper_t, branch_point_t, step_result_t, remember, move_to
   implicit none
   private
   public :: advance, has_fallen, known_tangent, is_joined
@@ -59,8 +60,9 @@ contains
     type(step_result_t), intent(inout) :: event
     logical, intent(out) :: resting
     type(branch_tangent_t) :: tangent
-    type(state_t) :: expected, state
-    type(branch_end_t) :: found
+    type(state_t) :: expected, state, last, nearest
+    type(place_t) :: fold
+    integer :: outcome
     logical :: solved, stayed
 
     resting = .false.
@@ -99,15 +101,15 @@ contains
         end if
       end if
     end associate
-    call follow(self, options, h0, position, found)
+    call follow(self, options, h0, position, outcome, last, fold, nearest)
     ! These factors are of another coordinate than h0.
     call self%frozen%forget()
-    select case (found%outcome)
+    select case (outcome)
     case (arrived)
       event%converged = .true.
-      call remember(position, found%state, 1, .false.)
+      call remember(position, last, 1, .false.)
     case (at_fold)
-      call leave(self, options, h0, found, position, event, resting)
+      call leave(self, options, h0, last, fold, nearest, position, event, resting)
     case default
       event%unsure = .true.
       event%unsure_from = position%state%h0
@@ -128,12 +130,14 @@ contains
 
   end subroutine advance_to_jump
 
-  !> Jumps from a fold before h0, and rests beyond it or at h0.
-  subroutine leave(self, options, h0, found, position, event, resting)
+  !> Jumps from a fold before h0, and rests beyond it or at h0. last: the last state before the
+  !> fold; nearest: the state nearest to it.
+  subroutine leave(self, options, h0, last, fold, nearest, position, event, resting)
     class(stepper_t), intent(inout) :: self
     type(solver_options_t), intent(in) :: options
     real(wp), intent(in) :: h0
-    type(branch_end_t), intent(in) :: found
+    type(state_t), intent(in) :: last, nearest
+    type(place_t), intent(in) :: fold
     type(branch_point_t), intent(inout) :: position
     type(step_result_t), intent(inout) :: event
     logical, intent(out) :: resting
@@ -141,24 +145,23 @@ contains
     real(wp) :: beyond
     logical :: slips
 
-    beyond = found%fold_h0 + sign(min(beyond_fold, abs(h0 - found%fold_h0)), h0 - found%fold_h0)
-    call relax_at(self, options, beyond, found%state, landed, event%converged)
+    associate (way => h0 - fold%at(of_h0))
+      beyond = fold%at(of_h0) + sign(min(beyond_fold, abs(way)), way)
+    end associate
+    call relax_at(self, options, beyond, last, landed, event%converged)
     if (.not. (event%converged .or. has_fallen(self, landed))) then
       beyond = h0
-      call relax_at(self, options, beyond, found%state, landed, event%converged)
+      call relax_at(self, options, beyond, last, landed, event%converged)
     end if
     slips = event%converged .and. is_pinned(self)
-    if (slips) slips = stays(self, found%state, landed)
+    if (slips) slips = stays(self, last, landed)
     event%slipped = event%slipped .or. slips
-    if (found%fold_load < event%before%load) &
-      event%before = extreme_t(found%fold_load, found%fold_h0)
+    if (fold%at(of_load) < event%before%at(of_load)) event%before = fold
     if (.not. (slips .or. event%jumped)) then
       event%jumped = .true.
-      event%jump_h0 = found%fold_h0
-      event%jump_load = found%fold_load
-      event%jump_uncertainty = found%uncertainty
+      event%jump = fold
     end if
-    call lose_energy(self, options, found, landed, position)
+    call lose_energy(self, options, fold, nearest, landed, position)
     call land(self, landed, event%converged, position, event)
     resting = event%converged .and. abs(beyond - h0) > 0
   end subroutine leave
@@ -166,29 +169,29 @@ contains
   !> Adds the energy that bodies lose in a jump from a fold: the difference between the energies of
   !> both states at the h0 of the fold. This energy is not known if the branch after the jump does
   !> not extend back to this h0.
-  subroutine lose_energy(self, options, found, landed, position)
+  subroutine lose_energy(self, options, fold, nearest, landed, position)
     class(stepper_t), intent(inout) :: self
     type(solver_options_t), intent(in) :: options
-    type(branch_end_t), intent(in) :: found
-    type(state_t), intent(in) :: landed
+    type(place_t), intent(in) :: fold
+    type(state_t), intent(in) :: nearest, landed
     type(branch_point_t), intent(inout) :: position
     type(state_t) :: after
     real(wp) :: energy(2), error(2)
     logical :: good
 
     after = landed
-    call self%correct(control_t(value=found%fold_h0), after, good, options)
+    call self%correct(control_t(value=fold%at(of_h0)), after, good, options)
     if (good) good = change(landed, after) <= 2*unnoticed
     call self%frozen%forget()
     if (.not. good) then
       position%lost = nan
       return
     end if
-    call energy_of(self%equations_t, 1, found%fold, energy(1), error(1))
+    call energy_of(self%equations_t, 1, nearest, energy(1), error(1))
     call energy_of(self%equations_t, 1, after, energy(2), error(2))
     position%lost = position%lost + energy(1) - energy(2)
     position%lost_error = position%lost_error + sum(error) + &
-      found%uncertainty*abs(found%fold_load - after%load)
+      fold%left(of_h0)*abs(fold%at(of_load) - after%load)
   end subroutine lose_energy
 
   !> Makes the result of a relaxation the state of the position.

@@ -14,7 +14,8 @@ module fixed_stepper
   use h0_step, only: step_h0
   use fixed_motion, only: advance, has_fallen, known_tangent, is_joined
   use branch_tangent, only: branch_tangent_t
-  use stepper, only: stepper_t, branch_point_t, step_result_t, extreme_t, remember, move_to
+  use reported_place, only: place_without_state, of_h0
+  use stepper, only: stepper_t, branch_point_t, step_result_t, remember, move_to
   use solver_options, only: solver_options_t, usual_tolerance
   implicit none
   private
@@ -102,10 +103,9 @@ contains
     associate (before => position%state)
       event%jumped = event%converged .and. change(before, state) > max(1.0_wp, &
         paper_jump*abs(h0 - before%h0))
-      event%jump_h0 = 0.5_wp*(before%h0 + h0)
-      event%jump_load = before%load
-      event%jump_uncertainty = 0.5_wp*abs(h0 - before%h0)
-      if (event%jumped) event%before = extreme_t(event%jump_load, event%jump_h0)
+      event%jump = place_without_state(0.5_wp*(before%h0 + h0), before%load)
+      event%jump%left(of_h0) = 0.5_wp*abs(h0 - before%h0)
+      if (event%jumped) event%before = event%jump
       position%lost = nan
     end associate
     call remember(position, state, 1, event%jumped)

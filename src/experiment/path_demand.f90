@@ -211,8 +211,8 @@ contains
     end associate
   end function largest_pull
 
-  !> An h0 below that at which Q = weights(1) h0 + weights(2) load has the value `wanted` in contact,
-  !> by JKR theory (10), (11).
+  !> An h0 below that at which Q = weights(1) h0 + weights(2) load has the value `wanted` in
+  !> contact, by JKR theory (10), (11).
   pure real(wp) function h0_in_contact(problem, weights, wanted) result(h0)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: weights(2), wanted
@@ -241,7 +241,8 @@ contains
       real(wp), intent(in) :: radius
 
       associate (coupling => coupling_over(problem, radius))
-        position = weights(1)*h0_at(radius) + weights(2)*(problem%shape%indentation_load(radius)/coupling - &
+        position = weights(1)*h0_at(radius) + weights(2)*( &
+          problem%shape%indentation_load(radius)/coupling - &
           sqrt(4*pi*problem%law%adhesion*radius**3/coupling))
       end associate
     end function position

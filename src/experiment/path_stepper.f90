@@ -16,6 +16,7 @@ module path_stepper
   use prediction, only: missed_t, expect
   use path_end, only: demand_t
   use path_point, only: path_point_t, h0_alone
+  use reported_place, only: place_without_state
   use tracing, only: trace
   use driven_pieces, only: drive_t, jump_t, walk_t
   use piece_search, only: find_pieces, find_jumps
@@ -87,7 +88,6 @@ contains
     if (event%ending%early() .and. self%known%fallen) event%ending%cause = fallen_before
     ! Jumps during the approach, before the experiment begins, are not part of the experiment.
     event%jumped = .false.
-    event%fold = 0
   end subroutine approach_to
 
   !> Moves to h0 along the stable pieces of the path, with all jumps, and records the first jump.
@@ -123,9 +123,10 @@ contains
 
     if (.not. event%jumped) then
       event%jumped = .true.
-      event%fold = jump%fold()
-      event%jump_h0 = self%known%path%point(event%fold)%state%h0
-      event%jump_load = self%known%path%point(event%fold)%state%load
+      associate (state => self%known%path%point(jump%fold())%state)
+        event%jump = place_without_state(state%h0, state%load)
+      end associate
+      event%jump%point = jump%fold()
     end if
     if (jump%piece == 0) return
     position%piece = jump%piece

@@ -8,7 +8,7 @@ module stepped_branch
   use ending, only: ending_t
   use largest_tension, only: lower, lower_on_way
   use tension_search, only: tension_search_t
-  use reported_place, only: place_t, place_of_state, place_without_state, of_h0
+  use reported_place, only: place_t, place_of_state, of_h0
   use places, only: places_t
   use records, only: observer_t, record_t, quality_t, record_of, stable_yes, stable_unasked
   implicit none
@@ -142,9 +142,7 @@ contains
       real(wp), intent(in) :: h0
 
       if (event%jumped .and. .not. allocated(branch%jump)) then
-        branch%jump = place_without_state(event%jump_h0, event%jump_load)
-        branch%jump%point = event%fold
-        branch%jump%left(of_h0) = event%jump_uncertainty
+        branch%jump = event%jump
       end if
       branch%ending = event%ending
       if (event%ending%early()) return

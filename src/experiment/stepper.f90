@@ -8,11 +8,12 @@ module stepper
   use solver, only: solver_t
   use ending, only: ending_t
   use path_point, only: h0_alone
+  use reported_place, only: place_t
   use traced_path, only: tracing_t
   use driven_pieces, only: driven_pieces_t, interval_with
   implicit none
   private
-  public :: stepper_t, known_path_t, branch_point_t, step_result_t, extreme_t, memory, &
+  public :: stepper_t, known_path_t, branch_point_t, step_result_t, memory, &
     remember, move_to, error_of_h0
 
   !> Number of states for the extrapolation in h0.
@@ -40,26 +41,20 @@ module stepper
     real(wp) :: lost = 0, lost_error = 0
   end type branch_point_t
 
-  !> A state of large tension: its load and h0.
-  type :: extreme_t
-    real(wp) :: load = 0, h0 = 0
-  end type extreme_t
-
   !> The result of a step.
   type :: step_result_t
     logical :: converged = .false.
-    !> Whether the bodies jumped; h0 and load just before the first jump, and the uncertainty of h0.
+    !> Whether the bodies jumped. h0 and load just before the first jump, with the uncertainty of
+    !> h0; the place is the point of the path from which the bodies jump, if it is known.
     logical :: jumped = .false.
-    real(wp) :: jump_h0 = 0, jump_load = 0, jump_uncertainty = 0
+    type(place_t) :: jump
     !> Whether a contact edge slipped from one node to the next, and whether it may have slipped
-    !> unnoticed. Of the states just before jumps and slips, the one of largest tension.
+    !> unnoticed. Of the places just before jumps and slips, the one of largest tension.
     logical :: slipped = .false., jagged = .false.
-    type(extreme_t) :: before = extreme_t()
+    type(place_t) :: before
     !> Whether it is not known if the bodies jumped between unsure_from and the end of the step.
     logical :: unsure = .false.
     real(wp) :: unsure_from = 0
-    !> The fold from which the first jump starts, as a point of the path; 0 if it is not known.
-    integer :: fold = 0
     !> The ending is early if there is no state at h0.
     type(ending_t) :: ending
   end type step_result_t
@@ -109,7 +104,8 @@ contains
     integer, intent(in) :: piece
     real(wp), intent(in) :: h0
 
-    i = max(interval_with(self%path, self%stable%piece(piece), h0_alone, h0), self%path%undeformed + 1)
+    i = max(interval_with(self%path, self%stable%piece(piece), h0_alone, h0), &
+      self%path%undeformed + 1)
   end function interval_at
 
   !> The mesh of a position's state.

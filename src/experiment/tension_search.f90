@@ -2,6 +2,7 @@
 !> its steps are solved. (On edge-locked meshes the traced path has the largest tension.)
 module tension_search
   use kinds, only: wp
+  use reported_place, only: of_h0, of_load
   use stepper, only: stepper_t, branch_point_t, step_result_t
   use tension_stretch, only: found_tension_t, stretch_t, leaps
   implicit none
@@ -43,10 +44,10 @@ contains
       else if (leaps(event) .or. .not. stretch%open) then
         began = last_h0
         if (leaps(event)) then
-          began = event%before%h0
+          began = event%before%at(of_h0)
           ! During loading the tension increases up to the jump itself.
           if (h0 < began .and. stretch%open) &
-            stretch%open = event%before%load >= stretch%lowest%state%load
+            stretch%open = event%before%at(of_load) >= stretch%lowest%state%load
         end if
         call self%end_stretch(steps, began)
         stretch = stretch_t(position, previous, began, h0, .true., lost_before=self%lost)

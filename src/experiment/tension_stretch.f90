@@ -7,7 +7,7 @@ module tension_stretch
   use root_finding, only: root_search_t, new_root_search
   use largest_tension, only: lower
   use stepper, only: stepper_t, branch_point_t, step_result_t, error_of_h0
-  use reported_place, only: place_t, place_of_state, place_without_state, of_h0
+  use reported_place, only: place_t, place_of_state, of_h0
   implicit none
   private
   public :: stretch_t, found_tension_t, leaps
@@ -68,11 +68,8 @@ contains
   subroutine note_jump(self, event)
     class(found_tension_t), intent(inout) :: self
     type(step_result_t), intent(in) :: event
-    type(place_t) :: place
 
-    place = place_without_state(event%before%h0, event%before%load)
-    place%left(of_h0) = event%jump_uncertainty
-    call self%note_place(place)
+    call self%note_place(event%before)
   end subroutine note_jump
 
   !> Searches for the largest tension between stretch%before and stretch%after, where the slope
@@ -136,7 +133,7 @@ contains
       if (leaps(event) .or. .not. event%converged) then
         ! The stretch ends at the jump, before which its tension may be largest.
         lost = .not. leaps(event)
-        bound = merge(event%before%h0, 0.5_wp*(best%state%h0 + bound), leaps(event))
+        bound = merge(event%before%at(of_h0), 0.5_wp*(best%state%h0 + bound), leaps(event))
         if ((bound - best%state%h0)*onward > 0) call self%note_jump(event)
         cycle
       end if

@@ -259,7 +259,8 @@ contains
     integer, intent(in) :: from
     real(wp), intent(in) :: position
 
-    walk = pieces%way_along(from, position < pieces%drive%position(pieces%piece(from)%last), position)
+    walk = pieces%way_along(from, position < pieces%drive%position(pieces%piece(from)%last), &
+      position)
   end function way_to
 
 end module driven_pieces

@@ -61,9 +61,9 @@ SEAMS = {
 LONGEST_CHAIN = 30
 
 # Types with a state of the bodies: a point of the path, a reported place, the position of a stepped
-# experiment, the bodies at a time; and, where branches on fixed meshes end, points of a curve and
-# what its search finds. A Jacobian has the state at which it was made.
-EQUILIBRIA = {"path_point_t", "place_t", "branch_point_t", "instant_t", "point_t", "branch_end_t",
+# experiment, the bodies at a time, and a point of the curve on which a branch on a fixed mesh ends.
+# A Jacobian has the state at which it was made.
+EQUILIBRIA = {"path_point_t", "place_t", "branch_point_t", "instant_t", "point_t",
               "frozen_jacobian_t"}
 
 
