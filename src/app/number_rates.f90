@@ -8,10 +8,10 @@ module number_rates
   use scene, only: swept_scene
   use scene_problem, only: problem_of
   use variation, only: find_rule
-  use equilibrium, only: cost_t
-  use experiment, only: run_again
+  use experiment, only: run_experiment
   use experiment_result, only: experiment_result_t
   use reported_numbers, only: run_numbers_t, differentiate
+  use records, only: observer_t
   use progress_observer, only: progress_observer_t
   implicit none
   private
@@ -39,13 +39,12 @@ contains
     type(problem_t) :: problem
     type(run_numbers_t), allocatable :: numbers(:)
     real(wp), allocatable, dimension(:) :: offset, weight, coarser
-    type(cost_t) :: cost
+    type(observer_t) :: silent
     logical :: found
     integer :: j, k
 
     if (.not. allocated(outcome%places%number)) return
     do j = 1, size(scene%varied)
-      cost = outcome%cost
       call observer%hear('differentiating by ' // scene%varied(j)%parameter%name)
       call pose_variants(scene, j, offset, variant)
       outcome%differentiated = outcome%differentiated .and. allocated(variant)
@@ -54,10 +53,11 @@ contains
       allocate (numbers(size(variant)))
       do k = 1, size(variant)
         problem = problem_of(variant(k))
-        call run_again(variant(k), problem, outcome, cost, other)
+        call run_experiment(variant(k), problem, silent, other, like=outcome)
+        other%cost%states = outcome%cost%states
+        outcome%cost = other%cost
         numbers(k)%number = other%places%numbers(problem)
       end do
-      outcome%cost = cost
       call find_rule(offset, weight, coarser)
       call differentiate(outcome%places%number, numbers, weight, coarser, j, &
         size(scene%varied), found)

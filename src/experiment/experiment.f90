@@ -4,11 +4,10 @@
 !> error exceeds the accuracy of the deck, the finer run becomes the result. Effects that are not
 !> requested are not set up.
 module experiment
-  use kinds, only: wp, long
+  use kinds, only: wp
   use dimensionless_problem, only: problem_t
   use experiment_request, only: request_t
   use numerics_choice, only: choose, more_digits, with_fewer_nodes, with_less_extent
-  use equilibrium, only: cost_t
   use mesh_digits, only: most_digits
   use mesh_store, only: mesh_store_t
   use locked_stepper, only: locked_stepper_t, unique_stepper_t
@@ -24,7 +23,7 @@ module experiment
   use clock, only: seconds
   implicit none
   private
-  public :: run_experiment, run_again
+  public :: run_experiment
 
   !> The coupling for rigid bodies, so small that they do not deform noticeably even under the
   !> pressure of a fluid, which may be much larger than that of the law.
@@ -42,13 +41,16 @@ module experiment
 contains
 
   !> Runs the path and the cycle; does nothing if neither is requested. store: earlier meshes that
-  !> are locked to the contact edge.
-  subroutine run_experiment(request, problem, observer, outcome, store)
+  !> are locked to the contact edge. like: the outcome of a similar scene; then there is one run
+  !> with the numerics of that outcome, its numbers have no errors from other runs, and its cost is
+  !> added to that of `like`.
+  subroutine run_experiment(request, problem, observer, outcome, store, like)
     class(request_t), intent(in) :: request
     type(problem_t), intent(in) :: problem
     class(observer_t), intent(inout) :: observer
     type(experiment_result_t), intent(out) :: outcome
     type(mesh_store_t), intent(inout), optional :: store
+    type(experiment_result_t), intent(in), optional :: like
     ! Not allocatable steppers: compiler note 3.
     type(path_stepper_t), target :: along_path(2)
     type(unique_stepper_t), target :: one_by_one(2)
@@ -56,11 +58,17 @@ contains
     logical :: fixed
 
     if (.not. request%finds_states()) return
+    if (present(like)) outcome%cost = like%cost
     if (allocated(request%drive)) then
-      call run_driven(request, problem, observer, outcome)
+      call run_driven(request, problem, observer, outcome, like)
       return
     end if
     outcome%chosen = choose(request, problem)
+    if (present(like)) then
+      outcome%chosen%digits = like%chosen%digits
+      outcome%chosen%accuracy = like%chosen%accuracy
+      outcome%chosen%options = like%chosen%options
+    end if
     if (problem%rigid) then
       call run_rigid(request, problem, observer, outcome)
       return
@@ -68,25 +76,29 @@ contains
     fixed = outcome%chosen%is_fixed()
     if (allocated(request%path) .or. .not. fixed) then
       if (problem%law%adhesion > 0) then
-        call run_locked(along_path(1), along_path(2), request, problem, observer, outcome, store)
+        call run_locked(along_path(1), along_path(2), request, problem, observer, outcome, store, &
+          present(like))
       else
-        call run_locked(one_by_one(1), one_by_one(2), request, problem, observer, outcome, store)
+        call run_locked(one_by_one(1), one_by_one(2), request, problem, observer, outcome, store, &
+          present(like))
       end if
     end if
     if (allocated(request%loading) .and. fixed) &
-      call run_fixed(at_nodes, request, problem, observer, outcome)
+      call run_fixed(at_nodes, request, problem, observer, outcome, present(like))
   end subroutine run_experiment
 
-  !> Runs the drive in time; passes: see `run_timed`. Rigid bodies are replaced by bodies that are
-  !> too stiff for a noticeable deformation.
-  subroutine run_driven(request, problem, observer, outcome, passes)
+  !> Runs the drive in time; like: see `run_experiment`. Rigid bodies are replaced by bodies that
+  !> are too stiff for a noticeable deformation.
+  subroutine run_driven(request, problem, observer, outcome, like)
     class(request_t), intent(in) :: request
     type(problem_t), intent(in) :: problem
     class(observer_t), intent(inout) :: observer
     type(experiment_result_t), intent(inout) :: outcome
-    integer, intent(in), optional :: passes
+    type(experiment_result_t), intent(in), optional :: like
     type(problem_t) :: driven
+    integer, allocatable :: passes
 
+    if (present(like)) passes = like%timed%passes
     driven = problem
     driven%rigid = .false.
     if (problem%rigid) driven%coupling = unyielding
@@ -97,19 +109,29 @@ contains
   end subroutine run_driven
 
   !> Runs the experiments on meshes locked to the contact edge, as accurately as the deck asks for.
-  !> Rows are made for the result alone. one, other: steppers of the same type.
-  subroutine run_locked(one, other, request, problem, observer, outcome, store)
+  !> Rows are made for the result alone. one, other: steppers of the same type. once: there is one
+  !> run with the numerics of the outcome, without rows.
+  subroutine run_locked(one, other, request, problem, observer, outcome, store, once)
     class(locked_stepper_t), intent(inout), target :: one, other
     class(request_t), intent(in) :: request
     type(problem_t), intent(in) :: problem
     class(observer_t), intent(inout) :: observer
     type(experiment_result_t), intent(inout) :: outcome
     type(mesh_store_t), intent(inout), optional :: store
+    logical, intent(in) :: once
     class(locked_stepper_t), pointer :: steps
     type(experiment_result_t) :: ahead, nothing
     type(run_numbers_t) :: others(1)
     real(wp) :: began
 
+    if (once) then
+      one%cost = outcome%cost
+      call begin_locked(one, request, problem, outcome%chosen, observer, store)
+      call run_once(one, request, .true., .not. outcome%chosen%is_fixed(), .false., observer, &
+        outcome)
+      outcome%cost = one%cost
+      return
+    end if
     call agree(one, other, request, problem, observer, outcome, ahead, steps, store)
     began = seconds()
     outcome%places = nothing%places
@@ -127,59 +149,6 @@ contains
     end if
     outcome%cost = steps%cost
   end subroutine run_locked
-
-  !> Runs the experiments of a similar scene once, with the numerics of the run `like`. The numbers
-  !> of the outcome have no errors from other runs. cost: the cost of this run is added to it.
-  subroutine run_again(request, problem, like, cost, outcome)
-    class(request_t), intent(in) :: request
-    type(problem_t), intent(in) :: problem
-    type(experiment_result_t), intent(in) :: like
-    type(cost_t), intent(inout) :: cost
-    type(experiment_result_t), intent(out) :: outcome
-    ! Not allocatable steppers: compiler note 3.
-    type(path_stepper_t) :: along_path
-    type(unique_stepper_t) :: one_by_one
-    type(fixed_stepper_t) :: at_nodes
-    type(observer_t) :: silent
-    integer(long) :: states
-    logical :: fixed
-
-    states = cost%states
-    outcome%cost = cost
-    if (allocated(request%drive)) then
-      call run_driven(request, problem, silent, outcome, passes=like%timed%passes)
-    else if (problem%rigid) then
-      call run_rigid(request, problem, silent, outcome)
-    else
-      outcome%chosen = choose(request, problem)
-      outcome%chosen%digits = like%chosen%digits
-      outcome%chosen%accuracy = like%chosen%accuracy
-      outcome%chosen%options = like%chosen%options
-      fixed = outcome%chosen%is_fixed()
-      if (problem%law%adhesion > 0) call run_on_locked(along_path)
-      if (.not. problem%law%adhesion > 0) call run_on_locked(one_by_one)
-      if (allocated(request%loading) .and. fixed) then
-        at_nodes%cost = outcome%cost
-        call begin_fixed(at_nodes, problem, outcome%chosen)
-        call run_once(at_nodes, request, .false., .true., .true., silent, outcome)
-        outcome%cost = at_nodes%cost
-      end if
-    end if
-    cost = outcome%cost
-    cost%states = states
-
-  contains
-
-    subroutine run_on_locked(steps)
-      class(locked_stepper_t), intent(inout) :: steps
-
-      steps%cost = outcome%cost
-      call begin_locked(steps, request, problem, outcome%chosen, silent)
-      call run_once(steps, request, .true., .not. fixed, .false., silent, outcome)
-      outcome%cost = steps%cost
-    end subroutine run_on_locked
-
-  end subroutine run_again
 
   !> Runs a scene with more and more digits until the numbers of two successive runs agree within
   !> the accuracy. The coarser of these two, `outcome`, is the result; `ahead` is the other one.
@@ -241,13 +210,14 @@ contains
 
   !> Runs the cycle on a grid that is fixed in space, then on a coarser and on a smaller grid; their
   !> errors are added, so that they cannot cancel. outcome: contains the numbers of the path
-  !> already.
-  subroutine run_fixed(steps, request, problem, observer, outcome)
+  !> already. once: without the other grids.
+  subroutine run_fixed(steps, request, problem, observer, outcome, once)
     type(fixed_stepper_t), intent(inout) :: steps
     class(request_t), intent(in) :: request
     type(problem_t), intent(in) :: problem
     class(observer_t), intent(inout) :: observer
     type(experiment_result_t), intent(inout) :: outcome
+    logical, intent(in) :: once
     type(fixed_stepper_t) :: coarse
     type(experiment_result_t) :: of_path, ahead
     type(run_numbers_t) :: others(2)
@@ -260,6 +230,8 @@ contains
     steps%cost = outcome%cost
     call begin_fixed(steps, problem, outcome%chosen)
     call run_once(steps, request, .false., .true., .true., observer, outcome)
+    outcome%cost = steps%cost
+    if (once) return
     steps%cost%solve_seconds = steps%cost%solve_seconds + seconds() - began
     outcome%nodes = outcome%nodes + sum(steps%meshes%grid%nodes)
     began = seconds()

@@ -133,7 +133,7 @@ contains
         .false.)
     end do
     steps%cost%states = now%held
-    steps%cost%solve_seconds = seconds() - began
+    steps%cost%solve_seconds = steps%cost%solve_seconds + seconds() - began
     cost = steps%cost
     if (.not. result%lost .and. problem%law%adhesion > 0) &
       result%of_start = effect_of_start(steps, blank%drive%position(0), now%row(:now%held))
@@ -174,6 +174,7 @@ contains
     subroutine prepare()
       associate (asked => request%drive, law => problem%law)
         steps%problem = problem
+        steps%cost = cost
         steps%instant = problem%coupling
         if (allocated(request%creep)) then
           steps%creep = request%creep
