@@ -121,6 +121,7 @@ contains
     end associate
   end subroutine next_row
 
+  !> Appends the next case to a batch for another process. found = .false.: there is none.
   subroutine put_next(self, batch, found)
     class(case_queue_t), intent(inout) :: self
     type(byte_record_t), intent(inout) :: batch
@@ -132,6 +133,7 @@ contains
     call pass_task(batch, case)
   end subroutine put_next
 
+  !> Enters the next case of the answers of another process.
   subroutine take_answer(self, answers)
     class(case_queue_t), intent(inout) :: self
     type(byte_record_t), intent(inout) :: answers

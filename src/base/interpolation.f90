@@ -170,6 +170,7 @@ contains
     end associate
   end function hermite_through
 
+  !> The polynomial at x.
   pure real(wp) function hermite_value(self, x) result(y)
     class(hermite_t), intent(in) :: self
     real(wp), intent(in) :: x

@@ -47,6 +47,7 @@ module root_finding
 
 contains
 
+  !> The middle of the interval.
   elemental real(wp) function middle(self)
     class(bracket_t), intent(in) :: self
 

@@ -116,7 +116,8 @@ contains
     lu(n + 1, n + 1) = lu(n + 1, n + 1) + by_scale(bordered_row(control))
   end subroutine add_drainage
 
-  !> Factorises the Jacobian of bodies in static equilibrium on any mesh, locked to a given gap.
+  !> Factorises the Jacobian of bodies in static equilibrium on any mesh. locked_gap: the gap at the
+  !> radius to which the mesh is locked; shift: is added to the diagonal of the nodes' block.
   subroutine factorise_on(problem, grid, operator, locked_gap, control, state, factors, cost, shift)
     type(problem_t), intent(in) :: problem
     type(discretisation_t), intent(in) :: grid

@@ -104,7 +104,7 @@ contains
     logical, intent(in) :: profile
   end subroutine take
 
-  !> The record of a state.
+  !> The record of a state on a branch; stable: `stable_yes`, `stable_no` or `stable_unasked`.
   pure function record_of(branch, problem, grid, state, stable, converged) result(record)
     character(len=*), intent(in) :: branch
     type(problem_t), intent(in) :: problem

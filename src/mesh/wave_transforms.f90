@@ -38,10 +38,11 @@ module wave_transforms
 
 contains
 
-  !> Adds the transforms of the polynomials of a panel, in ascending order of the waves. For the
-  !> longest waves the panel's own nodes are a sufficient rule; the first `whole` waves have at the
-  !> nodes the values `wave`, (waves, nodes). For the other waves the panel is divided into pieces,
-  !> each about as wide as its distance from the mesh's centre, with more nodes for shorter waves.
+  !> Adds the transforms of the polynomials of panel p to spectrum(nodes, waves), for the ascending
+  !> wave numbers k. For the longest waves the panel's own nodes are a sufficient rule; the first
+  !> `whole` waves have at the nodes the values `wave`, (waves, nodes). For the other waves the
+  !> panel is divided into pieces, each about as wide as its distance from the mesh's centre, with
+  !> more nodes for shorter waves.
   subroutine add_spectrum(bessel, grid, p, k, whole, wave, spectrum)
     type(bessel_t), intent(in) :: bessel
     type(discretisation_t), intent(in) :: grid

@@ -61,7 +61,7 @@ contains
     if (.not. allocated(error)) call take_data_table(source, wanted, style, table, error)
   end subroutine read_data_table
 
-  !> Takes the columns from the text of a file.
+  !> Takes the columns with the names or numbers `wanted` from the text of a file.
   subroutine take_data_table(source, wanted, style, table, error)
     type(source_t), intent(in) :: source
     character(len=*), intent(in) :: wanted(:)

@@ -36,6 +36,7 @@ module ending
 
 contains
 
+  !> Whether the experiment ended before its last step.
   elemental logical function early(self)
     class(ending_t), intent(in) :: self
 

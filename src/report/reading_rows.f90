@@ -207,7 +207,7 @@ contains
   end function larger
 
   !> Adds, for each load, the number of equilibria and of stable equilibria, and the stable one with
-  !> the smallest h0. The latter is the contact, if there is a contact.
+  !> the smallest h0. The latter is the contact, if there is a contact. loads: in N.
   subroutine summarise_fixed_loads(problem, loads, readings, places, summary)
     type(problem_t), intent(in) :: problem
     real(wp), intent(in) :: loads(:)

@@ -107,6 +107,7 @@ contains
     call show_progress(self%heartbeat, ended, 0, -1, 0)
   end subroutine detail
 
+  !> Removes the progress line and ends its thread.
   subroutine finish(self)
     class(progress_t), intent(inout) :: self
 
