@@ -5,8 +5,7 @@ module experiment_result
   use kinds, only: wp
   use numerics_choice, only: choice_t
   use equilibrium, only: cost_t
-  use records, only: quality_t
-  use stepped_branch, only: branch_t
+  use records, only: quality_t, branch_t
   use path, only: path_t
   use places, only: places_t
   use reported_numbers, only: of_table

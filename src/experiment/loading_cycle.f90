@@ -7,7 +7,7 @@ module loading_cycle
   use ending, only: turn_not_reached
   use h0_schedule, only: h0_schedule_t, loading_plan, unloading_plan, thinned
   use places, only: places_t
-  use stepped_branch, only: branch_t
+  use records, only: branch_t
   implicit none
   private
   public :: branches_t, run_cycle

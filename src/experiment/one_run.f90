@@ -21,7 +21,7 @@ module one_run
   use path_end, only: demand_t
   use path, only: follow_path
   use path_readings, only: read_path
-  use stepped_branch, only: branch_t, run_branch
+  use stepped_branch, only: run_branch
   use h0_schedule, only: h0_schedule_t, path_plan, thinned
   use loading_cycle, only: branches_t, run_cycle
   use experiment_result, only: experiment_result_t, enter_readings, enter_energy, enter_table, &
@@ -29,7 +29,7 @@ module one_run
   use reported_place, only: place_t, place_without_state, of_energy
   use places, only: places_t
   use located_places, only: locate_places
-  use records, only: observer_t
+  use records, only: observer_t, branch_t
   implicit none
   private
   public :: begin_locked, begin_fixed, run_once

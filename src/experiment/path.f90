@@ -6,36 +6,29 @@ module path
   use force_law, only: of_pressure
   use contact_state, only: state_t
   use traced_path, only: traced_path_t
-  use ending, only: ending_t, state_lost
+  use ending, only: state_lost
   use path_end, only: outer_end
   use largest_tension, only: lower, lower_along
   use stepper, only: stepper_t, known_path_t
   use path_point, only: path_point_t
   use path_rows, only: row_at_h0, rows_between
-  use reported_place, only: place_t, place_of_state
+  use reported_place, only: place_t, place_of_state, of_h0
   use places, only: places_t
-  use records, only: observer_t, record_t, quality_t, record_of, stable_yes, stable_no
+  use records, only: observer_t, record_t, branch_t, record_of, stable_yes, stable_no
   implicit none
   private
   public :: path_t, follow_path
 
-  !> The path in the units of `dimensionless_problem`, in the order from large separations inward.
-  type :: path_t
-    integer :: states = 0
+  !> The path, in the order from large separations inward. Its largest tension is the pull-off at
+  !> controlled load; `finish` is the last state, if it is stable.
+  type, extends(branch_t) :: path_t
     !> Number of unstable modes after each fold in h0.
     integer, allocatable :: unstable_after(:)
-    !> Largest tension, which is the pull-off at controlled load; the first state; the last state,
-    !> if it is stable.
-    type(place_t), allocatable :: lowest, start, finish
     !> The least h0 at which the bodies are stable outside a barrier, if this is below the requested
     !> end; otherwise the requested end.
     real(wp) :: deepest_outside = 0
-    !> The stable pieces on which the path begins and ends; 0 if it is unstable there.
-    integer :: first_piece = 0, last_piece = 0
-    type(quality_t) :: quality
     !> Whether the path ends in a collapse of the bodies.
     logical :: fallen = .false.
-    type(ending_t) :: ending
   end type path_t
 
 contains
@@ -57,12 +50,13 @@ contains
     type(path_point_t), allocatable :: between(:)
     logical, allocatable :: profile(:)
     type(place_t) :: reported
-    real(wp) :: until, widest
+    real(wp) :: until, widest, start
     integer :: i, k, first, last
     logical :: ends_between
 
     allocate (path%unstable_after(0))
     path%deepest_outside = h0_end
+    start = huge(start)
     path%fallen = steps%known%fallen
     if (.not. path%fallen) path%ending = steps%known%ending
     first = steps%known%path%undeformed + 1
@@ -99,6 +93,7 @@ contains
       reported = place_of_row(row)
       call lower_along(steps%known%path, first, last, path%lowest)
       call lower(path%lowest, reported)
+      call path%compare_ends(start, row%state%h0)
       if (row%modes == 0) path%finish = reported
     end if
     call enter_ends()
@@ -180,7 +175,7 @@ contains
       if (profile) call places%add('profiles', reported)
       if (path%states == 1) then
         path%lowest = reported
-        path%start = reported
+        start = reported%at(of_h0)
       end if
       if (row%load_extremum) call places%add('load_folds', reported)
       if (.not. row%fold) return

@@ -1,14 +1,17 @@
-!> The records that an experiment gives to the observer of its results: one for each equilibrium, in
-!> SI units.
+!> The records that an experiment gives to the observer of its results, one for each equilibrium, in
+!> SI units; and the results of a branch of states.
 module records
   use kinds, only: wp
   use progress_observer, only: progress_observer_t
   use dimensionless_problem, only: problem_t, spacing_over_neck
   use discretisation, only: discretisation_t
   use contact_state, only: state_t, contact_radius_of
+  use ending, only: ending_t
+  use reported_place, only: place_t, of_h0
   implicit none
   private
-  public :: record_t, observer_t, record_of, quality_t, stable_yes, stable_no, stable_unasked
+  public :: record_t, observer_t, record_of, quality_t, branch_t, stable_yes, stable_no, &
+    stable_unasked
 
   !> Values of the column `stable`.
   integer, parameter :: stable_yes = 1, stable_no = 0, stable_unasked = -1
@@ -40,6 +43,35 @@ module records
     procedure :: cover_extent
     procedure :: join
   end type quality_t
+
+  !> The results of a branch, in the units of `dimensionless_problem`. A component that is not
+  !> allocated does not exist.
+  type :: branch_t
+    integer :: states = 0, unconverged = 0
+    !> Largest tension (a negative load), and whether it is in the first or in the last row, so that
+    !> the tension may grow beyond.
+    type(place_t), allocatable :: lowest
+    logical :: lowest_first = .false., lowest_last = .false.
+    !> Whether the tension grows towards neighbouring states that did not converge.
+    logical :: lowest_beside_lost = .false.
+    !> The first jump: h0 and the load just before it, and the uncertainty of h0 if the path is not
+    !> known.
+    type(place_t), allocatable :: jump
+    !> The last equilibrium, which is a converged state.
+    type(place_t), allocatable :: finish
+    !> The stable pieces of the path on which the branch begins and ends; 0 if they are not known, or
+    !> the state is unstable.
+    integer :: first_piece = 0, last_piece = 0
+    type(quality_t) :: quality
+    !> First h0 at which the iteration did not converge.
+    real(wp) :: first_unconverged = 0
+    !> The first part of the branch in which it is not known whether the bodies jumped.
+    logical :: unsure = .false.
+    real(wp) :: unsure_between(2) = 0
+    type(ending_t) :: ending
+  contains
+    procedure :: compare_ends
+  end type branch_t
 
   !> Receives records as they are computed. This one ignores them, for runs that need only the
   !> summary; extensions keep them.
@@ -93,6 +125,20 @@ contains
     self%depth = max(self%depth, other%depth)
     self%load = max(self%load, other%load)
   end subroutine join
+
+  !> Compares the place of the largest tension with the h0 of the first and of the last row. If the
+  !> tension is largest at a point of the path, it is an extremum, a fold or the end of a jump,
+  !> beyond which the tension does not grow.
+  pure subroutine compare_ends(branch, first, last)
+    class(branch_t), intent(inout) :: branch
+    real(wp), intent(in) :: first, last
+
+    if (.not. allocated(branch%lowest)) return
+    if (branch%lowest%point > 0) return
+    branch%lowest_last = abs(branch%lowest%at(of_h0) - last) <= 0
+    branch%lowest_first = .not. branch%lowest_last .and. &
+      abs(branch%lowest%at(of_h0) - first) <= 0
+  end subroutine compare_ends
 
   !> Receives a record. state and grid: for the profile; profile: the scene requests the profile.
   subroutine take(self, record, problem, grid, state, profile)

@@ -13,11 +13,11 @@ module rigid_bodies
   use reported_place, only: place_t, of_h0, of_load, of_radius, rounding
   use places, only: places_t
   use reported_numbers, only: run_numbers_t, largest_error, chance
-  use records, only: observer_t, record_t, stable_yes, stable_unasked
+  use records, only: observer_t, record_t, branch_t, stable_yes, stable_unasked
   use experiment_request, only: request_t
   use experiment_result, only: experiment_result_t
   use largest_tension, only: lower
-  use stepped_branch, only: branch_t, compare_ends, enter_ends
+  use stepped_branch, only: enter_ends
   use h0_schedule, only: h0_schedule_t, path_plan
   use loading_cycle, only: branches_t, run_cycle
   use clock, only: seconds
@@ -122,7 +122,7 @@ contains
       slope = measured_slope(problem, branch%lowest%at(of_h0))
       touches = .not. problem%law%rest_gap > 0 .and. (branch%ending%early() .or. &
         branch%lowest%at(of_h0) <= max(problem%law%gap_of(0.0_wp), problem%law%smallest_gap))
-      if (abs(slope%value) > slope%error .and. .not. touches) call compare_ends(branch, first, last)
+      if (abs(slope%value) > slope%error .and. .not. touches) call branch%compare_ends(first, last)
     end subroutine judge_ends
 
     !> Gives step i of a branch to the observer, with positions if its profile is requested.

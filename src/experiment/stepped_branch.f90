@@ -5,41 +5,14 @@ module stepped_branch
   use equilibrium, only: holds
   use h0_schedule, only: h0_schedule_t
   use stepper, only: stepper_t, branch_point_t, step_result_t
-  use ending, only: ending_t
   use largest_tension, only: lower, lower_on_way
   use tension_search, only: tension_search_t
   use reported_place, only: place_t, place_of_state, of_h0
   use places, only: places_t
-  use records, only: observer_t, record_t, quality_t, record_of, stable_yes, stable_unasked
+  use records, only: observer_t, record_t, branch_t, record_of, stable_yes, stable_unasked
   implicit none
   private
-  public :: branch_t, run_branch, compare_ends, enter_ends
-
-  !> The results of a branch, in the units of `dimensionless_problem`. A component that is not
-  !> allocated does not exist.
-  type :: branch_t
-    !> Largest tension (a negative load), and whether it is in the first or in the last row, so that
-    !> the tension may grow beyond.
-    type(place_t), allocatable :: lowest
-    logical :: lowest_first = .false., lowest_last = .false.
-    !> Whether the tension grows towards neighbouring states that did not converge.
-    logical :: lowest_beside_lost = .false.
-    !> The first jump: h0 and the load just before it, and the uncertainty of h0 if the path is not
-    !> known.
-    type(place_t), allocatable :: jump
-    !> The last equilibrium, which is a converged state.
-    type(place_t), allocatable :: finish
-    !> The stable pieces of the path on which the branch begins and ends; 0 if they are not known.
-    integer :: first_piece = 0, last_piece = 0
-    type(quality_t) :: quality
-    integer :: states = 0, unconverged = 0
-    !> First h0 at which the iteration did not converge.
-    real(wp) :: first_unconverged = 0
-    !> The first part of the branch in which it is not known whether the bodies jumped.
-    logical :: unsure = .false.
-    real(wp) :: unsure_between(2) = 0
-    type(ending_t) :: ending
-  end type branch_t
+  public :: run_branch, enter_ends
 
 contains
 
@@ -132,7 +105,7 @@ contains
         branch%lowest_beside_lost = search%beside_lost
       end if
     end if
-    call compare_ends(branch, ends(1), ends(2))
+    call branch%compare_ends(ends(1), ends(2))
     call enter_ends(branch, fresh, places)
 
   contains
@@ -170,20 +143,6 @@ contains
     end function farthest_known
 
   end subroutine run_branch
-
-  !> Compares the place of the largest tension with the h0 of the first and of the last row. If the
-  !> tension is largest at a point of the path, it is an extremum, a fold or the end of a jump,
-  !> beyond which the tension does not grow.
-  pure subroutine compare_ends(branch, first, last)
-    type(branch_t), intent(inout) :: branch
-    real(wp), intent(in) :: first, last
-
-    if (.not. allocated(branch%lowest)) return
-    if (branch%lowest%point > 0) return
-    branch%lowest_last = abs(branch%lowest%at(of_h0) - last) <= 0
-    branch%lowest_first = .not. branch%lowest_last .and. &
-      abs(branch%lowest%at(of_h0) - first) <= 0
-  end subroutine compare_ends
 
   !> Enters the largest tension and the last state of a branch; fresh: of a new experiment.
   subroutine enter_ends(branch, fresh, places)

@@ -7,8 +7,7 @@ module summarise
   use numerics_group, only: coarsest
   use text, only: brief, counted, rounded
   use experiment_result, only: experiment_result_t
-  use records, only: quality_t
-  use stepped_branch, only: branch_t
+  use records, only: quality_t, branch_t
   use path, only: path_t
   use path_readings, only: path_readings_t
   use reported_place, only: place_t, of_h0, of_load

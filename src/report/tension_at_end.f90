@@ -5,9 +5,8 @@ module tension_at_end
   use kinds, only: wp, nan
   use text, only: brief, rounded
   use dimensionless_problem, only: problem_t
-  use reported_place, only: place_t, of_h0, of_load
-  use stepped_branch, only: branch_t
-  use path, only: path_t
+  use reported_place, only: place_t, of_h0
+  use records, only: branch_t
   use experiment_result, only: experiment_result_t
   use summary, only: summary_t
   implicit none
@@ -28,15 +27,17 @@ contains
     at_end = .false.
     if (.not. outcome%places%has('max_tension')) return
     largest = outcome%places%place_of('max_tension')
-    if (allocated(outcome%path)) call judge_path(outcome%path)
+    ! A path that ends in a collapse of the bodies has a warning of its own.
+    if (allocated(outcome%path)) call judge_branch('path', outcome%path%branch_t, &
+      'raise h0_start', 'lower h0_end', outcome%path%fallen)
     if (allocated(outcome%stepped_path)) call judge_branch('path', outcome%stepped_path, &
-      'raise h0_start', 'lower h0_end')
+      'raise h0_start', 'lower h0_end', .false.)
     if (allocated(outcome%loading)) call judge_branch('loading', outcome%loading, &
-      'raise h0_start', 'lower h0_end')
+      'raise h0_start', 'lower h0_end', .false.)
     if (allocated(outcome%unloading)) then
       do k = 1, size(outcome%unloading)
         call judge_branch('unloading_' // brief(k), outcome%unloading(k), &
-          'turn at a smaller h0', 'raise h0_end')
+          'turn at a smaller h0', 'raise h0_end', .false.)
       end do
       call summary%set('unload_max_tension_at_end', [(of_unloading(outcome%unloading(k)), k=1, &
         size(outcome%unloading))])
@@ -45,21 +46,12 @@ contains
 
   contains
 
-    !> A path that ends in a collapse of the bodies has a warning of its own.
-    subroutine judge_path(path)
-      type(path_t), intent(in) :: path
-      logical :: first
-
-      if (.not. allocated(path%lowest)) return
-      if (path%lowest%point > 0 .or. path%lowest%at(of_load) > largest%at(of_load)) return
-      first = abs(path%lowest%at(of_h0) - path%start%at(of_h0)) <= 0
-      call tell('path', first, merge('raise h0_start', 'lower h0_end  ', first), &
-        path%fallen .or. path%ending%early())
-    end subroutine judge_path
-
-    subroutine judge_branch(name, branch, at_first, at_last)
+    !> at_first, at_last: what to change if the tension is largest there. told: whether another
+    !> message gives the reason, so that no further warning is needed.
+    subroutine judge_branch(name, branch, at_first, at_last, told)
       character(len=*), intent(in) :: name, at_first, at_last
       type(branch_t), intent(in) :: branch
+      logical, intent(in) :: told
 
       if (.not. at_one(branch)) return
       ! The same state is solved twice at a turn.
@@ -71,13 +63,12 @@ contains
           'raise max_iterations, or use method = ''auto''')
         at_end = .true.
       else if (branch%lowest_first) then
-        call tell(name, .true., at_first, branch%ending%early())
+        call tell(name, .true., at_first, told .or. branch%ending%early())
       else
-        call tell(name, .false., at_last, branch%ending%early())
+        call tell(name, .false., at_last, told .or. branch%ending%early())
       end if
     end subroutine judge_branch
 
-    !> told: whether another message gives the reason, so that no further warning is needed.
     subroutine tell(name, first, advice, told)
       character(len=*), intent(in) :: name, advice
       logical, intent(in) :: first, told
