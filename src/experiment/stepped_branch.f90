@@ -34,7 +34,6 @@ contains
     type(tension_search_t) :: search
     type(branch_point_t) :: previous, last
     type(step_result_t) :: event
-    type(record_t) :: record
     real(wp) :: began, reached, last_h0, ends(2)
     integer, allocatable :: place(:)
     integer :: i, k
@@ -63,28 +62,8 @@ contains
       call search%note_jump(event)
       reached = plan%h0(i)
       if (event%ending%early()) exit
-      associate (state => position%state)
-        record = record_of(plan%name, steps%problem, steps%grid(position), state, &
-          merge(stable_yes, stable_unasked, plan%unique), &
-          holds(steps%problem, steps%options%tolerance, state))
-        call branch%quality%cover(record, steps%problem, steps%grid(position), state, &
-          state%axis_gap < steps%problem%law%edge_gap)
-        call observer%take(record, steps%problem, steps%grid(position), state, plan%profile(i))
-      end associate
-      if (event%converged) then
-        call last%state%become(position%state)
-        last%mesh = position%mesh
-        branch%last_piece = position%piece
-        ends(2) = position%state%h0
-        if (.not. ends(1) < huge(ends)) then
-          ends(1) = ends(2)
-          if (position%piece > 0) &
-            call lower(branch%lowest, place_of_state(position%mesh, position%state))
-        end if
-        if (plan%profile(i)) call places%add('profiles', place_of_state(last%mesh, last%state))
-        if (position%piece == 0 .and. plan%sample(i)) &
-          call places%add('samples', place_of_state(last%mesh, last%state))
-      end if
+      call show_row(plan%profile(i))
+      if (event%converged) call keep_state(plan%profile(i), plan%sample(i))
       do k = 1, size(place)
         if (place(k) == i) kept(k) = position
       end do
@@ -126,6 +105,39 @@ contains
         branch%unconverged = branch%unconverged + 1
       end if
     end subroutine note
+
+    !> Gives the present state to the observer.
+    subroutine show_row(with_profile)
+      logical, intent(in) :: with_profile
+      type(record_t) :: record
+
+      associate (state => position%state)
+        record = record_of(plan%name, steps%problem, steps%grid(position), state, &
+          merge(stable_yes, stable_unasked, plan%unique), &
+          holds(steps%problem, steps%options%tolerance, state))
+        call branch%quality%cover(record, steps%problem, steps%grid(position), state, &
+          state%axis_gap < steps%problem%law%edge_gap)
+        call observer%take(record, steps%problem, steps%grid(position), state, with_profile)
+      end associate
+    end subroutine show_row
+
+    !> Keeps the present state, an equilibrium, as the last one, and enters its places.
+    subroutine keep_state(with_profile, is_sample)
+      logical, intent(in) :: with_profile, is_sample
+
+      call last%state%become(position%state)
+      last%mesh = position%mesh
+      branch%last_piece = position%piece
+      ends(2) = position%state%h0
+      if (.not. ends(1) < huge(ends)) then
+        ends(1) = ends(2)
+        if (position%piece > 0) &
+          call lower(branch%lowest, place_of_state(position%mesh, position%state))
+      end if
+      if (with_profile) call places%add('profiles', place_of_state(last%mesh, last%state))
+      if (position%piece == 0 .and. is_sample) &
+        call places%add('samples', place_of_state(last%mesh, last%state))
+    end subroutine keep_state
 
     !> Records a part of the branch in which the bodies may have jumped.
     subroutine doubt(from, to)

@@ -56,8 +56,7 @@ contains
     type(continuation_t) :: walker
     type(mesh_refiner_t) :: mender
     character(len=40) :: so_far
-    type(inserted_mesh_t) :: further
-    logical :: lost, blind, finished, mended, adrift, leaving
+    logical :: lost, blind, finished, mended
     type(ending_t) :: going_on
     real(wp) :: tolerance, contact_at
     integer :: steps
@@ -86,44 +85,10 @@ contains
         call observer%hear(trim(so_far))
       end if
       mended = .false.
-      if (.not. lost) then
-        further = inserted_mesh_t()
-        if (.not. walker%stuck) &
-          further = inserted_mesh(solver%equations_t, walker%arc_t, accuracy)
-        adrift = mod(steps, steps_a_check) == 0
-        if (adrift) adrift = left_in_state(solver%equations_t, walker%mesh, &
-          walker%point(walker%held)%state) > most_adrift
-        leaving = has_come_to_next(walker, solver%equations_t)
-        ! This mesh was examined when the next one was inserted. The path may stay on it for some
-        ! steps; if it were refined again, the path would reach the inserted one earlier each time.
-        if (leaving) leaving = .not. solver%meshes%inserted(walker%mesh + 1)
-        if (further%wanted .or. adrift .or. leaving) call mender%mend(solver%equations_t, &
-          known%path, walker%mesh, .not. adrift, .false., mended)
-        if (further%wanted .and. .not. mended) then
-          call solver%meshes%insert(walker%mesh, further%locked, further%reach(1), further%reach(2))
-          call solver%operator%forget()
-        end if
-      end if
+      if (.not. lost) call examine_mesh()
       if (.not. (lost .or. mended)) call pass_on(known%path, walker, solver, lost)
-      known%fallen = collapsed(solver%problem, known%path, lost)
-      lost = lost .or. known%path%held >= longest .or. astray(solver%equations_t, known%path)
-      if (known%fallen) then
-        known%ending%cause = no_equilibrium
-      else if (lost) then
-        known%ending%cause = path_lost
-      else if (blind .and. any(known%path%point(:known%path%held)%fold)) then
-        known%ending%cause = beyond_rounding
-      end if
-      associate (last => known%path%point(known%path%held))
-        finished = last%modes == 0 .and. last%state%h0 <= h0_low .and. &
-          last%tangent%h0 < 0
-        if (finished .and. present(demand)) &
-          finished = demand%is_met(solver%equations_t, known%path)
-        if (finished .and. into_contact) then
-          finished = touches(solver%equations_t, last)
-          if (.not. finished) finished = outer_end(solver, known%path, contact_at) > 0
-        end if
-      end associate
+      call note_ending()
+      finished = goes_far_enough()
       if (.not. mended .and. (finished .or. known%ending%early())) &
         call mender%mend(solver%equations_t, known%path, walker%mesh, .false., lost, mended)
       if (.not. mended) cycle
@@ -136,6 +101,55 @@ contains
     if (.not. known%fallen) known%left_out = left_on_path(solver%equations_t, known%path)
     if (present(demand)) call known%path%begin_undeformed(solver%problem, demand%farthest)
     known%path%last = known%path%held
+
+  contains
+
+    !> Refines the present mesh if it misses too much of the load, or inserts a mesh after it.
+    subroutine examine_mesh()
+      type(inserted_mesh_t) :: further
+      logical :: adrift, leaving
+
+      if (.not. walker%stuck) further = inserted_mesh(solver%equations_t, walker%arc_t, accuracy)
+      adrift = mod(steps, steps_a_check) == 0
+      if (adrift) adrift = left_in_state(solver%equations_t, walker%mesh, &
+        walker%point(walker%held)%state) > most_adrift
+      leaving = has_come_to_next(walker, solver%equations_t)
+      ! This mesh was examined when the next one was inserted. The path may stay on it for some
+      ! steps; if it were refined again, the path would reach the inserted one earlier each time.
+      if (leaving) leaving = .not. solver%meshes%inserted(walker%mesh + 1)
+      if (further%wanted .or. adrift .or. leaving) call mender%mend(solver%equations_t, &
+        known%path, walker%mesh, .not. adrift, .false., mended)
+      if (further%wanted .and. .not. mended) then
+        call solver%meshes%insert(walker%mesh, further%locked, further%reach(1), further%reach(2))
+        call solver%operator%forget()
+      end if
+    end subroutine examine_mesh
+
+    !> Sets the cause if the path ends here although it does not go far enough.
+    subroutine note_ending()
+      known%fallen = collapsed(solver%problem, known%path, lost)
+      lost = lost .or. known%path%held >= longest .or. astray(solver%equations_t, known%path)
+      if (known%fallen) then
+        known%ending%cause = no_equilibrium
+      else if (lost) then
+        known%ending%cause = path_lost
+      else if (blind .and. any(known%path%point(:known%path%held)%fold)) then
+        known%ending%cause = beyond_rounding
+      end if
+    end subroutine note_ending
+
+    !> Whether the path has the end that is asked for.
+    logical function goes_far_enough() result(enough)
+      associate (last => known%path%point(known%path%held))
+        enough = last%modes == 0 .and. last%state%h0 <= h0_low .and. last%tangent%h0 < 0
+        if (enough .and. present(demand)) enough = demand%is_met(solver%equations_t, known%path)
+        if (enough .and. into_contact) then
+          enough = touches(solver%equations_t, last)
+          if (.not. enough) enough = outer_end(solver, known%path, contact_at) > 0
+        end if
+      end associate
+    end function goes_far_enough
+
   end subroutine trace
 
   !> Returns to the entry of the path into a refined mesh, or to the start of the path.
