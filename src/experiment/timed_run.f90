@@ -85,40 +85,7 @@ contains
     low = minval(blank%drive%position)
     if (allocated(request%drive%stiffness)) low = &
       h0_in_contact(relaxed_problem(), [1.0_wp, -steps%compliance], low)
-    whole = 0
-    do pass = 1, most_passes
-      before = blank
-      if (whole > 0) before = now
-      now = blank
-      now%number = pass
-      call lay_out()
-      steps%farthest = farthest/2**(pass - 1)
-      call go_through(before, steps, observer, now)
-      if (now%result%lost) then
-        ! Finer meshes may resolve the loss; otherwise the previous passes have their error
-        ! estimates.
-        if (whole > 1 .and. .not. present(passes)) now = before
-        if (whole > 1 .or. pass == most_tries .or. .not. now%result%begun .or. &
-          now%held > most_steps) exit
-        whole = 0
-        cycle
-      end if
-      whole = whole + 1
-      if (whole > 1 .and. .not. present(passes)) call keep_passes()
-      call enter_numbers(now%result, request%numerics%accuracy, problem%shape%parabolic, &
-        allocated(request%fluid), places)
-      if (present(passes)) then
-        if (pass >= passes) exit
-        cycle
-      end if
-      if (whole == 1) cycle
-      call places%judge_by(others(:min(2, whole - 1)), chance)
-      call ignore_unknown_suction()
-      error = largest_error(places%number)
-      ! The first two passes may agree by chance.
-      if (error <= request%numerics%accuracy .and. whole > 2 .or. &
-        allocated(request%drive%time_step) .or. 2*now%held > most_steps) exit
-    end do
+    call run_passes()
     result = now%result
     if (result%lost) then
       places = nothing
@@ -139,6 +106,44 @@ contains
       result%of_start = effect_of_start(steps, blank%drive%position(0), now%row(:now%held))
 
   contains
+
+    !> Runs passes until their numbers agree, the motion is lost, or there would be too many steps.
+    subroutine run_passes()
+      whole = 0
+      do pass = 1, most_passes
+        before = blank
+        if (whole > 0) before = now
+        now = blank
+        now%number = pass
+        call lay_out()
+        steps%farthest = farthest/2**(pass - 1)
+        call go_through(before, steps, observer, now)
+        if (now%result%lost) then
+          ! Finer meshes may resolve the loss; otherwise the previous passes have their error
+          ! estimates.
+          if (whole > 1 .and. .not. present(passes)) now = before
+          if (whole > 1 .or. pass == most_tries .or. .not. now%result%begun .or. &
+            now%held > most_steps) exit
+          whole = 0
+          cycle
+        end if
+        whole = whole + 1
+        if (whole > 1 .and. .not. present(passes)) call keep_passes()
+        call enter_numbers(now%result, request%numerics%accuracy, problem%shape%parabolic, &
+          allocated(request%fluid), places)
+        if (present(passes)) then
+          if (pass >= passes) exit
+          cycle
+        end if
+        if (whole == 1) cycle
+        call places%judge_by(others(:min(2, whole - 1)), chance)
+        call ignore_unknown_suction()
+        error = largest_error(places%number)
+        ! The first two passes may agree by chance.
+        if (error <= request%numerics%accuracy .and. whole > 2 .or. &
+          allocated(request%drive%time_step) .or. 2*now%held > most_steps) exit
+      end do
+    end subroutine run_passes
 
     !> Keeps the numbers of this pass and of the one before, with which the next pass is compared.
     !> If this pass did not determine the suction, because of an unresolved jump in the one before,

@@ -45,33 +45,15 @@ contains
     real(wp), intent(in), optional :: wanted
     type(arc_t) :: near
     type(bracket_t) :: bracket
-    type(hermite_t) :: curve
     type(path_point_t) :: tried
     real(wp) :: s, rate, least_change, change, before, miss, missed
-    integer :: round, k, j
+    integer :: round
     logical :: rising, solved
 
     near = arc
     miss = huge(miss)
-    curve = near%curve(weights, 0.5_wp*sum(ends))
     bracket = bracket_t(ends(1), ends(2))
-    if (present(wanted)) then
-      rising = curve%value(ends(1)) < wanted
-      least_change = 4*resolution(maxval(abs(ends)))
-      do k = 1, 2
-        j = findloc(near%point(:near%held)%coordinate, ends(k), 1)
-        if (j == 0) cycle
-        missed = miss_of(near%point(j))
-        if (.not. abs(missed) < abs(miss)) cycle
-        miss = missed
-        found = near%point(j)
-      end do
-    else
-      j = findloc(near%point(:near%held)%coordinate, ends(1), 1)
-      rising = near%point(j)%tangent%of(weights) < 0
-      least_change = solver%options%place_error
-    end if
-    s = place_on(curve, ends, wanted)
+    call look_at_ends()
     before = ends(2) - ends(1)
     solved = .true.
     ! The factors made at the first estimate serve for all corrections.
@@ -112,6 +94,31 @@ contains
     if (present(wanted)) done = is_there(found, left_over)
 
   contains
+
+    !> Begins with the nearer end and with the place on the arc's polynomial.
+    subroutine look_at_ends()
+      type(hermite_t) :: curve
+      integer :: k, j
+
+      curve = near%curve(weights, 0.5_wp*sum(ends))
+      if (present(wanted)) then
+        rising = curve%value(ends(1)) < wanted
+        least_change = 4*resolution(maxval(abs(ends)))
+        do k = 1, 2
+          j = findloc(near%point(:near%held)%coordinate, ends(k), 1)
+          if (j == 0) cycle
+          missed = miss_of(near%point(j))
+          if (.not. abs(missed) < abs(miss)) cycle
+          miss = missed
+          found = near%point(j)
+        end do
+      else
+        j = findloc(near%point(:near%held)%coordinate, ends(1), 1)
+        rising = near%point(j)%tangent%of(weights) < 0
+        least_change = solver%options%place_error
+      end if
+      s = place_on(curve, ends, wanted)
+    end subroutine look_at_ends
 
     !> Q minus the wanted value or, at an extremum, the slope of Q.
     pure real(wp) function miss_of(tried) result(off)
