@@ -8,8 +8,9 @@ module baseline_test
   use root_finding, only: bracket_t
   use noise, only: white_noise
   use baseline, only: waves_of, ways_in, scaled
-  use fit_samples, only: fit_samples_t, orthonormalise, solve_triangle
-  use residual_analysis, only: chance_of, renew_noise
+  use fit_samples, only: fit_samples_t, orthonormalise, is_rounding, solve_triangle
+  use significance, only: chance_of
+  use residual_analysis, only: renew_noise, settled_within
   use curve_residuals, only: curve_residuals_t
   implicit none
   private
@@ -36,17 +37,12 @@ module baseline_test
     real(wp), allocatable :: residual(:), basis(:, :), triangle(:, :)
   end type model_tangent_t
 
-  !> Smallest length of a unit vector after its projection; a shorter one is a rounding error of the
-  !> derivatives.
-  real(wp), parameter :: rounding = 1.0e-4_wp
   !> Ripples have from one to `most_periods` periods over the travel, and at least `fewest_samples`
   !> samples in a period. The search tries `oversampling` values for each number of periods, and
   !> refines the best one by `sections` golden sections. With fewer samples than `enough` there is
   !> no search.
   integer, parameter :: most_periods = 64, fewest_samples = 5, oversampling = 4, sections = 16, &
     enough = 40
-  !> Largest change of the phase of a ripple over the travel that is neglected.
-  real(wp), parameter :: same_phase = 0.01_wp
 
 contains
 
@@ -164,7 +160,7 @@ contains
       if (.not. period > 0) return
       travel = maxval(z) - minval(z)
       done = done .and. baseline%period > 0
-      if (done) done = travel*abs(1/period - 1/baseline%period) < same_phase
+      if (done) done = travel*abs(1/period - 1/baseline%period) < settled_within
       if (allocated(baseline%wave)) deallocate (baseline%wave)
       baseline%period = period
       call residuals%curve%data%take(1)
@@ -272,7 +268,7 @@ contains
     whole = norm2(cleaned, 1)
     rest = cleaned - matmul(tangent%basis, matmul(transpose(tangent%basis), cleaned))
     do k = 1, size(part)
-      if (.not. norm2(rest(:, k)) > rounding*whole(k)) rest(:, k) = 0
+      if (is_rounding(rest(:, k), whole(k))) rest(:, k) = 0
     end do
     call orthonormalise(rest, triangle)
     part = matmul(tangent%residual, rest)

@@ -6,6 +6,7 @@ module classical_model
   use root_finding, only: bracket_t
   use classical, only: jkr_load, jkr_displacement, dmt_load, hertz_displacement
   use maugis, only: maugis_t, new_maugis
+  use fit_request, only: fine_change
   use force_model, only: force_model_t, response_t, way_t, force_branch_t, inward, outward
   implicit none
   private
@@ -14,9 +15,8 @@ module classical_model
   character(len=*), parameter :: theories(*) = [character(len=14) :: 'jkr', 'dmt', &
     'maugis_dugdale'], hertz = 'hertz'
 
-  !> Number of panels of the branch in contact; relative step of the finite differences.
+  !> Number of panels of the branch in contact.
   integer, parameter :: panels = 200
-  real(wp), parameter :: step = 1.0e-4_wp
   !> Number of contact radii at which the position is computed to find its maximum; ratio of the
   !> smallest of these radii to the largest; number of sections that refine the maximum.
   integer, parameter :: tried = 400, sections = 60
@@ -110,8 +110,8 @@ contains
         do side = 1, 2
           a = panel%x(side)
           now = state(model, number, a)
-          by_a = (state(model, number, a*(1 + step)) - state(model, number, a*(1 - step)))/ &
-            (2*step*a)
+          by_a = (state(model, number, a*(1 + fine_change)) - &
+            state(model, number, a*(1 - fine_change)))/(2*fine_change*a)
           panel%h0(:, side) = [now(1), by_a(1)]
           panel%load(:, side) = [now(2), by_a(2)]
           panel%square(:, side) = [a**2, 2*a]
@@ -134,9 +134,9 @@ contains
 
     more = number
     less = number
-    more(k) = number(k)*(1 + step)
-    less(k) = number(k)*(1 - step)
-    varied = (state(model, more, a) - state(model, less, a))/(2*step*number(k))
+    more(k) = number(k)*(1 + fine_change)
+    less(k) = number(k)*(1 - fine_change)
+    varied = (state(model, more, a) - state(model, less, a))/(2*fine_change*number(k))
   end function varied
 
   !> h0 and load at a contact radius. number: work of adhesion and stiffness.

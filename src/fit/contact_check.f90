@@ -2,16 +2,16 @@
 module contact_check
   use kinds, only: wp
   use text, only: counted, rounded
+  use significance, only: stands_out, surely
   use measured_curve, only: measured_curve_t
   use noise, only: noise_t, white_noise, rough_deviation
   use residual_analysis, only: lack_t, lack_in
   implicit none
   private
-  public :: check_contact
+  public :: check_contact, steep
 
-  !> Limits: a signal in standard deviations of the noise; the number of standard errors that makes
-  !> a statement certain; the slope of samples in contact, in units of that of the spring.
-  real(wp), parameter :: stands_out = 8, surely = 5, steep = 0.2_wp
+  !> The least slope of samples in contact, in units of that of the spring.
+  real(wp), parameter :: steep = 0.2_wp
 
 contains
 

@@ -9,7 +9,7 @@ module curve_segments
   use fit_request, only: measurement_t
   implicit none
   private
-  public :: find_segments
+  public :: find_segments, small_part
 
   !> Words that instruments write for the segments of a curve, separated by blanks; 0 and 1 are the
   !> numbers that afmformats writes.
@@ -17,10 +17,9 @@ module curve_segments
     ' pause hold dwell wait ', &
     ' 0 false approach extend extending ext advance advancing forward load loading ', &
     ' 1 true retreat retract retracting ret withdraw withdrawing backward unload unloading ']
-  !> The base rests in a segment if it travels less than this part of its range.
-  real(wp), parameter :: resting = 0.1_wp
-  !> The part of a curve at either end within which a turn does not count.
-  real(wp), parameter :: end_part = 0.1_wp
+  !> A small part of a curve: ends are averaged over this part of the samples, a turn within it does
+  !> not count, and the base rests in a segment if it travels less than this part of its range.
+  real(wp), parameter :: small_part = 0.1_wp
 
 contains
 
@@ -111,7 +110,7 @@ contains
       end do
       travel = z(last) - z(first)
       kind(first:last) = of_pause
-      if (abs(travel) > resting*range) then
+      if (abs(travel) > small_part*range) then
         if (changes == 0) direction = travel
         kind(first:last) = merge(of_approach, of_retreat, travel*direction > 0)
         if (kind(first) /= latest) changes = changes + 1
@@ -131,7 +130,7 @@ contains
     logical :: inward(size(z))
     integer :: turn, i, margin
 
-    margin = max(1, nint(end_part*size(z)))
+    margin = max(1, nint(small_part*size(z)))
     turn = maxloc(z, 1)
     if (min(turn, size(z) - turn) < margin) turn = minloc(z, 1)
     if (min(turn, size(z) - turn) < margin) turn = merge(0, size(z), segment == 'retract')

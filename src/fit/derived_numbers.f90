@@ -5,7 +5,7 @@ module derived_numbers
   use failure, only: failure_t
   use dimensionless_problem, only: problem_t, surface_energy
   use variation, only: problem_family_t
-  use fit_request, only: unknown_t, fit_t, of_model, value_by_fitted
+  use fit_request, only: unknown_t, fit_t, of_model, value_by_fitted, fine_change
   use fit_errors, only: fitted_t
   implicit none
   private
@@ -22,8 +22,6 @@ module derived_numbers
 
   !> The largest Poisson's ratio, of incompressible bodies such as gels.
   real(wp), parameter :: incompressible = 0.5_wp
-  !> Change of a fitted number for finite differences.
-  real(wp), parameter :: change = 1.0e-4_wp
 
 contains
 
@@ -85,12 +83,12 @@ contains
         if (unknown(i)%role /= of_model) cycle
         do k = 1, 2
           value = fitted%value
-          value(i) = value(i) + (2*k - 3)*change*value_by_fitted(unknown(i), value(i))
+          value(i) = value(i) + (2*k - 3)*fine_change*value_by_fitted(unknown(i), value(i))
           call family%pose(pack(value, unknown%role == of_model), varied, error)
           if (allocated(error)) exit
           side(:, k) = [surface_energy(varied), 0.5_wp*varied%stiffness]
         end do
-        if (.not. allocated(error)) by(:, i) = (side(:, 2) - side(:, 1))/(2*change)
+        if (.not. allocated(error)) by(:, i) = (side(:, 2) - side(:, 1))/(2*fine_change)
       end do
     end subroutine find_derivatives
 

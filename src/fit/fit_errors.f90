@@ -5,28 +5,25 @@ module fit_errors
   use fit_request, only: unknown_t, value_by_fitted
   use fit_residuals, only: fit_residuals_t
   use curve_residuals, only: curve_residuals_t
+  use significance, only: negligible
   use residual_analysis, only: lack_t, lack_in
   implicit none
   private
-  public :: fitted_t, judge, find_errors, examine_curve, set_deviations, bounded, least_effect, &
-    within_95
+  public :: fitted_t, judge, find_errors, examine_curve, set_deviations, bounded, within_95
 
   !> Half-width of a 95 % interval in standard deviations.
   real(wp), parameter :: within_95 = 1.959964_wp
-
-  !> An unknown has no effect if a change of its fitted number (`fit_request`) by 1 changes the
-  !> curve by less than this number of standard deviations.
-  real(wp), parameter :: least_effect = 0.1_wp
 
   !> The result of a fit. value, deviation: each unknown and its standard deviation, in the unit of
   !> its key. fitted_deviation, correlation: standard deviations and correlations of the fitted
   !> numbers (`fit_request`), whose errors are symmetric. identifiable: the smallest singular value
   !> of the Jacobian of the fitted numbers with columns of length 1; it is 1 if the columns are
   !> orthogonal, and 0 if the data do not determine all unknowns. effect: the change of the curve,
-  !> in standard deviations of all data together, if the fitted number changes by 1. side(:, i):
-  !> standard deviations of fitted number i downward and upward, of which fitted_deviation(i) is the
-  !> larger one. has_path: the model has a path for some start. has_curve: for some start the model
-  !> describes the samples better if the curve includes the contact than if it does not.
+  !> in standard deviations of all data together, if the fitted number changes by 1; an unknown of
+  !> which it is negligible has no effect. side(:, i): standard deviations of fitted number i
+  !> downward and upward, of which fitted_deviation(i) is the larger one. has_path: the model has a
+  !> path for some start. has_curve: for some start the model describes the samples better if the
+  !> curve includes the contact than if it does not.
   type :: fitted_t
     logical :: found = .false., has_curve = .false., has_path = .false.
     real(wp), allocatable :: value(:), deviation(:), fitted_deviation(:), correlation(:, :), &
@@ -59,7 +56,7 @@ contains
     type(fitted_t), intent(in) :: other
 
     is_better_than = allocated(self%effect)
-    if (is_better_than) is_better_than = all(self%effect > least_effect)
+    if (is_better_than) is_better_than = all(self%effect > negligible)
     if (is_better_than .and. allocated(other%effect)) is_better_than = surprise(self) < &
       surprise(other)
 

@@ -6,8 +6,8 @@ module fit_refusals
   use force_model, only: force_model_t
   use modelled_curve, only: modelled_curve_t
   use measured_loads, only: other_order
-  use fit_errors, only: fitted_t, least_effect
-  use residual_analysis, only: chance_of, rarely
+  use fit_errors, only: fitted_t
+  use significance, only: negligible, chance_of, rarely
   use fit_alternatives, only: contact_slope
   implicit none
   private
@@ -44,7 +44,7 @@ contains
     end if
     call check_gain(curve, fitted, suggestion, trouble)
     if (allocated(trouble)) return
-    if (.not. fitted%lack%is_noise() .and. any(fitted%effect <= least_effect .or. &
+    if (.not. fitted%lack%is_noise() .and. any(fitted%effect <= negligible .or. &
       is_at_end(curve%unknown, fitted%value))) then
       trouble = other_order(curve, model)
       if (len(trouble) > 0) then
@@ -55,7 +55,7 @@ contains
     end if
     do i = 1, size(fitted%effect)
       ! A shared unknown may have an effect on another curve.
-      if (fitted%effect(i) > least_effect .or. curve%unknown(i)%shared) cycle
+      if (fitted%effect(i) > negligible .or. curve%unknown(i)%shared) cycle
       trouble = curve%unknown(i)%name // &
         ' has no effect on this curve near the best value found, ' // &
         rounded(fitted%value(i)) // '; remove it from parameters, or give a prior' // suggestion

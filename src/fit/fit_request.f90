@@ -9,7 +9,7 @@ module fit_request
   private
   public :: measurement_t, fit_t, unknown_t, of_model, of_contact_point, of_sensitivity, &
     of_spring, free_of, value_of, fitted_of, value_by_free, value_by_fitted, farthest_off, &
-    is_at_end, is_beyond
+    is_at_end, is_beyond, change, fine_change
   public :: of_position, of_separation, of_load, of_segment, of_radius
 
   !> The quantity of a column of the file. of_position: the position of the base of the spring.
@@ -62,6 +62,14 @@ module fit_request
   !> Largest logarithm of the ratio of a trial to the deck's value, or to a value that the data
   !> suggest. A limit is needed because the path of a very different problem may take too long.
   real(wp), parameter :: farthest_off = 5
+
+  !> A number this near to a limit counts as being at the limit: a fitted number at that of the
+  !> search, a start at a bound.
+  real(wp), parameter :: at_limit = 1.0e-3_wp
+
+  !> Changes of a fitted number, or of a positive one relative to itself, for finite differences:
+  !> between solutions of the equations, and between values of closed forms.
+  real(wp), parameter :: change = 1.0e-3_wp, fine_change = 1.0e-4_wp
 
   !> An unknown, in the unit of its key. in_log: the unknown is positive and its logarithm is
   !> fitted; otherwise the fitted number is (value - origin)/scale. prior: prior standard deviation
@@ -142,9 +150,8 @@ contains
   elemental logical function is_at_end(unknown, value)
     type(unknown_t), intent(in) :: unknown
     real(wp), intent(in) :: value
-    real(wp), parameter :: within = 1.0e-3_wp
 
-    is_at_end = is_beyond(unknown, value, -within)
+    is_at_end = is_beyond(unknown, value, -at_limit)
   end function is_at_end
 
   !> Whether the logarithm of a value is beyond the limits of the search by more than `excess`.
@@ -163,7 +170,6 @@ contains
   elemental real(wp) function free_of(unknown, value) result(x)
     type(unknown_t), intent(in) :: unknown
     real(wp), intent(in) :: value
-    real(wp), parameter :: within = 1.0e-3_wp
     real(wp) :: u, low, high
 
     u = fitted_of(unknown, value)
@@ -171,11 +177,11 @@ contains
     if (allocated(unknown%lower)) low = fitted_of(unknown, unknown%lower)
     if (allocated(unknown%upper)) high = fitted_of(unknown, unknown%upper)
     if (allocated(unknown%lower) .and. allocated(unknown%upper)) then
-      x = asin(max(-1 + within, min(1 - within, 2*(u - low)/(high - low) - 1)))
+      x = asin(max(-1 + at_limit, min(1 - at_limit, 2*(u - low)/(high - low) - 1)))
     else if (allocated(unknown%lower)) then
-      x = sqrt((max(u - low, within) + 1)**2 - 1)
+      x = sqrt((max(u - low, at_limit) + 1)**2 - 1)
     else if (allocated(unknown%upper)) then
-      x = sqrt((max(high - u, within) + 1)**2 - 1)
+      x = sqrt((max(high - u, at_limit) + 1)**2 - 1)
     end if
   end function free_of
 

@@ -24,7 +24,8 @@ module fit_run
   use modelled_curve, only: modelled_curve_t, beyond, level_of
   use curve_residuals, only: curve_residuals_t
   use curve_fit, only: fit_curve
-  use fit_errors, only: fitted_t, least_effect
+  use significance, only: negligible
+  use fit_errors, only: fitted_t
   use fixed_parameter_test, only: held_t, test_held
   use baseline_test, only: lacking_t, test_baseline
   use fit_alternatives, only: alternative_t, find_alternative
@@ -225,7 +226,7 @@ contains
       call fit_curve(trial, model, reshape(like, [size(like), 1]), .true., outcome%fitted)
       associate (fitted => outcome%fitted)
         if (.not. (fitted%found .and. allocated(fitted%effect))) return
-        found = fitted%lack%is_noise() .and. all(fitted%effect > least_effect) .and. &
+        found = fitted%lack%is_noise() .and. all(fitted%effect > negligible) .and. &
           .not. any(is_at_end(trial%unknown, fitted%value))
       end associate
       if (found) curve = trial

@@ -12,7 +12,7 @@ module fit_samples
   use force_model, only: inward, outward
   implicit none
   private
-  public :: fit_samples_t, orthonormalise, solve_triangle
+  public :: fit_samples_t, orthonormalise, is_rounding, solve_triangle
 
   type :: fit_samples_t
     type(measured_curve_t) :: measured
@@ -160,6 +160,15 @@ contains
       q(:, j) = q(:, j)/max(r(j, j), tiny(1.0_wp))
     end do
   end subroutine orthonormalise
+
+  !> Whether the rest of a vector after a projection is a rounding error of derivatives. whole: the
+  !> length of the vector before.
+  pure logical function is_rounding(rest, whole)
+    real(wp), intent(in) :: rest(:), whole
+    real(wp), parameter :: rounding = 1.0e-4_wp
+
+    is_rounding = .not. norm2(rest) > rounding*whole
+  end function is_rounding
 
   !> The number of columns of the baseline.
   pure integer function baseline_numbers(self)

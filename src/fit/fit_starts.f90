@@ -7,7 +7,7 @@ module fit_starts
   use linear_algebra, only: factorisation_t, factorise, solve
   use dimensionless_problem, only: problem_t, surface_energy, largest_tension
   use variation, only: problem_family_t
-  use fit_request, only: unknown_t, of_model
+  use fit_request, only: unknown_t, of_model, change
   implicit none
   private
   public :: character_t, character_of, starts_like
@@ -18,11 +18,11 @@ module fit_starts
     real(wp) :: work = 0, stiffness = 0, range = 0
   end type character_t
 
-  !> Secant method: largest number of steps; size of a step at which the iteration ends; size of the
-  !> first finite differences. The largest logarithm of the ratio of a start to the deck's value.
-  !> Starts whose logarithms differ by less than `alike` are the same.
+  !> Secant method: largest number of steps; size of a step at which the iteration ends. The largest
+  !> logarithm of the ratio of a start to the deck's value. Starts whose logarithms differ by less
+  !> than `alike` are the same.
   integer, parameter :: steps = 6
-  real(wp), parameter :: near = 0.01_wp, change = 1.0e-3_wp, farthest = 4.5_wp, alike = 0.05_wp
+  real(wp), parameter :: near = 0.01_wp, farthest = 4.5_wp, alike = 0.05_wp
   !> Damping of the steps; without it, unknowns with hardly any effect would move far.
   real(wp), parameter :: damping = 1.0e-4_wp
 

@@ -5,7 +5,8 @@ module fit_warnings
   use text, only: brief, rounded, rounded_to
   use namelist_writer, only: line_t
   use fit_request, only: unknown_t, of_spring, fitted_of, is_at_end, farthest_off
-  use residual_analysis, only: lack_t, hardly_ever, rarely
+  use significance, only: differs, hardly_ever, rarely
+  use residual_analysis, only: lack_t
   use fit_errors, only: fitted_t
   use measured_curve, only: measured_curve_t
   use fixed_parameter_test, only: held_t
@@ -17,15 +18,12 @@ module fit_warnings
   public :: doubts_of
 
   !> Limits: the correlation of two unknowns; the smallest singular value; the standard deviation of
-  !> a logarithm; the distance between jumps of data and model in standard deviations.
-  real(wp), parameter :: alike = 0.98_wp, lost = 1.0e-3_wp, vague = 0.7_wp, far = 4
-  !> A missing part of the baseline is reported if it would move an unknown far and if noise
-  !> explains it with a smaller probability than this, counted over all parts. At most one good fit
-  !> in a hundred then has a false alarm.
+  !> a logarithm.
+  real(wp), parameter :: alike = 0.98_wp, lost = 1.0e-3_wp, vague = 0.7_wp
+  !> A missing part of the baseline is reported if an unknown differs with it and if noise explains
+  !> it with a smaller probability than this, counted over all parts. At most one good fit in a
+  !> hundred then has a false alarm.
   real(wp), parameter :: unlikely = 0.01_wp
-  !> A missing part of the baseline is the main cause if it explains this fraction of the excess of
-  !> chi squared.
-  real(wp), parameter :: most_of = 0.5_wp
   character(len=*), parameter :: not_described = ': the model does not describe these data, ' // &
     'and the true errors are larger than the standard errors'
 
@@ -121,7 +119,7 @@ contains
     end subroutine doubt_alternative
 
     !> Warns about a part that the baseline lacks. If the model does not describe the data, only a
-    !> part that is the main cause of the misfit is reported.
+    !> part that explains most of the excess of chi squared is reported.
     subroutine doubt_baseline()
       character(len=:), allocatable :: words
       integer :: i, k
@@ -132,10 +130,10 @@ contains
       k = maxloc(abs(outcome%lacking(i)%shift)/outcome%fitted%deviation, 1)
       if (.not. rarely(outcome%lacking(i)%chance) .and. .not. &
         (outcome%lacking(i)%chance < log(unlikely/size(outcome%lacking)) .and. &
-        abs(outcome%lacking(i)%shift(k)) > far*outcome%fitted%deviation(k))) return
+        abs(outcome%lacking(i)%shift(k)) > differs*outcome%fitted%deviation(k))) return
       associate (fitted => outcome%fitted, unknown => outcome%curve%unknown, &
         lacking => outcome%lacking(i))
-        if (.not. fitted%lack%is_noise() .and. lacking%gain < most_of*(fitted%chi_squared - &
+        if (.not. fitted%lack%is_noise() .and. lacking%gain < 0.5_wp*(fitted%chi_squared - &
           fitted%freedom)) return
         explained = .true.
         select case (lacking%name)
@@ -260,7 +258,7 @@ contains
           if (.not. off < huge(1.0_wp)) then
             call add('on the ' // trim(ways(i)) // ' the data jump and the model does not' &
               // not_described)
-          else if (off > far*jump%uncertainty) then
+          else if (off > differs*jump%uncertainty) then
             call add('on the ' // trim(ways(i)) // ' the data jump at z = ' // rounded(jump%z) // &
               ' m and the model ' // rounded(off) // ' m from there (' // &
               rounded(off/jump%uncertainty) // ' standard deviations)' // not_described)

@@ -9,6 +9,7 @@ module fixed_parameter_test
     of_position
   use failure, only: failure_t
   use variation, only: problem_family_t, variation_t, vary, to_search
+  use fit_samples, only: is_rounding
   use modelled_curve, only: modelled_curve_t
   use curve_residuals, only: curve_residuals_t
   use force_model, only: force_model_t
@@ -23,10 +24,6 @@ module fixed_parameter_test
     character(len=:), allocatable :: name
     real(wp) :: asked = 0
   end type held_t
-
-  !> Smallest length of a unit vector after its projection; a shorter one is a rounding error of the
-  !> derivatives.
-  real(wp), parameter :: rounding = 1.0e-4_wp
 
 contains
 
@@ -70,7 +67,7 @@ contains
           vector = vector - matmul(basis, matmul(vector, basis))
         end do
       end associate
-      if (.not. norm2(jacobian(:, i)) > rounding*whole) then
+      if (is_rounding(jacobian(:, i), whole)) then
         jacobian(:, i) = 0
         cycle
       end if

@@ -13,7 +13,8 @@ module joint_fit
   use curve_residuals, only: curve_residuals_t
   use joint_residuals, only: joint_residuals_t, join
   use joint_search, only: search_all, agree
-  use fit_errors, only: fitted_t, find_errors, examine_curve, least_effect
+  use fit_errors, only: fitted_t, find_errors, examine_curve
+  use significance, only: negligible
   use wider_errors, only: widen
   use mesh_refinement, only: too_much
   use fit_run, only: fit_outcome_t, examine_fit
@@ -82,7 +83,7 @@ contains
         'the shared parameters'
       return
     end if
-    i = findloc(fitted%effect <= least_effect, .true., 1)
+    i = findloc(fitted%effect <= negligible, .true., 1)
     if (i > 0) then
       joint%trouble = residuals%unknown(i)%name // ' has no effect on these curves near the ' // &
         'best value found, ' // rounded(fitted%value(i))

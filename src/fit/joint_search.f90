@@ -6,7 +6,7 @@ module joint_search
   use fit_request, only: of_contact_point, fitted_of
   use joint_residuals, only: joint_residuals_t
   use fit_errors, only: fitted_t, find_errors
-  use residual_analysis, only: chance_of, rarely
+  use significance, only: chance_of, rarely
   implicit none
   private
   public :: search_all, agree

@@ -6,18 +6,15 @@ module measured_checks
   use measured_curve, only: measured_curve_t
   use measured_jumps, only: measured_jump_t, find_jump, off_baseline
   use noise, only: noise_t
-  use contact_check, only: check_contact
+  use significance, only: stands_out, surely
+  use contact_check, only: check_contact, steep
   implicit none
   private
   public :: check_measured, open_end, find_saturated
 
-  !> Limits. stands_out: a signal in standard deviations of the noise. nearest_part: the fraction of
-  !> the travel that counts as an end. steep: the slope of an end in contact, in units of that of
-  !> the spring. surely: the number of standard errors that makes a statement certain. most_part:
-  !> the fraction that counts as the main part of a sum. hardly: the fraction of a certain signal
-  !> that counts as none.
-  real(wp), parameter :: stands_out = 8, nearest_part = 0.05_wp, steep = 0.2_wp, surely = 5, &
-    most_part = 0.5_wp, hardly = 0.2_wp
+  !> Limits. nearest_part: the fraction of the travel that counts as an end. hardly: the fraction of
+  !> a certain signal that counts as none.
+  real(wp), parameter :: nearest_part = 0.05_wp, hardly = 0.2_wp
   integer, parameter :: parts = nint(1/nearest_part)
 
 contains
@@ -101,7 +98,7 @@ contains
       sure = surely*maxval(error([1, size(error)]))
       ! A ripple or a drift makes differences of both signs.
       between = above - 0.5_wp*(above(1) + above(size(above)))
-      if (all(taken < -sure) .and. sum(between) < -most_part*sum(abs(between))) then
+      if (all(taken < -sure) .and. sum(between) < -0.5_wp*sum(abs(between))) then
         trouble = 'a cycle would gain energy, as the adhesion is stronger on the way in than ' // &
           'on the way out (by ' // rounded(-sum(between)/size(between)) // ' on average, of a ' // &
           'signal with errors of ' // rounded(sure/surely) // '): the rows of the file are in ' // &

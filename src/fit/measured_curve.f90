@@ -7,7 +7,7 @@ module measured_curve
   use text, only: counted
   use deck_source, only: source_t
   use curve_rows, only: curve_rows_t, read_curve_rows, fewest, of_approach, of_retreat, of_pause
-  use curve_segments, only: find_segments
+  use curve_segments, only: find_segments, small_part
   use fit_request, only: measurement_t, of_separation, of_load, of_radius, of_segment
   implicit none
   private
@@ -45,8 +45,6 @@ module measured_curve
   !> column, and the number of parts. Shortest and longest travel of a base [m].
   real(wp), parameter :: even = 0.5_wp, uneven = 0.25_wp, shortest = 1.0e-12_wp, longest = 1.0e-3_wp
   integer, parameter :: parts = 20
-  !> Fraction of a segment's samples at either end over which the ends are averaged.
-  real(wp), parameter :: end_part = 0.1_wp
 
 contains
 
@@ -154,7 +152,7 @@ contains
     real(wp), intent(in) :: z(:)
     real(wp) :: begin
 
-    begin = sum(z(:max(1, nint(end_part*size(z)))))/max(1, nint(end_part*size(z)))
+    begin = sum(z(:max(1, nint(small_part*size(z)))))/max(1, nint(small_part*size(z)))
     facing = sign(1.0_wp, begin - z(maxloc(abs(z - begin), 1)))
   end function likely_facing
 
@@ -340,7 +338,7 @@ contains
     real(wp), intent(in) :: z(:)
     integer :: part
 
-    part = max(1, nint(end_part*size(z)))
+    part = max(1, nint(small_part*size(z)))
     travel = (sum(z(size(z) - part + 1:)) - sum(z(:part)))/part
   end function travel_of
 

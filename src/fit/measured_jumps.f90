@@ -11,6 +11,7 @@
 module measured_jumps
   use kinds, only: wp
   use measured_curve, only: measured_curve_t
+  use significance, only: stands_out, surely, differs
   use noise, only: noise_t, noise_of, white_noise, rough_deviation
   use outliers, only: stand_apart
   implicit none
@@ -25,18 +26,18 @@ module measured_jumps
     real(wp) :: z = 0, uncertainty = 0, change = 0
   end type measured_jump_t
 
-  !> Limits of a jump. steep: smallest ratio of its change to the change due to the spring. seen:
-  !> smallest ratio of the remaining change to the noise. most_steps: largest number of steps of a
-  !> jump that an amplifier has smoothed.
-  real(wp), parameter :: steep = 3, seen = 8
+  !> Limits of a jump, of which the change that the spring does not explain stands out. steep:
+  !> smallest ratio of the change to that due to the spring. most_steps: largest number of steps of
+  !> a jump that an amplifier has smoothed.
+  real(wp), parameter :: steep = 3
   integer, parameter :: most_steps = 6
 
   !> Largest number of samples within a smoothed jump. A sample is within the jump, or an outlier,
-  !> if it is farther from both branches than `off_part` of the jump and than `off` standard
-  !> deviations. For a single sample both are equally likely; each further neighbour favours the
-  !> jump by `together`, in squares of standard deviations.
+  !> if it differs from both branches, and by more than `off_part` of the jump. For a single sample
+  !> both are equally likely; each further neighbour favours the jump by `together`, in squares of
+  !> standard deviations.
   integer, parameter :: most_within = 6
-  real(wp), parameter :: off_part = 0.2_wp, off = 4, together = 4
+  real(wp), parameter :: off_part = 0.2_wp, together = 4
   !> Places of a jump whose cost exceeds the least one by more than `no_chance` do not count. The
   !> chance of a place grows with the distance of its two samples, which counts as at least
   !> `least_step` of the typical distance.
@@ -51,9 +52,9 @@ module measured_jumps
   !> noise of the farther half is less than `less` times that of the whole.
   integer, parameter :: fewest_far = 12
   real(wp), parameter :: far_part = 1.0_wp/3, less = 0.6_wp
-  !> A spike differs from its neighbours by more than `apart` deviations plus `bent` times the
-  !> change of the signal that the spring alone causes over a step of z.
-  real(wp), parameter :: apart = 5, bent = 3
+  !> A spike surely differs from its neighbours even if these were `bent` times the change of the
+  !> signal nearer that the spring alone causes over a step of z.
+  real(wp), parameter :: bent = 3
 
 contains
 
@@ -83,7 +84,7 @@ contains
       do i = width, n - width
         change = (total(i + width) - 2*total(i) + total(i - width))/width
         spring = steep*stiffness*abs(place(i + width) - 2*place(i) + place(i - width))/width
-        if (.not. change - spring > max(most, seen*deviation*sqrt(2.0_wp/width))) cycle
+        if (.not. change - spring > max(most, stands_out*deviation*sqrt(2.0_wp/width))) cycle
         most = change - spring
         k = i
       end do
@@ -122,7 +123,7 @@ contains
       integer, intent(in) :: i
 
       goes_on = total(i + 1) - 2*total(i) + total(i - 1) > stiffness*abs(place(i + 1) - &
-        2*place(i) + place(i - 1)) + 4*deviation
+        2*place(i) + place(i - 1)) + differs*deviation
     end function goes_on
 
   end function find_jump
@@ -143,7 +144,7 @@ contains
 
     n = size(z)
     if (n < 2) return
-    neither = max(off, off_part*abs(change)/noise)**2
+    neither = max(differs, off_part*abs(change)/noise)**2
     ahead(1) = min(before(1), neither)
     behind(n) = min(after(n), neither)
     do i = 2, n
@@ -225,7 +226,7 @@ contains
     limit = farthest - far_part*(farthest - minval(position))
     rough = rough_deviation(pack(measured%signal, measured%usable))
     measured%usable = measured%usable .and. .not. stand_apart(measured%signal, merge(1, 2, &
-      measured%inward), measured%usable, apart*rough + bent*stiffness*steps_about(measured))
+      measured%inward), measured%usable, surely*rough + bent*stiffness*steps_about(measured))
     do way = 1, 2
       associate (jump => find_jump(measured, rough, stiffness, way == 1))
         if (jump%before > 0) limit = max(limit, 0.5_wp*(measured%facing*jump%z + farthest))

@@ -3,6 +3,7 @@
 module measured_loads
   use kinds, only: wp
   use text, only: rounded
+  use significance, only: stands_out, surely
   use measured_jumps, only: off_baseline
   use fit_request, only: of_sensitivity, farthest_off
   use force_model, only: force_model_t
@@ -11,12 +12,9 @@ module measured_loads
   private
   public :: check_loads, other_order, largest_tension_of
 
-  !> Limits: a signal in standard deviations of the noise; the number of standard errors that makes
-  !> a statement certain.
-  real(wp), parameter :: stands_out = 8, surely = 5
   !> Factor by which a sensitivity that is not fitted may be wrong; factor between loads of
-  !> different orders of magnitude; fraction of the change of a signal that counts as most of it.
-  real(wp), parameter :: wrong = 3, order = 10, most_part = 0.5_wp
+  !> different orders of magnitude.
+  real(wp), parameter :: wrong = 3, order = 10
 
 contains
 
@@ -44,7 +42,7 @@ contains
         excess = left(near) - left - most*travel
         far = maxloc(excess, 1, mine)
         if (excess(far) < max(stands_out*curve%data%noise%deviation, &
-          most_part*(maxval(left, mine) - minval(left, mine)))) cycle
+          0.5_wp*(maxval(left, mine) - minval(left, mine)))) cycle
         trouble = 'the largest load of the data is ' // rounded(maxval(abs(left), mine)*newtons) &
           // ' N, and from contact the load falls by ' // &
           rounded((left(near) - left(far))*newtons) // ' N, where the spring permits ' // &

@@ -178,13 +178,12 @@ contains
   !> differences; it is at least that of rounding.
   pure real(wp) function rough_deviation(signal) result(deviation)
     real(wp), intent(in) :: signal(:)
-    !> The sum of the squares of the weights 1, -2, 1.
-    real(wp), parameter :: squares = 6
     integer :: n
 
     n = size(signal)
+    ! 6 is the sum of the squares of the weights 1, -2, 1.
     deviation = max(epsilon(1.0_wp)*maxval(abs(signal)), median_of(abs(signal(3:) - &
-      2*signal(2:n - 1) + signal(:n - 2)))/(normal_median*sqrt(squares)))
+      2*signal(2:n - 1) + signal(:n - 2)))/(normal_median*sqrt(6.0_wp)))
   end function rough_deviation
 
   !> The standard deviation due to rounding in a signal of few digits, from the smallest step

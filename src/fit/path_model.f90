@@ -22,6 +22,7 @@ module path_model
   use path_end, only: demand_t
   use path_demand, only: demand_of
   use path_stepper, only: path_stepper_t
+  use fit_request, only: change
   use force_model, only: force_model_t, response_t, force_branch_t, way_t, inward, outward
   implicit none
   private
@@ -35,9 +36,6 @@ module path_model
     real(wp) :: square(2) = 0, by_level = 0, place = 0
     real(wp), allocatable :: rate(:)
   end type edge_t
-
-  !> Relative change of the gap at the edge of the contact for a finite difference.
-  real(wp), parameter :: change = 1.0e-3_wp
 
   !> The points of a path are densest for the accuracy `closest_for`; for a larger one they are
   !> farther apart (`demand_t`). enough: the relative residual at which the equations for the

@@ -3,6 +3,7 @@
 !> curve itself.
 module residual_analysis
   use kinds, only: wp
+  use significance, only: hardly_ever, differs, negligible
   use noise, only: noise_t, noise_of, white_noise, noise_of_steps, noise_of_residuals, &
     contradicts, normal_median, whiten
   use outliers, only: stand_apart
@@ -11,7 +12,7 @@ module residual_analysis
   use modelled_curve, only: modelled_curve_t
   implicit none
   private
-  public :: lack_t, lack_in, chance_of, rarely, hardly_ever, renew_noise, look_again
+  public :: lack_t, lack_in, renew_noise, look_again, settled_within
 
   !> The largest lack of fit. excess: by how many standard deviations the squared means of blocks of
   !> `width` samples exceed their expectation for noise. times: the ratio of the root mean square of
@@ -23,21 +24,17 @@ module residual_analysis
     procedure :: is_noise
   end type lack_t
 
-  !> Smallest number of blocks that is tested. The excess that noise alone reaches in one fit of two
-  !> hundred, if about seven widths are tested.
+  !> Smallest number of blocks that is tested.
   integer, parameter :: fewest_blocks = 8
-  real(wp), parameter :: hardly_ever = 3.2_wp
 
   !> Standard deviations above which a sample is an outlier; one good sample in 150,000 exceeds
   !> this.
   real(wp), parameter :: apart = 4.5_wp
-  !> Number of far samples needed to find a correlation of the noise; standard errors by which the
-  !> noise far from contact must differ from the noise elsewhere.
+  !> Number of far samples needed to find a correlation of the noise.
   integer, parameter :: enough = 50
-  real(wp), parameter :: differs = 4
-  !> The look is settled if the noise changes by less than `same_noise` of itself, and the place of
-  !> each jump by at most `same_jump` of its uncertainty.
-  real(wp), parameter :: same_noise = 0.01_wp, same_jump = 0.1_wp
+  !> The look is settled if the noise changes by less than this part of itself, and the phase of a
+  !> ripple over the travel by less than this number, and if no jump moves noticeably.
+  real(wp), parameter :: settled_within = 0.01_wp
 
 contains
 
@@ -96,40 +93,6 @@ contains
     normal_of = ((total/n)**(1.0_wp/3) - 1 + 2.0_wp/(9*n))/sqrt(2.0_wp/(9*n) + 2/9.0_wp/known_by)
   end function normal_of
 
-  !> The logarithm of the probability that noise alone lowers chi squared by `gain` if further
-  !> columns (one or an even number) are fitted, where these columns are the best of `trials`
-  !> choices. left: chi squared per degree of freedom with these columns; if it exceeds 1, it scales
-  !> the noise.
-  pure real(wp) function chance_of(gain, left, columns, trials) result(chance)
-    real(wp), intent(in) :: gain, left
-    integer, intent(in) :: columns, trials
-    real(wp) :: half, term, total
-    integer :: k
-
-    half = 0.5_wp*max(0.0_wp, gain)/max(1.0_wp, left)
-    if (columns == 1) then
-      chance = log(erfc_scaled(sqrt(half)))
-    else
-      ! The distribution of chi squared with an even number of degrees of freedom.
-      term = 1
-      total = 1
-      do k = 1, columns/2 - 1
-        term = term*half/k
-        total = total + term
-      end do
-      chance = log(total)
-    end if
-    chance = chance - half + log(real(trials, wp))
-  end function chance_of
-
-  !> Whether the logarithm of a probability is below the level at which an excess of the residuals
-  !> is reported.
-  elemental logical function rarely(chance)
-    real(wp), intent(in) :: chance
-
-    rarely = chance < log(erfc(hardly_ever/sqrt(2.0_wp)))
-  end function rarely
-
   !> Estimates outliers, jumps and, unless the deck gives it, the noise again. value: the best fit
   !> so far. settled: becomes .false. after a significant change.
   subroutine look_again(curve, value, settled)
@@ -163,12 +126,12 @@ contains
         data%side < 0)
       settled = settled .and. all(usable .eqv. data%measured%usable)
       if (.not. data%noise_is_given) call renew_noise(curve, left)
-      settled = settled .and. abs(data%noise%deviation - deviation) < same_noise*deviation
+      settled = settled .and. abs(data%noise%deviation - deviation) < settled_within*deviation
       do way = 1, 2
         if (curve%response%way(way)%main == 0 .or. .not. any(data%way == way)) cycle
         jump = jump_by_model(curve, value, baseline, left, way)
         settled = settled .and. jump%before == data%jump(way)%before .and. jump%after == &
-          data%jump(way)%after .and. abs(jump%z - data%jump(way)%z) <= same_jump*jump%uncertainty
+          data%jump(way)%after .and. abs(jump%z - data%jump(way)%z) <= negligible*jump%uncertainty
         data%jump(way) = jump
       end do
     end associate

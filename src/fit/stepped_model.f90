@@ -18,6 +18,7 @@ module stepped_model
   use locked_stepper, only: unique_stepper_t
   use experiment_request, only: request_t, numerics_t
   use numerics_choice, only: choice_t, choose
+  use fit_request, only: change
   use force_model, only: force_model_t, response_t, force_branch_t, inward, outward
   implicit none
   private
@@ -30,9 +31,9 @@ module stepped_model
   !> since the exponential is smaller than rounding errors. Natural logarithm of the largest contact
   !> radius in the search.
   real(wp), parameter :: no_deformation = 36, widest_power = 60
-  !> Relative step of the finite differences; ratio of the depth to that of a Hertzian contact under
-  !> the largest load; how often the depth is doubled at most if this is not enough.
-  real(wp), parameter :: change = 1.0e-3_wp, deeper = 1.3_wp
+  !> Ratio of the depth to that of a Hertzian contact under the largest load; how often the depth is
+  !> doubled at most if this is not enough.
+  real(wp), parameter :: deeper = 1.3_wp
   integer, parameter :: most_doublings = 12
 
   type, extends(force_model_t) :: stepped_model_t

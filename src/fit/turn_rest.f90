@@ -3,16 +3,15 @@
 !> time, are no equilibria, and do not count in a fit.
 module turn_rest
   use kinds, only: wp
+  use significance, only: surely
   use noise, only: noise_t
   use measured_curve, only: measured_curve_t
   implicit none
   private
   public :: leave_out_rest
 
-  !> Smallest number of samples of a rest; the number of standard errors that makes a change
-  !> certain.
+  !> Smallest number of samples of a rest.
   integer, parameter :: fewest = 4
-  real(wp), parameter :: surely = 5
 
 contains
 
