@@ -3,6 +3,7 @@ module contact_check
   use kinds, only: wp
   use text, only: counted, rounded
   use significance, only: stands_out, surely
+  use sample_lines, only: sample_line_t, line_through
   use measured_curve, only: measured_curve_t
   use noise, only: noise_t, white_noise, rough_deviation
   use residual_analysis, only: lack_t, lack_in
@@ -26,8 +27,9 @@ contains
     type(noise_t) :: white
     type(lack_t) :: lack
     integer, allocatable :: way(:)
+    type(sample_line_t) :: line
     real(wp), allocatable :: off_line(:)
-    real(wp) :: middle(2), squares, slope
+    real(wp) :: slope
     integer :: k
 
     if (maxval(abs(left), measured%usable) > stands_out*noise%deviation) return
@@ -39,12 +41,9 @@ contains
     do k = 1, 2
       associate (mine => measured%usable .and. (measured%inward .eqv. k == 1), z => measured%z)
         if (count(mine) < 2) cycle
-        middle = [sum(z, mine), sum(measured%signal, mine)]/count(mine)
-        squares = sum((z - middle(1))**2, mine)
-        associate (own => sum((z - middle(1))*(measured%signal - middle(2)), mine)/squares)
-          where (mine) off_line = measured%signal - middle(2) - own*(z - middle(1))
-          if (abs(own) > abs(slope)) slope = own
-        end associate
+        line = line_through(z, measured%signal, mine)
+        where (mine) off_line = line%off(z, measured%signal)
+        if (abs(line%slope) > abs(slope)) slope = line%slope
       end associate
     end do
     way = pack(merge(1, 2, measured%inward), measured%usable)
@@ -74,7 +73,8 @@ contains
     real(wp), intent(in) :: deviation
     integer, allocatable :: at(:)
     real(wp), allocatable :: x(:), y(:)
-    real(wp) :: middle(2), squares, slope, ahead
+    type(sample_line_t) :: line
+    real(wp) :: ahead
     integer :: i, m, n
 
     off = 0
@@ -86,14 +86,10 @@ contains
     y = measured%signal(at)
     m = 2
     do while (m <= n/3)
-      associate (others => x(m + 1:), signals => y(m + 1:))
-        middle = [sum(others), sum(signals)]/(n - m)
-        squares = max(sum((others - middle(1))**2), tiny(1.0_wp))
-        slope = sum((others - middle(1))*(signals - middle(2)))/squares
-        ahead = sum(x(:m))/m - middle(1)
-        off = max(off, (sum(y(:m))/m - middle(2) - slope*ahead)/ &
-          (deviation*sqrt(1.0_wp/m + 1.0_wp/(n - m) + ahead**2/squares)))
-      end associate
+      line = line_through(x, y, [(i > m, i=1, n)])
+      ahead = sum(x(:m))/m - line%middle(1)
+      off = max(off, line%off(sum(x(:m))/m, sum(y(:m))/m)/ &
+        (deviation*sqrt(1.0_wp/m + 1.0_wp/(n - m) + ahead**2/line%squares)))
       m = 2*m
     end do
   end function end_off_line

@@ -7,6 +7,7 @@ module measured_checks
   use measured_jumps, only: measured_jump_t, find_jump, off_baseline
   use noise, only: noise_t
   use significance, only: stands_out, surely
+  use sample_lines, only: sample_line_t, line_through
   use contact_check, only: check_contact, steep
   implicit none
   private
@@ -116,15 +117,12 @@ contains
     pure subroutine slope_at(place, slope, error)
       real(wp), intent(in) :: place(:)
       real(wp), intent(out) :: slope, error
-      logical :: mask(size(place))
-      real(wp) :: middle(2), squares
+      type(sample_line_t) :: line
 
-      mask = measured%usable .and. place <= minval(place) + nearest_part*(maxval(place) - &
-        minval(place))
-      middle = [sum(place, mask), sum(measured%signal, mask)]/max(1, count(mask))
-      squares = max(sum((place - middle(1))**2, mask), tiny(1.0_wp))
-      slope = -sum((place - middle(1))*(measured%signal - middle(2)), mask)/squares
-      error = noise%long_deviation()/sqrt(squares)
+      line = line_through(place, measured%signal, measured%usable .and. &
+        place <= minval(place) + nearest_part*(maxval(place) - minval(place)))
+      slope = -line%slope
+      error = noise%long_deviation()/sqrt(line%squares)
     end subroutine slope_at
 
     !> The mean residual of the samples nearest to the other body, that of as many samples before

@@ -12,6 +12,7 @@ module measured_jumps
   use kinds, only: wp
   use measured_curve, only: measured_curve_t
   use significance, only: stands_out, surely, differs
+  use sample_lines, only: sample_line_t, line_through
   use noise, only: noise_t, noise_of, white_noise, rough_deviation
   use outliers, only: stand_apart
   implicit none
@@ -287,20 +288,16 @@ contains
     type(measured_curve_t), intent(in) :: measured
     real(wp) :: left(size(measured%z))
     logical :: far(size(measured%z))
-    real(wp) :: middle(2), slope
+    type(sample_line_t) :: line
     integer :: way
 
     left = 0
     do way = 1, 2
       far = measured%far .and. measured%usable .and. (measured%inward .eqv. way == 1)
       if (.not. any(far)) cycle
-      associate (z => measured%z, s => measured%signal)
-        middle = [sum(z, far), sum(s, far)]/count(far)
-        slope = sum((z - middle(1))*(s - middle(2)), far)/ &
-          max(sum((z - middle(1))**2, far), tiny(1.0_wp))
-        if (count(far) < fewest_far) slope = 0
-        where (measured%inward .eqv. way == 1) left = s - middle(2) - slope*(z - middle(1))
-      end associate
+      line = line_through(measured%z, measured%signal, far)
+      if (count(far) < fewest_far) line%slope = 0
+      where (measured%inward .eqv. way == 1) left = line%off(measured%z, measured%signal)
     end do
   end function off_baseline
 

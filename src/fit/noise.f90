@@ -6,6 +6,7 @@
 module noise
   use kinds, only: wp
   use order_statistics, only: median_of
+  use sample_lines, only: off_line
   implicit none
   private
   public :: noise_t, white_noise, noise_of, noise_of_steps, noise_of_residuals, contradicts, &
@@ -199,23 +200,6 @@ contains
     if (any(step > none*maxval(abs(signal)))) &
       deviation = minval(step, step > none*maxval(abs(signal)))/sqrt(12.0_wp)
   end function rounding_of
-
-  !> The samples in `mask` minus a polynomial of this degree through them.
-  pure function off_line(z, signal, mask, degree) result(r)
-    real(wp), intent(in) :: z(:), signal(:)
-    logical, intent(in) :: mask(:)
-    integer, intent(in) :: degree
-    real(wp) :: r(size(z)), x(size(z)), power(size(z))
-
-    x = (z - sum(z, mask)/max(1, count(mask)))
-    x = x/max(maxval(abs(x), mask), tiny(1.0_wp))
-    r = signal - sum(signal, mask)/max(1, count(mask))
-    r = r - x*sum(x*r, mask)/max(sum(x**2, mask), tiny(1.0_wp))
-    if (degree < 2) return
-    power = x**2 - sum(x**2, mask)/count(mask)
-    power = power - x*sum(x*power, mask)/max(sum(x**2, mask), tiny(1.0_wp))
-    r = r - power*sum(power*r, mask)/max(sum(power**2, mask), tiny(1.0_wp))
-  end function off_line
 
   !> Finds the weights of all orders from the correlations, and the order with the smallest n
   !> ln(left^2) + order ln(n) (Schwarz, 1978). The order is 0 if chance explains the gain over order

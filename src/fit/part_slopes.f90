@@ -2,6 +2,7 @@
 !> over a part of the travel.
 module part_slopes
   use kinds, only: wp
+  use sample_lines, only: sample_line_t, line_through
   use measured_curve, only: measured_curve_t
   implicit none
   private
@@ -18,7 +19,8 @@ contains
   pure function slopes_of_parts(measured) result(slope)
     type(measured_curve_t), intent(in) :: measured
     real(wp), allocatable :: slope(:)
-    real(wp) :: middle(2), low, width
+    type(sample_line_t) :: line
+    real(wp) :: low, width
     logical, allocatable :: there(:)
     integer :: i, way
 
@@ -32,9 +34,8 @@ contains
             (measured%inward .eqv. way == 1) .and. &
             abs(z - low - (0.5_wp*i + 0.5_wp)*width) <= 0.5_wp*width
           if (count(there) < fewest) cycle
-          middle = [sum(z, there), sum(s, there)]/count(there)
-          slope = [slope, -measured%facing*sum((z - middle(1))*(s - middle(2)), there)/ &
-            max(sum((z - middle(1))**2, there), tiny(1.0_wp))]
+          line = line_through(z, s, there)
+          slope = [slope, -measured%facing*line%slope]
         end do
       end do
     end associate
