@@ -3,7 +3,7 @@
 module fit_warnings
   use kinds, only: wp
   use text, only: brief, rounded, rounded_to
-  use namelist_writer, only: line_t
+  use namelist_writer, only: line_t, append
   use fit_request, only: unknown_t, of_spring, fitted_of, is_at_end, farthest_off
   use significance, only: differs, hardly_ever, rarely
   use residual_analysis, only: lack_t
@@ -269,10 +269,8 @@ contains
 
     subroutine add(text)
       character(len=*), intent(in) :: text
-      type(line_t) :: line
 
-      line%text = text
-      lines = [lines, line]
+      call append(lines, text)
     end subroutine add
 
   end function doubts_of

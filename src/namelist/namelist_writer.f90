@@ -5,7 +5,7 @@ module namelist_writer
   use text_file, only: plain
   implicit none
   private
-  public :: line_t, assignment_of, add_item
+  public :: line_t, append, assignment_of, add_item
 
   !> One line of text.
   type :: line_t
@@ -19,6 +19,17 @@ module namelist_writer
   end interface assignment_of
 
 contains
+
+  !> Appends a line to others; if they are not allocated, it is the first.
+  pure subroutine append(lines, text)
+    type(line_t), allocatable, intent(inout) :: lines(:)
+    character(len=*), intent(in) :: text
+    type(line_t) :: line
+
+    line%text = text
+    if (.not. allocated(lines)) allocate (lines(0))
+    lines = [lines, line]
+  end subroutine append
 
   pure function of_reals(key, values) result(text)
     character(len=*), intent(in) :: key

@@ -5,7 +5,7 @@ module fit_rows
   use dimensionless_problem, only: adhesion_strength, tabor_parameter
   use text, only: counted, rounded
   use units, only: with_unit
-  use namelist_writer, only: line_t, assignment_of
+  use namelist_writer, only: line_t, append, assignment_of
   use summary, only: summary_t
   use results, only: results_t
   use tables, only: direction_of
@@ -107,13 +107,9 @@ contains
     integer :: i
 
     found = fitted%found
-    allocate (names(size(unknown)))
     do i = 1, size(unknown)
-      names(i)%text = unknown(i)%name
-    end do
-    allocate (units(size(unknown)))
-    do i = 1, size(unknown)
-      units(i)%text = unknown(i)%unit
+      call append(names, unknown(i)%name)
+      call append(units, unknown(i)%unit)
     end do
     text = assignment_of('converged', found) // assignment_of('parameters', names) // &
       assignment_of('units', units) // &
@@ -139,9 +135,8 @@ contains
     type(line_t), allocatable :: names(:)
     integer :: i
 
-    allocate (names(size(held)))
     do i = 1, size(held)
-      names(i)%text = held(i)%name
+      call append(names, held(i)%name)
     end do
     text = assignment_of('held', names) // numbers('held_asked', held%asked)
   end function of_held
@@ -155,12 +150,11 @@ contains
     type(line_t), allocatable :: names(:)
     integer :: i
 
-    allocate (names(size(lacking)))
     do i = 1, size(lacking)
-      names(i)%text = lacking(i)%name
+      call append(names, lacking(i)%name)
     end do
     text = assignment_of('baseline_tested', names) // numbers('baseline_gain', lacking%gain) // &
-      numbers('baseline_chance', exp(lacking%chance))
+      numbers('baseline_chance', [(exp(lacking(i)%chance), i=1, size(lacking))])
     text = text // numbers('baseline_hidden', [(maxval(abs(lacking(i)%hidden)/deviation), &
       i=1, size(lacking))])
     do i = 1, size(lacking)
@@ -172,11 +166,8 @@ contains
   function of_alternative(alternative) result(text)
     type(alternative_t), intent(in) :: alternative
     character(len=:), allocatable :: text
-    type(line_t), allocatable :: names(:)
 
-    allocate (names(1))
-    names(1)%text = alternative%name
-    text = assignment_of('described_with', names) // &
+    text = assignment_of('described_with', alternative%name) // &
       numbers('described_chi_squared', [alternative%chi_squared])
     if (alternative%value > 0) text = text // &
       numbers('described_value', [alternative%value, alternative%error])
@@ -213,17 +204,14 @@ contains
     type(joint_fit_t), intent(in) :: joint
     character(len=:), allocatable, intent(in) :: title
     character(len=:), allocatable :: text
-    type(line_t), allocatable :: doubts(:)
 
-    allocate (doubts(merge(1, 0, allocated(joint%doubt))))
-    if (size(doubts) > 0) doubts(1)%text = joint%doubt
     text = '! A fit by snapin of several curves together, SI units: the shared parameters. ' // &
       'sweep.csv has those of each curve.' // nl // '&fit' // nl // &
       assignment_of('title', title) // of_fitted(joint%unknown, joint%fitted) // &
       numbers('curves', [real(joint%curves, wp)]) // &
       numbers('chi_squared_alone', [joint%alone]) // &
       numbers('degrees_of_freedom_alone', [real(joint%fitted%freedom - joint%spared, wp)]) // &
-      assignment_of('warnings', doubts) // '/' // nl
+      assignment_of('warnings', joint%doubt) // '/' // nl
   end function joint_text
 
   !> Writes fit.nml, and adds to the summary how well the fit describes the curves, and the shared
