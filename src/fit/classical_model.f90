@@ -4,16 +4,17 @@
 module classical_model
   use kinds, only: wp
   use root_finding, only: bracket_t
-  use classical, only: jkr_load, jkr_displacement, dmt_load, hertz_displacement
+  use classical, only: jkr_load, jkr_displacement, dmt_load, hertz_displacement, hertz, jkr, dmt, &
+    maugis_dugdale
   use maugis, only: maugis_t, new_maugis
   use fit_request, only: fine_change
   use force_model, only: force_model_t, response_t, way_t, force_branch_t, inward, outward
   implicit none
   private
-  public :: classical_model_t, theories, hertz
+  public :: classical_model_t, adhesive
 
-  character(len=*), parameter :: theories(*) = [character(len=14) :: 'jkr', 'dmt', &
-    'maugis_dugdale'], hertz = 'hertz'
+  !> The theories of bodies that attract each other, by their numbers in `classical`.
+  integer, parameter :: adhesive(*) = [jkr, dmt, maugis_dugdale]
 
   !> Number of panels of the branch in contact.
   integer, parameter :: panels = 200
@@ -25,10 +26,11 @@ module classical_model
   real(wp), parameter :: first = 0.01_wp
 
   !> The unknowns are the work of adhesion w [J/m^2] and the plane-strain modulus (`stiffness`)
-  !> [Pa]. If one of them is not fitted, its value is `work` or `stiffness`. radius [m]: the radius
-  !> of the bodies; range [m]: the range of the tension in Maugis-Dugdale theory.
+  !> [Pa]. If one of them is not fitted, its value is `work` or `stiffness`. theory: one of
+  !> `adhesive`, or Hertz's. radius [m]: the radius of the bodies; range [m]: the range of the
+  !> tension in Maugis-Dugdale theory.
   type, extends(force_model_t) :: classical_model_t
-    character(len=14) :: theory = 'jkr'
+    integer :: theory = jkr
     real(wp) :: radius = 1, work = 1, stiffness = 1, range = 1
     logical :: finds_work = .true., finds_stiffness = .true.
   contains
@@ -148,9 +150,9 @@ contains
 
     associate (r => model%radius, w => number(1), y => number(2))
       select case (model%theory)
-      case ('jkr')
+      case (jkr)
         state = [-jkr_displacement(a, r, y, w), jkr_load(a, r, y, w)]
-      case ('dmt', hertz)
+      case (dmt, hertz)
         state = [-hertz_displacement(a, r), dmt_load(a, r, y, w)]
       case default
         theory = new_maugis(r, y, w, w/model%range)

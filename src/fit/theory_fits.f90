@@ -8,7 +8,8 @@ module theory_fits
   use measured_jumps, only: off_baseline
   use fit_request, only: unknown_t, of_model
   use fit_starts, only: character_t, character_of
-  use classical_model, only: classical_model_t, theories, hertz
+  use classical, only: theories, hertz
+  use classical_model, only: classical_model_t, adhesive
   use modelled_curve, only: modelled_curve_t, level_of
   use curve_fit, only: fit_curve
   use fit_errors, only: fitted_t
@@ -18,7 +19,7 @@ module theory_fits
 
   !> The fit of a classical theory.
   type :: theory_fit_t
-    character(len=14) :: theory = ''
+    character(len=len(theories)) :: theory = ''
     type(unknown_t), allocatable :: unknown(:)
     type(fitted_t) :: fitted
   end type theory_fit_t
@@ -75,7 +76,7 @@ contains
       few%data%noise = white_noise(curve%data%noise%deviation)
       call few%data%take(max(1, size(curve%data%sample)/few_samples))
       do i = 1, 2
-        model%theory = theories(i)
+        model%theory = adhesive(i)
         if (.not. model%finds_work) model%theory = hertz
         call take_unknowns(few, curve, model, own)
         n = size(few%unknown)
@@ -133,13 +134,13 @@ contains
     call take_unknowns(curve, fitted_curve, model, character_of(final))
     if (size(curve%unknown) == 0) return
     deallocate (theory)
-    allocate (theory(merge(size(theories), 1, attracts)))
+    allocate (theory(merge(size(adhesive), 1, attracts)))
     start = reshape([pack(curve%unknown%value, curve%unknown%role == of_model), &
       pack(fitted%value, fitted_curve%unknown%role /= of_model)], [size(curve%unknown), 1])
     do i = 1, size(theory)
       model%theory = hertz
-      if (attracts) model%theory = theories(i)
-      theory(i)%theory = model%theory
+      if (attracts) model%theory = adhesive(i)
+      theory(i)%theory = theories(model%theory)
       theory(i)%unknown = curve%unknown
       call fit_curve(curve, model, start, .false., theory(i)%fitted)
     end do
