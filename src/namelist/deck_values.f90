@@ -2,12 +2,12 @@
 !> of the table, and written as text.
 module deck_values
   use kinds, only: wp
-  use text, only: lower, quoted, unquoted, brief, full, guess, clip, word_count, word_of, &
+  use text, only: lower, quoted, unquoted, brief, guess, clip, word_count, word_of, &
     held_blank, spelled, replaced
   use deck_number, only: parse_real, parse_integer, parse_logical
   use number_slips, only: unit_slip, comma_slip
   use deck_source, only: source_t
-  use namelist_writer, only: add_item
+  use namelist_writer, only: assignment_of, add_item
   use deck_scan, only: span_t
   use deck_keys, only: key_spec, real_value, real_list, integer_value, logical_value, word_value, &
                        text_value, names_value
@@ -176,18 +176,18 @@ contains
     type(key_spec), intent(in) :: spec
     type(value_t), intent(in) :: value
     character(len=:), allocatable :: text
+    logical, allocatable :: flag
     integer :: column, i
 
     text = ''
     select case (spec%kind)
     case (real_value, real_list)
-      do i = 1, size(value%reals)
-        call add_item(trim(spec%key), full(value%reals(i)), text, column)
-      end do
+      text = assignment_of(trim(spec%key), value%reals)
     case (integer_value)
       call add_item(trim(spec%key), brief(value%whole), text, column)
     case (logical_value)
-      call add_item(trim(spec%key), trim(merge('.true. ', '.false.', value%flag)), text, column)
+      flag = value%flag
+      text = assignment_of(trim(spec%key), flag)
     case (names_value)
       do i = 1, word_count(value%text)
         call add_item(trim(spec%key), quoted(spelled(word_of(value%text, i))), text, column)
