@@ -10,7 +10,7 @@ module measured_loads
   use modelled_curve, only: modelled_curve_t
   implicit none
   private
-  public :: check_loads, other_order, largest_tension_of
+  public :: check_loads, other_order
 
   !> Factor by which a sensitivity that is not fitted may be wrong; factor between loads of
   !> different orders of magnitude.
