@@ -8,7 +8,8 @@ module classical_model
     maugis_dugdale
   use maugis, only: maugis_t, new_maugis
   use fit_request, only: fine_change
-  use force_model, only: force_model_t, response_t, way_t, force_branch_t, inward, outward
+  use force_branch, only: force_branch_t, weights_of
+  use force_model, only: force_model_t, response_t, way_t, inward, outward
   implicit none
   private
   public :: classical_model_t, adhesive
@@ -45,7 +46,7 @@ contains
     logical, intent(in) :: with_rates
     type(response_t), intent(out) :: response
     logical, intent(out) :: found
-    real(wp) :: number(2), weights(2), widest, turn
+    real(wp) :: number(2), widest, turn
     integer :: unknowns
 
     number = [self%work, self%stiffness]
@@ -54,9 +55,7 @@ contains
     ! The Hertzian contact radius under the largest load plus a hundred times the adhesion.
     widest = (1.5_wp*self%radius*(2*max(largest, 0.0_wp) + 100*number(1)*self%radius)/ &
       number(2))**(1.0_wp/3)
-    weights = [0, -1]
-    if (stiffness > 0) weights = [1.0_wp, -1/stiffness]
-    turn = turning_radius(self, number, weights, widest)
+    turn = turning_radius(self, number, weights_of(stiffness), widest)
     found = turn < 0.5_wp*widest
     if (.not. found) return
     allocate (response%branch(2))

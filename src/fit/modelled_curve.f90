@@ -8,7 +8,8 @@ module modelled_curve
   use kinds, only: wp, nan
   use fit_request, only: unknown_t, of_model, of_contact_point, of_sensitivity, of_spring, of_radius
   use fit_samples, only: fit_samples_t
-  use force_model, only: force_model_t, response_t, load_at_t
+  use force_branch, only: load_at_t
+  use force_model, only: force_model_t, response_t
   implicit none
   private
   public :: modelled_curve_t, beyond, level_of

@@ -1,17 +1,13 @@
-!> The model whose loads are those of the equilibrium path, which is computed for each trial of the
-!> unknowns. The branches are the stable branches of the path with the spring, and the segments are
-!> those of `device`.
+!> The model whose loads are those of the equilibrium path, computed for each trial of the unknowns.
+!> Branches are the stable ones of the path with the spring, segments those of `device`.
 module path_model
   use kinds, only: wp
   use failure, only: failure_t
   use progress_observer, only: progress_observer_t
-  use dimensionless_problem, only: problem_t, contact_level_of
-  use contact_state, only: radius_of_gap
-  use discretisation, only: discretisation_t
+  use dimensionless_problem, only: problem_t
   use variation, only: problem_family_t, variation_t, vary, to_search
   use edge_locked, only: new_mesh_family
   use mesh_store, only: mesh_store_t
-  use path_point, only: no_mesh
   use traced_path, only: traced_path_t
   use path_sensitivity, only: rate_t, rates_along
   use driven_pieces, only: driven_piece_t, through_spring
@@ -22,20 +18,12 @@ module path_model
   use path_end, only: demand_t
   use path_demand, only: demand_of
   use path_stepper, only: path_stepper_t
-  use fit_request, only: change
-  use force_model, only: force_model_t, response_t, force_branch_t, way_t, inward, outward
+  use contact_edges, only: edge_t, find_edges, set_rates
+  use force_branch, only: force_branch_t
+  use force_model, only: force_model_t, response_t, way_t, inward, outward
   implicit none
   private
   public :: path_model_t
-
-  !> The edge of the contact at a point of the path, where the gap is that of `contact_level_of`.
-  !> square: the squared contact radius and its derivative by the path's coordinate. by_level: its
-  !> derivative by that gap [m] at a fixed state. rate: its derivatives by the unknowns at a fixed
-  !> coordinate. place: the contact radius over the scale of the mesh.
-  type :: edge_t
-    real(wp) :: square(2) = 0, by_level = 0, place = 0
-    real(wp), allocatable :: rate(:)
-  end type edge_t
 
   !> The points of a path are densest for the accuracy `closest_for`; for a larger one they are
   !> farther apart (`demand_t`). enough: the relative residual at which the equations for the
@@ -191,7 +179,8 @@ contains
         self%numerics%accuracy, silent, demand)
       self%left_out = steps%known%left_out
       if (.not. steps%known%path%held > 1) return
-      if (self%with_radius) call find_edges(steps, trial%edge)
+      if (self%with_radius) &
+        call find_edges(steps%problem, steps%meshes, steps%known%path, trial%edge)
       if (.not. stiffness > 0) then
         call find_pieces(steps%solver_t, steps%known%path, through_spring(0.0_wp), driven)
         trial%solved = driven%whole .and. size(driven%piece) > 0
@@ -212,8 +201,8 @@ contains
     type(variation_t) :: varied(size(trial%value))
     type(rate_t), allocatable :: rate(:, :)
     type(failure_t), allocatable :: error
-    real(wp) :: level(size(trial%value))
-    integer :: i, k
+    real(wp), allocatable :: place(:)
+    integer :: i
 
     family%parameter%value = trial%value
     where (abs(trial%value) > 0) family%parameter%scale = abs(trial%value)
@@ -223,63 +212,13 @@ contains
       found = found .and. .not. allocated(error)
     end do
     if (.not. found) return
-    if (.not. allocated(trial%edge)) then
-      call rates_along(trial%steps%equations_t, trial%steps%known%path, varied, enough, rate, found)
-    else
-      call rates_along(trial%steps%equations_t, trial%steps%known%path, varied, enough, rate, &
-        found, trial%edge%place)
-    end if
+    if (allocated(trial%edge)) place = trial%edge%place
+    call rates_along(trial%steps%equations_t, trial%steps%known%path, varied, enough, rate, found, &
+      place)
     if (.not. found) return
     call move_alloc(rate, trial%rate)
-    if (.not. allocated(trial%edge)) return
-    do i = 1, size(varied)
-      level(i) = 0
-      do k = 1, size(varied(i)%weight)
-        associate (problem => varied(i)%problem(k))
-          level(i) = level(i) + varied(i)%weight(k)* &
-            problem%law%separation_of(contact_level_of(problem))
-        end associate
-      end do
-    end do
-    do k = 1, size(trial%edge)
-      trial%edge(k)%rate = trial%edge(k)%by_level*(level - trial%rate(:, k)%separation)
-    end do
+    if (allocated(trial%edge)) call set_rates(trial%edge, varied, trial%rate)
   end subroutine find_rates
-
-  !> The edges of the contact at the points of the path.
-  subroutine find_edges(steps, edge)
-    type(path_stepper_t), intent(in) :: steps
-    type(edge_t), allocatable, intent(out) :: edge(:)
-    integer :: i
-
-    allocate (edge(steps%known%path%last))
-    do i = 1, size(edge)
-      associate (point => steps%known%path%point(i))
-        if (point%mesh /= no_mesh) call set_edge(steps%meshes%grid(point%mesh), edge(i))
-      end associate
-    end do
-
-  contains
-
-    subroutine set_edge(grid, edge)
-      type(discretisation_t), intent(in) :: grid
-      type(edge_t), intent(inout) :: edge
-      real(wp) :: level, radius, by_level
-
-      associate (problem => steps%problem, point => steps%known%path%point(i))
-        level = contact_level_of(problem)
-        radius = radius_of_gap(problem%shape, level, grid, point%state)
-        if (.not. radius > 0) return
-        by_level = (radius_of_gap(problem%shape, level*(1 + change), grid, point%state)**2 - &
-          radius_of_gap(problem%shape, level*(1 - change), grid, point%state)**2)/(2*change*level)
-        edge%place = radius/point%state%scale
-        edge%by_level = problem%lateral**2*by_level/problem%length
-        edge%square = problem%lateral**2*[radius**2, 2*radius**2*point%tangent%scale/ &
-          point%state%scale - by_level*grid%interpolate(point%tangent%gap, edge%place)]
-      end associate
-    end subroutine set_edge
-
-  end subroutine find_edges
 
   !> A stable branch of the path as panels, in SI units. rate(unknown, point): derivatives at its
   !> points.
@@ -334,9 +273,7 @@ contains
     real(wp) :: largest(2), change_of_load
     integer :: i, k
 
-    do k = inward, outward
-      allocate (response%way(k)%branch(0), response%way(k)%leaves_at(0))
-    end do
+    response%way = way_t([integer ::], [real(wp) ::])
     do i = 1, size(driven%leg)
       k = merge(inward, outward, driven%leg(i)%inward)
       associate (way => response%way(k))

@@ -19,7 +19,8 @@ module stepped_model
   use experiment_request, only: request_t, numerics_t
   use numerics_choice, only: choice_t, choose
   use fit_request, only: change
-  use force_model, only: force_model_t, response_t, force_branch_t, inward, outward
+  use force_branch, only: force_branch_t
+  use force_model, only: force_model_t, response_t, inward, outward
   implicit none
   private
   public :: stepped_model_t

@@ -11,7 +11,7 @@ module fit_group
   use deck_source, only: source_t, load_source
   use data_table, only: largest_table
   use curve_index, only: curve_index_t
-  use measured_curve, only: read_measured
+  use curve_reading, only: read_measured
   use measurement_group, only: take_measurement
   use scene_groups, only: scene_t
   use unknown_bounds, only: take_range, take_bounds
