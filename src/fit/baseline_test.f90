@@ -10,7 +10,8 @@ module baseline_test
   use baseline, only: waves_of, ways_in, scaled
   use fit_samples, only: fit_samples_t, orthonormalise, is_rounding, solve_triangle
   use significance, only: chance_of
-  use residual_analysis, only: renew_noise, settled_within
+  use fit_request, only: settled_within
+  use residual_analysis, only: renew_noise
   use curve_residuals, only: curve_residuals_t
   implicit none
   private
@@ -137,7 +138,7 @@ contains
   end subroutine test_ripple
 
   !> Estimates the period of the ripple of a fit's baseline again. done: becomes .false. if the
-  !> period has changed.
+  !> number of periods over the travel has not settled.
   subroutine settle_ripple(residuals, value, done)
     type(curve_residuals_t), intent(inout) :: residuals
     real(wp), intent(in) :: value(:)

@@ -9,7 +9,7 @@ module fit_request
   private
   public :: measurement_t, fit_t, unknown_t, of_model, of_contact_point, of_sensitivity, &
     of_spring, free_of, value_of, fitted_of, value_by_free, value_by_fitted, farthest_off, &
-    is_at_end, is_beyond, change, fine_change
+    is_at_end, is_beyond, inside, settled_within, change, fine_change
   public :: of_position, of_separation, of_load, of_segment, of_radius
 
   !> The quantity of a column of the file. of_position: the position of the base of the spring.
@@ -66,6 +66,11 @@ module fit_request
   !> A number this near to a limit counts as being at the limit: a fitted number at that of the
   !> search, a start at a bound.
   real(wp), parameter :: at_limit = 1.0e-3_wp
+  !> The relative distance by which values stay inside a limit that is excluded.
+  real(wp), parameter :: inside = 1.0e-6_wp
+
+  !> An iteration has settled when numbers change by less than this part of themselves.
+  real(wp), parameter :: settled_within = 0.01_wp
 
   !> Changes of a fitted number, or of a positive one relative to itself, for finite differences:
   !> between solutions of the equations, and between values of closed forms.

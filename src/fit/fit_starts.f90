@@ -7,7 +7,7 @@ module fit_starts
   use linear_algebra, only: factorisation_t, factorise, solve
   use dimensionless_problem, only: problem_t, surface_energy, largest_tension
   use variation, only: problem_family_t
-  use fit_request, only: unknown_t, of_model, change
+  use fit_request, only: unknown_t, of_model, farthest_off, settled_within, change
   implicit none
   private
   public :: character_t, character_of, starts_like
@@ -18,11 +18,10 @@ module fit_starts
     real(wp) :: work = 0, stiffness = 0, range = 0
   end type character_t
 
-  !> Secant method: largest number of steps; size of a step at which the iteration ends. The largest
-  !> logarithm of the ratio of a start to the deck's value. Starts whose logarithms differ by less
-  !> than `alike` are the same.
+  !> Largest number of steps of the secant method. Starts whose logarithms differ by less than
+  !> `alike` are the same.
   integer, parameter :: steps = 6
-  real(wp), parameter :: near = 0.01_wp, farthest = 4.5_wp, alike = 0.05_wp
+  real(wp), parameter :: alike = 0.05_wp
   !> Damping of the steps; without it, unknowns with hardly any effect would move far.
   real(wp), parameter :: damping = 1.0e-4_wp
 
@@ -101,14 +100,15 @@ contains
         step = max(-2.0_wp, min(2.0_wp, matmul(missing, slope)))
         do k = 1, size(unknown)
           if (.not. unknown(k)%in_log) cycle
-          low = unknown(k)%value*exp(-farthest)
-          high = unknown(k)%value*exp(farthest)
+          ! A start lies well within the limits of the search.
+          low = unknown(k)%value*exp(0.5_wp - farthest_off)
+          high = unknown(k)%value*exp(farthest_off - 0.5_wp)
           if (allocated(unknown(k)%lower)) low = max(low, unknown(k)%lower)
           if (allocated(unknown(k)%upper)) high = min(high, unknown(k)%upper)
           step(k) = log(max(low, min(high, value(k)*exp(step(k))))/value(k))
         end do
         value = value*exp(step)
-        if (maxval(abs(step)) <= near) return
+        if (maxval(abs(step)) <= settled_within) return
         call traits(value, next)
         if (.not. found) return
         do k = 1, 3

@@ -17,8 +17,7 @@ module measured_jumps
   use outliers, only: stand_apart
   implicit none
   private
-  public :: measured_jump_t, find_jump, likely_jump, find_far, off_baseline, &
-    fewest_far
+  public :: measured_jump_t, find_jump, likely_jump, find_far, off_baseline, fewest_far
 
   !> A jump between the samples `before` and `after`; both are 0 without a jump. z, uncertainty: the
   !> position of the base and its uncertainty. change: the change of the signal.
@@ -27,9 +26,9 @@ module measured_jumps
     real(wp) :: z = 0, uncertainty = 0, change = 0
   end type measured_jump_t
 
-  !> Limits of a jump, of which the change that the spring does not explain stands out. steep:
-  !> smallest ratio of the change to that due to the spring. most_steps: largest number of steps of
-  !> a jump that an amplifier has smoothed.
+  !> A jump, or a spike, changes the signal by more than `steep` times the change that the spring
+  !> alone causes over the same z; the rest stands out from the noise. most_steps: largest number of
+  !> steps of a jump that an amplifier has smoothed.
   real(wp), parameter :: steep = 3
   integer, parameter :: most_steps = 6
 
@@ -53,9 +52,6 @@ module measured_jumps
   !> noise of the farther half is less than `less` times that of the whole.
   integer, parameter :: fewest_far = 12
   real(wp), parameter :: far_part = 1.0_wp/3, less = 0.6_wp
-  !> A spike surely differs from its neighbours even if these were `bent` times the change of the
-  !> signal nearer that the spring alone causes over a step of z.
-  real(wp), parameter :: bent = 3
 
 contains
 
@@ -216,10 +212,9 @@ contains
     real(wp), intent(in) :: stiffness
     type(noise_t), intent(out) :: noise
     type(noise_t) :: outer_noise
-    real(wp) :: rough
     real(wp), allocatable :: position(:)
     logical, allocatable :: outer(:)
-    real(wp) :: limit, farthest
+    real(wp) :: rough, limit, farthest
     integer :: way
 
     position = measured%facing*measured%z
@@ -227,7 +222,7 @@ contains
     limit = farthest - far_part*(farthest - minval(position))
     rough = rough_deviation(pack(measured%signal, measured%usable))
     measured%usable = measured%usable .and. .not. stand_apart(measured%signal, merge(1, 2, &
-      measured%inward), measured%usable, surely*rough + bent*stiffness*steps_about(measured))
+      measured%inward), measured%usable, surely*rough + steep*stiffness*steps_about(measured))
     do way = 1, 2
       associate (jump => find_jump(measured, rough, stiffness, way == 1))
         if (jump%before > 0) limit = max(limit, 0.5_wp*(measured%facing*jump%z + farthest))

@@ -8,11 +8,12 @@ module residual_analysis
     contradicts, normal_median, whiten
   use outliers, only: stand_apart
   use order_statistics, only: median_of
+  use fit_request, only: settled_within
   use measured_jumps, only: measured_jump_t, likely_jump, fewest_far
   use modelled_curve, only: modelled_curve_t
   implicit none
   private
-  public :: lack_t, lack_in, renew_noise, look_again, settled_within
+  public :: lack_t, lack_in, renew_noise, look_again
 
   !> The largest lack of fit. excess: by how many standard deviations the squared means of blocks of
   !> `width` samples exceed their expectation for noise. times: the ratio of the root mean square of
@@ -32,9 +33,6 @@ module residual_analysis
   real(wp), parameter :: apart = 4.5_wp
   !> Number of far samples needed to find a correlation of the noise.
   integer, parameter :: enough = 50
-  !> The look is settled if the noise changes by less than this part of itself, and the phase of a
-  !> ripple over the travel by less than this number, and if no jump moves noticeably.
-  real(wp), parameter :: settled_within = 0.01_wp
 
 contains
 

@@ -2,7 +2,7 @@
 !> describe the residuals over a few standard errors.
 module wider_errors
   use kinds, only: wp
-  use fit_request, only: unknown_t, fitted_of
+  use fit_request, only: unknown_t, fitted_of, inside
   use fit_residuals, only: fit_residuals_t
   use fit_errors, only: fitted_t, set_deviations, bounded
   implicit none
@@ -123,7 +123,6 @@ contains
       type(unknown_t), intent(in) :: unknown
       real(wp), intent(in) :: value
       logical, intent(in) :: upward
-      real(wp), parameter :: within = 1 - 1.0e-6_wp
       real(wp) :: sign, u
 
       sign = merge(1, -1, upward)
@@ -134,7 +133,7 @@ contains
         room = min(room, fitted_of(unknown, unknown%upper) - u)
       if (.not. upward .and. allocated(unknown%lower)) &
         room = min(room, u - fitted_of(unknown, unknown%lower))
-      room = within*room
+      room = (1 - inside)*room
     end function room_for
 
     !> The values of fitted numbers, moved to the nearest bound if they are beyond it.

@@ -3,7 +3,7 @@ module unknown_bounds
   use kinds, only: wp
   use deck, only: deck_t
   use deck_keys, only: key_spec
-  use fit_request, only: unknown_t, of_contact_point
+  use fit_request, only: unknown_t, of_contact_point, inside
   implicit none
   private
   public :: take_range, take_bounds
@@ -15,8 +15,6 @@ contains
   pure subroutine take_range(spec, unknown)
     type(key_spec), intent(in) :: spec
     type(unknown_t), intent(inout) :: unknown
-    !> The relative distance by which the search stays inside a limit that is itself excluded.
-    real(wp), parameter :: inside = 1.0e-6_wp
 
     associate (value => unknown%value)
       if (.not. unknown%in_log) then
