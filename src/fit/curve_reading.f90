@@ -14,10 +14,10 @@ module curve_reading
   private
   public :: read_measured
 
-  !> A base moves evenly, while a signal changes mostly near contact. Limits of the ratio of the
-  !> median to the mean of the changes from part to part of a curve, for an even and an uneven
-  !> column, and the number of parts. Shortest and longest travel of a base [m].
-  real(wp), parameter :: even = 0.5_wp, uneven = 0.25_wp, shortest = 1.0e-12_wp, longest = 1.0e-3_wp
+  !> A base moves evenly, while a signal changes mostly near contact. Smallest ratio of the median
+  !> to the mean of the changes from part to part of a curve in an even column (in an uneven one it
+  !> is less than half of this), and the number of parts. Shortest and longest travel of a base [m].
+  real(wp), parameter :: even = 0.5_wp, shortest = 1.0e-12_wp, longest = 1.0e-3_wp
   integer, parameter :: parts = 20
 
 contains
@@ -177,7 +177,7 @@ contains
     real(wp), intent(in) :: z(:), signal(:)
     type(failure_t), allocatable, intent(inout) :: error
 
-    if (evenness_of(z) < uneven .and. evenness_of(signal) > even) then
+    if (evenness_of(z) < even/2 .and. evenness_of(signal) > even) then
       call fail(error, bad_input, file // ': the signal changes evenly, the position does ' // &
         'not; are the two columns exchanged? columns gives their order')
     else if (maxval(z) - minval(z) > longest) then
