@@ -1,7 +1,7 @@
 !> The table of all reported values: summary.nml, the columns of sweep.csv and the Python package
-!> follow it. A number at a place of the path needs one row here, with the name of the place and the
-!> quantity, and is then in the summary with its error and derivatives. The module that finds a
-!> place enters it. Any other number has a row here, and a `set` where it is computed.
+!> follow it. A number at a place of the path needs one row here, with the name of the place, the
+!> quantity and `error`, and is then in the summary with its error and derivatives. The module that
+!> finds a place enters it. Any other number has a row here, and a `set` where it is computed.
 module result_rows
   use reported_place, only: of_h0, of_load, of_displacement, of_energy, of_suction, of_position, &
     of_tension, of_work, of_profile
