@@ -36,8 +36,8 @@ module force_law
     !> Change of gap over which a strong repulsion changes by a factor of e = 2.718.
     real(wp) :: repulsion_length = 1
     !> In one iteration a gap may decrease by at most closure_fraction*gap + closure_length, since
-    !> the linearised law is valid over this distance. This also keeps gaps in the range where the
-    !> formulas are defined.
+    !> the linearised law is valid over this distance, for exponentials one or two
+    !> repulsion lengths. This also keeps gaps in the range where the formulas are defined.
     real(wp) :: closure_fraction = 0, closure_length = 0
     !> Smallest gap at which the formulas are evaluated. No equilibrium has a smaller gap; at
     !> smaller gaps pressures, or their products with the coupling, would overflow.
@@ -48,8 +48,6 @@ module force_law
     !> For large gaps the pressure falls as gap^-tail_power; `huge` if it falls faster than any
     !> power.
     real(wp) :: tail_power = huge(1.0_wp)
-    !> Gap beyond which the pressure is this power times a power series in the inverse of the gap.
-    real(wp) :: power_from = 0
     !> Whether `length` and `pressure_unit` are characteristic scales of the force. If not, the
     !> scales of its minimum become the units (`force_sum`).
     logical :: has_units = .true.
@@ -68,16 +66,17 @@ module force_law
     !> Those of the breaks that meshes cannot resolve with more nodes: gaps at which a force begins
     !> or ends, and points of a coarse table. Not allocated if there are none.
     real(wp), allocatable :: kinks(:)
-    !> Number of forces in the law.
-    integer :: terms = 1
     !> Name that the coupling of law and bodies has in the summary, for a law that does not attract
     !> (otherwise it is sigma (40)). Blank if it is not reported.
     character(len=12) :: coupling_name = ''
-    !> For messages: the group of the deck that gives the law, and the keys of this group for the
-    !> magnitudes of pressure and gap.
-    character(len=24) :: group = '', strength_key = '', length_key = ''
     !> A warning if the law's own assumptions do not hold for the numbers of the deck.
     character(len=200) :: caveat = ''
+
+    !> These are set by `accept_law` (`group_reading`), for messages: the group of the deck that
+    !> gives the law, and the keys of this group for the magnitudes of pressure and gap.
+    character(len=24) :: group = '', strength_key = '', length_key = ''
+    !> Number of forces in the law, set by `force_sum`.
+    integer :: terms = 1
 
     !> These components are set by the scan of the law (`law_scan`), or by the law if closed forms
     !> are known. adhesion: the tension, integrated from the equilibrium separation to the next zero
@@ -98,6 +97,9 @@ module force_law
     real(wp) :: falls_below = 0
     !> Gap beyond which the repulsion is smaller than rounding errors; 0 until it is known.
     real(wp) :: range = 0
+    !> Gap beyond which the pressure is gap^-tail_power times a power series in the inverse of the
+    !> gap.
+    real(wp) :: power_from = 0
   contains
     !> One of the three quantities at gaps.
     procedure(evaluate_law), deferred :: evaluate
