@@ -7,11 +7,12 @@ from conftest import ROOT
 from support.calculus import derivative, integrals
 
 # Orders of magnitude of the keys of each group: drawn evenly by their logarithm; a third number is
-# how many values a list has at most.
+# how many values a list has at most. Sums are evaluated at separations from 1e-10 m, where every
+# law that is drawn needs finite values.
 LOGARITHMIC = {
     "lennard_jones": {"surface_energy": (1e-4, 1), "z0": (1e-10, 1e-9)},
     "exponential": {"p0": (1e3, 1e10), "decay_length": (1e-11, 1e-8)},
-    "morse": {"surface_energy": (1e-4, 1), "z0": (1e-10, 1e-8), "decay_length": (1e-11, 1e-9)},
+    "morse": {"surface_energy": (1e-4, 1), "z0": (1e-10, 5e-9), "decay_length": (1e-11, 1e-9)},
     "van_der_waals": {"hamaker": (1e-22, 1e-18), "retardation_length": (1e-9, 1e-6)},
     "born": {"hamaker": (1e-22, 1e-18), "z0": (1e-10, 1e-9)},
     "hydration": {"energy": (1e-4, 1e-1, 4), "decay_length": (1e-10, 1e-8, 4)},
