@@ -200,7 +200,7 @@ contains
     largest = 1
     if (.not. (allocated(a%gap) .and. allocated(b%gap))) return
     if (size(a%gap) /= size(b%gap)) return
-    strongest = max(maxval(abs(a%pressure)), tiny(1.0_wp))
+    strongest = max(maxval(abs(a%pressure), .not. ieee_is_nan(a%pressure)), tiny(1.0_wp))
     largest = 0
     do j = 1, size(a%gap)
       ! A mesh may have no values there.

@@ -31,6 +31,8 @@ module wave_transforms
   !> angle over the panel counts as a polynomial of degree `degrees` times the angle, plus
   !> `more_degrees`. On a panel to infinity the end is taken at the local coordinate `nearly_all`.
   real(wp), parameter :: nearly_all = 0.95_wp, degrees = 0.55_wp, more_degrees = 8
+  !> A density of nodes at which no wave is omitted; on the axis of a cone it would be infinite.
+  real(wp), parameter :: densest = 1.0e100_wp
   !> Number of nodes of a hat function; ratio of the numbers of nodes for successive groups of
   !> shorter waves.
   integer, parameter :: hat = 2
@@ -158,7 +160,9 @@ contains
     if (grid%panel(p)%kind == algebraic_map) then
       density = size(grid%local(grid%which(p - 1))%node)/grid%panel(p - 1)%speed(1.0_wp)*(1 - s)**2
     else
-      density = size(grid%local(grid%which(p))%node)/grid%panel(p)%speed(s)
+      associate (n => size(grid%local(grid%which(p))%node))
+        density = n/max(grid%panel(p)%speed(s), n/densest)
+      end associate
     end if
   end function density_on
 

@@ -169,7 +169,7 @@ contains
             ' different values, so it does not number the segments; columns chooses another'
           return
         end if
-        table%label = [table%label, label]
+        table%label = [character(len=longest_name) :: table%label, label]
         i = size(table%label)
       end if
       number = i

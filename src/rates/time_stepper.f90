@@ -135,8 +135,8 @@ contains
     class(time_stepper_t), intent(in) :: self
     real(wp), intent(in) :: radius
 
-    finest = min(cohesive_width(self%problem)*self%problem%coupling/ &
-      (self%instant*self%creep%relaxed()), part_of_contact*radius)
+    finest = min(cohesive_width(self%problem)*(self%problem%coupling/ &
+      (self%instant*self%creep%relaxed())), part_of_contact*radius)
   end function finest
 
   !> The scale that the state is expected to have with a control.

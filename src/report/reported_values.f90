@@ -38,7 +38,8 @@ contains
     allocate (found%error(n), source=none)
     allocate (found%rate(parameters_of(places), n), source=none)
     found%rate_error = found%rate
-    do i = 1, merge(size(places%entry), 0, n > 0)
+    if (n == 0) return
+    do i = 1, size(places%entry)
       associate (entry => places%entry(i), k => places%entry(i)%element)
         if (entry%name /= name) cycle
         if (entry%place == 0) then
@@ -52,13 +53,14 @@ contains
       end associate
     end do
     if (.not. allocated(places%number)) return
-    do i = 1, merge(size(places%number), 0, n > 0)
+    do i = 1, size(places%number)
       associate (number => places%number(i), k => places%number(i)%element)
         if (number%name /= name) cycle
-        found%error(k) = number%error(quantity)*units(quantity)
-        if (.not. number%known) found%error(k) = max(found%error(k), abs(found%value(k)), &
-          least(quantity)*units(quantity))
-        if (ieee_is_nan(found%value(k))) found%error(k) = none
+        if (.not. ieee_is_nan(found%value(k))) then
+          found%error(k) = number%error(quantity)*units(quantity)
+          if (.not. number%known) found%error(k) = max(found%error(k), abs(found%value(k)), &
+            least(quantity)*units(quantity))
+        end if
         if (allocated(number%rate)) then
           found%rate(:, k) = number%rate(quantity, :)
           found%rate_error(:, k) = number%rate_error(quantity, :)

@@ -1,7 +1,7 @@
 !> Derivatives of reported numbers and of the curve by the parameters of &sensitivity, as rows of
 !> tables.
 module sensitivity_rows
-  use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_positive_inf
+  use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_positive_inf, ieee_is_nan
   use kinds, only: wp, nan
   use text, only: brief
   use dimensionless_problem, only: problem_t
@@ -79,13 +79,18 @@ contains
       character(len=*), intent(in) :: quantity
       type(readings_t), intent(in) :: number
       integer, intent(in) :: k
+      real(wp) :: relative
       integer :: j
 
       do j = 1, size(number%rate, 1)
         associate (value => number%value(k), rate => number%rate(j, k), &
           parameter => varied(j)%parameter)
+          relative = nan
+          if (.not. ieee_is_nan(value)) then
+            if (abs(value) > 0) relative = rate*parameter%value/value
+          end if
           call results%row(quantity // ',' // parameter%name, &
-            [value, rate, rate*parameter%value/value, number%rate_error(j, k)])
+            [value, rate, relative, number%rate_error(j, k)])
         end associate
       end do
     end subroutine write_lines
