@@ -59,8 +59,8 @@ module records
     type(place_t), allocatable :: jump
     !> The last equilibrium, which is a converged state.
     type(place_t), allocatable :: finish
-    !> The stable pieces of the path on which the branch begins and ends; 0 if they are not known, or
-    !> the state is unstable.
+    !> The stable pieces of the path on which the branch begins and ends; 0 if they are not known,
+    !> or the state is unstable.
     integer :: first_piece = 0, last_piece = 0
     type(quality_t) :: quality
     !> First h0 at which the iteration did not converge.
