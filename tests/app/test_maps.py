@@ -199,10 +199,10 @@ def test_a_case_that_fails_is_a_row_that_says_why(run):
     assert any("1 of 4 cases failed: rows of" in text for text in result.warnings)
 
 
-def on_a_terminal(program, folder):
-    """The status of a run of d.nml, and the lines that a terminal shows."""
+def on_a_terminal(program, folder, *arguments):
+    """The status of a run, and the lines that a terminal shows."""
     ours, theirs = pty.openpty()
-    with subprocess.Popen([program, "d.nml"], cwd=folder, stderr=theirs,
+    with subprocess.Popen([program, *arguments], cwd=folder, stderr=theirs,
                           env={**os.environ, "OMP_NUM_THREADS": "1"}) as run:
         os.close(theirs)
         said = b""
@@ -218,7 +218,7 @@ def test_a_terminal_shows_the_case_that_takes_long(snapin_path, tmp_path):
     drive = (ROOT / "inputs" / "examples" / "drainage.nml").read_text()
     (tmp_path / "d.nml").write_text(
         drive + "\n&sweep key = 'numerics.accuracy', values = 2e-4, 2.2e-4 /\n")
-    _, *lines = on_a_terminal(snapin_path, tmp_path)
+    _, *lines = on_a_terminal(snapin_path, tmp_path, "d.nml")
     cases = [found[1] for line in lines if (found := re.match(r"d: case (\d+): drive, ", line))]
     assert cases == sorted(cases) and set(cases) == {"1", "2"}
 
@@ -229,13 +229,28 @@ def test_a_terminal_shows_how_far_a_sweep_is(snapin_path, tmp_path):
     sweep = {"key": ["loading.h0_start", "loading.h0_end"], "from": [2e-9, 1e-9],
              "to": [5e-9, 4e-9], "count": [120, 120]}
     (tmp_path / "d.nml").write_text(scene(sweep, **RIGID))
-    status, *lines, last, _ = on_a_terminal(snapin_path, tmp_path)
+    status, *lines, last, _ = on_a_terminal(snapin_path, tmp_path, "d.nml")
     assert status == 1
     line = r"d: case, \d+ %, \d+ failed, \d+ a second, \d+ (s|min) left, \d+ (s|min) so far *"
     assert any(re.fullmatch(line, text) for text in lines), lines
     command = re.fullmatch(r"results/d: 14400 cases, \d+ a second: results/d/sweep.csv; "
                            r"to draw it: (\S+) (\S+/map.py) results/d", last)
     assert command and all(map(os.path.exists, command.groups())), last
+
+
+@pytest.mark.slow
+def test_the_time_left_is_estimated_from_the_cases_of_this_run(snapin, snapin_path, tmp_path):
+    """An interrupted run has completed many cases, each much quicker than the others.
+    The first estimate comes after a second."""
+    given, others = 3000, 60
+    (tmp_path / "cases.csv").write_text("loading.h0_step\n" + given*"1e-9\n" + others*"1e-14\n")
+    bench = Bench(snapin, snapin_path, tmp_path, scene({"file": "cases.csv"}, **RIGID))
+    bench.emptied(b"".join(frames(bench.journal)[:1 + given]))
+    status, *lines = on_a_terminal(snapin_path, tmp_path, "--out", "cut", "--resume", "deck.nml")
+    assert status == 0
+    rate = next(found for line in lines if (
+        found := re.search(r", (\S+) (a second|s each), \d+ (s|min) left", line)))
+    assert rate[2] == "s each" or float(rate[1]) <= others
 
 
 # A sweep, or the text of its file of cases; what is said of it.
