@@ -8,11 +8,13 @@ so do the kinds of change in a room. Work is in a copy of the checkout with its 
 
 1. The change is compiled, and nothing else. What does not compile does not count.
 2. A few decks are run, up to the first difference. Where no number differs by 1e-9 of itself or of
-   its column's largest, the decks do not see the change: only the tests of its room are run, and it
-   counts as `same` if they pass.
-3. Otherwise quick tests are run up to the first failure, without those of time and memory: those of
-   the room, those that have noticed other changes, and then the other rooms, first those that have
-   noticed most. The change is `noticed`, or `missed`.
+   its column's largest, the decks do not see the change.
+3. Quick tests are run up to the first failure, without those of time and memory: those of the room,
+   those that have noticed other changes, and those of the three rooms that use the module most.
+   If the decks see the change, the other rooms follow, first those that have noticed most.
+
+A change that fails a test is `noticed`. Otherwise it is `missed` if the decks see it, and `same` if
+not. `same` may still break a promise: whoever changes the line decides by reading.
 
 Outcomes are kept in FOLDER, and what has one is not tried again, `missed` and `same` only with
 --again. --first leaves out changes of the seed, so that several folders may share them. Prints each
@@ -42,7 +44,7 @@ from snapin.result_text import namelist_groups  # noqa: E402
 from snapin.command import as_command  # noqa: E402
 
 # Processor seconds of a process, after which a change has made it endless.
-ENDLESS = 300
+ENDLESS = 120
 SAME = 1e-9
 DECKS = ("tools/verify/decks/*.nml", "inputs/examples/*.nml", "inputs/tutorial/*.nml",
          "inputs/first.nml")
@@ -53,6 +55,8 @@ BLIND_ROOMS = ("tools", "contact_law")
 BLIND = ("tests/model/test_translation.py",)
 # Number of tests that have noticed other changes, and are run before those of other rooms.
 MOST = 30
+# Number of rooms that use a module and whose tests are run even if the decks see no change.
+NEAREST = 3
 
 NUMBER = re.compile(r"(?<![\w.])\d+\.\d*(?:e[+-]?\d+)?_wp", re.IGNORECASE)
 PAIRS = ((" + ", " - "), ("*", "/"), (" < ", " <= "), (" > ", " >= "), (" == ", " /= "),
@@ -63,6 +67,7 @@ SWAP = re.compile(r" [-+] | [<>]=? | [=/]= |(?<![*(/])\*(?![*)])|(?<![*(/])/(?![
 TERM = re.compile(r" [-+] (?:[\d.]+(?:_wp)?\*)?[a-z]\w*(?:%\w+)*(?:\([\w, :]*\))?(?![\w%(*/])")
 INDEX = re.compile(r"(?<=\()\d+(?=[,):])|(?<=[,:] )\d+(?=\))")
 CONDITION = re.compile(r"^(\s*(?:else )?if \()(.*)(\) .*)$")
+USE = re.compile(r"^\s*use (\w+)", re.MULTILINE | re.IGNORECASE)
 CALL = re.compile(r"^\s*call \w+(?:%\w+)*\(.*\)$")
 # Lines that say what there is and do nothing.
 STILL = re.compile(
@@ -178,7 +183,8 @@ class Copy:
                 target.unlink(missing_ok=True)
             elif not target.exists() or source.read_bytes() != target.read_bytes():
                 target.parent.mkdir(parents=True, exist_ok=True)
-                shutil.copy2(source, target)
+                # Not with its time, which may be that of before a change: it is compiled again.
+                shutil.copy(source, target)
         if not (self.top / ".venv").exists():
             (self.top / ".venv").symlink_to(ROOT / ".venv")
 
@@ -203,9 +209,9 @@ class Copy:
         out = self.top / "results-of-decks"
         shutil.rmtree(out, ignore_errors=True)
         done = subprocess.run(
-            ["sh", "-c", f'ulimit -t {seconds}; exec "$@"', "sh", self.top / "build/snapin",
-             "--quiet", "--into", out, deck], cwd=deck.parent, capture_output=True,
-            env={**os.environ, "OMP_NUM_THREADS": "1"}, check=False)
+            _limited(seconds, self.top / "build/snapin", "--quiet", "--into", out, deck),
+            cwd=deck.parent, capture_output=True, env={**os.environ, "OMP_NUM_THREADS": "1"},
+            check=False)
         return done.returncode, _read(out)
 
     def first_difference(self):
@@ -216,16 +222,39 @@ class Copy:
     def first_failure(self, tests):
         """The first of these tests that fails, or None."""
         done = subprocess.run(
-            [ROOT / ".venv/bin/python", "-m", "pytest", "-q", "-x", "-n", "0", "-p",
-             "no:cacheprovider", "-m", "not slow and not long and not alone", *tests], cwd=self.top,
-            capture_output=True, text=True, errors="replace", check=False)
+            _limited(ENDLESS, ROOT / ".venv/bin/python", "-m", "pytest", "-q", "-x", "-n", "0",
+                     "-p", "no:cacheprovider", "-m", "not slow and not long and not alone", *tests),
+            cwd=self.top, capture_output=True, text=True, errors="replace", check=False)
         if done.returncode in (0, 5):
             return None
         found = re.search(r"^(?:FAILED|ERROR) (.*?)(?: - .*)?$", done.stdout, re.MULTILINE)
         return found[1] if found else f"pytest ends with status {done.returncode}"
 
-    def groups_of_tests(self, room, known):
-        """Lists of tests in the order in which they are run; the first is that of the room."""
+    @functools.cached_property
+    def users(self):
+        """{module: those that use it}, each as (room, name); the wrapper's room is `wrapper`."""
+        found = {}
+        for path in [*self.top.glob("src/**/*.f90"), *self.top.glob("pywrap/*.f90")]:
+            top, room = path.relative_to(self.top).parts[:2]
+            user = (room if top == "src" else "wrapper", path.stem)
+            for name in USE.findall(path.read_text(encoding="utf-8")):
+                found.setdefault(name.lower(), set()).add(user)
+        return found
+
+    def rooms_that_use(self, change):
+        """Other rooms that use the module of the change, also through modules of its own room;
+        first those with most modules that do so."""
+        reached, ahead = set(), {(change.room, pathlib.Path(change.path).stem)}
+        while ahead:
+            reached |= ahead
+            ahead = {user for room, name in ahead if room == change.room
+                     for user in self.users.get(name, ())} - reached
+        rooms = collections.Counter(room for room, _ in reached if room != change.room)
+        return sorted(rooms, key=lambda name: (-rooms[name], name))
+
+    def groups_of_tests(self, change, known, seen):
+        """Lists of tests in the order in which they are run; seen: whether the decks differ."""
+        room = change.room
         noticed = [found["test"].split("[")[0] for found in known.values()
                    if found["outcome"] == "noticed" and "::" in found["test"]]
         rooms = collections.Counter(test.split("/")[1] for test in noticed)
@@ -233,7 +262,9 @@ class Copy:
         yield [test for test, _ in collections.Counter(noticed).most_common(MOST)]
         others = {path.name for path in (self.top / "tests").iterdir()
                   if any(path.glob("test_*.py"))} - {room, *BLIND_ROOMS}
-        for other in sorted(others, key=lambda name: (-rooms[name], name)):
+        near = [name for name in self.rooms_that_use(change) if name in others][:NEAREST]
+        far = sorted(others - {*near}, key=lambda name: (-rooms[name], name))
+        for other in near + far if seen else near:
             yield [f"tests/{other}", *(f"--ignore={path}" for path in BLIND)]
 
     def outcome(self, change, known):
@@ -248,13 +279,18 @@ class Copy:
                 return {"outcome": "no program"}
             seen = self.first_difference()
             failed = None
-            for i, tests in enumerate(self.groups_of_tests(change.room, known)):
-                if tests and failed is None and (i == 0 or seen):
+            for tests in self.groups_of_tests(change, known, seen):
+                if tests and failed is None:
                     failed = self.first_failure(tests)
             return {"outcome": "noticed" if failed else "missed" if seen else "same",
                     "seen in": seen, "test": failed}
         finally:
             path.write_text(text, encoding="utf-8")
+
+
+def _limited(seconds, *command):
+    """The command, ended after so many processor seconds, and so is each process that it starts."""
+    return ["sh", "-c", f'ulimit -t {seconds}; exec "$@"', "sh", *command]
 
 
 def _read(folder):
