@@ -101,3 +101,18 @@ def test_no_theory_is_the_nearest_to_states_that_did_not_converge(snapin, tmp_pa
     done = snapin("--out", ".", "d.nml", cwd=tmp_path)
     assert done.returncode == 1
     assert "theory" not in done.stderr and "states in" in done.stderr
+
+
+@pytest.mark.parametrize("ratio, note, warning", [
+    (0.095, False, False), (0.105, True, False), (0.32, True, False), (0.35, False, True)])
+def test_lengths_above_a_tenth_and_a_third_of_the_radius_are_said(
+        snapin, tmp_path, ratio, note, warning):
+    """docs/limits.md. The range of the force does not depend on the radius."""
+    def summary_of(radius):
+        return said(snapin, tmp_path, {**SCENE, "bodies": {"radius": radius, "rigid": True},
+                                       "loading": loading(3e-9, 2e-9, 1e-9)})[1]
+
+    summary = summary_of(summary_of(1.0)["range_over_radius"]/ratio)
+    assert summary["range_over_radius"] == pytest.approx(ratio)
+    assert ("which is not small" in str(summary.get("notes", ""))) == note
+    assert ("beyond the model: the range" in str(summary.get("warnings", ""))) == warning
