@@ -58,8 +58,12 @@ contains
     material%own = gauss_nodes(order + more_nodes)
     n = order + more_nodes
     allocate (material%smooth_kernel(size(grid%kernel, 1), n*material%long))
+    if (material%long == 0) then
+      ! Fewer panels than a long one replaces.
+      allocate (material%spread(0, n))
+      return
+    end if
     material%spread = transpose(material%own%bases(grid%x(:material%inside)/material%length))
-    if (material%long == 0) return
     do k = 1, material%long
       material%smooth_kernel(:, (k - 1)*n + 1:k*n) = matmul( &
         grid%kernel(:, (k - 1)*material%inside + 1:k*material%inside), material%spread)

@@ -58,8 +58,11 @@ contains
         if (number%name /= name) cycle
         if (.not. ieee_is_nan(found%value(k))) then
           found%error(k) = number%error(quantity)*units(quantity)
-          if (.not. number%known) found%error(k) = max(found%error(k), abs(found%value(k)), &
-            least(quantity)*units(quantity))
+          if (.not. number%known) then
+            if (ieee_is_nan(found%error(k))) found%error(k) = 0
+            found%error(k) = max(found%error(k), abs(found%value(k)), &
+              least(quantity)*units(quantity))
+          end if
         end if
         if (allocated(number%rate)) then
           found%rate(:, k) = number%rate(quantity, :)
