@@ -7,7 +7,7 @@ module stepped_branch
   use stepper, only: stepper_t, branch_point_t, step_result_t
   use largest_tension, only: lower, lower_on_way
   use tension_search, only: tension_search_t
-  use reported_place, only: place_t, place_of_state, of_h0
+  use reported_place, only: place_of_state
   use places, only: places_t
   use records, only: observer_t, record_t, branch_t, record_of, stable_yes, stable_unasked
   implicit none
