@@ -38,7 +38,7 @@ module mesh_refinement
     real(wp), allocatable :: left(:)
     integer, allocatable :: nodes(:)
   contains
-    procedure :: mend
+    procedure :: refine
   end type mesh_refiner_t
 
   !> Part of the load, over the accuracy, that nodes may miss under a law with a step.
@@ -64,26 +64,26 @@ contains
   !> full, while only a part of their error affects the load. Errors due to a step of the law change
   !> quickly as the step passes from node to node; therefore they change the position of an extremum
   !> of the load more than the load itself.
-  pure type(mesh_refiner_t) function new_mesh_refiner(accuracy, law) result(mender)
+  pure type(mesh_refiner_t) function new_mesh_refiner(accuracy, law) result(refiner)
     real(wp), intent(in) :: accuracy
     class(force_law_t), intent(in) :: law
 
-    mender%most = accuracy
-    if (law%step_width > 0) mender%most = of_steps*accuracy
-    if (law%period > 0) mender%most = too_much*accuracy
-    allocate (mender%rounds(0), mender%left(0), mender%nodes(0))
+    refiner%most = accuracy
+    if (law%step_width > 0) refiner%most = of_steps*accuracy
+    if (law%period > 0) refiner%most = too_much*accuracy
+    allocate (refiner%rounds(0), refiner%left(0), refiner%nodes(0))
   end function new_mesh_refiner
 
   !> Refines a mesh whose end the path has reached, or on which the path is lost, if the nodes miss
   !> too much of the load. leaving: the path passes to the next mesh; its newest state then counts
-  !> for that mesh only. mended: the path has to be traced again from its entry into the mesh.
-  subroutine mend(self, equations, path, mesh, leaving, lost, mended)
+  !> for that mesh only. refined: the path has to be traced again from its entry into the mesh.
+  subroutine refine(self, equations, path, mesh, leaving, lost, refined)
     class(mesh_refiner_t), intent(inout) :: self
     type(equations_t), intent(inout) :: equations
     type(traced_path_t), intent(in) :: path
     integer, intent(in) :: mesh
     logical, intent(in) :: leaving, lost
-    logical, intent(out) :: mended
+    logical, intent(out) :: refined
     type(mapped_shape_t) :: shape
     real(wp) :: left
 
@@ -95,16 +95,16 @@ contains
     end do
     left = maxval(left_on_mesh(equations, path, mesh, equations%meshes%grid(mesh), &
       path%held - merge(1, 0, leaving)))
-    mended = self%rounds(mesh) < most_rounds .and. left > self%most
+    refined = self%rounds(mesh) < most_rounds .and. left > self%most
     associate (nodes => equations%meshes%grid(mesh)%nodes)
       if (left < helped*self%left(mesh)) then
         self%left(mesh) = left
         self%nodes(mesh) = nodes
       else
-        mended = mended .and. .not. lost .and. nodes < most_growth*self%nodes(mesh)
+        refined = refined .and. .not. lost .and. nodes < most_growth*self%nodes(mesh)
       end if
     end associate
-    if (.not. mended) return
+    if (.not. refined) return
     if (.not. (self%rounds(mesh) > 0 .or. lost) .and. equations%problem%law%edge_gap > 0) then
       shape = shape_for_seen(equations, path, mesh, self%most)
     else
@@ -115,7 +115,7 @@ contains
     call equations%operator%forget()
     equations%cost%kernel_entries = equations%cost%kernel_entries + &
       equations%meshes%grid(mesh)%kernel_entries()
-  end subroutine mend
+  end subroutine refine
 
   !> The part of the load that the nodes of a mesh miss in a state.
   pure real(wp) function left_in_state(equations, mesh, state) result(left)

@@ -54,9 +54,9 @@ contains
     type(demand_t), intent(in), optional :: demand
     real(wp), intent(in), optional :: h0_end
     type(continuation_t) :: walker
-    type(mesh_refiner_t) :: mender
+    type(mesh_refiner_t) :: refiner
     character(len=40) :: so_far
-    logical :: lost, blind, finished, mended
+    logical :: lost, blind, finished, refined
     type(ending_t) :: going_on
     real(wp) :: tolerance, contact_at
     integer :: steps
@@ -74,8 +74,8 @@ contains
     if (present(demand)) call walker%follow_closely(demand%looser)
     call walker%take(solver, start, approach, lost)
     if (lost) known%ending%cause = path_lost
-    mender = new_mesh_refiner(accuracy, solver%problem%law)
-    walker%most = mender%most
+    refiner = new_mesh_refiner(accuracy, solver%problem%law)
+    walker%most = refiner%most
     do while (.not. (known%ending%early() .or. finished))
       call extend(known%path, walker, solver, lost)
       if (lost) lost = .not. has_come_to_next(walker, solver%equations_t)
@@ -84,14 +84,14 @@ contains
         write (so_far, '(a, i0, a)') 'tracing the path: ', known%path%held, ' states'
         call observer%hear(trim(so_far))
       end if
-      mended = .false.
+      refined = .false.
       if (.not. lost) call examine_mesh()
-      if (.not. (lost .or. mended)) call pass_on(known%path, walker, solver, lost)
+      if (.not. (lost .or. refined)) call pass_on(known%path, walker, solver, lost)
       call note_ending()
       finished = goes_far_enough()
-      if (.not. mended .and. (finished .or. known%ending%early())) &
-        call mender%mend(solver%equations_t, known%path, walker%mesh, .false., lost, mended)
-      if (.not. mended) cycle
+      if (.not. refined .and. (finished .or. known%ending%early())) &
+        call refiner%refine(solver%equations_t, known%path, walker%mesh, .false., lost, refined)
+      if (.not. refined) cycle
       known%ending = going_on
       finished = .false.
       call go_back(solver, start, walker%mesh, known%path, walker, lost)
@@ -117,9 +117,9 @@ contains
       ! This mesh was examined when the next one was inserted. The path may stay on it for some
       ! steps; if it were refined again, the path would reach the inserted one earlier each time.
       if (leaving) leaving = .not. solver%meshes%inserted(walker%mesh + 1)
-      if (further%wanted .or. adrift .or. leaving) call mender%mend(solver%equations_t, &
-        known%path, walker%mesh, .not. adrift, .false., mended)
-      if (further%wanted .and. .not. mended) then
+      if (further%wanted .or. adrift .or. leaving) call refiner%refine(solver%equations_t, &
+        known%path, walker%mesh, .not. adrift, .false., refined)
+      if (further%wanted .and. .not. refined) then
         call solver%meshes%insert(walker%mesh, further%locked, further%reach(1), further%reach(2))
         call solver%operator%forget()
       end if
